@@ -1,0 +1,333 @@
+#pragma once
+
+#include "fppg/element.h"
+#include "fppg/lattice.h"
+#include "fppg/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fppg
+{
+
+/// What a node, a draw or a filter is about. Void: nothing comes out.
+enum class MkKind : std::uint8_t
+{
+    Void,
+    Bound,
+    Fluid,
+};
+
+/// The mk that a draw paints with.
+struct MkValue
+{
+    MkKind kind = MkKind::Void;
+    std::uint16_t mk = 0;      ///< absolute; 0 for void
+    std::uint16_t mk_type = 0; ///< mkbound or mkfluid
+    bool operator==(const MkValue&) const = default;
+};
+
+/// `setdrawmode`; solid is GenCase's default (semantics: section 2).
+enum class DrawMode : std::uint8_t
+{
+    Wire,
+    Face,
+    Solid,
+    Full,
+};
+
+/// `setdpctes`: how near to a primitive a node must lie to be taken, in dp (rule P7), and the
+/// facets of round shapes in shape files.
+struct DrawConstants
+{
+    double line = 0.6;
+    double triangle_weight = 0.6; ///< distance from the triangle's plane
+    double triangle_limits = 0.6; ///< distance beyond its edges, in the plane
+    double sphere = 0.6;
+    double ellipsoid = 0.6;
+    double cylinder_tube = 0.6;
+    double cylinder_cover = 0.6;
+    int sphere_sides = 24;
+    int cylinder_sides = 24;
+};
+
+/// Keeps the nodes x with (x - point) . normal <= 0 (rule C1).
+struct ClipPlane
+{
+    Vec3 point;
+    Vec3 normal;
+};
+
+/// Everything that a draw inherits from the commands before it.
+struct DrawState
+{
+    MkValue mk;
+    DrawMode mode = DrawMode::Solid;
+    DrawConstants constants;
+    std::vector<ClipPlane> clips;
+    bool box_limit_full = false; ///< setboxlimitmode full
+    bool draw_points = true;     ///< setactive drawpoints
+    bool draw_shapes = true;     ///< setactive drawshapes
+    bool normal_invert = false;  ///< setnormalinvert
+    bool mk_next_auto = false;   ///< setmknextauto
+};
+
+/// Where a draw stands in the definition, for messages.
+struct SourceRef
+{
+    int line = 0;
+    std::string command;
+};
+
+/// `drawpoint`, `drawpoints`: nodes nearest to the points.
+struct PointsOp
+{
+    std::vector<Vec3> points;
+};
+
+/// `drawline`, `drawlines`, `drawlineto`: segments, each (from, to).
+struct LinesOp
+{
+    std::vector<std::pair<Vec3, Vec3>> segments;
+};
+
+/// A polygon of a figure; it is cut into triangles (0, 1, 2), (0, 2, 3), ... (rule P5).
+struct FigureFace
+{
+    std::vector<std::uint32_t> vertices; ///< three or more indices into FigureOp::vertices
+    bool is_visible = true;              ///< false: hidden by mask or boxfill
+};
+
+/// Everything that is bounded by planes: triangles, quads, strips, fans, polygons, figures, boxes,
+/// prisms, pyramids, beaches, extrusions.
+struct FigureOp
+{
+    std::vector<Vec3> vertices; ///< after all transforms, not snapped
+    std::vector<FigureFace> faces;
+    /// Closed bodies whose strict interior is filled in solid and full mode: each a list of indices
+    /// into `faces` (a solid box is two prisms, rule S4). Empty: an open surface.
+    std::vector<std::vector<std::uint32_t>> bodies;
+};
+
+/// `drawsphere`
+struct SphereOp
+{
+    Vec3 center;
+    double radius = 0;
+    std::vector<double> layers_dp; ///< shells at radius + layer * dp instead of the sphere
+};
+
+/// `drawcylinder`; faces: cover at the first point, cover at the second, tube
+struct CylinderOp
+{
+    Vec3 p0;
+    Vec3 p1;
+    double radius = 0;
+    std::array<bool, 3> is_visible{true, true, true};
+    std::vector<double> layers_dp;
+};
+
+/// `drawellipsoid`: nodes by the sum of their distances to two foci; `radius` is that sum (R3).
+struct EllipsoidOp
+{
+    Vec3 focus0;
+    Vec3 focus1;
+    double radius = 0;
+};
+
+/// `drawfilestl`
+struct MeshFileOp
+{
+    std::string file;    ///< as written in the case
+    Transform transform; ///< scale, rotation and move of the command, then the current matrix
+    bool autofill = false;
+    bool advanced = false;
+    bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
+};
+
+/// Which nodes a fill may enter (rules F2, F3). `enters[k]` is for kind k; a number narrows it.
+struct FillFilter
+{
+    std::array<bool, 3> names{false, false, false}; ///< void, bound, fluid named in modefill
+    bool border = false;                            ///< the named ones are the limits instead
+    std::optional<std::uint16_t> mkbound;           ///< absolute mk
+    std::optional<std::uint16_t> mkfluid;           ///< absolute mk
+};
+
+/// A box by two opposite corners, before snapping.
+struct BoxRegion
+{
+    Vec3 corner0;
+    Vec3 corner1;
+};
+
+/// `fillpoint`, `fillvoidpoint`, `fillbox`, `fillfigure`, `fillprism`: a 6-connected flood.
+struct FillOp
+{
+    Vec3 seed;
+    FillFilter filter;
+    std::variant<std::monostate, BoxRegion, FigureOp> region;
+};
+
+/// A filter by type, and by number where one is given.
+struct MkFilter
+{
+    MkKind kind = MkKind::Void;
+    std::optional<std::uint16_t> mk; ///< absolute
+};
+
+/// `redraw`, `redrawbox`: recolours what exists (rules D1, D2).
+struct RedrawOp
+{
+    std::vector<MkFilter> filters;   ///< empty: every node
+    std::optional<BoxRegion> region; ///< strict interior of the snapped box
+};
+
+/// `redrawnear`, `redrawnearbox` (rules D3 to D5).
+struct RedrawNearOp
+{
+    MkFilter target;
+    MkFilter border;
+    int times = 1;
+    /// top, bottom, right, left, back, front, seen from the border node; none set: all 26
+    /// neighbours
+    std::array<bool, 6> directions{};
+    std::optional<BoxRegion> region;
+};
+
+/// `resetdraw`: forgets what was drawn.
+struct ResetOp
+{
+};
+
+/// `shapeout`: writes the shapes drawn since the last one.
+struct ShapeOutOp
+{
+    std::string file; ///< may be empty
+    bool reset = true;
+    bool actual = true;                            ///< write them as drawn
+    bool snapped = false;                          ///< write them with vertices on the lattice
+    std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
+};
+
+using DrawVariant = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
+                                 MeshFileOp, FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp>;
+
+/// One executed command.
+struct DrawOp
+{
+    SourceRef source;
+    /// Shared by the commands between two state changes.
+    std::shared_ptr<const DrawState> state;
+    DrawVariant what;
+};
+
+/// `<constantsdef>`: what the case fixes and what it leaves to the formulas.
+struct ConstantsDef
+{
+    int lattice_bound = 1;
+    int lattice_fluid = 1;
+    Vec3 gravity;
+    double rhop0 = 0;
+    int rhop_gradient = 2;
+    double gamma = 0;
+    std::optional<double> hswl;         ///< empty: automatic
+    std::optional<double> speed_system; ///< empty: automatic
+    double coef_sound = 0;
+    std::optional<double> speed_sound; ///< empty: automatic
+    std::optional<double> coef_h;      ///< one of coef_h and hdp is given
+    std::optional<double> hdp;
+    double cfl_number = 0;
+    std::optional<double> eps;
+    std::optional<double> h;
+    std::optional<double> b;
+    std::optional<double> mass_bound;
+    std::optional<double> mass_fluid;
+};
+
+/// `<mkorientbound>`, `<mkorientfluid>`: the order of the particles of one mk (rule N2).
+struct MkOrient
+{
+    std::uint16_t mk = 0;             ///< absolute
+    std::array<int, 3> axes{0, 1, 2}; ///< slowest first
+    std::array<bool, 3> descending{}; ///< per entry of `axes`
+};
+
+/// `<floating>`; empty optionals are computed from the particles.
+struct FloatingDef
+{
+    int line = 0;
+    std::vector<std::uint16_t> mkbound;
+    std::optional<double> mass_body;
+    std::optional<double> rhop_body; ///< relativeweight w is given as w * rhop0
+    std::optional<double> mass_part;
+    bool distribute_mass = false; ///< masspart = massbody / n
+    std::optional<Vec3> center;
+    std::optional<std::array<Vec3, 3>> inertia;
+    std::string property;
+    std::vector<Element> extra; ///< translationDOF and the like, copied into Case.xml
+};
+
+/// A user variable, for `<uservars>`.
+struct UserVariable
+{
+    std::string name;
+    bool is_text = false;
+    double number = 0;
+    std::string text;
+};
+
+/// A case definition, read and executed. Nothing after it knows XML.
+struct CaseDef
+{
+    std::string file;      ///< of the definition, as the user named it
+    std::string case_name; ///< of the output, without folder
+
+    ConstantsDef constants;
+    LatticeGrid grid;  ///< after -dp and pointref
+    Vec3 case_pos_min; ///< limits of the domain as printed: grid.origin, pointmax
+    Vec3 case_pos_max;
+    int mkbound_count = 0;
+    int mkfluid_count = 0;
+    std::uint16_t mk_bound_first = 0; ///< mk = mkbound + mk_bound_first
+    std::uint16_t mk_fluid_first = 1;
+    std::vector<MkOrient> mk_orients;
+
+    std::vector<DrawOp> ops;           ///< in order of execution
+    std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
+
+    std::vector<FloatingDef> floatings;
+    std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
+    Element properties;             ///< `<properties>` of the definition, or empty name
+    Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound
+    std::vector<Element> execution; ///< children of `<execution>` before `<particles>`
+    Element casedef;                ///< `<casedef>` as read, for the copy in Case.xml
+
+    std::vector<UserVariable> user_variables; ///< in printing order
+    std::string variables_log; ///< "List of available variables: ..." at the end of reading
+    std::vector<std::string> warnings;
+};
+
+/// Overrides of the command line.
+struct CaseOptions
+{
+    std::optional<double> dp;                               ///< -dp:
+    std::vector<std::pair<std::string, std::string>> evars; ///< -evars:
+    std::string case_name;                                  ///< of the output
+};
+
+/// Reads and executes `<path>`.
+///
+/// path     the file, with its extension
+/// options  what the command line overrides
+/// throws   IoError if it cannot be read; CaseError with file, line and element if it is wrong, if
+///          it uses a command that is known but not built ("not supported yet"), or if `abort` runs
+CaseDef read_case(const std::string& path, const CaseOptions& options);
+
+} // namespace fppg

@@ -1,0 +1,110 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/particles.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// A file that is not there until it is whole: written under a temporary name in the same folder,
+/// given its name by commit(). Destroyed without commit(): the temporary file is removed and an
+/// older file of that name is untouched.
+class OutputFile
+{
+public:
+    /// throws IoError if the folder cannot be written
+    explicit OutputFile(std::string path);
+    ~OutputFile();
+    OutputFile(OutputFile&& other) noexcept;
+    OutputFile& operator=(OutputFile&& other) noexcept;
+
+    /// Reserves the whole file on the disk (zeros until written), so that a full disk is noticed
+    /// before the work. throws IoError
+    void reserve(std::uint64_t bytes);
+    /// Writes at an offset; several threads may write different parts at once. throws IoError
+    void write_at(std::uint64_t offset, const void* data, std::size_t bytes);
+    /// Writes at the end of what append() wrote so far. throws IoError
+    void append(const void* data, std::size_t bytes);
+    void append(const std::string& text) { append(text.data(), text.size()); }
+    /// Gives the file its name. throws IoError
+    void commit();
+
+    const std::string& path() const { return path_; }
+
+private:
+    std::string path_;
+    std::string temporary_path_;
+    int descriptor_ = -1;
+    std::uint64_t end_ = 0;
+};
+
+/// What a file says of its maker.
+struct FileOrigin
+{
+    std::string app_name;  ///< e.g. "GenCase v5.4 (fppg v0.1.0)"
+    std::string date;      ///< of Case.xml: dd-mm-yyyy hh:mm:ss
+    std::string case_name; ///< without folder
+};
+
+/// Writes `Case.bi4` (JBinaryData: one item JPartDataBi4 with PART_0000: Idp, Posd, Vel, Rhop) as a
+/// stream: no array of all particles is made, blocks of particles are filled and written by
+/// `threads` threads at their offsets. Sizes are 64-bit from 4,228,102,018 bytes on.
+/// The same input gives the same bytes for any number of threads (Date is "???").
+void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConstants& constants,
+               const FileOrigin& origin, int threads);
+
+enum class VtkSelection
+{
+    All,
+    Bound,
+    Fluid,
+};
+
+/// Writes particles as legacy binary VTK (POLYDATA, big-endian, POINTS float): All and Fluid with
+/// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk. Streamed like write_bi4.
+void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
+                         const CaseConstants& constants, VtkSelection selection, int threads);
+
+/// Writes `_MkCells.vtk`: the faces between cells (dp wide, centred on the nodes) of different mk,
+/// merged into rectangles, each drawn 0.001 dp inside its own cell; CELL_DATA Mk (unsigned_short)
+/// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Made from runs: cost grows
+/// with the number of runs, not with nodes.
+///
+/// type_of_mk  size 65536: the ParticleType of every mk
+void write_cells_vtk(OutputFile& file, const RunField& field,
+                     const std::vector<ParticleType>& type_of_mk, int threads);
+
+/// Polygons of one drawn object, for shape files.
+struct ShapePolygons
+{
+    std::uint32_t object_id = 0;
+    int mk = 0; ///< absolute; -1 void
+    std::vector<Vec3> vertices;
+    std::vector<std::vector<std::uint32_t>>
+        polygons; ///< 1 index a point, 2 a line, 3 and more a face
+};
+
+/// Writes shapes as legacy binary VTK: LINES and POLYGONS with CELL_DATA Mk and ObjId (int).
+void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// A line of `<vtkout>` in Case.xml.
+struct VtkOutEntry
+{
+    std::string file;    ///< without folder
+    std::string mk;      ///< list of ranges, e.g. "10-11,20"
+    std::string mkbound; ///< or empty
+    std::string mkfluid; ///< or empty
+};
+
+/// Writes `Case.xml`: the definition as read, then `<execution>` with particles, constants,
+/// uservars, motion and vtkout, as described in the header of src/files/case_xml.cpp. Numbers have
+/// as many digits as it takes to read them back exactly.
+void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& particles,
+                    const CaseConstants& constants, const std::vector<VtkOutEntry>& vtk_out,
+                    const FileOrigin& origin);
+
+} // namespace fppg

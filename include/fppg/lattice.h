@@ -1,0 +1,59 @@
+#pragma once
+
+#include "fppg/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace fppg
+{
+
+/// The cubic lattice of a case: node (i, j, k) stands at origin + (i, j, k) * dp.
+/// Rules L1 to L5, found by experiment with GenCase v5.4.354 (origin at pointmin, or moved down to
+/// a whole multiple of dp from pointref; the node at pointmax is not part of it).
+struct LatticeGrid
+{
+    Vec3 origin;
+    double dp = 0;
+    std::array<std::uint32_t, 3> n{0, 0, 0}; ///< nodes along x, y, z; at least 1 each
+    bool is_2d = false;                      ///< one layer in y, at origin.y
+};
+
+/// Nodes [z_begin, z_end) of the column at row `y` of one slab (= one x).
+struct Span
+{
+    std::uint32_t y = 0;
+    std::uint32_t z_begin = 0;
+    std::uint32_t z_end = 0;
+    bool operator==(const Span&) const = default;
+};
+
+/// A set of nodes: slabs[i] holds the spans at x = x_begin + i, sorted by (y, z_begin), disjoint
+/// and not touching one another in a column.
+struct SpanSet
+{
+    std::uint32_t x_begin = 0;
+    std::vector<std::vector<Span>> slabs;
+};
+
+/// Nodes [z_begin, z_end) of the column (slab, y) that carry `mk`.
+struct Run
+{
+    std::uint32_t y = 0;
+    std::uint32_t z_begin = 0;
+    std::uint32_t z_end = 0;
+    std::uint16_t mk = 0; ///< absolute mk, from 1; void nodes have no run
+    bool operator==(const Run&) const = default;
+};
+
+/// The state of the lattice: which mk every node carries. slabs[x] holds the runs of that x, sorted
+/// by (y, z_begin), disjoint; neighbours in a column that touch carry different mk. Memory grows
+/// with the surface of the drawn regions and with grid.n[0], never with the number of nodes.
+struct RunField
+{
+    LatticeGrid grid;
+    std::vector<std::vector<Run>> slabs; ///< size grid.n[0]
+};
+
+} // namespace fppg

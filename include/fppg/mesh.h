@@ -1,0 +1,28 @@
+#pragma once
+
+#include "fppg/vec.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// Triangles as a file gives them: every facet with its own three corners, nothing welded.
+/// Facet i has the vertices 3 i, 3 i + 1, 3 i + 2, counter-clockwise seen from outside.
+struct TriangleSoup
+{
+    std::vector<Vec3> vertices; ///< size 3 * facets; float32 of the file promoted to double
+
+    std::size_t size() const { return vertices.size() / 3; }
+};
+
+/// A mesh file read, with what a reader noticed on the way.
+struct MeshFile
+{
+    TriangleSoup soup;
+    std::vector<std::string> warnings; ///< whole sentences; the caller adds the file name
+};
+
+} // namespace fppg

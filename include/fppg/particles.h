@@ -1,0 +1,102 @@
+#pragma once
+
+#include "fppg/lattice.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+enum class ParticleType : std::uint8_t
+{
+    Fixed = 0,
+    Moving = 1,
+    Floating = 2,
+    Fluid = 3,
+};
+
+/// `count` lattice nodes of one column in id order, from node (x, y, z) on, upwards in z unless the
+/// block says otherwise.
+struct ParticleRun
+{
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    std::uint32_t z = 0;
+    std::uint32_t count = 0;
+    /// Fluid only: steps of dp from the run's highest node up to the top of its water column.
+    std::uint32_t depth = 0;
+};
+
+/// All particles of one mk. Ids of a block are consecutive.
+struct ParticleBlock
+{
+    ParticleType type = ParticleType::Fixed;
+    std::uint16_t mk = 0;      ///< absolute
+    std::uint16_t mk_type = 0; ///< mkbound or mkfluid
+    std::uint64_t begin = 0;   ///< first id
+    std::uint64_t count = 0;
+    bool run_descending = false;   ///< a run's nodes follow one another downwards in z
+    std::vector<ParticleRun> runs; ///< in id order; their counts add up to `count`
+    std::string property;          ///< names joined with '+', or empty
+    int ref_motion = -1;           ///< moving: index in the motion of Case.xml
+};
+
+/// What the solver needs of a floating body. SI units.
+struct FloatingBody
+{
+    std::size_t block = 0; ///< index into CaseParticles::blocks
+    double mass_body = 0;
+    double mass_part = 0;
+    Vec3 center;
+    std::array<Vec3, 3> inertia; ///< rows; off-diagonal entries carry the minus sign
+};
+
+/// Constants of the case as they go into Case.xml and Case.bi4; SI units.
+struct CaseConstants
+{
+    bool is_2d = false;
+    double y_2d = 0;
+    Vec3 gravity;
+    double cfl_number = 0;
+    double gamma = 0;
+    double rhop0 = 0;
+    bool has_eps = false;
+    double eps = 0;
+    double dp = 0;
+    double h = 0;
+    double b = 0;
+    double mass_bound = 0;
+    double mass_fluid = 0;
+    // Not stored in the files, printed:
+    double hswl = 0;
+    double speed_system = 0;
+    double speed_sound = 0;
+};
+
+/// The particles of a case in id order: fixed, moving, floating, fluid; within a type by mk; within
+/// an mk by x, y, z (or by the order that mkorient asks for). Positions and densities are not
+/// stored: writers make them from the runs, node n at grid.origin + n * grid.dp.
+struct CaseParticles
+{
+    LatticeGrid grid;
+    std::vector<ParticleBlock> blocks;
+    std::uint64_t np = 0;
+    std::uint64_t n_fixed = 0;
+    std::uint64_t n_moving = 0;
+    std::uint64_t n_floating = 0;
+    std::uint64_t n_fluid = 0;
+    Vec3 pos_min; ///< exact limits of all positions; zeros when np is 0
+    Vec3 pos_max;
+    std::vector<FloatingBody> floatings;
+
+    /// Fluid density. When gravity is along z (or zero), `rhop` is empty and the node `s` steps
+    /// below the highest node of a run has rhop_of_depth[run.depth + s]. Otherwise `rhop` holds one
+    /// value a fluid particle, in id order. Boundary and floating particles have rhop0.
+    std::vector<float> rhop_of_depth;
+    std::vector<float> rhop;
+};
+
+} // namespace fppg
