@@ -1,0 +1,1 @@
+#include "fppg/files.h"
