@@ -1,6 +1,7 @@
 #include "files/case_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -85,6 +86,17 @@ void without_comment(Element& element)
                   { return a.name == "comment" || a.name == "units_comment"; });
 }
 
+/// The attributes that every movement has come first.
+void order_attributes(Element& movement)
+{
+    static const std::array<std::string, 4> first{"id", "duration", "next", "anglesunits"};
+    const auto place = [](const Element::Attribute& a)
+    { return std::find(first.begin(), first.end(), a.name) - first.begin(); };
+    std::stable_sort(movement.attributes.begin(), movement.attributes.end(),
+                     [&](const Element::Attribute& a, const Element::Attribute& b)
+                     { return place(a) < place(b); });
+}
+
 Element case_movement(const Element& movement)
 {
     Element out = movement;
@@ -92,6 +104,7 @@ Element case_movement(const Element& movement)
     if (out.name == "mvpredef") out.name = "mvrectfile";
     if (has_angles(out.name) && !out.find_attribute("anglesunits"))
         out.set_attribute("anglesunits", "degrees");
+    order_attributes(out);
     const std::string* angles = out.find_attribute("anglesunits");
     std::erase_if(out.children, [](const Element& c) { return c.kind == Element::Kind::Comment; });
     for (Element& child : out.children)

@@ -121,8 +121,7 @@ Element complete_domain(const Element& given)
 
 Element case_parameters(const Element& given)
 {
-    Element out = given;
-    out.children.clear();
+    Element out = tag("parameters");
     std::map<std::string, std::size_t> place_of_key;
     bool has_domain = false;
     for (const Element& child : given.children)
