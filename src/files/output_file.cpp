@@ -20,8 +20,8 @@ namespace fppg
 namespace
 {
 
-/// The places of the registry. A path is written while its slot is Reserved and read by a signal
-/// handler only while it is Live, so the handler never sees half a path.
+/// The places of the registry. A path is written only while its slot is Reserved and read by a
+/// signal handler only while it is Live.
 enum SlotState
 {
     Free,
