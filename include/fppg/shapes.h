@@ -8,16 +8,21 @@
 namespace fppg
 {
 
-/// Reads an STL file, binary or ASCII, whatever its header says.
+/// Reads an STL file, binary or ASCII, whatever its header says: a file of 84 + 50 n bytes, n in
+/// its bytes 80 to 83, is binary; so is every file that is no text. Normals and attributes are not
+/// used. Several solids of an ASCII file are joined.
 ///
 /// path     as the user named it, relative to the working directory
-/// returns  facets in the order of the file; corners are the file's float32 values. Facets with a
-///          coordinate that is not finite are left out with a warning that counts them
+/// threads  number of threads; the result does not depend on it
+/// returns  facets in the order of the file; corners are the file's float32 values (ASCII digits
+///          are rounded once, to float32). Facets with a coordinate that is not finite are left out
+///          with a warning that counts them. Warned of as well: bytes after the last facet, a solid
+///          without `endsolid`, coordinates beyond 1e10, facets without area, a mesh so far from
+///          the origin that float32 blurs it
 /// throws   IoError if the file cannot be opened; GeometryError if it is no STL, is truncated, has
-/// a
-///          facet that is no triangle or a number that cannot be read (names byte or line), or has
-///          no facet left
-MeshFile read_stl(const std::string& path);
+///          a count that does not fit its size, has a facet that is no triangle or a number that
+///          cannot be read (names the line), or has no facet left
+MeshFile read_stl(const std::string& path, int threads = 1);
 
 /// The nodes inside a mesh, by the sum of signed crossings along each column.
 ///
