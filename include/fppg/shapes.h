@@ -24,19 +24,28 @@ namespace fppg
 ///          cannot be read (names the line), or has no facet left
 MeshFile read_stl(const std::string& path, int threads = 1);
 
-/// The nodes inside a mesh, by the sum of signed crossings along each column.
+/// The nodes inside a mesh or on it, by the sum of signed crossings along each column.
 ///
-/// Every column (x, y) is cut with all facets in double precision; a facet that faces down adds one
-/// (entering, upwards), one that faces up takes one away. Nodes where the sum is positive are
-/// inside, so overlapping closed parts of one file join. Columns that pass exactly through an edge
-/// or a vertex count one facet only, by a consistent rule (as if the mesh were shifted by an
-/// infinitesimal amount), so that no crossing is lost or counted twice. A node exactly on the
-/// surface is inside.
+/// Every column (x, y) is cut with all facets; a facet that faces down adds one (entering,
+/// upwards), one that faces up takes one away. Nodes where the sum is positive are inside, so
+/// overlapping closed parts of one file join, and a cavity whose facets face into it stays empty.
+/// Every decision is exact, without a tolerance, for the double values of corners and nodes:
+/// - a column that passes exactly through edges or vertices is cut as if it stood an infinitesimal
+///   amount further in x, and a second-order amount in y, so that no crossing is lost or counted
+///   twice;
+/// - a node is between two crossings if its z is at or above the entering and at or below the
+///   leaving one;
+/// - a node exactly on an upright facet, an edge or a vertex is inside as well: the result is the
+///   closed body, and a box on lattice lines keeps the nodes of all its six sides.
 ///
 /// soup     closed, facets counter-clockwise from outside; a mesh whose signed volume is negative
-///          is taken with all facets flipped
+///          is taken with all facets flipped. Where a mesh is open, a column whose sum does not
+///          return to zero has no nodes above its last crossing
+/// grid     node (i, j, k) at origin + (i, j, k) * dp, multiplied first
 /// threads  number of threads; the result does not depend on it
-/// cost     O(facets + crossings log crossings) time, memory for the result only
+/// returns  slabs over the x range of the mesh within the lattice; none if they do not meet
+/// cost     O(facets + candidate columns + crossings log crossings) time; memory for the result
+///          and four bytes for every facet in every slab that it reaches
 SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int threads);
 
 } // namespace fppg
