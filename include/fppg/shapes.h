@@ -43,7 +43,7 @@ MeshFile read_stl(const std::string& path, int threads = 1);
 ///          return to zero has no nodes above its last crossing
 /// grid     node (i, j, k) at origin + (i, j, k) * dp, multiplied first
 /// threads  number of threads; the result does not depend on it
-/// returns  slabs over the x range of the mesh within the lattice; none if they do not meet
+/// returns  slabs from the first to the last that has a node inside; none if no node is
 /// cost     O(facets + candidate columns + crossings log crossings) time; memory for the result
 ///          and four bytes for every facet in every slab that it reaches
 SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int threads);

@@ -250,6 +250,22 @@ SlabRange slabs_of(const Vec3* corners, const LatticeGrid& grid)
     return range;
 }
 
+/// Takes the empty slabs at both ends away.
+void trim(SpanSet& set)
+{
+    const auto is_filled = [](const std::vector<Span>& slab) { return !slab.empty(); };
+    const auto first = std::find_if(set.slabs.begin(), set.slabs.end(), is_filled);
+    if (first == set.slabs.end())
+    {
+        set = {};
+        return;
+    }
+    const auto last = std::find_if(set.slabs.rbegin(), set.slabs.rend(), is_filled).base();
+    set.x_begin += static_cast<std::uint32_t>(first - set.slabs.begin());
+    set.slabs.erase(last, set.slabs.end());
+    set.slabs.erase(set.slabs.begin(), first);
+}
+
 } // namespace
 
 SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int threads)
@@ -294,6 +310,7 @@ SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int thre
                          cutter.cut(ColumnFacet(&soup.vertices[3 * std::size_t{facets[f]}], 2));
                      result.slabs[slab] = cutter.spans();
                  });
+    trim(result);
     return result;
 }
 
