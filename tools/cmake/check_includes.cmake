@@ -1,0 +1,77 @@
+# Checks that includes point downwards only.
+#
+#   cmake -DSOURCE_DIR=<repository> -P check_includes.cmake
+#
+# Every folder of src/ may include itself and the folders listed for it here; folders that do not
+# list one another do not know one another. The plain structs of include/fppg/ may be seen by all
+# but include only each other. Stops with a list of the files and folders at fault.
+cmake_minimum_required(VERSION 3.25)
+
+set(core_may_see)
+foreach(folder casedef shapes particles)
+  set(${folder}_may_see core)
+endforeach()
+foreach(folder lattice fit boolean relax files)
+  set(${folder}_may_see casedef shapes particles core)
+endforeach()
+foreach(folder compare render)
+  set(${folder}_may_see files particles shapes core)
+endforeach()
+set(app_may_see compare render lattice fit boolean relax files casedef shapes particles core)
+set(main_may_see app)
+
+# Third parties that one folder wraps for all others.
+set(only_in_casedef tinyxml2)
+set(only_in_shapes embree)
+
+set(faults)
+
+function(check_file file folder)
+  set(found ${faults})
+  file(STRINGS ${SOURCE_DIR}/${file} lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line IN LISTS lines)
+    if(line MATCHES "include[ \t]+\"([^/\"]+)/")
+      set(seen ${CMAKE_MATCH_1})
+      if(folder STREQUAL "include" AND NOT seen STREQUAL "fppg")
+        list(APPEND found "${file}: a public header may include only fppg/ and std, not ${seen}/")
+      elseif(NOT seen STREQUAL "fppg" AND NOT seen STREQUAL folder
+             AND NOT seen IN_LIST ${folder}_may_see)
+        list(APPEND found "${file}: ${folder} may not include ${seen}/")
+      endif()
+    elseif(line MATCHES "include[ \t]+\"" AND NOT line MATCHES "include[ \t]+\"tinyxml2")
+      list(APPEND found "${file}: name the folder of the header: ${line}")
+    endif()
+    foreach(owner casedef shapes)
+      foreach(library IN LISTS only_in_${owner})
+        if(line MATCHES "[<\"]${library}[0-9]*[/.]" AND NOT folder STREQUAL owner)
+          list(APPEND found "${file}: only ${owner} may include ${library}")
+        endif()
+      endforeach()
+    endforeach()
+  endforeach()
+  set(faults "${found}" PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp
+    ${SOURCE_DIR}/include/*.h ${SOURCE_DIR}/include/*.h.in)
+foreach(file IN LISTS files)
+  if(file MATCHES "^include/")
+    set(folder include)
+  elseif(file MATCHES "^src/([^/]+)/")
+    set(folder ${CMAKE_MATCH_1})
+  else()
+    set(folder main)
+  endif()
+  if(folder STREQUAL "include" OR DEFINED ${folder}_may_see OR folder STREQUAL "core")
+    check_file(${file} ${folder})
+  else()
+    list(APPEND faults "${file}: ${folder} has no place among the layers")
+  endif()
+endforeach()
+
+if(faults)
+  list(JOIN faults "\n  " text)
+  message(FATAL_ERROR "Includes that do not point downwards:\n  ${text}")
+endif()
+list(LENGTH files count)
+message(STATUS "The includes of ${count} files point downwards")

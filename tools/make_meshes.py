@@ -1,0 +1,447 @@
+#!/usr/bin/python3
+"""Makes closed triangle meshes of parametric bodies, as binary STL.
+
+    make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; lengths in metres, angles in degrees
+    make_meshes.py --all DIR                         every shape with its default parameters
+    make_meshes.py --cases DIR                       the meshes that the cases in DIR read
+    make_meshes.py --list                            shapes, their parameters and defaults
+
+Every mesh is checked before it is written: each edge has exactly two facets that run along it in
+opposite directions, no facet is degenerate, and the signed volume is positive (normals point
+outwards). The same parameters give the same bytes. Needs the Python standard library only.
+"""
+
+import inspect
+import math
+import os
+import struct
+import sys
+
+
+class Mesh:
+    """Vertices shared by index; facets counter-clockwise seen from outside."""
+
+    def __init__(self):
+        self.vertices = []
+        self.facets = []
+        self._index = {}
+
+    def vertex(self, x, y, z):
+        """The index of a point; points that are equal as float32 are one vertex."""
+        point = struct.unpack("<3f", struct.pack("<3f", x, y, z))
+        point = tuple(0.0 if c == 0 else c for c in point)
+        if point not in self._index:
+            self._index[point] = len(self.vertices)
+            self.vertices.append(point)
+        return self._index[point]
+
+    def triangle(self, a, b, c):
+        """Adds a facet; one with two equal corners has no area and is left out."""
+        if a != b and b != c and c != a:
+            self.facets.append((a, b, c))
+
+    def quad(self, a, b, c, d):
+        self.triangle(a, b, c)
+        self.triangle(a, c, d)
+
+    def add(self, other, flip=False):
+        """Adds another mesh, inside out where `flip` is set (a cavity)."""
+        for facet in other.facets:
+            a, b, c = (self.vertex(*other.vertices[i]) for i in facet)
+            self.triangle(a, c, b) if flip else self.triangle(a, b, c)
+
+    def moved(self, dx, dy, dz):
+        out = Mesh()
+        for facet in self.facets:
+            corners = (self.vertices[i] for i in facet)
+            out.triangle(*(out.vertex(x + dx, y + dy, z + dz) for x, y, z in corners))
+        return out
+
+    def volume(self):
+        """Signed volume: positive when the normals point outwards."""
+        total = 0.0
+        for a, b, c in self.facets:
+            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (self.vertices[i] for i in (a, b, c))
+            total += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        return total / 6
+
+    def check(self, name):
+        """Raises ValueError unless the mesh is closed, consistently turned and outward."""
+        edges = {}
+        for a, b, c in self.facets:
+            for edge in ((a, b), (b, c), (c, a)):
+                edges[edge] = edges.get(edge, 0) + 1
+        for (a, b), count in edges.items():
+            if count != 1 or edges.get((b, a), 0) != 1:
+                raise ValueError(f"{name}: the edge {self.vertices[a]} - {self.vertices[b]} is not "
+                                 "shared by exactly two facets in opposite directions")
+        for a, b, c in self.facets:
+            if not any(normal(*(self.vertices[i] for i in (a, b, c)))):
+                raise ValueError(f"{name}: a facet at {self.vertices[a]} has no area")
+        if not self.volume() > 0:
+            raise ValueError(f"{name}: volume {self.volume()}, normals point inwards")
+
+
+def normal(a, b, c):
+    """Unit normal of a triangle, or zeros."""
+    u = [b[i] - a[i] for i in range(3)]
+    v = [c[i] - a[i] for i in range(3)]
+    n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    length = math.sqrt(sum(k * k for k in n))
+    return [k / length for k in n] if length > 0 else [0.0, 0.0, 0.0]
+
+
+def write_stl(mesh, path, name):
+    """Writes binary STL: 80 bytes of name, the number of facets, 50 bytes a facet."""
+    mesh.check(name)
+    data = bytearray(f"fppg {name}".encode().ljust(80)[:80])
+    data += struct.pack("<I", len(mesh.facets))
+    for facet in mesh.facets:
+        corners = [mesh.vertices[i] for i in facet]
+        data += struct.pack("<12fH", *normal(*corners), *corners[0], *corners[1], *corners[2], 0)
+    with open(path, "wb") as file:
+        file.write(data)
+    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+
+
+# --- Ways to make a surface ---
+
+
+def turn(count):
+    """cos and sin of `count` equal steps round the circle."""
+    return [(math.cos(2 * math.pi * i / count), math.sin(2 * math.pi * i / count))
+            for i in range(count)]
+
+
+def triangulate(polygon):
+    """Ear clipping of a simple polygon (x, y), counter-clockwise; concave is allowed."""
+
+    def area(o, a, b):
+        return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+
+    left = list(range(len(polygon)))
+    triangles = []
+    while len(left) > 3:
+        best = None
+        for k, b in enumerate(left):
+            a, c = left[k - 1], left[(k + 1) % len(left)]
+            pa, pb, pc = polygon[a], polygon[b], polygon[c]
+            if area(pa, pb, pc) <= 0:
+                continue
+            if any(area(pa, pb, q) >= 0 and area(pb, pc, q) >= 0 and area(pc, pa, q) >= 0
+                   for q in (polygon[i] for i in left if i not in (a, b, c))):
+                continue
+            length = math.dist(pa, pc)
+            if best is None or length < best[0]:
+                best = (length, k, (a, b, c))
+        if best is None:
+            raise ValueError("the polygon crosses itself or runs clockwise")
+        triangles.append(best[2])
+        del left[best[1]]
+    return triangles + [tuple(left)]
+
+
+def loft(loops):
+    """Walls between consecutive loops of (x, y, z) with equal numbers of points, caps at both ends.
+
+    The loops run counter-clockwise seen against the direction in which they follow one another;
+    the first and last are flat in z. Points that two loops share make no wall.
+    """
+    mesh = Mesh()
+    rows = [[mesh.vertex(*p) for p in loop] for loop in loops]
+    for low, high in zip(rows, rows[1:]):
+        for i in range(len(low)):
+            k = (i + 1) % len(low)
+            mesh.quad(low[i], low[k], high[k], high[i])
+    for row, loop, up in ((rows[0], loops[0], False), (rows[-1], loops[-1], True)):
+        for a, b, c in triangulate([p[:2] for p in loop]):
+            mesh.triangle(*((row[a], row[b], row[c]) if up else (row[a], row[c], row[b])))
+    return mesh
+
+
+def extrude(polygon, z0, z1):
+    """A prism over a polygon (x, y), counter-clockwise."""
+    return loft([[(x, y, z) for x, y in polygon] for z in (z0, z1)])
+
+
+def extrude_ring(outer, inner, z0, z1):
+    """A prism between two polygons with equal numbers of points, both counter-clockwise."""
+    mesh = Mesh()
+    count = len(outer)
+    o0, o1, i0, i1 = ([mesh.vertex(x, y, z) for x, y in ring]
+                      for ring, z in ((outer, z0), (outer, z1), (inner, z0), (inner, z1)))
+    for i in range(count):
+        k = (i + 1) % count
+        mesh.quad(o0[i], o0[k], o1[k], o1[i])
+        mesh.quad(i0[i], i1[i], i1[k], i0[k])
+        mesh.quad(o1[i], o1[k], i1[k], i1[i])
+        mesh.quad(o0[i], i0[i], i0[k], o0[k])
+    return mesh
+
+
+def revolve(profile, sides, closed):
+    """Turns a profile of (r, z) about z, the solid on its left.
+
+    profile  either a closed curve away from the axis, or an open one that starts and ends on it
+    """
+    mesh = Mesh()
+    rows = [[mesh.vertex(r * c, r * s, z) for c, s in turn(sides)] for r, z in profile]
+    pairs = list(zip(rows, rows[1:])) + ([(rows[-1], rows[0])] if closed else [])
+    for low, high in pairs:
+        for i in range(sides):
+            k = (i + 1) % sides
+            mesh.quad(low[i], low[k], high[k], high[i])
+    return mesh
+
+
+# --- The bodies ---
+
+
+def box(x=1.0, y=1.0, z=1.0):
+    """A box of the given sides, centred at the origin."""
+    return extrude([(-x / 2, -y / 2), (x / 2, -y / 2), (x / 2, y / 2), (-x / 2, y / 2)],
+                   -z / 2, z / 2)
+
+
+def icosphere(radius=0.5, subdivisions=3):
+    """A sphere: an icosahedron whose facets are cut in four `subdivisions` times."""
+    g = (1 + math.sqrt(5)) / 2
+    points = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g),
+              (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]
+    facets = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+              (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
+              (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(subdivisions):
+        middle = {}
+
+        def half(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middle:
+                middle[key] = len(points)
+                points.append(tuple((points[a][i] + points[b][i]) / 2 for i in range(3)))
+            return middle[key]
+
+        finer = []
+        for a, b, c in facets:
+            ab, bc, ca = half(a, b), half(b, c), half(c, a)
+            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        facets = finer
+    mesh = Mesh()
+    rows = [mesh.vertex(*(radius * c / math.hypot(*p) for c in p)) for p in points]
+    for a, b, c in facets:
+        mesh.triangle(rows[a], rows[b], rows[c])
+    return mesh
+
+
+def cylinder(radius=0.5, height=1.0, sides=48):
+    """A cylinder about z, centred at the origin."""
+    return extrude([(radius * c, radius * s) for c, s in turn(sides)], -height / 2, height / 2)
+
+
+def torus(ring_radius=0.5, tube_radius=0.2, sides=48, tube_sides=24):
+    """A torus about z."""
+    profile = [(ring_radius + tube_radius * c, tube_radius * s) for c, s in turn(tube_sides)]
+    return revolve(profile, sides, closed=True)
+
+
+def l_shape(length=1.0, thickness=0.4, depth=0.5):
+    """Two legs of `length` at a right angle, their outer corner at the origin."""
+    a, t = length, thickness
+    return extrude([(0, 0), (a, 0), (a, t), (t, t), (t, a), (0, a)], 0, depth)
+
+
+def gear_outline(module, teeth, pressure_angle):
+    """Outline of a spur gear with involute flanks, counter-clockwise; its polar angle only grows."""
+    pitch = module * teeth / 2
+    tip, root = pitch + module, pitch - 1.25 * module
+    base = pitch * math.cos(math.radians(pressure_angle))
+
+    def involute(radius):
+        ratio = math.acos(min(1.0, base / radius))
+        return math.tan(ratio) - ratio
+
+    half_tooth = math.pi / (2 * teeth) + involute(pitch)
+    start = max(base, root)
+    half_root = half_tooth - involute(start)
+    # Below the base circle there is no involute; the flank leans out a little instead.
+    foot = half_root + 0.2 * (math.pi / teeth - half_root)
+    steps = 5
+    radii = [start + (tip - start) * i / steps for i in range(steps + 1)]
+    flank = [(root, foot)] + [(r, half_tooth - involute(r)) for r in radii]
+    outline = []
+    for tooth in range(teeth):
+        axis = 2 * math.pi * tooth / teeth
+        polar = [(r, axis - a) for r, a in flank] + [(r, axis + a) for r, a in reversed(flank)]
+        outline += [(r * math.cos(a), r * math.sin(a)) for r, a in polar]
+    return outline
+
+
+def gear(module=0.1, teeth=18, width=0.3, bore=0.4, pressure_angle=20.0):
+    """A spur gear about z with involute teeth; `bore` is a diameter, 0 for a full gear."""
+    outline = gear_outline(module, teeth, pressure_angle)
+    if bore == 0:
+        return extrude(outline, -width / 2, width / 2)
+    inner = [(bore / 2 * x / math.hypot(x, y), bore / 2 * y / math.hypot(x, y)) for x, y in outline]
+    return extrude_ring(outline, inner, -width / 2, width / 2)
+
+
+def wheel(radius=0.32, width=0.22, shoulder=0.03, hub_radius=0.12, hub_depth=0.04, sides=48):
+    """A full wheel about y with rounded shoulders and a hub set back on both sides."""
+    w, s = width / 2, shoulder
+    corner = [(radius - s + s * math.sin(a), s - s * math.cos(a))
+              for a in (math.radians(30 * i) for i in range(4))]
+    half = [(0, -w + hub_depth), (hub_radius, -w + hub_depth), (hub_radius + hub_depth, -w)]
+    half += [(r, -w + d) for r, d in corner]
+    profile = half + [(r, -z) for r, z in reversed(half)]
+    return about_y(revolve(profile, sides, closed=False))
+
+
+def about_y(mesh):
+    """Lays a body that stands about z along y, by a turn of 90 degrees about x."""
+    out = Mesh()
+    for facet in mesh.facets:
+        out.triangle(*(out.vertex(x, -z, y) for x, y, z in (mesh.vertices[i] for i in facet)))
+    return out
+
+
+def tyre(radius=0.32, width=0.22, rim_radius=0.2, tread_depth=0.01, blocks=24):
+    """A tyre about y: a ring whose tread is cut by cross grooves and one groove round the middle.
+
+    blocks  tread blocks round the circumference; a quarter of each is groove
+    """
+    w, t, base = width / 2, tread_depth, radius - tread_depth
+    # (r, z, has tread): the hole, the side wall, the tread with its middle groove, the other side.
+    half = [(rim_radius, -0.7 * w, False), (base - 0.15 * radius, -w, False),
+            (base - 0.03 * radius, -0.95 * w, False), (base, -0.85 * w, False),
+            (base, -0.84 * w, True), (base, -0.11 * w, True), (base, -0.1 * w, False)]
+    profile = half + [(r, -z, has_tread) for r, z, has_tread in reversed(half)]
+    angles = []
+    for block in range(blocks):
+        for part, raised in ((0.0, True), (0.37, True), (0.74, True), (0.76, False),
+                             (0.98, False)):
+            angles.append((2 * math.pi * (block + part) / blocks, raised))
+    mesh = Mesh()
+    rows = [[mesh.vertex(*((r + (t if has_tread and raised else 0)) * f(a)
+                           for f in (math.cos, math.sin)), z)
+             for a, raised in angles] for r, z, has_tread in profile]
+    for low, high in zip(rows, rows[1:] + rows[:1]):
+        for i in range(len(angles)):
+            k = (i + 1) % len(angles)
+            mesh.quad(low[i], low[k], high[k], high[i])
+    return about_y(mesh)
+
+
+def vehicle_body(length=4.2, width=1.8, height=1.45, clearance=0.25, wheelbase=2.6,
+                 axle_height=0.32, arch_radius=0.42, arch_depth=0.36):
+    """A closed car body along x, its front at the larger x, four wheel arches cut into its sides.
+
+    The ground is z = 0 and the middle of the wheelbase x = 0. clearance is the height of the floor
+    above the ground, arch_depth how far an arch reaches in from the side.
+    """
+    spread = math.acos((clearance - axle_height) / arch_radius)  # from the top of an arch to the floor
+    low, back, front = clearance, -length / 2, length / 2
+    arch, flat = [], []
+    for centre in (-wheelbase / 2, wheelbase / 2):
+        for i in range(15):
+            a = -spread + 2 * spread * i / 14
+            x = centre + arch_radius * math.sin(a)
+            arch.append((x, axle_height + arch_radius * math.cos(a) if 0 < i < 14 else low))
+            flat.append((x, low))
+    roof = [(front - 0.15, low), (front, low + 0.25), (front - 0.05, low + 0.45),
+            (front - 1.05, 0.66 * height), (front - 1.75, height), (back + 0.75, height),
+            (back + 0.1, 0.7 * height), (back, low + 0.3), (back + 0.12, low)]
+    w, d = width / 2, arch_depth
+
+    def loop(bottom, y):
+        return [(x, z, y) for x, z in bottom + roof]
+
+    solid = loft([loop(arch, -w), loop(arch, -w + d), loop(flat, -w + d), loop(flat, w - d),
+                  loop(arch, w - d), loop(arch, w)])
+    # Lofted along z; a turn of 90 degrees about x lays that direction along -y.
+    return about_y(solid)
+
+
+def stadium(radius_a, radius_b, distance, sides):
+    """Convex hull of two circles at x = 0 and x = distance, counter-clockwise, 2 `sides` points."""
+    lean = math.acos((radius_a - radius_b) / distance)
+    points = []
+    for centre, radius, begin, end in ((distance, radius_b, -lean, lean),
+                                       (0, radius_a, lean, 2 * math.pi - lean)):
+        for i in range(sides):
+            a = begin + (end - begin) * i / (sides - 1)
+            points.append((centre + radius * math.cos(a), radius * math.sin(a)))
+    return points
+
+
+def housing(radius_a=0.6, radius_b=0.45, distance=0.9, height=0.5, wall=0.06, lid=1, sides=32):
+    """A gearbox housing round two parallel shafts along z, `distance` apart, hollow inside.
+
+    radius_a, radius_b  inner radii round the two shafts
+    lid                 1: closed, its cavity a second surface; 0: open at the top
+    """
+    inner = stadium(radius_a, radius_b, distance, sides)
+    outer = stadium(radius_a + wall, radius_b + wall, distance, sides)
+    if lid:
+        mesh = extrude(outer, -wall, height + wall)
+        mesh.add(extrude(inner, 0, height), flip=True)
+        return mesh
+
+    def level(ring, z):
+        return [(x, y, z) for x, y in ring]
+
+    return loft([level(outer, -wall), level(outer, height), level(inner, height), level(inner, 0)])
+
+
+SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
+                                  vehicle_body, housing)}
+
+# The meshes that the cases read: file, shape, parameters.
+CASE_MESHES = (
+    ("tank/buoy.stl", "cylinder", {"radius": 0.1, "height": 0.16, "sides": 48}),
+    ("tank/gear.stl", "gear", {"module": 0.02, "teeth": 14, "width": 0.12, "bore": 0}),
+    ("ford/body.stl", "vehicle_body", {}),
+    ("ford/wheel.stl", "wheel", {}),
+)
+
+
+def parameters(shape):
+    return {p.name: p.default for p in inspect.signature(shape).parameters.values()}
+
+
+def parse(shape, words):
+    """name=value words as keyword arguments of a shape; whole numbers stay whole."""
+    known, given = parameters(shape), {}
+    for word in words:
+        name, mark, value = word.partition("=")
+        if not mark or name not in known:
+            sys.exit(f"make_meshes.py: {word}: expected name=value with one of {', '.join(known)}")
+        try:
+            given[name] = type(known[name])(value)
+        except ValueError:
+            sys.exit(f"make_meshes.py: {word}: not a number")
+    return given
+
+
+def main(words):
+    if words == ["--list"]:
+        for name, shape in SHAPES.items():
+            defaults = " ".join(f"{k}={v}" for k, v in parameters(shape).items())
+            print(f"{name}: {inspect.getdoc(shape)}\n    {defaults}\n")
+    elif len(words) == 2 and words[0] == "--all":
+        os.makedirs(words[1], exist_ok=True)
+        for name, shape in SHAPES.items():
+            write_stl(shape(), os.path.join(words[1], name + ".stl"), name)
+    elif len(words) == 2 and words[0] == "--cases":
+        for file, name, given in CASE_MESHES:
+            path = os.path.join(words[1], file)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            write_stl(SHAPES[name](**given), path, name)
+    elif len(words) >= 2 and words[0] in SHAPES:
+        shape = SHAPES[words[0]]
+        write_stl(shape(**parse(shape, words[2:])), words[1], words[0])
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
