@@ -113,6 +113,8 @@ struct FigureOp
     /// Closed bodies whose strict interior is filled in solid and full mode: each a list of indices
     /// into `faces` (a solid box is two prisms, rule S4). Empty: an open surface.
     std::vector<std::vector<std::uint32_t>> bodies;
+    /// Faces between the bodies, drawn where the bodies are filled (rule S4).
+    std::vector<std::uint32_t> inner_faces;
 };
 
 /// `drawsphere`
@@ -147,7 +149,10 @@ struct MeshFileOp
     std::string file;    ///< as written in the case
     Transform transform; ///< scale, rotation and move of the command, then the current matrix
     bool autofill = false;
-    bool advanced = false;
+    bool advanced = false; ///< nodes by their depth below the surface instead of its shell (rule X3)
+    bool reverse = false;
+    double depth_min = 0; ///< metres
+    double depth_max = 0; ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
 };
 
@@ -293,6 +298,9 @@ struct CaseDef
     LatticeGrid grid;  ///< after -dp and pointref
     Vec3 case_pos_min; ///< limits of the domain as printed: grid.origin, pointmax
     Vec3 case_pos_max;
+    double h = 0;          ///< smoothing length, given or by its formula
+    double mass_bound = 0; ///< of a boundary particle, given or rhop0 * dp^dim
+    double mass_fluid = 0;
     int mkbound_count = 0;
     int mkfluid_count = 0;
     std::uint16_t mk_bound_first = 0; ///< mk = mkbound + mk_bound_first

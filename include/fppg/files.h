@@ -10,20 +10,21 @@
 namespace fppg
 {
 
-/// A file that is not there until it is whole: written under a temporary name in the same folder,
-/// given its name by commit(). Destroyed without commit(): the temporary file is removed and an
-/// older file of that name is untouched.
+/// A file that is not there until it is whole: written under the temporary name
+/// `.<name>.part-<process id>` in the same folder, given its name by commit(). Destroyed without
+/// commit(): the temporary file is removed and an older file of that name is untouched. A signal
+/// handler removes the temporary files of all objects by src/files/output_file_registry.h.
 class OutputFile
 {
 public:
-    /// throws IoError if the folder cannot be written
+    /// throws IoError if the folder cannot be written or `path` is a folder
     explicit OutputFile(std::string path);
     ~OutputFile();
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&& other) noexcept;
 
     /// Reserves the whole file on the disk (zeros until written), so that a full disk is noticed
-    /// before the work. throws IoError
+    /// before the work. Where the file system cannot reserve, only the size is set. throws IoError
     void reserve(std::uint64_t bytes);
     /// Writes at an offset; several threads may write different parts at once. throws IoError
     void write_at(std::uint64_t offset, const void* data, std::size_t bytes);
@@ -39,7 +40,10 @@ private:
     std::string path_;
     std::string temporary_path_;
     int descriptor_ = -1;
+    int registry_slot_ = -1;
     std::uint64_t end_ = 0;
+
+    void discard() noexcept;
 };
 
 /// What a file says of its maker.
@@ -50,12 +54,19 @@ struct FileOrigin
     std::string case_name; ///< without folder
 };
 
+/// A bi4 file of this many bytes and more has 64-bit sizes; a reader takes 32-bit ones up to here.
+constexpr std::uint64_t bi4_limit_of_32_bit_sizes = 4228102018U;
+
 /// Writes `Case.bi4` (JBinaryData: one item JPartDataBi4 with PART_0000: Idp, Posd, Vel, Rhop) as a
-/// stream: no array of all particles is made, blocks of particles are filled and written by
-/// `threads` threads at their offsets. Sizes are 64-bit from 4,228,102,018 bytes on.
-/// The same input gives the same bytes for any number of threads (Date is "???").
+/// stream: no array of all particles is made, pieces of about one MiB are filled and written by
+/// `threads` threads at their offsets. The same input gives the same bytes for any number of
+/// threads (Date is "???"), equal to those of GenCase v5.4.354 but for AppName.
+///
+/// limit_of_32_bit_sizes  bytes from which the sizes of arrays take 64 bits
+/// throws                 IoError if the file cannot be written, or from 4,294,967,295 particles on
 void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConstants& constants,
-               const FileOrigin& origin, int threads);
+               const FileOrigin& origin, int threads,
+               std::uint64_t limit_of_32_bit_sizes = bi4_limit_of_32_bit_sizes);
 
 enum class VtkSelection
 {
@@ -65,16 +76,23 @@ enum class VtkSelection
 };
 
 /// Writes particles as legacy binary VTK (POLYDATA, big-endian, POINTS float): All and Fluid with
-/// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk. Streamed like write_bi4.
+/// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk. Streamed like write_bi4, with the bytes of
+/// GenCase v5.4.354. Mk is unsigned_char, unsigned_short where a selected mk is above 255.
+///
+/// throws  IoError if the file cannot be written, or from 2,147,483,648 selected particles on
 void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
                          const CaseConstants& constants, VtkSelection selection, int threads);
 
 /// Writes `_MkCells.vtk`: the faces between cells (dp wide, centred on the nodes) of different mk,
 /// merged into rectangles, each drawn 0.001 dp inside its own cell; CELL_DATA Mk (unsigned_short)
-/// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Made from runs: cost grows
-/// with the number of runs, not with nodes.
+/// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Between two cells that carry
+/// different mk both faces are drawn. Normals point outwards. A 2-D field is drawn as the areas of
+/// its cells instead, at 0.001 dp above its y. Made from runs: cost grows with the number of runs,
+/// not with nodes. The area covered by each mk and direction is that of GenCase v5.4.354; its
+/// choice of rectangles is another one.
 ///
 /// type_of_mk  size 65536: the ParticleType of every mk
+/// throws      IoError if the file cannot be written, or from 536,870,912 rectangles on
 void write_cells_vtk(OutputFile& file, const RunField& field,
                      const std::vector<ParticleType>& type_of_mk, int threads);
 
@@ -88,8 +106,12 @@ struct ShapePolygons
         polygons; ///< 1 index a point, 2 a line, 3 and more a face
 };
 
-/// Writes shapes as legacy binary VTK: LINES and POLYGONS with CELL_DATA Mk and ObjId (int).
+/// Writes shapes as legacy binary VTK: points of all objects in order, then VERTICES, LINES and
+/// POLYGONS (a part that is empty is left out), with CELL_DATA Mk and ObjId (int).
 void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// Numbers as a list of ranges, e.g. "10-11,20"; they are sorted first, repeated ones count once.
+std::string format_ranges(std::vector<int> numbers);
 
 /// A line of `<vtkout>` in Case.xml.
 struct VtkOutEntry
@@ -101,8 +123,8 @@ struct VtkOutEntry
 };
 
 /// Writes `Case.xml`: the definition as read, then `<execution>` with particles, constants,
-/// uservars, motion and vtkout, as described in the header of src/files/case_xml.cpp. Numbers have
-/// as many digits as it takes to read them back exactly.
+/// uservars, motion and vtkout, as described at the head of src/files/case_xml.cpp. Numbers have
+/// as many digits as it takes to read them back exactly. throws IoError
 void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& particles,
                     const CaseConstants& constants, const std::vector<VtkOutEntry>& vtk_out,
                     const FileOrigin& origin);

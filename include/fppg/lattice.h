@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace fppg
@@ -55,5 +57,28 @@ struct RunField
     LatticeGrid grid;
     std::vector<std::vector<Run>> slabs; ///< size grid.n[0]
 };
+
+struct CaseDef;
+
+/// What the lattice stage says besides the nodes.
+struct LatticeReport
+{
+    std::vector<std::string> warnings; ///< whole sentences that name file, line and element
+    std::uint64_t triangles = 0;         ///< drawn
+    std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
+    std::vector<std::string> mesh_files; ///< read, as they were found
+};
+
+/// Called before every draw with the number of draws done and of all.
+using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
+
+/// Executes the draws of a case on the lattice, in order: each paints over what was there (rule O1).
+///
+/// threads   number of threads; the result does not depend on it
+/// progress  may be empty; an exception thrown in it stops the work
+/// throws    IoError, GeometryError for mesh files; CaseError for what is not supported yet
+/// cost      time and memory O(surface of what is drawn), never O(nodes of the domain)
+RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
+                          LatticeReport& report);
 
 } // namespace fppg

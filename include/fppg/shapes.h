@@ -8,30 +8,44 @@
 namespace fppg
 {
 
-/// Reads an STL file, binary or ASCII, whatever its header says.
+/// Reads an STL file, binary or ASCII, whatever its header says: a file of 84 + 50 n bytes, n in
+/// its bytes 80 to 83, is binary; so is every file that is no text. Normals and attributes are not
+/// used. Several solids of an ASCII file are joined.
 ///
 /// path     as the user named it, relative to the working directory
-/// returns  facets in the order of the file; corners are the file's float32 values. Facets with a
-///          coordinate that is not finite are left out with a warning that counts them
+/// threads  number of threads; the result does not depend on it
+/// returns  facets in the order of the file; corners are the file's float32 values (ASCII digits
+///          are rounded once, to float32). Facets with a coordinate that is not finite are left out
+///          with a warning that counts them. Warned of as well: bytes after the last facet, a solid
+///          without `endsolid`, coordinates beyond 1e10, facets without area, a mesh so far from
+///          the origin that float32 blurs it
 /// throws   IoError if the file cannot be opened; GeometryError if it is no STL, is truncated, has
-/// a
-///          facet that is no triangle or a number that cannot be read (names byte or line), or has
-///          no facet left
-MeshFile read_stl(const std::string& path);
+///          a count that does not fit its size, has a facet that is no triangle or a number that
+///          cannot be read (names the line), or has no facet left
+MeshFile read_stl(const std::string& path, int threads = 1);
 
-/// The nodes inside a mesh, by the sum of signed crossings along each column.
+/// The nodes inside a mesh or on it, by the sum of signed crossings along each column.
 ///
-/// Every column (x, y) is cut with all facets in double precision; a facet that faces down adds one
-/// (entering, upwards), one that faces up takes one away. Nodes where the sum is positive are
-/// inside, so overlapping closed parts of one file join. Columns that pass exactly through an edge
-/// or a vertex count one facet only, by a consistent rule (as if the mesh were shifted by an
-/// infinitesimal amount), so that no crossing is lost or counted twice. A node exactly on the
-/// surface is inside.
+/// Every column (x, y) is cut with all facets; a facet that faces down adds one (entering,
+/// upwards), one that faces up takes one away. Nodes where the sum is positive are inside, so
+/// overlapping closed parts of one file join, and a cavity whose facets face into it stays empty.
+/// Every decision is exact, without a tolerance, for the double values of corners and nodes:
+/// - a column that passes exactly through edges or vertices is cut as if it stood an infinitesimal
+///   amount further in x, and a second-order amount in y, so that no crossing is lost or counted
+///   twice;
+/// - a node is between two crossings if its z is at or above the entering and at or below the
+///   leaving one;
+/// - a node exactly on an upright facet, an edge or a vertex is inside as well: the result is the
+///   closed body, and a box on lattice lines keeps the nodes of all its six sides.
 ///
 /// soup     closed, facets counter-clockwise from outside; a mesh whose signed volume is negative
-///          is taken with all facets flipped
+///          is taken with all facets flipped. Where a mesh is open, a column whose sum does not
+///          return to zero has no nodes above its last crossing
+/// grid     node (i, j, k) at origin + (i, j, k) * dp, multiplied first
 /// threads  number of threads; the result does not depend on it
-/// cost     O(facets + crossings log crossings) time, memory for the result only
+/// returns  slabs from the first to the last that has a node inside; none if no node is
+/// cost     O(facets + candidate columns + crossings log crossings) time; memory for the result
+///          and four bytes for every facet in every slab that it reaches
 SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int threads);
 
 } // namespace fppg

@@ -1,0 +1,221 @@
+#include "casedef/attributes.h"
+
+#include "fppg/error.h"
+
+#include "casedef/expression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+std::string trimmed(std::string_view text)
+{
+    const auto is_blank = [](char c) { return c == ' ' || (c >= 9 && c <= 13); };
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return std::string(text);
+}
+
+/// Parts between separators, blanks dropped; an empty text has none.
+std::vector<std::string> split(const std::string& text, char separator)
+{
+    std::vector<std::string> out;
+    std::size_t begin = 0;
+    if (trimmed(text).empty()) return out;
+    while (begin <= text.size())
+    {
+        const std::size_t end = std::min(text.find(separator, begin), text.size());
+        out.push_back(trimmed(std::string_view(text).substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return out;
+}
+
+} // namespace
+
+void AttributeReader::fail(const Element& e, const std::string& text) const
+{
+    throw CaseError(file_, e.line, fmt::format("<{}>: {}", e.name, text));
+}
+
+void AttributeReader::fail_unsupported(const Element& e, const std::string& what) const
+{
+    fail(e, what.empty() ? "not supported yet" : what + " is not supported yet");
+}
+
+const std::string& AttributeReader::text(const Element& e, std::string_view name) const
+{
+    const std::string* value = e.find_attribute(name);
+    if (value == nullptr) fail(e, fmt::format("attribute '{}' is missing", name));
+    return *value;
+}
+
+std::string AttributeReader::text_or(const Element& e, std::string_view name,
+                                     const std::string& otherwise) const
+{
+    const std::string* value = e.find_attribute(name);
+    return value == nullptr ? otherwise : *value;
+}
+
+double AttributeReader::number(const Element& e, std::string_view name) const
+{
+    const std::string& value = text(e, name);
+    if (trimmed(value).empty()) return 0; // as GenCase v5.4 reads x=""
+    try
+    {
+        const double v = parse_number(value, *variables_);
+        if (std::isfinite(v)) return v;
+    }
+    catch (const ExpressionError& error)
+    {
+        fail(e, fmt::format("attribute {}=\"{}\": {}", name, value, error.what()));
+    }
+    fail(e, fmt::format("attribute {}=\"{}\" is not a valid real number, expected a finite number or #expression",
+                        name, value));
+}
+
+double AttributeReader::number_or(const Element& e, std::string_view name, double otherwise) const
+{
+    return e.find_attribute(name) == nullptr ? otherwise : number(e, name);
+}
+
+std::optional<double> AttributeReader::number_if(const Element& e, std::string_view name) const
+{
+    if (e.find_attribute(name) == nullptr) return std::nullopt;
+    return number(e, name);
+}
+
+int AttributeReader::integer(const Element& e, std::string_view name, int min, int max,
+                             bool may_be_expression) const
+{
+    const std::string value = trimmed(text(e, name));
+    int result = 0;
+    if (may_be_expression && !value.empty() && value[0] == '#')
+    {
+        const double v = number(e, name);
+        if (!(v >= min && v <= max))
+            fail(e, fmt::format("attribute {}=\"{}\" is {:g}, expected {} to {}", name, value, v, min, max));
+        return static_cast<int>(v);
+    }
+    const char* begin = value.data() + (!value.empty() && value[0] == '+' ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, value.data() + value.size(), result);
+    if (error != std::errc() || end != value.data() + value.size())
+        fail(e, fmt::format("attribute {}=\"{}\" is not a valid integer number, expected {} to {}", name, value,
+                            min, max));
+    if (result < min || result > max)
+        fail(e, fmt::format("attribute {}=\"{}\" is out of range, expected {} to {}", name, value, min, max));
+    return result;
+}
+
+bool AttributeReader::flag_or(const Element& e, std::string_view name, bool otherwise) const
+{
+    const std::string* value = e.find_attribute(name);
+    if (value == nullptr) return otherwise;
+    std::string lower;
+    for (const char c : trimmed(*value))
+        lower += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    if (lower == "true" || lower == "1") return true;
+    if (lower == "false" || lower == "0") return false;
+    fail(e, fmt::format("attribute {}=\"{}\" is not a valid boolean, expected true or false", name, *value));
+}
+
+Vec3 AttributeReader::vec3(const Element& e) const
+{
+    return {number(e, "x"), number(e, "y"), number(e, "z")};
+}
+
+Vec3 AttributeReader::vec3_or(const Element& e, const Vec3& otherwise) const
+{
+    return {number_or(e, "x", otherwise.x), number_or(e, "y", otherwise.y), number_or(e, "z", otherwise.z)};
+}
+
+const Element& AttributeReader::child(const Element& e, std::string_view name) const
+{
+    const Element* c = e.find_child(name);
+    if (c == nullptr) fail(e, fmt::format("the element <{}> is missing in it", name));
+    return *c;
+}
+
+std::vector<Vec3> AttributeReader::points(const Element& e) const
+{
+    std::vector<Vec3> out;
+    for (const Element& c : e.children)
+        if (c.kind == Element::Kind::Tag && c.name == "point") out.push_back(vec3(c));
+    return out;
+}
+
+std::vector<std::string> AttributeReader::words(const Element& e, const std::string& list, const char* what,
+                                                const std::vector<std::string_view>& known) const
+{
+    std::vector<std::string> out = split(list, '|');
+    for (const std::string& word : out)
+    {
+        if (std::find(known.begin(), known.end(), word) == known.end())
+            fail(e, fmt::format("{} \"{}\" is invalid, expected {}", what, word, fmt::join(known, ", ")));
+    }
+    return out;
+}
+
+std::vector<std::uint16_t> AttributeReader::number_list(const Element& e, std::string_view name) const
+{
+    std::vector<std::uint16_t> out;
+    const std::string& list = text(e, name);
+    const auto wrong = [&]
+    {
+        fail(e, fmt::format("attribute {}=\"{}\" is not a list of whole numbers, expected one like \"1-3,5\"",
+                            name, list));
+    };
+    const auto whole = [&](const std::string& part)
+    {
+        unsigned value = 0;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (error != std::errc() || end != part.data() + part.size() || value > 65000) wrong();
+        return value;
+    };
+    for (const std::string& part : split(list, ','))
+    {
+        const std::vector<std::string> limits = split(part, '-');
+        if (limits.empty() || limits.size() > 2) wrong();
+        const unsigned first = whole(limits.front());
+        const unsigned last = whole(limits.back());
+        if (last < first) wrong();
+        for (unsigned v = first; v <= last; ++v) out.push_back(static_cast<std::uint16_t>(v));
+    }
+    if (out.empty()) wrong();
+    return out;
+}
+
+std::string AttributeReader::interpolated(const Element& e, const std::string& source) const
+{
+    try
+    {
+        return variables_->interpolate(source);
+    }
+    catch (const ExpressionError& error)
+    {
+        fail(e, fmt::format("text \"{}\": {}", source, error.what()));
+    }
+}
+
+bool AttributeReader::is_active(const Element& e) const
+{
+    const std::string* condition = e.find_attribute("if");
+    if (condition == nullptr) return true;
+    try
+    {
+        return evaluate_condition(*condition, *variables_);
+    }
+    catch (const ExpressionError& error)
+    {
+        fail(e, fmt::format("attribute if=\"{}\": {}", *condition, error.what()));
+    }
+}
+
+} // namespace fppg

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "fppg/element.h"
+#include "fppg/vec.h"
+
+#include "casedef/variables.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fppg
+{
+
+/// Reads the attributes and children of elements; every error names file, line, element, what was
+/// found and what was expected. Numbers may be plain or `#expression` (rule V1).
+class AttributeReader
+{
+public:
+    AttributeReader(std::string file, const Variables& variables)
+        : file_(std::move(file)), variables_(&variables)
+    {
+    }
+
+    /// throws CaseError: "file:line: <element>: text"
+    [[noreturn]] void fail(const Element& e, const std::string& text) const;
+
+    /// A command, attribute or value that GenCase knows and this program does not do yet.
+    [[noreturn]] void fail_unsupported(const Element& e, const std::string& what = "") const;
+
+    const std::string& text(const Element& e, std::string_view name) const;
+    std::string text_or(const Element& e, std::string_view name, const std::string& otherwise) const;
+
+    double number(const Element& e, std::string_view name) const;
+    double number_or(const Element& e, std::string_view name, double otherwise) const;
+    std::optional<double> number_if(const Element& e, std::string_view name) const;
+
+    /// A plain whole number within [min, max]; expressions only where `may_be_expression`.
+    int integer(const Element& e, std::string_view name, int min, int max, bool may_be_expression) const;
+    bool flag_or(const Element& e, std::string_view name, bool otherwise) const;
+
+    /// Attributes x, y, z.
+    Vec3 vec3(const Element& e) const;
+    Vec3 vec3_or(const Element& e, const Vec3& otherwise) const;
+
+    const Element& child(const Element& e, std::string_view name) const;
+    /// Attributes x, y, z of a child.
+    Vec3 child_vec3(const Element& e, std::string_view name) const { return vec3(child(e, name)); }
+    /// Attribute `value` of a child.
+    double child_value(const Element& e, std::string_view name) const
+    {
+        return number(child(e, name), "value");
+    }
+    /// All `<point>` children, `<pointN>` not included.
+    std::vector<Vec3> points(const Element& e) const;
+
+    /// Words separated by '|', blanks around them dropped; each must be in `known`, case included.
+    std::vector<std::string> words(const Element& e, const std::string& list, const char* what,
+                                   const std::vector<std::string_view>& known) const;
+
+    /// A list like "1-3,5" of whole numbers from 0.
+    std::vector<std::uint16_t> number_list(const Element& e, std::string_view name) const;
+
+    /// Replaces [expressions] in a text.
+    std::string interpolated(const Element& e, const std::string& text) const;
+
+    /// False when an attribute `if` says so.
+    bool is_active(const Element& e) const;
+
+    const std::string& file() const { return file_; }
+
+private:
+    std::string file_;
+    const Variables* variables_;
+};
+
+} // namespace fppg

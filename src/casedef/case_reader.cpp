@@ -1,0 +1,402 @@
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+
+#include "casedef/attributes.h"
+#include "casedef/motion.h"
+#include "casedef/program.h"
+#include "casedef/variable_commands.h"
+#include "casedef/xml_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace fppg
+{
+namespace
+{
+
+/// The version of GenCase whose language this is.
+constexpr std::array<int, 3> language_version{5, 4, 354};
+
+class CaseReader
+{
+public:
+    CaseReader(const std::string& path, const CaseOptions& options)
+        : options_(options), read_(path, variables_), commands_(variables_, read_, options.evars)
+    {
+        def_.file = path;
+        def_.case_name = options.case_name;
+    }
+
+    CaseDef run()
+    {
+        const Element root = read_xml(def_.file);
+        if (root.name != "case")
+            throw CaseError(def_.file, root.line,
+                            fmt::format("<{}>: the root must be <case>, as in a GenCase definition", root.name));
+        const Element& casedef = read_.child(root, "casedef");
+        check_version(casedef);
+        def_.casedef = casedef;
+        read_execution(root);
+        read_constants(read_.child(casedef, "constantsdef"));
+        read_mk_config(read_.child(casedef, "mkconfig"));
+        const Element& geometry = read_.child(casedef, "geometry");
+        set_early_variables();
+        if (const Element* before = geometry.find_child("predefinition")) run_predefinition(*before);
+        read_definition(read_.child(geometry, "definition"));
+        apply_formulas();
+        set_case_variables();
+
+        ProgramRunner program(def_, commands_, read_);
+        program.run(read_.child(geometry, "commands"));
+        commands_.require_all_overrides_used();
+
+        if (const Element* e = casedef.find_child("initials")) refuse_children(*e);
+        if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
+        if (const Element* e = casedef.find_child("properties")) read_properties(*e);
+        if (const Element* e = casedef.find_child("motion")) def_.motion = evaluated_motion(*e, read_);
+        if (const Element* e = casedef.find_child("normals"))
+            if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+        if (const Element* e = casedef.find_child("vres"))
+            if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+        apply_overrides(def_.casedef);
+        for (const Variable& v : variables_.exported())
+        {
+            const auto* text = std::get_if<std::string>(&v.value);
+            def_.user_variables.push_back(
+                {v.name, text != nullptr, text != nullptr ? 0 : std::get<double>(v.value), text != nullptr ? *text : ""});
+        }
+        def_.variables_log = variables_.describe_all();
+        return std::move(def_);
+    }
+
+private:
+    void check_version(const Element& casedef) const
+    {
+        const std::string* wanted = casedef.find_attribute("requiredversion");
+        if (wanted == nullptr) return;
+        std::array<int, 3> version{};
+        const int fields = std::sscanf(wanted->c_str() + (wanted->starts_with('v') ? 1 : 0), "%d.%d.%d", // NOLINT
+                                       version.data(), &version[1], &version[2]);
+        if (fields >= 1 && version > language_version)
+            read_.fail(casedef, fmt::format("the case asks for version {} of GenCase or later, this program follows "
+                                            "v{}.{}.{}",
+                                            *wanted, language_version[0], language_version[1], language_version[2]));
+    }
+
+    void read_execution(const Element& root)
+    {
+        const Element* execution = root.find_child("execution");
+        if (execution == nullptr || execution->find_child("parameters") == nullptr)
+            read_.fail(root, "the element <execution><parameters> is missing in it");
+        // Sections that this program writes itself are left out, so that a generated Case.xml is a
+        // valid definition again.
+        const std::set<std::string> own{"particles", "constants", "uservars", "motion", "vtkout"};
+        for (const Element& e : execution->children)
+            if (e.kind == Element::Kind::Comment || !own.contains(e.name)) def_.execution.push_back(e);
+    }
+
+    /// A constant that `auto="true"` leaves to its formula.
+    std::optional<double> fixed_value(const Element& constants, const char* name, bool is_required) const
+    {
+        const Element* e = constants.find_child(name);
+        if (e == nullptr)
+        {
+            if (is_required) read_.child(constants, name);
+            return std::nullopt;
+        }
+        if (read_.flag_or(*e, "auto", false)) return std::nullopt;
+        return read_.number(*e, "value");
+    }
+
+    void read_constants(const Element& e)
+    {
+        ConstantsDef& c = def_.constants;
+        if (const Element* lattice = e.find_child("lattice"))
+        {
+            c.lattice_bound = read_.integer(*lattice, "bound", 0, 1000, false);
+            c.lattice_fluid = read_.integer(*lattice, "fluid", 0, 1000, false);
+            if (c.lattice_bound != 1 || c.lattice_fluid != 1)
+                read_.fail_unsupported(*lattice, "a lattice other than 1");
+        }
+        c.gravity = read_.child_vec3(e, "gravity");
+        c.rhop0 = read_.child_value(e, "rhop0");
+        if (const Element* gradient = e.find_child("rhopgradient"))
+            c.rhop_gradient = read_.integer(*gradient, "value", 1, 3, false);
+        c.hswl = fixed_value(e, "hswl", true);
+        c.gamma = read_.child_value(e, "gamma");
+        c.speed_system = fixed_value(e, "speedsystem", false);
+        c.coef_sound = read_.child_value(e, "coefsound");
+        c.speed_sound = fixed_value(e, "speedsound", false);
+        const Element* coef_h = e.find_child("coefh");
+        if (coef_h == nullptr) coef_h = e.find_child("coefficient");
+        const Element* hdp = e.find_child("hdp");
+        if (coef_h != nullptr && hdp != nullptr)
+            read_.fail(*hdp, "only one constant must be defined, coefh or hdp");
+        if (coef_h != nullptr) c.coef_h = read_.number(*coef_h, "value");
+        if (hdp != nullptr) c.hdp = read_.number(*hdp, "value");
+        if (!c.coef_h && !c.hdp) read_.fail(e, "the element <coefh> (or <hdp>) is missing in it");
+        c.cfl_number = read_.child_value(e, "cflnumber");
+        if (const Element* eps = e.find_child("eps")) c.eps = read_.number(*eps, "value");
+        c.h = fixed_value(e, "h", false);
+        c.b = fixed_value(e, "b", false);
+        c.mass_bound = fixed_value(e, "massbound", false);
+        c.mass_fluid = fixed_value(e, "massfluid", false);
+        if (!(c.rhop0 > 0)) read_.fail(*e.find_child("rhop0"), fmt::format("{:g} is no density, expected more than 0", c.rhop0));
+        if (!(c.gamma > 0)) read_.fail(*e.find_child("gamma"), fmt::format("{:g} is invalid, expected more than 0", c.gamma));
+    }
+
+    void read_mk_config(const Element& e)
+    {
+        def_.mkbound_count = read_.integer(e, "boundcount", 0, 60000, false);
+        def_.mkfluid_count = read_.integer(e, "fluidcount", 0, 5000, false);
+        def_.mk_fluid_first = 1;
+        def_.mk_bound_first = static_cast<std::uint16_t>(def_.mkfluid_count + 1);
+        for (const Element& o : e.children)
+        {
+            if (o.kind != Element::Kind::Tag || o.name.starts_with('_')) continue;
+            const bool is_bound = o.name == "mkorientbound";
+            if (!is_bound && o.name != "mkorientfluid")
+                read_.fail(o, "is not known in <mkconfig>, expected mkorientbound or mkorientfluid");
+            MkOrient orient;
+            orient.mk = static_cast<std::uint16_t>(read_.integer(o, "mk", 0, 60000, false) +
+                                                   (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
+            const std::string& order = read_.text(o, "orient");
+            std::set<int> seen;
+            for (std::size_t i = 0; i < order.size() && i < 3; ++i)
+            {
+                const char lower = static_cast<char>(order[i] | 0x20);
+                if (lower < 'x' || lower > 'z') break;
+                orient.axes[i] = lower - 'x';
+                orient.descending[i] = order[i] != lower;
+                seen.insert(lower);
+            }
+            if (order.size() != 3 || seen.size() != 3)
+                read_.fail(o, fmt::format("orient=\"{}\" is invalid, expected the letters x, y, z in some order, "
+                                          "capital for descending",
+                                          order));
+            def_.mk_orients.push_back(orient);
+        }
+    }
+
+    void set_early_variables()
+    {
+        variables_.predefine("Gravity_x", def_.constants.gravity.x);
+        variables_.predefine("Gravity_y", def_.constants.gravity.y);
+        variables_.predefine("Gravity_z", def_.constants.gravity.z);
+        variables_.predefine("Rhop0", def_.constants.rhop0);
+        variables_.predefine("VResId", 0.0, true);
+    }
+
+    void run_predefinition(const Element& e)
+    {
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c)) continue;
+            if (c.name != "newvarcte" && c.name != "newvarstrcte" && c.name != "newvar" && c.name != "newvarstr")
+                read_.fail(c, "is not known in <predefinition>, expected newvarcte or newvarstrcte");
+            commands_.run(c, def_.list_log);
+        }
+    }
+
+    void read_definition(const Element& e)
+    {
+        LatticeGrid& grid = def_.grid;
+        grid.dp = options_.dp ? *options_.dp : read_.number(e, "dp");
+        if (!(grid.dp > 0) || !std::isfinite(grid.dp))
+            read_.fail(e, fmt::format("dp is {:g}, expected a particle distance above 0", grid.dp));
+        const Vec3 low = read_.child_vec3(e, "pointmin");
+        const Vec3 high = read_.child_vec3(e, "pointmax");
+        grid.is_2d = low.y == high.y;
+        for (int axis = 0; axis < 3; ++axis)
+            if (low[axis] > high[axis])
+                read_.fail(*e.find_child("pointmin"),
+                           fmt::format("the lower limit {:g} of {} is above the upper limit {:g} in <pointmax>",
+                                       low[axis], "xyz"[axis], high[axis]));
+        grid.origin = low;
+        // The lattice goes through pointref (rule L1); a flat case keeps its y.
+        if (const Element* ref = e.find_child("pointref"))
+        {
+            const Vec3 r = read_.vec3_or(*ref, {});
+            for (int axis = 0; axis < 3; ++axis)
+                if (!(grid.is_2d && axis == 1))
+                    grid.origin[axis] = r[axis] + std::floor((low[axis] - r[axis]) / grid.dp) * grid.dp;
+        }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double n = std::floor((high[axis] - grid.origin[axis]) / grid.dp);
+            // Four thousand million nodes an axis: the index type of the lattice.
+            if (!(n < 4.0e9))
+                read_.fail(e, fmt::format("the domain has {:g} nodes along {}, more than 4e9; dp = {:g} is too small "
+                                          "for it",
+                                          n, "xyz"[axis], grid.dp));
+            grid.n[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(std::max(1.0, n));
+        }
+        if (grid.is_2d) grid.n[1] = 1;
+        if (grid.n[0] > 200'000'000)
+            read_.fail(e, fmt::format("the domain has {} nodes along x, more than this program can hold (2e8)", grid.n[0]));
+        def_.case_pos_min = grid.origin;
+        def_.case_pos_max = high;
+    }
+
+    /// h = coefh * sqrt(dim) * dp or hdp * dp, masses rhop0 * dp^dim, unless they are given. Verified
+    /// against GenCase v5.4: 3D dp 0.0085 coefh 1 gives h 0.014722431864.
+    void apply_formulas()
+    {
+        const ConstantsDef& c = def_.constants;
+        const double dp = def_.grid.dp;
+        def_.h = c.h     ? *c.h
+                 : c.hdp ? *c.hdp * dp
+                         : c.coef_h.value_or(1) * std::sqrt(def_.grid.is_2d ? 2.0 : 3.0) * dp;
+        const double mass = c.rhop0 * (def_.grid.is_2d ? dp * dp : dp * dp * dp);
+        def_.mass_bound = c.mass_bound.value_or(mass);
+        def_.mass_fluid = c.mass_fluid.value_or(mass);
+    }
+
+    void set_case_variables()
+    {
+        const LatticeGrid& grid = def_.grid;
+        variables_.predefine("Dp", grid.dp);
+        variables_.predefine("PosMin_x", def_.case_pos_min.x);
+        variables_.predefine("PosMin_y", def_.case_pos_min.y);
+        variables_.predefine("PosMin_z", def_.case_pos_min.z);
+        variables_.predefine("PosMax_x", def_.case_pos_max.x);
+        variables_.predefine("PosMax_y", def_.case_pos_max.y);
+        variables_.predefine("PosMax_z", def_.case_pos_max.z);
+        variables_.predefine("CaseName", def_.case_name);
+        variables_.predefine("Data2D", grid.is_2d ? 1.0 : 0.0);
+        variables_.predefine("Data2DPosy", grid.is_2d ? grid.origin.y : 0.0);
+        variables_.predefine("H", def_.h);
+        variables_.predefine("MassBound", def_.mass_bound);
+        variables_.predefine("MassFluid", def_.mass_fluid);
+    }
+
+    void refuse_children(const Element& e) const
+    {
+        for (const Element& c : e.children)
+            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read_.flag_or(c, "active", true))
+                read_.fail_unsupported(c);
+    }
+
+    /// The value of an attribute of the floating, or of its child of that name.
+    std::optional<double> floating_value(const Element& e, const char* name) const
+    {
+        if (const auto v = read_.number_if(e, name)) return v;
+        const Element* c = e.find_child(name);
+        return c != nullptr ? std::optional(read_.number(*c, "value")) : std::nullopt;
+    }
+
+    void read_floatings(const Element& list)
+    {
+        for (const Element& e : list.children)
+        {
+            if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
+            if (e.name != "floating") read_.fail(e, "is not known in <floatings>, expected floating");
+            FloatingDef f;
+            f.line = e.line;
+            f.mkbound = read_.number_list(e, "mkbound");
+            f.property = read_.text_or(e, "property", "");
+            f.mass_body = floating_value(e, "massbody");
+            const auto rhop = floating_value(e, "rhopbody");
+            const auto weight = floating_value(e, "relativeweight");
+            if (rhop && *rhop != 0) f.rhop_body = rhop;
+            if (weight && *weight != 0)
+            {
+                if (f.rhop_body) read_.fail(e, "only one value must be defined, massbody, relativeweight or rhopbody");
+                f.rhop_body = *weight * def_.constants.rhop0;
+            }
+            if (f.mass_body && f.rhop_body)
+                read_.fail(e, "only one value must be defined, massbody, relativeweight or rhopbody");
+            if (!f.mass_body && !f.rhop_body)
+                read_.fail(e, "one value must be defined, massbody, relativeweight or rhopbody");
+            if (const Element* part = e.find_child("masspart"))
+            {
+                f.distribute_mass = read_.text(*part, "value") == "distributed_bodymass";
+                if (!f.distribute_mass) f.mass_part = read_.number(*part, "value");
+            }
+            if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
+            read_inertia(e, f);
+            static const std::set<std::string> copied{"translationDOF", "rotationDOF",  "linearvelini", "angularvelini",
+                                                      "linearvel",      "angularvel",   "linearforce",  "angularforce"};
+            static const std::set<std::string> own{"massbody", "rhopbody", "relativeweight", "masspart",
+                                                   "center",   "inertia",  "inertiafull"};
+            for (const Element& c : e.children)
+            {
+                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name)) continue;
+                if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
+                f.extra.push_back(c);
+            }
+            def_.floatings.push_back(std::move(f));
+        }
+    }
+
+    void read_inertia(const Element& e, FloatingDef& f) const
+    {
+        if (const Element* i = e.find_child("inertia"))
+        {
+            const Vec3 d = read_.vec3(*i);
+            f.inertia = {Vec3{d.x, 0, 0}, Vec3{0, d.y, 0}, Vec3{0, 0, d.z}};
+        }
+        const Element* full = e.find_child("inertiafull");
+        if (full == nullptr) return;
+        std::array<Vec3, 3> rows;
+        for (const Element& v : full->children)
+            for (int row = 0; row < 3; ++row)
+                for (int column = 0; column < 3; ++column)
+                    if (const auto value = read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
+                        rows[static_cast<std::size_t>(row)][column] = *value;
+        f.inertia = rows;
+    }
+
+    void read_properties(const Element& e)
+    {
+        def_.properties = e;
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+            if (c.name == "propertyfile") read_.fail_unsupported(c);
+            if (c.name != "links") continue;
+            for (const Element& link : c.children)
+            {
+                if (link.kind != Element::Kind::Tag || link.name.starts_with('_')) continue;
+                if (link.name != "link") read_.fail(link, "is not known in <links>, expected link");
+                for (const char* type : {"mkbound", "mkfluid"})
+                {
+                    if (link.find_attribute(type) == nullptr) continue;
+                    const int first = type == std::string_view("mkbound") ? def_.mk_bound_first : def_.mk_fluid_first;
+                    for (const std::uint16_t mk : read_.number_list(link, type))
+                        def_.property_links.emplace_back(static_cast<std::uint16_t>(mk + first),
+                                                         read_.text(link, "property"));
+                }
+            }
+        }
+    }
+
+    /// The copy of the definition shows the values that -evars gave.
+    void apply_overrides(Element& e) const
+    {
+        if (e.name == "newvarcte" || e.name == "newvarstrcte")
+            for (Element::Attribute& a : e.attributes)
+                for (const auto& [name, value] : options_.evars)
+                    if (a.name == name) a.value = value;
+        for (Element& c : e.children) apply_overrides(c);
+    }
+
+    CaseOptions options_;
+    CaseDef def_;
+    Variables variables_;
+    AttributeReader read_;
+    VariableCommands commands_;
+};
+
+} // namespace
+
+CaseDef read_case(const std::string& path, const CaseOptions& options)
+{
+    return CaseReader(path, options).run();
+}
+
+} // namespace fppg

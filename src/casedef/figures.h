@@ -1,0 +1,52 @@
+#pragma once
+
+#include "fppg/case_def.h"
+
+#include <array>
+#include <vector>
+
+namespace fppg
+{
+
+/// Which sides of a box are meant, in GenCase's order.
+enum BoxSide
+{
+    box_bottom,
+    box_top,
+    box_left,
+    box_right,
+    box_front,
+    box_back,
+};
+
+/// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it is
+/// filled as two prisms that share the diagonal from (x0, y1) to (x1, y0) (rule S4).
+///
+/// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them (rule
+///            S7); one figure a value. Empty: the box itself
+std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1, const std::array<bool, 6>& sides,
+                               bool is_solid, const std::vector<double>& layers_dp, double dp);
+
+/// A prism: the first half of the points is its bottom, the second its top. Faces: bottom, top, sides;
+/// filled when the bottom is counter-clockwise seen from the top (rules S2, S10).
+FigureOp make_prism(const std::vector<Vec3>& points);
+
+/// A pyramid: apex, then the base counter-clockwise seen from it. Faces: base, sides (rules S2, S10).
+FigureOp make_pyramid(const std::vector<Vec3>& points);
+
+/// Triangles (0, i, i + 1).
+FigureOp make_fan(const std::vector<Vec3>& points);
+/// Triangles (i, i + 1, i + 2).
+FigureOp make_strip(const std::vector<Vec3>& points);
+/// One polygon, concave allowed, cut by ears.
+FigureOp make_polygon(const std::vector<Vec3>& points);
+/// Quads that a polyline sweeps along `extrude`.
+FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed);
+
+/// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
+void hide_faces(FigureOp& figure, const std::vector<int>& numbers);
+
+/// Applies a transform to all vertices.
+void transform_figure(FigureOp& figure, const Transform& transform);
+
+} // namespace fppg

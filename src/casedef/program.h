@@ -1,0 +1,80 @@
+#pragma once
+
+#include "fppg/case_def.h"
+
+#include "casedef/attributes.h"
+#include "casedef/variable_commands.h"
+
+#include <map>
+
+namespace fppg
+{
+
+/// Executes the commands of a case into draw operations.
+///
+/// State (rules O1 to O4, T1 to T4, found by experiment with GenCase v5.4.354):
+/// - every transform multiplies the current matrix on the right: the one written last acts first. Points
+///   of draws, fills, clips and redraws all go through it
+/// - statesave and stateload keep mk, matrix, draw mode, draw constants, box limit mode and what is
+///   active, but not the clips; loading from an empty stack does nothing
+/// - resetdraw forgets what was drawn and the whole state, matrix and clips included
+/// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is no
+///   bound one; setmknextfluid likewise
+class ProgramRunner
+{
+public:
+    ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read);
+
+    /// Runs `<mainlist>` of `<commands>`; fills ops, list_log and warnings of the case.
+    void run(const Element& commands);
+
+private:
+    void run_list(const Element& list, const std::string& name);
+    void run_command(const Element& e);
+    bool run_state_command(const Element& e);
+    bool run_transform(const Element& e);
+    bool run_clip(const Element& e);
+    bool run_flow_command(const Element& e);
+    bool run_draw(const Element& e);
+    bool run_fill_or_redraw(const Element& e);
+
+    void set_mk(const Element& e, MkKind kind, int mk_type);
+    void add(const Element& e, DrawVariant what);
+    void add_figure(const Element& e, FigureOp figure);
+    std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least, std::size_t at_most) const;
+    FigureOp figure_of(const Element& e) const;
+    BoxRegion box_of(const Element& e) const;
+    std::vector<double> layers_of(const Element& e) const;
+    std::vector<int> mask_of(const Element& e) const;
+    FillFilter fill_filter(const Element& e, const std::string& words) const;
+    std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute, MkKind kind) const;
+    MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
+    void draw_box(const Element& e);
+    void draw_mesh_file(const Element& e);
+    void shape_out(const Element& e);
+
+    struct Saved
+    {
+        DrawState state;
+        Transform matrix;
+    };
+
+    CaseDef& def_;
+    VariableCommands& variables_;
+    const AttributeReader& read_;
+    std::map<std::string, const Element*> lists_;
+    DrawState state_;
+    std::shared_ptr<const DrawState> shared_state_; ///< of state_, empty after a change
+    Transform matrix_;
+    Vec3 line_begin_;
+    std::vector<Saved> saved_states_;
+    std::vector<Transform> saved_matrices_;
+    std::vector<MkValue> saved_mks_;
+    std::vector<DrawConstants> saved_constants_;
+    std::array<bool, 2> shape_forms_{true, false};       ///< actual, dp
+    std::array<bool, 3> shape_kinds_{false, true, false}; ///< void, bound, fluid
+    int depth_ = 0;
+    std::size_t commands_run_ = 0;
+};
+
+} // namespace fppg

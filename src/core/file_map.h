@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fppg
+{
+
+/// The bytes of a file for reading: mapped where the system can map it, read into memory where it
+/// cannot (pipes, files of no stated size).
+class FileMap
+{
+public:
+    /// path    as the user named it
+    /// throws  IoError that names the file and the cause
+    explicit FileMap(const std::string& path);
+    ~FileMap();
+    FileMap(const FileMap&) = delete;
+    FileMap& operator=(const FileMap&) = delete;
+
+    /// Valid as long as the object lives.
+    std::string_view bytes() const { return {data_, size_}; }
+
+private:
+    const char* data_ = nullptr;
+    std::size_t size_ = 0;
+    void* mapping_ = nullptr;
+    std::vector<char> buffer_;
+};
+
+} // namespace fppg

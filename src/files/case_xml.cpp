@@ -1,0 +1,430 @@
+// Case.xml, as GenCase v5.4.354 writes it (seen on its own output):
+//
+//   <case app date>
+//     <casedef>      as read; only the layout is normalised
+//     <execution>
+//       ...          what the definition had (special, parameters): a repeated parameter takes the
+//                    place of the first one with the value of the last, deprecated keys are marked
+//                    in their comment, simulationdomain is completed and has fixed comments
+//       <particles>  _summary, then a line a block in id order, floating ones with mass, center,
+//                    inertia (short form where the off-diagonal entries are zero) and their
+//                    restrictions and velocities, then the properties that are in use
+//       <constants>  <uservars>  <motion> (case_motion.h)  <vtkout>
+//
+// Numbers are the shortest text that reads back exactly, where GenCase keeps six to eleven digits:
+// the solver compares data2dposy with the number in Case.bi4 and refuses a rounded one.
+
+#include "files/case_motion.h"
+#include "fppg/files.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <map>
+#include <set>
+
+namespace fppg
+{
+
+namespace
+{
+
+std::string number(double value)
+{
+    return fmt::format("{}", value);
+}
+
+template <typename Integer>
+std::string integer(Integer value)
+{
+    return fmt::format("{}", static_cast<std::uint64_t>(value));
+}
+
+Element tag(std::string name, std::initializer_list<Element::Attribute> attributes = {})
+{
+    Element element;
+    element.name = std::move(name);
+    element.attributes = attributes;
+    return element;
+}
+
+Element vector_tag(std::string name, const Vec3& v)
+{
+    return tag(std::move(name), {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}});
+}
+
+Element with_units(Element element, std::string units)
+{
+    element.set_attribute("units_comment", std::move(units));
+    return element;
+}
+
+Element value_tag(std::string name, double value)
+{
+    return tag(std::move(name), {{"value", number(value)}});
+}
+
+std::string lower(std::string text)
+{
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+// ---- execution of the definition ----
+
+/// Keys that v5.4.354 marks, whatever their case; it marks all that begin with DomainFixed or
+/// DomainParticles.
+bool is_deprecated(const std::string& key)
+{
+    static const std::set<std::string> keys{"deltasph", "partsoutmax", "incz", "posdouble"};
+    const std::string name = lower(key);
+    return keys.contains(name) || name.starts_with("domainfixed") ||
+           name.starts_with("domainparticles");
+}
+
+void mark_deprecated(Element& parameter)
+{
+    const std::string* key = parameter.find_attribute("key");
+    if (!key || !is_deprecated(*key)) return;
+    const std::string mark = "**DEPRECATED** ";
+    const std::string* comment = parameter.find_attribute("comment");
+    if (!comment)
+        parameter.set_attribute("comment", mark);
+    else if (!comment->starts_with(mark))
+        parameter.set_attribute("comment", mark + *comment);
+}
+
+Element complete_limit(const Element& domain, const std::string& name)
+{
+    Element limit = tag(name);
+    const Element* given = domain.find_child(name);
+    for (const char* axis : {"x", "y", "z"})
+    {
+        const std::string* value = given ? given->find_attribute(axis) : nullptr;
+        limit.set_attribute(axis, value ? *value : "default");
+    }
+    return limit;
+}
+
+Element complete_domain(const Element& given)
+{
+    Element domain =
+        tag("simulationdomain", {{"comment",
+                                  "Defines domain of simulation (default=Uses minimum and "
+                                  "maximum position of the generated particles)"}});
+    domain.children.push_back(complete_limit(given, "posmin"));
+    domain.children.back().set_attribute("comment", "e.g.: x=0.5, y=default-1, z=default-10%");
+    domain.children.push_back(complete_limit(given, "posmax"));
+    return domain;
+}
+
+Element case_parameters(const Element& given)
+{
+    Element out = tag("parameters");
+    std::map<std::string, std::size_t> place_of_key;
+    bool has_domain = false;
+    for (const Element& child : given.children)
+    {
+        const std::string* key = child.find_attribute("key");
+        if (child.kind == Element::Kind::Tag && child.name == "parameter" && key)
+        {
+            const auto [place, is_new] = place_of_key.emplace(*key, out.children.size());
+            if (is_new) out.children.emplace_back();
+            out.children[place->second] = child;
+            mark_deprecated(out.children[place->second]);
+        }
+        else if (child.kind == Element::Kind::Tag && child.name == "simulationdomain")
+        {
+            out.children.push_back(complete_domain(child));
+            has_domain = true;
+        }
+        else
+            out.children.push_back(child);
+    }
+    if (!has_domain) out.children.push_back(complete_domain({}));
+    return out;
+}
+
+// ---- particles ----
+
+const char* name_of(ParticleType type)
+{
+    static constexpr const char* names[] = {"fixed", "moving", "floating", "fluid"};
+    return names[static_cast<int>(type)];
+}
+
+Element summary(const CaseParticles& particles)
+{
+    Element out = tag("_summary");
+    Element positions = with_units(tag("positions"), "metres (m)");
+    positions.children = {vector_tag("posmin", particles.pos_min),
+                          vector_tag("posmax", particles.pos_max)};
+    out.children.push_back(std::move(positions));
+    std::uint64_t begin = 0;
+    for (const ParticleType type :
+         {ParticleType::Fixed, ParticleType::Moving, ParticleType::Floating, ParticleType::Fluid})
+    {
+        std::uint64_t count = 0;
+        std::vector<int> mks;
+        for (const ParticleBlock& block : particles.blocks)
+        {
+            if (block.type != type) continue;
+            count += block.count;
+            mks.push_back(block.mk);
+        }
+        if (count == 0) continue;
+        out.children.push_back(
+            tag(name_of(type), {{"count", integer(count)},
+                                {"id", fmt::format("{}-{}", begin, begin + count - 1)},
+                                {"mkcount", integer(mks.size())},
+                                {"mkvalues", format_ranges(mks)}}));
+        begin += count;
+    }
+    return out;
+}
+
+Element inertia_tag(const std::array<Vec3, 3>& rows)
+{
+    bool is_diagonal = true;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (i != j && rows[static_cast<std::size_t>(i)][j] != 0) is_diagonal = false;
+    if (is_diagonal)
+        return with_units(vector_tag("inertia", {rows[0].x, rows[1].y, rows[2].z}), "kg*m^2");
+    Element out = with_units(tag("inertia"), "kg*m^2");
+    for (int i = 0; i < 3; ++i)
+    {
+        Element row = tag("values");
+        for (int j = 0; j < 3; ++j)
+            row.set_attribute(fmt::format("v{}{}", i + 1, j + 1),
+                              number(rows[static_cast<std::size_t>(i)][j]));
+        out.children.push_back(std::move(row));
+    }
+    return out;
+}
+
+bool restricts_motion(const Element& degrees_of_freedom)
+{
+    return std::any_of(
+        degrees_of_freedom.attributes.begin(), degrees_of_freedom.attributes.end(),
+        [](const Element::Attribute& a)
+        { return a.name.size() == 1 && a.value.find_first_not_of("0.") == a.value.npos; });
+}
+
+/// The remaining children of a floating block in their fixed order.
+void add_floating_extras(const std::vector<Element>& extras, Element& out)
+{
+    static const std::vector<std::pair<std::string, std::string>> names_and_units{
+        {"translationDOF", ""},     {"rotationDOF", ""},    {"linearvelini", "m/s"},
+        {"angularvelini", "rad/s"}, {"linearvel", "m/s"},   {"angularvel", "rad/s"},
+        {"linearforce", "N/s"},     {"angularforce", "N/s"}};
+    for (const auto& [name, units] : names_and_units)
+        for (const Element& extra : extras)
+        {
+            if (extra.name != name) continue;
+            Element copy = extra;
+            std::erase_if(copy.attributes, [](const Element::Attribute& a)
+                          { return a.name == "comment" || a.name == "units_comment"; });
+            std::erase_if(copy.children,
+                          [](const Element& c) { return c.kind == Element::Kind::Comment; });
+            if (!units.empty())
+                copy.set_attribute("units_comment", units);
+            else
+            {
+                if (!restricts_motion(copy)) continue;
+                copy.set_attribute(
+                    "comment", fmt::format("Use 0 to restrict Degrees Of Freedom for {} "
+                                           "(default=(1,1,1))",
+                                           name == "translationDOF" ? "translation" : "rotation"));
+            }
+            out.children.push_back(std::move(copy));
+        }
+}
+
+const FloatingDef* find_floating(const CaseDef& def, std::uint16_t mkbound)
+{
+    const FloatingDef* found = nullptr;
+    for (const FloatingDef& floating : def.floatings)
+        if (std::find(floating.mkbound.begin(), floating.mkbound.end(), mkbound) !=
+            floating.mkbound.end())
+            found = &floating;
+    return found;
+}
+
+Element block_tag(const CaseDef& def, const CaseParticles& particles, std::size_t index)
+{
+    const ParticleBlock& block = particles.blocks[index];
+    Element out = tag(name_of(block.type));
+    out.set_attribute(block.type == ParticleType::Fluid ? "mkfluid" : "mkbound",
+                      integer(block.mk_type));
+    out.set_attribute("mk", integer(block.mk));
+    out.set_attribute("begin", integer(block.begin));
+    out.set_attribute("count", integer(block.count));
+    if (!block.property.empty()) out.set_attribute("property", block.property);
+    if (block.type == ParticleType::Moving)
+        out.set_attribute("refmotion", fmt::format("{}", block.ref_motion));
+    if (block.type == ParticleType::Floating)
+    {
+        for (const FloatingBody& body : particles.floatings)
+        {
+            if (body.block != index) continue;
+            out.children.push_back(with_units(value_tag("massbody", body.mass_body), "kg"));
+            out.children.push_back(with_units(value_tag("masspart", body.mass_part), "kg"));
+            out.children.push_back(with_units(vector_tag("center", body.center), "metres (m)"));
+            out.children.push_back(inertia_tag(body.inertia));
+        }
+        if (const FloatingDef* floating = find_floating(def, block.mk_type))
+            add_floating_extras(floating->extra, out);
+    }
+    return out;
+}
+
+std::set<std::string> split_names(const std::string& joined)
+{
+    std::set<std::string> names;
+    for (std::size_t begin = 0; begin <= joined.size();)
+    {
+        const std::size_t end = std::min(joined.find('+', begin), joined.size());
+        names.insert(joined.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return names;
+}
+
+/// The properties that blocks have, or an empty name if none has one.
+Element properties_in_use(const CaseDef& def, const CaseParticles& particles)
+{
+    std::map<std::string, std::vector<int>> mks_of; // by joined names
+    std::set<std::string> used;
+    for (const ParticleBlock& block : particles.blocks)
+    {
+        if (block.property.empty()) continue;
+        mks_of[block.property].push_back(block.mk);
+        used.merge(split_names(block.property));
+    }
+    Element out;
+    if (mks_of.empty()) return out;
+    std::vector<std::pair<int, std::string>> order;
+    for (auto& [names, mks] : mks_of)
+        order.emplace_back(*std::min_element(mks.begin(), mks.end()), names);
+    std::sort(order.begin(), order.end());
+
+    out.name = "properties";
+    Element links = tag("links");
+    for (const auto& [first_mk, names] : order)
+        links.children.push_back(
+            tag("link", {{"mk", format_ranges(mks_of[names])}, {"property", names}}));
+    out.children.push_back(std::move(links));
+    for (const Element& property : def.properties.children)
+    {
+        const std::string* name = property.find_attribute("name");
+        if (property.kind == Element::Kind::Tag && property.name == "property" && name &&
+            used.contains(*name))
+            out.children.push_back(property);
+    }
+    return out;
+}
+
+Element particles_tag(const CaseDef& def, const CaseParticles& particles)
+{
+    Element out = tag("particles", {{"np", integer(particles.np)},
+                                    {"nb", integer(particles.np - particles.n_fluid)},
+                                    {"nbf", integer(particles.n_fixed)},
+                                    {"mkboundfirst", integer(def.mk_bound_first)},
+                                    {"mkfluidfirst", integer(def.mk_fluid_first)}});
+    out.children.push_back(summary(particles));
+    for (std::size_t i = 0; i < particles.blocks.size(); ++i)
+        out.children.push_back(block_tag(def, particles, i));
+    Element properties = properties_in_use(def, particles);
+    if (!properties.name.empty()) out.children.push_back(std::move(properties));
+    return out;
+}
+
+// ---- constants, user variables, files ----
+
+Element constants_tag(const CaseConstants& constants)
+{
+    Element out = tag("constants");
+    out.children.push_back(tag("data2d", {{"value", constants.is_2d ? "true" : "false"}}));
+    if (constants.is_2d)
+        out.children.push_back(with_units(value_tag("data2dposy", constants.y_2d), "metres (m)"));
+    out.children.push_back(with_units(vector_tag("gravity", constants.gravity), "m/s^2"));
+    out.children.push_back(value_tag("cflnumber", constants.cfl_number));
+    out.children.push_back(value_tag("gamma", constants.gamma));
+    out.children.push_back(with_units(value_tag("rhop0", constants.rhop0), "kg/m^3"));
+    // GenCase gives eps, a plain number, this unit; the same line compares equal.
+    if (constants.has_eps)
+        out.children.push_back(with_units(value_tag("eps", constants.eps), "m/s^2"));
+    out.children.push_back(with_units(value_tag("dp", constants.dp), "metres (m)"));
+    out.children.push_back(with_units(value_tag("h", constants.h), "metres (m)"));
+    out.children.push_back(with_units(value_tag("b", constants.b), "Pascal (Pa)"));
+    out.children.push_back(with_units(value_tag("massbound", constants.mass_bound), "kg"));
+    out.children.push_back(with_units(value_tag("massfluid", constants.mass_fluid), "kg"));
+    return out;
+}
+
+Element user_variables_tag(const std::vector<UserVariable>& variables)
+{
+    Element out = tag("uservars");
+    for (const UserVariable& v : variables)
+        out.children.push_back(
+            tag(v.is_text ? "varstr" : "varnum",
+                {{"name", v.name}, {"value", v.is_text ? v.text : number(v.number)}}));
+    return out;
+}
+
+Element vtk_out_tag(const CaseDef& def, const std::vector<VtkOutEntry>& entries)
+{
+    Element out = tag("vtkout", {{"mkboundfirst", integer(def.mk_bound_first)},
+                                 {"mkfluidfirst", integer(def.mk_fluid_first)}});
+    for (const VtkOutEntry& entry : entries)
+    {
+        Element line = tag("vtkfile", {{"name", entry.file}, {"mk", entry.mk}});
+        if (!entry.mkbound.empty()) line.set_attribute("mkbound", entry.mkbound);
+        if (!entry.mkfluid.empty()) line.set_attribute("mkfluid", entry.mkfluid);
+        out.children.push_back(std::move(line));
+    }
+    return out;
+}
+
+} // namespace
+
+std::string format_ranges(std::vector<int> numbers)
+{
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    std::string out;
+    for (std::size_t i = 0; i < numbers.size();)
+    {
+        std::size_t last = i;
+        while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+        if (!out.empty()) out += ',';
+        out += fmt::format("{}", numbers[i]);
+        if (last > i) out += fmt::format("-{}", numbers[last]);
+        i = last + 1;
+    }
+    return out;
+}
+
+void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& particles,
+                    const CaseConstants& constants, const std::vector<VtkOutEntry>& vtk_out,
+                    const FileOrigin& origin)
+{
+    Element root = tag("case", {{"app", origin.app_name}, {"date", origin.date}});
+    root.children.push_back(def.casedef);
+    Element execution = tag("execution");
+    for (const Element& child : def.execution)
+        execution.children.push_back(child.kind == Element::Kind::Tag && child.name == "parameters"
+                                         ? case_parameters(child)
+                                         : child);
+    execution.children.push_back(particles_tag(def, particles));
+    execution.children.push_back(constants_tag(constants));
+    execution.children.push_back(user_variables_tag(def.user_variables));
+    execution.children.push_back(case_motion(def.motion, particles.blocks));
+    execution.children.push_back(vtk_out_tag(def, vtk_out));
+    root.children.push_back(std::move(execution));
+    file.append("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n" + print_element(root, 0));
+}
+
+} // namespace fppg

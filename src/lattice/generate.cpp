@@ -1,0 +1,382 @@
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/lattice.h"
+#include "fppg/shapes.h"
+
+#include "core/parallel.h"
+#include "lattice/flood.h"
+#include "lattice/plane_shapes.h"
+#include "lattice/redraw.h"
+#include "lattice/round_shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+namespace fppg
+{
+namespace
+{
+
+/// Drops the nodes that a clip refuses. Along a column the test value is monotone in double too, so
+/// the limit is found by bisection on the test itself.
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
+{
+    Spans kept;
+    kept.reserve(spans.size());
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+    for (const Span& s : spans)
+    {
+        const double y = grid.origin.y + static_cast<double>(s.y) * grid.dp;
+        const auto keeps = [&](std::uint32_t k)
+        {
+            const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
+            return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
+        };
+        const bool first = keeps(s.z_begin);
+        const bool last = keeps(s.z_end - 1);
+        if (first && last)
+            kept.push_back(s);
+        else if (first || last)
+        {
+            std::uint32_t in = first ? s.z_begin : s.z_end - 1;
+            std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
+            while (std::max(in, out) - std::min(in, out) > 1)
+            {
+                const std::uint32_t middle = std::midpoint(in, out);
+                keeps(middle) ? in = middle : out = middle;
+            }
+            kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
+        }
+    }
+    spans.swap(kept);
+}
+
+std::uint64_t node_count(const std::vector<Spans>& nodes)
+{
+    std::uint64_t n = 0;
+    for (const Spans& spans : nodes)
+        for (const Span& s : spans) n += s.z_end - s.z_begin;
+    return n;
+}
+
+class Generator
+{
+public:
+    Generator(const CaseDef& def, int threads, LatticeReport& report)
+        : def_(def), threads_(threads), report_(report)
+    {
+        field_.grid = def.grid;
+        field_.slabs.resize(def.grid.n[0]);
+    }
+
+    void run(const DrawOp& op)
+    {
+        op_ = &op;
+        std::visit([this](const auto& what) { draw(what); }, op.what);
+    }
+
+    RunField take() { return std::move(field_); }
+
+private:
+    const DrawState& state() const { return *op_->state; }
+    const LatticeGrid& grid() const { return def_.grid; }
+
+    std::string place() const
+    {
+        return fmt::format("{}:{}: <{}>", def_.file, op_->source.line, op_->source.command);
+    }
+
+    /// The spans of a region in one slab, clipped, sorted.
+    Spans listed(const SlabRegion& region, std::uint32_t x, bool clips) const
+    {
+        Spans spans;
+        if (x < region.x_begin || x >= region.x_end) return spans;
+        region.emit(x, spans);
+        if (clips)
+            for (const ClipPlane& clip : state().clips) apply_clip(spans, x, clip, grid());
+        sort_and_join(spans);
+        return spans;
+    }
+
+    void paint_region(const SlabRegion& region)
+    {
+        if (!state().draw_points || region.x_end <= region.x_begin) return;
+        parallel_for(region.x_end - region.x_begin, threads_,
+                     [&](std::size_t i)
+                     {
+                         const auto x = region.x_begin + static_cast<std::uint32_t>(i);
+                         paint(field_.slabs[x], listed(region, x, true), state().mk.mk);
+                     });
+    }
+
+    void paint_nodes(const std::vector<Spans>& nodes)
+    {
+        if (!state().draw_points) return;
+        parallel_for(nodes.size(), threads_,
+                     [&](std::size_t x) { paint(field_.slabs[x], nodes[x], state().mk.mk); });
+    }
+
+    void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
+
+    void draw(const LinesOp& op)
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        for (const auto& [from, to] : op.segments)
+            segments.emplace_back(snap(from, grid()), snap(to, grid()));
+        paint_region(lines_region(segments, grid(), state().constants.line));
+    }
+
+    void draw_triangles(std::vector<SnappedTriangle> triangles)
+    {
+        report_.triangles += triangles.size();
+        for (const SnappedTriangle& t : triangles) report_.triangles_ignored += t.a == t.b && t.b == t.c;
+        paint_region(triangles_region(std::move(triangles), grid(), state().constants.triangle_weight,
+                                      state().constants.triangle_limits));
+    }
+
+    void draw(const FigureOp& op)
+    {
+        if (state().mode == DrawMode::Wire)
+        {
+            std::vector<std::pair<Node, Node>> segments;
+            for (std::size_t f = 0; f < op.faces.size(); ++f)
+            {
+                const FigureFace& face = op.faces[f];
+                const bool is_inner =
+                    std::find(op.inner_faces.begin(), op.inner_faces.end(), f) != op.inner_faces.end();
+                if (!face.is_visible && !is_inner) continue;
+                for (std::size_t i = 0; i < face.vertices.size(); ++i)
+                    segments.emplace_back(
+                        snap(op.vertices[face.vertices[i]], grid()),
+                        snap(op.vertices[face.vertices[(i + 1) % face.vertices.size()]], grid()));
+            }
+            paint_region(lines_region(segments, grid(), state().constants.line));
+            return;
+        }
+        const bool fills = state().mode != DrawMode::Face && !op.bodies.empty();
+        if (state().mode == DrawMode::Full || !fills) draw_triangles(snapped_triangles(op, grid(), true));
+        if (!fills) return;
+        for (const auto& body : op.bodies) paint_region(body_region(op, body, grid()));
+        if (!op.inner_faces.empty()) draw_inner_faces(op);
+    }
+
+    /// The faces between the bodies, without the nodes of the outer faces that they end on, but with
+    /// those of the edges along them (rule S4: the two corner columns of a solid box).
+    void draw_inner_faces(const FigureOp& op)
+    {
+        FigureOp inner;
+        inner.vertices = op.vertices;
+        for (const std::uint32_t f : op.inner_faces) inner.faces.push_back(op.faces[f]);
+        for (FigureFace& f : inner.faces) f.is_visible = true;
+        const SlabRegion region =
+            triangles_region(snapped_triangles(inner, grid(), true), grid(),
+                             state().constants.triangle_weight, state().constants.triangle_limits);
+        if (state().mode == DrawMode::Full)
+        {
+            paint_region(region);
+            return;
+        }
+        // The first two faces of a box are its bottom and its top.
+        FigureOp ends;
+        ends.vertices = op.vertices;
+        ends.faces = {op.faces[0], op.faces[1]};
+        const SlabRegion caps =
+            triangles_region(snapped_triangles(ends, grid(), false), grid(),
+                             state().constants.triangle_weight, state().constants.triangle_limits);
+        SlabRegion open = region;
+        open.emit = [this, region, caps](std::uint32_t x, Spans& out)
+        { out = subtract(listed(region, x, false), listed(caps, x, false)); };
+        paint_region(open);
+    }
+
+    void draw(const SphereOp& op) { paint_region(sphere_region(op, state(), grid())); }
+    void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
+    void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
+
+    /// GenCase takes file names from the working directory; the folder of the definition is tried next.
+    const MeshFile& mesh(const std::string& file)
+    {
+        const auto known = meshes_.find(file);
+        if (known != meshes_.end()) return known->second;
+        std::string path = file;
+        if (!std::filesystem::exists(path))
+        {
+            const auto beside = std::filesystem::path(def_.file).parent_path() / file;
+            if (!std::filesystem::exists(beside))
+                throw IoError(fmt::format("{}: cannot open the file \"{}\" (looked for {} and {})", place(),
+                                          file, path, beside.string()));
+            path = beside.string();
+        }
+        MeshFile read = read_stl(path);
+        report_.mesh_files.push_back(path);
+        for (const std::string& w : read.warnings)
+            report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
+        return meshes_.emplace(file, std::move(read)).first->second;
+    }
+
+    void draw(const MeshFileOp& op)
+    {
+        const MeshFile& source = mesh(op.file);
+        TriangleSoup moved;
+        moved.vertices.reserve(source.soup.vertices.size());
+        for (const Vec3& v : source.soup.vertices) moved.vertices.push_back(op.transform(v));
+        std::vector<SnappedTriangle> triangles(moved.size());
+        parallel_for(
+            moved.size(), threads_,
+            [&](std::size_t t)
+            {
+                triangles[t] = {snap(moved.vertices[3 * t], grid()), snap(moved.vertices[3 * t + 1], grid()),
+                                snap(moved.vertices[3 * t + 2], grid())};
+            },
+            4096);
+        if (op.fill_inside)
+        {
+            paint_region(region_of(inside_spans(moved, grid(), threads_)));
+            draw_triangles(std::move(triangles));
+            return;
+        }
+        draw_triangles(std::move(triangles));
+        if (op.autofill) autofill(moved);
+    }
+
+    static SlabRegion region_of(SpanSet set)
+    {
+        auto shared = std::make_shared<const SpanSet>(std::move(set));
+        SlabRegion region;
+        region.x_begin = shared->x_begin;
+        region.x_end = shared->x_begin + static_cast<std::uint32_t>(shared->slabs.size());
+        region.emit = [shared](std::uint32_t x, Spans& out) { out = shared->slabs[x - shared->x_begin]; };
+        return region;
+    }
+
+    /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box (rule
+    /// X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says so.
+    void autofill(const TriangleSoup& soup)
+    {
+        Box3 bounds;
+        for (const Vec3& v : soup.vertices) bounds.add(v);
+        if (bounds.is_empty()) return;
+        const Node low = snap(bounds.min, grid());
+        const Node high = snap(bounds.max, grid());
+        const NodeBox box{{low.x, low.y, low.z}, {high.x + 1, high.y + 1, high.z + 1}};
+        const Node seed = snap((bounds.min + bounds.max) * 0.5, grid());
+        FillFilter filter;
+        filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
+        const std::vector<Spans> filled =
+            flood(field_, seed, fillable_mks(filter, def_.mk_bound_first), box, nullptr, threads_);
+
+        const SpanSet inside = inside_spans(soup, grid(), threads_);
+        std::vector<Spans> wrong(filled.size());
+        std::vector<Spans> missing(filled.size());
+        parallel_for(filled.size(), threads_,
+                     [&](std::size_t x)
+                     {
+                         const Spans empty;
+                         const bool has = x >= inside.x_begin && x < inside.x_begin + inside.slabs.size();
+                         const Spans& in = has ? inside.slabs[x - inside.x_begin] : empty;
+                         wrong[x] = subtract(filled[x], in);
+                         missing[x] = subtract(subtract(in, filled[x]), occupied(field_.slabs[x]));
+                     });
+        const std::uint64_t n_wrong = node_count(wrong);
+        const std::uint64_t n_missing = node_count(missing);
+        if (n_wrong + n_missing > 0)
+            report_.warnings.push_back(fmt::format(
+                "{}: autofill is a flood from the centre of the bounding box, as in GenCase: it filled {} nodes that "
+                "lie outside the body and left out {} inside it. The attribute fppg:fill=\"inside\" in place of "
+                "autofill fills the true inside.",
+                place(), n_wrong, n_missing));
+        paint_nodes(filled);
+    }
+
+    /// Nodes of a snapped box: its strict interior, or with its limits.
+    NodeBox node_box(const BoxRegion& region, bool with_limits) const
+    {
+        const Node a = snap(region.corner0, grid());
+        const Node b = snap(region.corner1, grid());
+        const std::int64_t inset = with_limits ? 0 : 1;
+        NodeBox box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            box.begin[k] = std::min(a[axis], b[axis]) + inset;
+            box.end[k] = std::max(a[axis], b[axis]) + 1 - inset;
+        }
+        return intersect(box, whole_lattice(grid()));
+    }
+
+    void draw(const FillOp& op)
+    {
+        NodeBox box = whole_lattice(grid());
+        SpanSet mask;
+        const SpanSet* mask_used = nullptr;
+        if (const auto* region = std::get_if<BoxRegion>(&op.region))
+            box = node_box(*region, state().box_limit_full);
+        else if (const auto* figure = std::get_if<FigureOp>(&op.region))
+        {
+            mask.slabs.resize(grid().n[0]);
+            for (const auto& body : figure->bodies)
+            {
+                const SlabRegion inside = body_region(*figure, body, grid());
+                for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
+                    mask.slabs[x] = unite(mask.slabs[x], listed(inside, x, false));
+            }
+            mask_used = &mask;
+        }
+        const Node seed = snap(op.seed, grid());
+        const std::vector<Spans> nodes =
+            flood(field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
+        if (state().draw_points && node_count(nodes) == 0)
+            report_.warnings.push_back(
+                fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside its region or on a "
+                            "node that modefill does not name.",
+                            place(), op.seed.x, op.seed.y, op.seed.z));
+        paint_nodes(nodes);
+    }
+
+    void draw(const RedrawOp& op)
+    {
+        const NodeBox box = op.region ? node_box(*op.region, false) : whole_lattice(grid());
+        paint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
+    }
+
+    void draw(const RedrawNearOp& op)
+    {
+        const NodeBox box = op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
+        for (int i = 0; i < op.times; ++i)
+            paint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
+    }
+
+    void draw(const ResetOp&)
+    {
+        for (auto& slab : field_.slabs) slab.clear();
+    }
+
+    void draw(const ShapeOutOp&) {}
+
+    const CaseDef& def_;
+    int threads_;
+    LatticeReport& report_;
+    RunField field_;
+    const DrawOp* op_ = nullptr;
+    std::map<std::string, MeshFile> meshes_;
+};
+
+} // namespace
+
+RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
+                          LatticeReport& report)
+{
+    Generator generator(def, threads, report);
+    for (std::size_t i = 0; i < def.ops.size(); ++i)
+    {
+        if (progress) progress(i, def.ops.size());
+        generator.run(def.ops[i]);
+    }
+    return generator.take();
+}
+
+} // namespace fppg

@@ -1,0 +1,527 @@
+#include "lattice/plane_shapes.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace fppg
+{
+namespace
+{
+
+/// Lists, for every slab in a range, the items that reach into it.
+class SlabIndex
+{
+public:
+    template <typename Range>
+    SlabIndex(std::size_t items, std::int64_t n_x, const Range& range_of)
+    {
+        std::int64_t first = n_x;
+        std::int64_t last = 0;
+        for (std::size_t i = 0; i < items; ++i)
+        {
+            const auto [begin, end] = range_of(i);
+            if (begin >= end) continue;
+            first = std::min(first, begin);
+            last = std::max(last, end);
+        }
+        if (first >= last) return;
+        x_begin_ = first;
+        x_end_ = last;
+        starts_.assign(static_cast<std::size_t>(last - first) + 1, 0);
+        for (std::size_t i = 0; i < items; ++i)
+        {
+            const auto [begin, end] = range_of(i);
+            for (std::int64_t x = begin; x < end; ++x) ++starts_[static_cast<std::size_t>(x - first) + 1];
+        }
+        for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
+        items_.resize(starts_.back());
+        std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+        for (std::size_t i = 0; i < items; ++i)
+        {
+            const auto [begin, end] = range_of(i);
+            for (std::int64_t x = begin; x < end; ++x)
+                items_[next[static_cast<std::size_t>(x - first)]++] = static_cast<std::uint32_t>(i);
+        }
+    }
+
+    std::uint32_t x_begin() const { return static_cast<std::uint32_t>(x_begin_); }
+    std::uint32_t x_end() const { return static_cast<std::uint32_t>(x_end_); }
+
+    template <typename Body>
+    void for_each(std::uint32_t x, const Body& body) const
+    {
+        const auto slab = static_cast<std::size_t>(x - x_begin());
+        for (std::size_t k = starts_[slab]; k < starts_[slab + 1]; ++k) body(items_[k]);
+    }
+
+private:
+    std::int64_t x_begin_ = 0;
+    std::int64_t x_end_ = 0;
+    std::vector<std::size_t> starts_;
+    std::vector<std::uint32_t> items_;
+};
+
+NodeBox box_of(const Node& a, const Node& b, const LatticeGrid& grid)
+{
+    NodeBox box;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto k = static_cast<std::size_t>(axis);
+        box.begin[k] = std::min(a[axis], b[axis]);
+        box.end[k] = std::max(a[axis], b[axis]) + 1;
+    }
+    return intersect(box, whole_lattice(grid));
+}
+
+NodeBox box_of(const SnappedTriangle& t, const LatticeGrid& grid)
+{
+    NodeBox box;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto k = static_cast<std::size_t>(axis);
+        box.begin[k] = std::min({t.a[axis], t.b[axis], t.c[axis]});
+        box.end[k] = std::max({t.a[axis], t.b[axis], t.c[axis]}) + 1;
+    }
+    return intersect(box, whole_lattice(grid));
+}
+
+Span one_node(std::int64_t y, std::int64_t z)
+{
+    return {static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
+            static_cast<std::uint32_t>(z) + 1};
+}
+
+/// A condition value(x, y, z) > limit (or >=) that is linear in the node's place; kept in the form in
+/// which it is evaluated, so that ties fall the same way for every column.
+struct HalfSpace
+{
+    Vec3 normal;
+    double offset = 0; ///< value = normal . x + offset
+
+    double value(double x, double y, double z) const
+    {
+        return normal.x * x + normal.y * y + normal.z * z + offset;
+    }
+};
+
+/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, is above `limit`.
+void narrow(double& lo, double& hi, double v0, double step, double limit)
+{
+    const double gap = limit - v0;
+    if (step > 0)
+        lo = std::max(lo, gap / step);
+    else if (step < 0)
+        hi = std::min(hi, gap / step);
+    else if (!(gap < 0) && !(gap <= 0))
+        hi = -std::numeric_limits<double>::infinity();
+}
+
+/// Turns estimated real limits of an index range into integers, safely for infinities.
+bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max, std::int64_t& first,
+                    std::int64_t& last)
+{
+    if (!(lo <= hi + 2)) return false;
+    lo = std::clamp(lo, static_cast<double>(min) - 4, static_cast<double>(max) + 4);
+    hi = std::clamp(hi, static_cast<double>(min) - 4, static_cast<double>(max) + 4);
+    first = static_cast<std::int64_t>(std::floor(lo));
+    last = static_cast<std::int64_t>(std::ceil(hi));
+    return true;
+}
+
+/// A snapped triangle made ready for tests of nodes.
+class TriangleTest
+{
+public:
+    TriangleTest(const SnappedTriangle& t, const LatticeGrid& grid, double weight_dp, double limits_dp)
+        : grid_(grid), box_(box_of(t, grid)), weight_(weight_dp * grid.dp), limits_(limits_dp * grid.dp)
+    {
+        const Vec3 a = position(t.a, grid);
+        const Vec3 b = position(t.b, grid);
+        const Vec3 c = position(t.c, grid);
+        const Vec3 normal = cross(b - a, c - a);
+        const double length = norm(normal);
+        is_node_ = t.a == t.b && t.b == t.c;
+        const Vec3 u{static_cast<double>(t.b.x - t.a.x), static_cast<double>(t.b.y - t.a.y),
+                     static_cast<double>(t.b.z - t.a.z)};
+        const Vec3 v{static_cast<double>(t.c.x - t.a.x), static_cast<double>(t.c.y - t.a.y),
+                     static_cast<double>(t.c.z - t.a.z)};
+        const Vec3 exact = cross(u, v); // whole numbers: zero means no area
+        is_flat_ = exact.x == 0 && exact.y == 0 && exact.z == 0;
+        if (is_flat_) return;
+        plane_normal_ = normal / length;
+        corners_ = {a, b, c};
+        const std::array<Vec3, 3> ends{b, c, a};
+        for (std::size_t e = 0; e < 3; ++e)
+        {
+            const Vec3 inward = cross(plane_normal_, ends[e] - corners_[e]);
+            edge_normals_[e] = inward / norm(inward);
+        }
+    }
+
+    const NodeBox& box() const { return box_; }
+    bool is_node() const { return is_node_; }
+    bool is_flat() const { return is_flat_; }
+
+    bool holds(const Vec3& x) const
+    {
+        if (!(std::fabs(dot(x - corners_[0], plane_normal_)) < weight_)) return false;
+        for (std::size_t e = 0; e < 3; ++e)
+            if (!(dot(x - corners_[e], edge_normals_[e]) > -limits_)) return false;
+        return true;
+    }
+
+    void emit(std::int64_t ix, Spans& out) const
+    {
+        const double x = grid_.origin.x + static_cast<double>(ix) * grid_.dp;
+        std::int64_t y_first = box_.begin[1];
+        std::int64_t y_last = box_.end[1] - 1;
+        if (y_last - y_first > 6 && !narrow_rows(x, y_first, y_last)) return;
+        for (std::int64_t iy = y_first; iy <= y_last; ++iy)
+        {
+            const double y = grid_.origin.y + static_cast<double>(iy) * grid_.dp;
+            double lo = static_cast<double>(box_.begin[2]);
+            double hi = static_cast<double>(box_.end[2] - 1);
+            const double z0 = grid_.origin.z;
+            const double plane = dot(Vec3{x, y, z0} - corners_[0], plane_normal_);
+            narrow(lo, hi, plane, plane_normal_.z * grid_.dp, -weight_);
+            narrow(lo, hi, -plane, -plane_normal_.z * grid_.dp, -weight_);
+            for (std::size_t e = 0; e < 3; ++e)
+                narrow(lo, hi, dot(Vec3{x, y, z0} - corners_[e], edge_normals_[e]),
+                       edge_normals_[e].z * grid_.dp, -limits_);
+            std::int64_t first = 0;
+            std::int64_t last = 0;
+            if (!to_index_range(lo, hi, box_.begin[2], box_.end[2] - 1, first, last)) continue;
+            const auto test = [&](std::int64_t k) {
+                return holds({x, y, grid_.origin.z + static_cast<double>(k) * grid_.dp});
+            };
+            if (trim_interval(first, last, box_.begin[2], box_.end[2] - 1, test))
+                out.push_back({static_cast<std::uint32_t>(iy), static_cast<std::uint32_t>(first),
+                               static_cast<std::uint32_t>(last) + 1});
+        }
+    }
+
+private:
+    /// Rows of the slab that the triangle can reach: the (y, z) rectangle of its box, cut by the
+    /// conditions of holds() with a margin. Spares needles in large boxes the walk over empty rows.
+    bool narrow_rows(double x, std::int64_t& y_first, std::int64_t& y_last) const
+    {
+        struct Point
+        {
+            double y;
+            double z;
+        };
+        std::array<Point, 16> polygon;
+        std::array<Point, 16> cut;
+        std::size_t count = 4;
+        const auto y0 = static_cast<double>(box_.begin[1]);
+        const auto y1 = static_cast<double>(box_.end[1] - 1);
+        const auto z0 = static_cast<double>(box_.begin[2]);
+        const auto z1 = static_cast<double>(box_.end[2] - 1);
+        polygon[0] = {y0, z0};
+        polygon[1] = {y1, z0};
+        polygon[2] = {y1, z1};
+        polygon[3] = {y0, z1};
+        const double margin = 1e-6 * grid_.dp;
+        const auto clip = [&](const Vec3& n, const Vec3& at, double sign, double limit)
+        {
+            const auto value = [&](const Point& p)
+            {
+                const Vec3 q{x, grid_.origin.y + p.y * grid_.dp, grid_.origin.z + p.z * grid_.dp};
+                return sign * dot(q - at, n) + limit + margin;
+            };
+            std::size_t kept = 0;
+            for (std::size_t i = 0; i < count; ++i)
+            {
+                const Point& p = polygon[i];
+                const Point& q = polygon[(i + 1) % count];
+                const double vp = value(p);
+                const double vq = value(q);
+                if (vp >= 0) cut[kept++] = p;
+                if ((vp >= 0) != (vq >= 0))
+                {
+                    const double t = vp / (vp - vq);
+                    cut[kept++] = {p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)};
+                }
+            }
+            polygon = cut;
+            count = kept;
+        };
+        clip(plane_normal_, corners_[0], 1, weight_);
+        clip(plane_normal_, corners_[0], -1, weight_);
+        for (std::size_t e = 0; e < 3; ++e) clip(edge_normals_[e], corners_[e], 1, limits_);
+        if (count == 0) return false;
+        double lo = polygon[0].y;
+        double hi = polygon[0].y;
+        for (std::size_t i = 1; i < count; ++i)
+        {
+            lo = std::min(lo, polygon[i].y);
+            hi = std::max(hi, polygon[i].y);
+        }
+        y_first = std::max(y_first, static_cast<std::int64_t>(std::floor(lo)) - 1);
+        y_last = std::min(y_last, static_cast<std::int64_t>(std::ceil(hi)) + 1);
+        return y_first <= y_last;
+    }
+
+    LatticeGrid grid_;
+    NodeBox box_;
+    double weight_;
+    double limits_;
+    bool is_node_ = false;
+    bool is_flat_ = false;
+    Vec3 plane_normal_;
+    std::array<Vec3, 3> corners_;
+    std::array<Vec3, 3> edge_normals_;
+};
+
+} // namespace
+
+SlabRegion points_region(const std::vector<Vec3>& points, const LatticeGrid& grid)
+{
+    auto nodes = std::make_shared<std::vector<Node>>();
+    for (const Vec3& p : points)
+    {
+        const Node n = snap(p, grid);
+        if (is_inside(n, grid)) nodes->push_back(n);
+    }
+    std::sort(nodes->begin(), nodes->end(), [](const Node& a, const Node& b) { return a.x < b.x; });
+    if (nodes->empty()) return {};
+    SlabRegion region;
+    region.x_begin = static_cast<std::uint32_t>(nodes->front().x);
+    region.x_end = static_cast<std::uint32_t>(nodes->back().x) + 1;
+    region.emit = [nodes](std::uint32_t x, Spans& out)
+    {
+        const auto less = [](const Node& n, std::int64_t value) { return n.x < value; };
+        for (auto it = std::lower_bound(nodes->begin(), nodes->end(), static_cast<std::int64_t>(x), less);
+             it != nodes->end() && it->x == x; ++it)
+            out.push_back(one_node(it->y, it->z));
+    };
+    return region;
+}
+
+SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, const LatticeGrid& grid,
+                        double width_dp)
+{
+    auto shared = std::make_shared<std::vector<std::pair<Node, Node>>>(segments);
+    auto index = std::make_shared<SlabIndex>(shared->size(), grid.n[0],
+                                             [&](std::size_t i)
+                                             {
+                                                 const NodeBox b =
+                                                     box_of((*shared)[i].first, (*shared)[i].second, grid);
+                                                 return b.is_empty()
+                                                            ? std::pair<std::int64_t, std::int64_t>{0, 0}
+                                                            : std::pair{b.begin[0], b.end[0]};
+                                             });
+    SlabRegion region;
+    region.x_begin = index->x_begin();
+    region.x_end = index->x_end();
+    region.emit = [shared, index, grid, width_dp](std::uint32_t slab, Spans& out)
+    {
+        index->for_each(
+            slab,
+            [&](std::uint32_t item)
+            {
+                const auto& [from, to] = (*shared)[item];
+                const NodeBox box = box_of(from, to, grid);
+                const Vec3 a = position(from, grid);
+                const Vec3 b = position(to, grid);
+                const double length = norm(b - a);
+                const double limit = width_dp * grid.dp;
+                const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+                const auto holds = [&](std::int64_t y, std::int64_t z)
+                {
+                    if (from == to) return true;
+                    const Vec3 p{x, grid.origin.y + static_cast<double>(y) * grid.dp,
+                                 grid.origin.z + static_cast<double>(z) * grid.dp};
+                    const double area = norm(cross(a - p, b - p)) / 2;
+                    return 2 * area / length < limit;
+                };
+                // Where the slab's plane, or in it the row, meets the line: nodes in reach lie within
+                // `reach` of it along the other axes, the line's steepest axis being walked.
+                const double dx = static_cast<double>(to.x - from.x);
+                const double dy = static_cast<double>(to.y - from.y);
+                const double dz = static_cast<double>(to.z - from.z);
+                const double steepest = std::max({std::fabs(dx), std::fabs(dy), std::fabs(dz)});
+                const auto reach = static_cast<std::int64_t>(std::ceil(width_dp * 1.8)) + 1;
+                const auto around = [&](double t, std::int64_t& y0, std::int64_t& y1, std::int64_t& z0,
+                                        std::int64_t& z1)
+                {
+                    const auto y = static_cast<std::int64_t>(std::floor(static_cast<double>(from.y) + t * dy));
+                    const auto z = static_cast<std::int64_t>(std::floor(static_cast<double>(from.z) + t * dz));
+                    y0 = std::max(y - reach, box.begin[1]);
+                    y1 = std::min(y + reach + 1, box.end[1] - 1);
+                    z0 = std::max(z - reach, box.begin[2]);
+                    z1 = std::min(z + reach + 1, box.end[2] - 1);
+                };
+                const auto test_all = [&](std::int64_t y0, std::int64_t y1, std::int64_t z0, std::int64_t z1)
+                {
+                    for (std::int64_t y = y0; y <= y1; ++y)
+                        for (std::int64_t z = z0; z <= z1; ++z)
+                            if (holds(y, z)) out.push_back(one_node(y, z));
+                };
+                std::int64_t y0 = 0;
+                std::int64_t y1 = 0;
+                std::int64_t z0 = 0;
+                std::int64_t z1 = 0;
+                if (steepest == 0 || std::fabs(dx) == steepest)
+                {
+                    around(dx == 0 ? 0 : (static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0,
+                           y1, z0, z1);
+                    test_all(y0, y1, z0, z1);
+                }
+                else if (std::fabs(dy) == steepest)
+                {
+                    for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
+                    {
+                        std::int64_t unused0 = 0;
+                        std::int64_t unused1 = 0;
+                        around((static_cast<double>(y) - static_cast<double>(from.y)) / dy, unused0, unused1,
+                               z0, z1);
+                        test_all(y, y, z0, z1);
+                    }
+                }
+                else
+                {
+                    for (std::int64_t z = box.begin[2]; z < box.end[2]; ++z)
+                    {
+                        std::int64_t unused0 = 0;
+                        std::int64_t unused1 = 0;
+                        around((static_cast<double>(z) - static_cast<double>(from.z)) / dz, y0, y1, unused0,
+                               unused1);
+                        test_all(y0, y1, z, z);
+                    }
+                }
+            });
+    };
+    return region;
+}
+
+SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
+                            double weight_dp, double limits_dp)
+{
+    auto shared = std::make_shared<std::vector<SnappedTriangle>>(std::move(triangles));
+    auto index = std::make_shared<SlabIndex>(shared->size(), grid.n[0],
+                                             [&](std::size_t i)
+                                             {
+                                                 const NodeBox b = box_of((*shared)[i], grid);
+                                                 return b.is_empty()
+                                                            ? std::pair<std::int64_t, std::int64_t>{0, 0}
+                                                            : std::pair{b.begin[0], b.end[0]};
+                                             });
+    SlabRegion region;
+    region.x_begin = index->x_begin();
+    region.x_end = index->x_end();
+    region.emit = [shared, index, grid, weight_dp, limits_dp](std::uint32_t x, Spans& out)
+    {
+        index->for_each(x,
+                        [&](std::uint32_t item)
+                        {
+                            const TriangleTest test((*shared)[item], grid, weight_dp, limits_dp);
+                            if (test.is_node())
+                                out.push_back(one_node(test.box().begin[1], test.box().begin[2]));
+                            else if (!test.is_flat())
+                                test.emit(x, out);
+                        });
+    };
+    return region;
+}
+
+std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
+                                               bool only_visible)
+{
+    std::vector<SnappedTriangle> out;
+    for (const FigureFace& face : figure.faces)
+    {
+        if (only_visible && !face.is_visible) continue;
+        for (std::size_t i = 2; i < face.vertices.size(); ++i)
+            out.push_back({snap(figure.vertices[face.vertices[0]], grid),
+                           snap(figure.vertices[face.vertices[i - 1]], grid),
+                           snap(figure.vertices[face.vertices[i]], grid)});
+    }
+    return out;
+}
+
+SlabRegion body_region(const FigureOp& figure, const std::vector<std::uint32_t>& body,
+                       const LatticeGrid& grid)
+{
+    // In whole numbers of dp, so that the test is exact: a node is inside when it lies strictly
+    // behind the plane of every triangle.
+    struct Plane
+    {
+        std::array<std::int64_t, 3> normal;
+        std::int64_t offset;
+    };
+    auto planes = std::make_shared<std::vector<Plane>>();
+    NodeBox box{{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
+    for (const std::uint32_t f : body)
+    {
+        FigureOp one;
+        one.vertices = figure.vertices;
+        one.faces = {figure.faces[f]};
+        for (const SnappedTriangle& t : snapped_triangles(one, grid, false))
+        {
+            for (const Node& n : {t.a, t.b, t.c})
+                for (int axis = 0; axis < 3; ++axis)
+                {
+                    const auto k = static_cast<std::size_t>(axis);
+                    box.begin[k] = std::min(box.begin[k], n[axis]);
+                    box.end[k] = std::max(box.end[k], n[axis] + 1);
+                }
+            const std::array<std::int64_t, 3> u{t.b.x - t.a.x, t.b.y - t.a.y, t.b.z - t.a.z};
+            const std::array<std::int64_t, 3> v{t.c.x - t.a.x, t.c.y - t.a.y, t.c.z - t.a.z};
+            Plane p{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}, 0};
+            if (p.normal[0] == 0 && p.normal[1] == 0 && p.normal[2] == 0) continue;
+            p.offset = -(p.normal[0] * t.a.x + p.normal[1] * t.a.y + p.normal[2] * t.a.z);
+            planes->push_back(p);
+        }
+    }
+    box = intersect(box, whole_lattice(grid));
+    SlabRegion region;
+    if (planes->empty() || box.is_empty()) return region;
+    region.x_begin = static_cast<std::uint32_t>(box.begin[0]);
+    region.x_end = static_cast<std::uint32_t>(box.end[0]);
+    region.emit = [planes, box](std::uint32_t x, Spans& out)
+    {
+        for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
+        {
+            std::int64_t lo = box.begin[2];
+            std::int64_t hi = box.end[2] - 1;
+            for (const Plane& p : *planes)
+            {
+                // normal . n + offset < 0
+                const __int128 rest = static_cast<__int128>(p.normal[0]) * x +
+                                      static_cast<__int128>(p.normal[1]) * y + p.offset;
+                const __int128 nz = p.normal[2];
+                if (nz == 0)
+                {
+                    if (rest >= 0) hi = lo - 1;
+                }
+                else if (nz > 0)
+                {
+                    // z < -rest / nz
+                    __int128 q = -rest / nz;
+                    if (q * nz >= -rest) --q; // largest q with q * nz < -rest
+                    while ((q + 1) * nz < -rest) ++q;
+                    hi = std::min<std::int64_t>(hi, static_cast<std::int64_t>(
+                                                        std::clamp<__int128>(q, -1, INT64_MAX / 4)));
+                }
+                else
+                {
+                    // z > rest / -nz
+                    __int128 q = rest / -nz;
+                    while (q * -nz <= rest) ++q;
+                    while ((q - 1) * -nz > rest) --q;
+                    lo = std::max<std::int64_t>(lo, static_cast<std::int64_t>(
+                                                        std::clamp<__int128>(q, -1, INT64_MAX / 4)));
+                }
+                if (lo > hi) break;
+            }
+            if (lo <= hi)
+                out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(lo),
+                               static_cast<std::uint32_t>(hi) + 1});
+        }
+    };
+    return region;
+}
+
+} // namespace fppg

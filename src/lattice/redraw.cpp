@@ -1,0 +1,129 @@
+#include "lattice/redraw.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+
+namespace fppg
+{
+namespace
+{
+
+std::vector<char> wanted_mks(const MkFilter& filter, std::uint16_t mk_bound_first)
+{
+    std::vector<char> wanted(65536, 0);
+    for (std::uint32_t mk = 1; mk < 65536; ++mk)
+    {
+        const MkKind kind = mk >= mk_bound_first ? MkKind::Bound : MkKind::Fluid;
+        wanted[mk] = kind == filter.kind && (!filter.mk || *filter.mk == mk);
+    }
+    return wanted;
+}
+
+/// Nodes of a type in every slab; void ones inside `box` only.
+std::vector<Spans> nodes_of(const RunField& field, const MkFilter& filter, const NodeBox& box,
+                            std::uint16_t mk_bound_first, int threads)
+{
+    std::vector<Spans> out(field.slabs.size());
+    const std::vector<char> wanted = wanted_mks(filter, mk_bound_first);
+    parallel_for(field.slabs.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     const auto ix = static_cast<std::int64_t>(x);
+                     if (box.is_empty() || ix < box.begin[0] || ix >= box.end[0]) return;
+                     if (filter.kind == MkKind::Void)
+                         out[x] = complement(occupied(field.slabs[x]), box);
+                     else
+                         out[x] = clip_to_box(select(field.slabs[x], wanted), box);
+                 });
+    return out;
+}
+
+/// Appends `spans` moved by (dy, dz), cut at the lattice.
+void append_moved(const Spans& spans, int dy, int dz_low, int dz_high, const LatticeGrid& grid, Spans& out)
+{
+    for (const Span& s : spans)
+    {
+        const std::int64_t y = static_cast<std::int64_t>(s.y) + dy;
+        if (y < 0 || y >= grid.n[1]) continue;
+        const std::int64_t begin = std::max<std::int64_t>(static_cast<std::int64_t>(s.z_begin) + dz_low, 0);
+        const std::int64_t end = std::min<std::int64_t>(static_cast<std::int64_t>(s.z_end) + dz_high, grid.n[2]);
+        if (begin < end)
+            out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(begin),
+                           static_cast<std::uint32_t>(end)});
+    }
+}
+
+} // namespace
+
+std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const NodeBox& box,
+                                std::uint16_t mk_bound_first, int threads)
+{
+    std::vector<Spans> out(field.slabs.size());
+    if (op.filters.empty())
+    {
+        // redraw alone means every node; redrawbox alone means none.
+        if (op.region) return out;
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = complement({}, box);
+        return out;
+    }
+    for (const MkFilter& filter : op.filters)
+    {
+        const std::vector<Spans> nodes = nodes_of(field, filter, box, mk_bound_first, threads);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = unite(out[x], nodes[x]);
+    }
+    return out;
+}
+
+std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op, const NodeBox& box,
+                                     std::uint16_t mk_bound_first, int threads)
+{
+    const NodeBox whole = whole_lattice(field.grid);
+    // A border node one step outside the box counts for a target inside it.
+    NodeBox reach = box;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        --reach.begin[axis];
+        ++reach.end[axis];
+    }
+    const std::vector<Spans> targets = nodes_of(field, op.target, box, mk_bound_first, threads);
+    const std::vector<Spans> borders =
+        nodes_of(field, op.border, intersect(reach, whole), mk_bound_first, threads);
+    const bool all_neighbours =
+        std::none_of(op.directions.begin(), op.directions.end(), [](bool d) { return d; });
+    std::vector<Spans> out(field.slabs.size());
+    parallel_for(field.slabs.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     if (targets[x].empty()) return;
+                     const Spans* left = x > 0 ? &borders[x - 1] : nullptr;
+                     const Spans* right = x + 1 < borders.size() ? &borders[x + 1] : nullptr;
+                     Spans near;
+                     if (all_neighbours)
+                     {
+                         for (int dy = -1; dy <= 1; ++dy)
+                         {
+                             for (const Spans* side : {left, right})
+                                 if (side != nullptr) append_moved(*side, dy, -1, 1, field.grid, near);
+                             if (dy != 0) append_moved(borders[x], dy, -1, 1, field.grid, near);
+                         }
+                         append_moved(borders[x], 0, -1, -1, field.grid, near);
+                         append_moved(borders[x], 0, 1, 1, field.grid, near);
+                     }
+                     else
+                     {
+                         const auto& [top, bottom, to_right, to_left, back, front] = op.directions;
+                         if (top) append_moved(borders[x], 0, 1, 1, field.grid, near);
+                         if (bottom) append_moved(borders[x], 0, -1, -1, field.grid, near);
+                         if (to_right && left != nullptr) append_moved(*left, 0, 0, 0, field.grid, near);
+                         if (to_left && right != nullptr) append_moved(*right, 0, 0, 0, field.grid, near);
+                         if (back) append_moved(borders[x], 1, 0, 0, field.grid, near);
+                         if (front) append_moved(borders[x], -1, 0, 0, field.grid, near);
+                     }
+                     sort_and_join(near);
+                     out[x] = intersect(targets[x], near);
+                 });
+    return out;
+}
+
+} // namespace fppg

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "fppg/lattice.h"
+
+#include <functional>
+#include <vector>
+
+namespace fppg
+{
+
+/// The spans of one slab, sorted by (y, z_begin), disjoint, not touching (unless said otherwise).
+using Spans = std::vector<Span>;
+
+/// Index limits of nodes, half open on each axis; empty when any end <= begin.
+struct NodeBox
+{
+    std::array<std::int64_t, 3> begin{0, 0, 0};
+    std::array<std::int64_t, 3> end{0, 0, 0};
+
+    bool is_empty() const
+    {
+        return end[0] <= begin[0] || end[1] <= begin[1] || end[2] <= begin[2];
+    }
+};
+
+/// All nodes of the lattice.
+NodeBox whole_lattice(const LatticeGrid& grid);
+NodeBox intersect(const NodeBox& a, const NodeBox& b);
+
+/// Sorts spans that come in any order, joins those that overlap or touch.
+void sort_and_join(Spans& spans);
+/// Set operations on the spans of one slab.
+Spans unite(const Spans& a, const Spans& b);
+Spans intersect(const Spans& a, const Spans& b);
+Spans subtract(const Spans& a, const Spans& b);
+/// The part inside the y and z limits of a box.
+Spans clip_to_box(const Spans& spans, const NodeBox& box);
+/// The nodes of a box that are not in `spans`; one span a column where nothing is drawn.
+Spans complement(const Spans& spans, const NodeBox& box);
+
+/// Gives the nodes of `spans` the value `mk` (0 erases) in the runs of one slab.
+void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk);
+/// The nodes whose mk is wanted. `wanted` has 65536 entries; entry 0 is not looked at.
+Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted);
+/// All nodes that carry an mk.
+Spans occupied(const std::vector<Run>& runs);
+
+/// A region that can be listed slab by slab: emit(x, out) appends the spans of slab x in any order.
+/// Calls for different x may run at the same time.
+struct SlabRegion
+{
+    std::uint32_t x_begin = 0;
+    std::uint32_t x_end = 0;
+    std::function<void(std::uint32_t x, Spans& out)> emit;
+};
+
+} // namespace fppg

@@ -1,0 +1,344 @@
+#include "particles/density.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+/// How a node counts for the depth of the fluid below it.
+enum class Medium : std::uint8_t
+{
+    None,
+    Water, ///< fluid or floating
+    Wall,  ///< fixed or moving
+};
+
+class DepthMeter
+{
+public:
+    DepthMeter(const CaseDef& def, const RunField& field, const std::vector<ParticleType>& type_of_mk)
+        : def_(def), field_(field), type_of_mk_(type_of_mk)
+    {
+    }
+
+    Medium medium(std::uint16_t mk) const
+    {
+        const ParticleType type = type_of_mk_[mk];
+        return type == ParticleType::Fluid || type == ParticleType::Floating ? Medium::Water : Medium::Wall;
+    }
+
+    /// For every run of a slab the steps from its highest node to the top of its column.
+    std::vector<std::uint32_t> depths_along_z(std::size_t x) const
+    {
+        const std::vector<Run>& runs = field_.slabs[x];
+        std::vector<std::uint32_t> depth(runs.size(), 0);
+        for (std::size_t i = runs.size(); i-- > 0;)
+        {
+            if (medium(runs[i].mk) != Medium::Water || i + 1 == runs.size()) continue;
+            const Run& above = runs[i + 1];
+            if (above.y != runs[i].y || above.z_begin != runs[i].z_end) continue;
+            depth[i] = medium(above.mk) == Medium::Wall ? 1 : depth[i + 1] + (above.z_end - above.z_begin);
+        }
+        return depth;
+    }
+
+private:
+    const CaseDef& def_;
+    const RunField& field_;
+    const std::vector<ParticleType>& type_of_mk_;
+};
+
+/// Calls body(run index in the slab, block, run index in the block) for all runs of water, slab by slab.
+/// Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
+class BlockCursor
+{
+public:
+    explicit BlockCursor(CaseParticles& particles) : particles_(particles), next_(particles.blocks.size(), 0)
+    {
+        block_of_mk_.assign(65536, SIZE_MAX);
+        for (std::size_t b = 0; b < particles.blocks.size(); ++b) block_of_mk_[particles.blocks[b].mk] = b;
+    }
+
+    template <typename Body>
+    void visit(const std::vector<Run>& runs, const Body& body)
+    {
+        for (std::size_t i = 0; i < runs.size(); ++i)
+        {
+            const std::size_t b = block_of_mk_[runs[i].mk];
+            body(i, particles_.blocks[b], next_[b]++);
+        }
+    }
+
+private:
+    CaseParticles& particles_;
+    std::vector<std::size_t> next_;
+    std::vector<std::size_t> block_of_mk_;
+};
+
+/// Steps in the + direction of x and of y for every node of one slab's water runs.
+struct SlabSteps
+{
+    std::vector<std::size_t> begin; ///< per run, first entry of its nodes
+    std::vector<std::uint32_t> x;
+    std::vector<std::uint32_t> y;
+};
+
+/// For the nodes of `run` the value that the neighbour runs [first, last) give: 0 where there is none, 1
+/// below a wall, the neighbour's own + 1 in water.
+template <typename NeighbourValue>
+void steps_to_neighbour(const Run& run, const Run* first, const Run* last, const NeighbourValue& value_of,
+                        std::uint32_t* out)
+{
+    std::fill(out, out + (run.z_end - run.z_begin), 0u);
+    for (const Run* n = first; n != last && n->z_begin < run.z_end; ++n)
+    {
+        const std::uint32_t begin = std::max(run.z_begin, n->z_begin);
+        const std::uint32_t end = std::min(run.z_end, n->z_end);
+        for (std::uint32_t z = begin; z < end; ++z) out[z - run.z_begin] = value_of(*n, z);
+    }
+}
+
+const Run* row_begin(const std::vector<Run>& runs, std::uint32_t y)
+{
+    const auto it = std::lower_bound(runs.begin(), runs.end(), y, [](const Run& r, std::uint32_t v) { return r.y < v; });
+    return runs.data() + (it - runs.begin());
+}
+
+/// Depths when gravity is not along z: one value a water node, slab by slab from the last x on.
+class TiltedDepths
+{
+public:
+    TiltedDepths(const CaseDef& def, const RunField& field, const DepthMeter& meter)
+        : field_(field), meter_(meter), gravity_(def.constants.gravity), dp_(def.grid.dp), g_(norm(gravity_))
+    {
+    }
+
+    /// Calls body(run index, node in the run, depth) for the water nodes of every slab, last slab first.
+    template <typename Body>
+    void for_each(const Body& body)
+    {
+        SlabSteps next;
+        for (std::size_t x = field_.slabs.size(); x-- > 0;)
+        {
+            const std::vector<Run>& runs = field_.slabs[x];
+            const SlabSteps steps = count(x, next);
+            const std::vector<std::uint32_t> top = meter_.depths_along_z(x);
+            for (std::size_t i = 0; i < runs.size(); ++i)
+            {
+                if (meter_.medium(runs[i].mk) != Medium::Water) continue;
+                const std::uint32_t n = runs[i].z_end - runs[i].z_begin;
+                for (std::uint32_t k = 0; k < n; ++k)
+                {
+                    const std::size_t at = steps.begin[i] + k;
+                    const double dx = steps.x[at] * dp_ * gravity_.x;
+                    const double dy = steps.y[at] * dp_ * gravity_.y;
+                    const double dz = (top[i] + (n - 1 - k)) * dp_ * gravity_.z;
+                    body(x, i, k, std::sqrt(dx * dx + dy * dy + dz * dz) / g_);
+                }
+            }
+            next = std::move(steps);
+        }
+    }
+
+private:
+    SlabSteps count(std::size_t x, const SlabSteps& next) const
+    {
+        const std::vector<Run>& runs = field_.slabs[x];
+        SlabSteps steps;
+        std::size_t nodes = 0;
+        for (const Run& r : runs)
+        {
+            steps.begin.push_back(nodes);
+            nodes += r.z_end - r.z_begin;
+        }
+        steps.x.assign(nodes, 0);
+        steps.y.assign(nodes, 0);
+        const std::vector<Run> none;
+        const std::vector<Run>& beyond = x + 1 < field_.slabs.size() ? field_.slabs[x + 1] : none;
+        const auto value = [this](const std::vector<Run>& of, const SlabSteps& known,
+                                  const std::vector<std::uint32_t>& values)
+        {
+            return [this, &of, &known, &values](const Run& n, std::uint32_t z) -> std::uint32_t
+            {
+                if (meter_.medium(n.mk) == Medium::Wall) return 1;
+                return values[known.begin[static_cast<std::size_t>(&n - of.data())] + (z - n.z_begin)] + 1;
+            };
+        };
+        for (std::size_t i = runs.size(); i-- > 0;)
+        {
+            if (meter_.medium(runs[i].mk) != Medium::Water) continue;
+            if (gravity_.x != 0)
+                steps_to_neighbour(runs[i], row_begin(beyond, runs[i].y), row_begin(beyond, runs[i].y + 1),
+                                   value(beyond, next, next.x), steps.x.data() + steps.begin[i]);
+            if (gravity_.y != 0)
+                steps_to_neighbour(runs[i], row_begin(runs, runs[i].y + 1), row_begin(runs, runs[i].y + 2),
+                                   value(runs, steps, steps.y), steps.y.data() + steps.begin[i]);
+        }
+        return steps;
+    }
+
+    const RunField& field_;
+    const DepthMeter& meter_;
+    Vec3 gravity_;
+    double dp_;
+    double g_;
+};
+
+void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
+{
+    const ConstantsDef& c = def.constants;
+    const double wave = std::sqrt(g * constants.hswl);
+    constants.speed_system = c.speed_system.value_or(wave);
+    constants.speed_sound =
+        c.speed_sound.value_or(std::max(c.coef_sound * constants.speed_system, 10 * wave));
+    constants.b = c.b.value_or(constants.speed_sound * constants.speed_sound * c.rhop0 / c.gamma);
+}
+
+} // namespace
+
+void compute_densities(const CaseDef& def, const RunField& field, const std::vector<ParticleType>& type_of_mk,
+                       CaseParticles& particles, CaseConstants& constants, int threads)
+{
+    const ConstantsDef& c = def.constants;
+    const double g = norm(c.gravity);
+    const double dp = def.grid.dp;
+    const DepthMeter meter(def, field, type_of_mk);
+    const bool is_vertical = c.gravity.x == 0 && c.gravity.y == 0;
+    const bool by_height = c.rhop_gradient == 3;
+
+    std::vector<std::vector<std::uint32_t>> top(field.slabs.size());
+    parallel_for(field.slabs.size(), threads, [&](std::size_t x) { top[x] = meter.depths_along_z(x); }, 16);
+
+    // Limits of s = -position . gravity / g over the fluid, for rhopgradient 3.
+    double s_max = -std::numeric_limits<double>::infinity();
+    double s_min = std::numeric_limits<double>::infinity();
+    std::uint32_t z_max = 0;
+    std::uint32_t deepest = 0; // steps, fluid and floating, vertical gravity
+    const auto height = [&](double x, double y, double z)
+    { return -(x * c.gravity.x + y * c.gravity.y + z * c.gravity.z) / g; };
+    const auto place = [&](int axis, std::uint32_t i) { return def.grid.origin[axis] + i * dp; };
+    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+        for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
+        {
+            const Run& r = field.slabs[x][i];
+            if (meter.medium(r.mk) != Medium::Water) continue;
+            deepest = std::max(deepest, top[x][i] + (r.z_end - r.z_begin - 1));
+            if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
+            z_max = std::max(z_max, r.z_end - 1);
+            if (g > 0 && by_height)
+                for (const std::uint32_t z : {r.z_begin, r.z_end - 1})
+                {
+                    const double s = height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z));
+                    s_max = std::max(s_max, s);
+                    s_min = std::min(s_min, s);
+                }
+        }
+
+    if (c.hswl)
+        constants.hswl = *c.hswl;
+    else if (particles.n_fluid == 0 || g == 0)
+        constants.hswl = 0;
+    else if (by_height)
+        constants.hswl = s_max - s_min;
+    else if (is_vertical)
+        constants.hswl = deepest * dp;
+    else
+    {
+        double most = 0;
+        TiltedDepths(def, field, meter)
+            .for_each([&](std::size_t, std::size_t, std::uint32_t, double d) { most = std::max(most, d); });
+        constants.hswl = most;
+    }
+    set_speeds(def, g, constants);
+
+    const bool is_uniform = c.rhop_gradient == 1 || g == 0 || constants.b == 0;
+    const auto rhop = [&](double d)
+    {
+        return is_uniform ? static_cast<float>(c.rhop0)
+                          : static_cast<float>(c.rhop0 *
+                                               std::pow(1 + c.rhop0 * g * d / constants.b, 1 / c.gamma));
+    };
+    if (particles.n_fluid == 0) return;
+
+    BlockCursor cursor(particles);
+    const bool is_by_steps = is_uniform || (is_vertical && (!by_height || c.gravity.z < 0));
+    std::vector<std::vector<std::size_t>> run_of(is_by_steps ? 0 : field.slabs.size());
+    std::uint32_t most_steps = 0;
+    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+    {
+        if (!is_by_steps) run_of[x].resize(field.slabs[x].size());
+        cursor.visit(field.slabs[x],
+                     [&](std::size_t i, ParticleBlock& block, std::size_t at)
+                     {
+                         if (!is_by_steps) run_of[x][i] = at;
+                         if (block.type != ParticleType::Fluid || !is_by_steps || is_uniform) return;
+                         ParticleRun& run = block.runs[at];
+                         run.depth = by_height ? z_max - (run.z + run.count - 1) : top[x][i];
+                         most_steps = std::max(most_steps, run.depth + run.count - 1);
+                     });
+    }
+    if (is_uniform)
+    {
+        for (const ParticleBlock& block : particles.blocks)
+            if (block.type == ParticleType::Fluid)
+                for (const ParticleRun& run : block.runs) most_steps = std::max(most_steps, run.count - 1);
+    }
+    if (is_by_steps)
+    {
+        particles.rhop_of_depth.resize(static_cast<std::size_t>(most_steps) + 1);
+        for (std::uint32_t s = 0; s <= most_steps; ++s)
+        {
+            const double step = s * dp * c.gravity.z;
+            particles.rhop_of_depth[s] = rhop(is_uniform ? 0 : std::sqrt(step * step) / g);
+        }
+        return;
+    }
+
+    // One value a particle: where each run's first particle stands in the fluid's id order.
+    const std::uint64_t first_fluid = particles.np - particles.n_fluid;
+    std::vector<std::size_t> block_of_mk(65536, 0);
+    std::vector<std::vector<std::uint64_t>> run_begin(particles.blocks.size());
+    for (std::size_t b = 0; b < particles.blocks.size(); ++b)
+    {
+        const ParticleBlock& block = particles.blocks[b];
+        block_of_mk[block.mk] = b;
+        if (block.type != ParticleType::Fluid) continue;
+        std::uint64_t at = block.begin - first_fluid;
+        for (const ParticleRun& run : block.runs)
+        {
+            run_begin[b].push_back(at);
+            at += run.count;
+        }
+    }
+    particles.rhop.assign(particles.n_fluid, static_cast<float>(c.rhop0));
+    const auto set = [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
+    {
+        const std::size_t b = block_of_mk[field.slabs[x][i].mk];
+        if (particles.blocks[b].type == ParticleType::Fluid)
+            particles.rhop[run_begin[b][run_of[x][i]] + k] = rhop(d);
+    };
+    if (!by_height)
+    {
+        TiltedDepths(def, field, meter).for_each(set);
+        return;
+    }
+    parallel_for(field.slabs.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
+                     {
+                         const Run& r = field.slabs[x][i];
+                         if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
+                         for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
+                             set(x, i, z - r.z_begin,
+                                 s_max - height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z)));
+                     }
+                 });
+}
+
+} // namespace fppg

@@ -1,0 +1,88 @@
+#include "particles/floating.h"
+
+#include <cmath>
+
+namespace fppg
+{
+
+FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particles, std::size_t block_index,
+                           double mass_bound)
+{
+    const ParticleBlock& block = particles.blocks[block_index];
+    const LatticeGrid& grid = particles.grid;
+    const auto n = static_cast<double>(block.count);
+
+    // Sums over the nodes, indices taken from the first node so that they stay small.
+    using Whole = __int128;
+    const std::array<std::int64_t, 3> from{block.runs[0].x, block.runs[0].y, block.runs[0].z};
+    std::array<Whole, 3> sum{};
+    std::array<std::array<Whole, 3>, 3> product{};
+    for (const ParticleRun& run : block.runs)
+    {
+        // A run's nodes differ in z only, whichever way they follow one another.
+        const std::int64_t low = block.run_descending ? static_cast<std::int64_t>(run.z) - run.count + 1 : run.z;
+        const Whole x = static_cast<std::int64_t>(run.x) - from[0];
+        const Whole y = static_cast<std::int64_t>(run.y) - from[1];
+        const Whole count = run.count;
+        const Whole z = low - from[2];
+        const Whole z_sum = count * z + count * (count - 1) / 2;
+        const Whole z_squares = count * z * z + z * count * (count - 1) + (count - 1) * count * (2 * count - 1) / 6;
+        sum[0] += count * x;
+        sum[1] += count * y;
+        sum[2] += z_sum;
+        product[0][0] += count * x * x;
+        product[1][1] += count * y * y;
+        product[2][2] += z_squares;
+        product[0][1] += count * x * y;
+        product[0][2] += x * z_sum;
+        product[1][2] += y * z_sum;
+    }
+
+    FloatingBody body;
+    body.block = block_index;
+    const double volume = grid.is_2d ? grid.dp * grid.dp : grid.dp * grid.dp * grid.dp;
+    body.mass_body = def.mass_body ? *def.mass_body : def.rhop_body.value_or(0) * n * volume;
+    body.mass_part = def.distribute_mass ? body.mass_body / n : def.mass_part.value_or(mass_bound);
+    Vec3 mean; // of the indices, from `from`
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto k = static_cast<std::size_t>(axis);
+        mean[axis] = static_cast<double>(sum[k]) / n;
+        body.center[axis] = grid.origin[axis] + (static_cast<double>(from[k]) + mean[axis]) * grid.dp;
+    }
+    Vec3 offset; // from the centre that the inertia is about to the mean, metres
+    if (def.center)
+    {
+        offset = body.center - *def.center;
+        body.center = *def.center;
+    }
+    if (grid.is_2d) offset.y = 0;
+    if (def.inertia)
+    {
+        body.inertia = *def.inertia;
+        return body;
+    }
+    // Second moments about the mean, n * product - sum * sum in whole numbers, then about the centre.
+    std::array<std::array<double, 3>, 3> moment{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j)
+        {
+            const Whole exact = static_cast<Whole>(block.count) * product[i][j] - sum[i] * sum[j];
+            moment[i][j] = static_cast<double>(exact) / n * (grid.dp * grid.dp) +
+                           n * offset[static_cast<int>(i)] * offset[static_cast<int>(j)];
+            moment[j][i] = moment[i][j];
+        }
+    const double m = body.mass_body / n;
+    const double trace = moment[0][0] + moment[1][1] + moment[2][2];
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+        {
+            const double value = moment[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+            // A zero stays a plain zero, so that Case.xml shows a diagonal tensor as one.
+            const double entry = i == j ? m * (trace - value) : value == 0 ? 0 : -m * value;
+            body.inertia[static_cast<std::size_t>(i)][j] = entry;
+        }
+    return body;
+}
+
+} // namespace fppg

@@ -1,0 +1,317 @@
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/particles.h"
+
+#include "core/parallel.h"
+#include "particles/density.h"
+#include "particles/floating.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace fppg
+{
+namespace
+{
+
+/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay fixed.
+void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
+{
+    for (const Element& c : e.children)
+    {
+        if (c.name != "objreal" && c.name != "obj") continue;
+        const bool moves = is_moved || c.find_child("begin") != nullptr;
+        if (c.name == "objreal" && moves)
+            if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
+        collect_moving(c, moves, out);
+    }
+}
+
+class ParticleMaker
+{
+public:
+    ParticleMaker(const CaseDef& def, const RunField& field, int threads)
+        : def_(def), field_(field), threads_(threads), type_of_mk_(65536, ParticleType::Fixed)
+    {
+    }
+
+    CaseParticles run(CaseConstants& constants, std::vector<std::string>& warnings)
+    {
+        out_.grid = def_.grid;
+        set_types();
+        make_blocks();
+        number_blocks();
+        fill_runs();
+        set_limits();
+        set_constants(constants);
+        compute_densities(def_, field_, type_of_mk_, out_, constants, threads_);
+        orient_blocks();
+        make_floatings();
+        set_properties();
+        warn(constants, warnings);
+        return std::move(out_);
+    }
+
+private:
+    int mk_bound(std::uint16_t mk) const { return mk - def_.mk_bound_first; }
+
+    void set_types()
+    {
+        for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk) type_of_mk_[mk] = ParticleType::Fluid;
+        std::set<int> moving;
+        collect_moving(def_.motion, false, moving);
+        for (const int mk : moving)
+            if (mk + def_.mk_bound_first < 65536)
+                type_of_mk_[static_cast<std::size_t>(mk + def_.mk_bound_first)] = ParticleType::Moving;
+        for (const FloatingDef& f : def_.floatings)
+            for (const std::uint16_t mk : f.mkbound)
+            {
+                if (mk + def_.mk_bound_first >= 65536) continue;
+                if (moving.contains(mk))
+                    throw CaseError(def_.file, f.line,
+                                    fmt::format("<floating>: mkbound {} is moved by <motion> too, combining floating and "
+                                                "moving objects is not possible",
+                                                mk));
+                type_of_mk_[static_cast<std::size_t>(mk + def_.mk_bound_first)] = ParticleType::Floating;
+            }
+    }
+
+    void make_blocks()
+    {
+        std::vector<char> used(65536, 0);
+        for (const auto& slab : field_.slabs)
+            for (const Run& r : slab) used[r.mk] = 1;
+        for (const ParticleType type :
+             {ParticleType::Fixed, ParticleType::Moving, ParticleType::Floating, ParticleType::Fluid})
+            for (std::uint32_t mk = 1; mk < 65536; ++mk)
+            {
+                if (!used[mk] || type_of_mk_[mk] != type) continue;
+                ParticleBlock block;
+                block.type = type;
+                block.mk = static_cast<std::uint16_t>(mk);
+                block.mk_type = static_cast<std::uint16_t>(
+                    mk - (type == ParticleType::Fluid ? def_.mk_fluid_first : def_.mk_bound_first));
+                out_.blocks.push_back(block);
+            }
+        block_of_mk_.assign(65536, 0);
+        for (std::size_t b = 0; b < out_.blocks.size(); ++b) block_of_mk_[out_.blocks[b].mk] = b;
+    }
+
+    /// Counts runs and nodes a slab and block, then the first id of every block.
+    void number_blocks()
+    {
+        const std::size_t n = out_.blocks.size();
+        run_begin_.assign((field_.slabs.size() + 1) * n, 0);
+        std::vector<std::uint64_t> nodes(field_.slabs.size() * n, 0);
+        parallel_for(
+            field_.slabs.size(), threads_,
+            [&](std::size_t x)
+            {
+                for (const Run& r : field_.slabs[x])
+                {
+                    const std::size_t b = block_of_mk_[r.mk];
+                    ++run_begin_[(x + 1) * n + b];
+                    nodes[x * n + b] += r.z_end - r.z_begin;
+                }
+            },
+            16);
+        for (std::size_t x = 0; x < field_.slabs.size(); ++x)
+            for (std::size_t b = 0; b < n; ++b)
+            {
+                run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
+                out_.blocks[b].count += nodes[x * n + b];
+            }
+        int moving = 0;
+        for (std::size_t b = 0; b < n; ++b)
+        {
+            ParticleBlock& block = out_.blocks[b];
+            block.begin = out_.np;
+            out_.np += block.count;
+            block.runs.resize(run_begin_[field_.slabs.size() * n + b]);
+            if (block.type == ParticleType::Fixed) out_.n_fixed += block.count;
+            if (block.type == ParticleType::Floating) out_.n_floating += block.count;
+            if (block.type == ParticleType::Fluid) out_.n_fluid += block.count;
+            if (block.type != ParticleType::Moving) continue;
+            out_.n_moving += block.count;
+            block.ref_motion = moving++;
+        }
+    }
+
+    void fill_runs()
+    {
+        const std::size_t n = out_.blocks.size();
+        parallel_for(
+            field_.slabs.size(), threads_,
+            [&](std::size_t x)
+            {
+                std::vector<std::uint64_t> next(run_begin_.begin() + static_cast<std::ptrdiff_t>(x * n),
+                                                run_begin_.begin() + static_cast<std::ptrdiff_t>((x + 1) * n));
+                for (const Run& r : field_.slabs[x])
+                {
+                    const std::size_t b = block_of_mk_[r.mk];
+                    out_.blocks[b].runs[next[b]++] = {static_cast<std::uint32_t>(x), r.y, r.z_begin,
+                                                      r.z_end - r.z_begin, 0};
+                }
+            },
+            16);
+        run_begin_ = {};
+    }
+
+    void set_limits()
+    {
+        if (out_.np == 0) return;
+        std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX};
+        std::array<std::uint32_t, 3> high{0, 0, 0};
+        for (const ParticleBlock& block : out_.blocks)
+            for (const ParticleRun& r : block.runs)
+            {
+                low = {std::min(low[0], r.x), std::min(low[1], r.y), std::min(low[2], r.z)};
+                high = {std::max(high[0], r.x), std::max(high[1], r.y), std::max(high[2], r.z + r.count - 1)};
+            }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            out_.pos_min[axis] = def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp;
+            out_.pos_max[axis] = def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp;
+        }
+    }
+
+    void set_constants(CaseConstants& constants) const
+    {
+        const ConstantsDef& c = def_.constants;
+        constants.is_2d = def_.grid.is_2d;
+        constants.y_2d = def_.grid.is_2d ? def_.grid.origin.y : 0;
+        constants.gravity = c.gravity;
+        constants.cfl_number = c.cfl_number;
+        constants.gamma = c.gamma;
+        constants.rhop0 = c.rhop0;
+        constants.has_eps = c.eps.has_value();
+        constants.eps = c.eps.value_or(0);
+        constants.dp = def_.grid.dp;
+        constants.h = def_.h;
+        constants.mass_bound = def_.mass_bound;
+        constants.mass_fluid = def_.mass_fluid;
+    }
+
+    /// Puts the particles of a block into the order that mkorient asks for (rule N2). Where z is not the
+    /// fastest axis, every node becomes a run of its own.
+    void orient_blocks()
+    {
+        for (const MkOrient& orient : def_.mk_orients)
+        {
+            const auto found = std::find_if(out_.blocks.begin(), out_.blocks.end(),
+                                            [&](const ParticleBlock& b) { return b.mk == orient.mk; });
+            if (found == out_.blocks.end()) continue;
+            ParticleBlock& block = *found;
+            const bool z_is_fastest = orient.axes[2] == 2;
+            if (!z_is_fastest || !out_.rhop.empty()) split_into_nodes(block);
+            block.run_descending = false;
+            const bool has_values = block.type == ParticleType::Fluid && !out_.rhop.empty();
+            const std::uint64_t first = block.begin - (out_.np - out_.n_fluid);
+            if (has_values)
+                for (std::size_t i = 0; i < block.runs.size(); ++i) block.runs[i].depth = static_cast<std::uint32_t>(i);
+            if (z_is_fastest && orient.descending[2])
+            {
+                block.run_descending = true;
+                for (ParticleRun& r : block.runs) r.z += r.count - 1;
+            }
+            const auto key = [&](const ParticleRun& r)
+            {
+                const std::array<std::uint32_t, 3> at{r.x, r.y, r.z};
+                std::array<std::int64_t, 3> k{};
+                for (std::size_t i = 0; i < 3; ++i)
+                {
+                    k[i] = at[static_cast<std::size_t>(orient.axes[i])];
+                    if (orient.descending[i]) k[i] = -k[i];
+                }
+                return k;
+            };
+            std::sort(block.runs.begin(), block.runs.end(),
+                      [&](const ParticleRun& a, const ParticleRun& b) { return key(a) < key(b); });
+            if (!has_values) continue;
+            const std::vector<float> old(out_.rhop.begin() + static_cast<std::ptrdiff_t>(first),
+                                         out_.rhop.begin() + static_cast<std::ptrdiff_t>(first + block.count));
+            for (std::size_t i = 0; i < block.runs.size(); ++i)
+            {
+                out_.rhop[first + i] = old[block.runs[i].depth];
+                block.runs[i].depth = 0;
+            }
+        }
+    }
+
+    static void split_into_nodes(ParticleBlock& block)
+    {
+        std::vector<ParticleRun> nodes;
+        nodes.reserve(block.count);
+        for (const ParticleRun& r : block.runs)
+            for (std::uint32_t i = 0; i < r.count; ++i)
+                nodes.push_back({r.x, r.y, r.z + i, 1, r.depth + (r.count - 1 - i)});
+        block.runs = std::move(nodes);
+    }
+
+    void make_floatings()
+    {
+        for (std::size_t b = 0; b < out_.blocks.size(); ++b)
+        {
+            if (out_.blocks[b].type != ParticleType::Floating) continue;
+            // A later entry for the same mkbound wins.
+            for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
+                if (std::find(f->mkbound.begin(), f->mkbound.end(), out_.blocks[b].mk_type) != f->mkbound.end())
+                {
+                    out_.floatings.push_back(floating_body(*f, out_, b, def_.mass_bound));
+                    break;
+                }
+        }
+    }
+
+    void set_properties()
+    {
+        for (ParticleBlock& block : out_.blocks)
+        {
+            std::vector<std::string> names;
+            if (block.type == ParticleType::Floating)
+                for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
+                    if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) != f->mkbound.end())
+                    {
+                        if (!f->property.empty()) names.push_back(f->property);
+                        break;
+                    }
+            for (const auto& [mk, name] : def_.property_links)
+                if (mk == block.mk && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+            block.property = fmt::format("{}", fmt::join(names, "+"));
+        }
+    }
+
+    void warn(const CaseConstants& constants, std::vector<std::string>& warnings) const
+    {
+        const double g = norm(def_.constants.gravity);
+        if (out_.np == 0)
+            warnings.push_back("No particles were created in the defined domain. The solver refuses such a case.");
+        else if (out_.n_fluid == 0)
+            warnings.push_back("No fluid particles were created in the defined domain.");
+        if (!def_.constants.hswl && out_.n_fluid == 0)
+            warnings.push_back("Automatic maximum depth is zero since there are no fluid particles.");
+        else if (!def_.constants.hswl && g == 0)
+            warnings.push_back("Automatic maximum depth is zero since gravity is zero.");
+        if (constants.b == 0) warnings.push_back("Constant B is zero. The solver refuses such a case.");
+    }
+
+    const CaseDef& def_;
+    const RunField& field_;
+    int threads_;
+    std::vector<ParticleType> type_of_mk_;
+    std::vector<std::size_t> block_of_mk_;
+    std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
+    CaseParticles out_;
+};
+
+} // namespace
+
+CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads, CaseConstants& constants,
+                             std::vector<std::string>& warnings)
+{
+    return ParticleMaker(def, field, threads).run(constants, warnings);
+}
+
+} // namespace fppg

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "fppg/mesh.h"
+
+namespace fppg
+{
+
+/// The point of a mesh that is nearest to a given one.
+struct ClosestPoint
+{
+    Vec3 point;
+    std::uint32_t facet = 0; ///< index in the soup; the smallest where several are equally near
+    double distance = 0;     ///< metres, not negative
+};
+
+/// Where a line along an axis passes through a facet.
+struct Crossing
+{
+    double position = 0;     ///< coordinate along the axis
+    int step = 0;            ///< +1 entering (the facet faces against the axis), -1 leaving
+    std::uint32_t facet = 0; ///< index in the soup
+};
+
+/// Answers geometric questions about one mesh. Embree's tree of boxes, made in float with room for
+/// its rounding, yields the candidates; every answer is computed from them in double and depends
+/// neither on the tree nor on the number of threads. Queries may run from several threads at once.
+class MeshQuery
+{
+public:
+    /// soup     at least one facet, all coordinates finite
+    /// threads  number of threads that build the tree
+    /// throws   GeometryError for an empty soup or one with a coordinate that is not finite; Error
+    ///          if Embree fails (names its error code)
+    explicit MeshQuery(TriangleSoup soup, int threads = 1);
+    ~MeshQuery();
+    MeshQuery(MeshQuery&&) noexcept;
+    MeshQuery& operator=(MeshQuery&&) noexcept;
+
+    /// The nearest point of all facets. A point on an edge has the same bits whichever of the
+    /// facets at that edge it is computed from.
+    ClosestPoint closest_point(const Vec3& point) const;
+
+    /// All crossings of the half line from `origin` towards larger coordinates along `axis` (0, 1
+    /// or 2), sorted by position, then facet. Edges and vertices count as in inside_spans(): for
+    /// axis 2 as if the line stood an infinitesimal amount further in x, then y; for the others
+    /// in the axes that follow cyclically. Facets parallel to the line are not crossed.
+    std::vector<Crossing> crossings(const Vec3& origin, int axis) const;
+
+    const TriangleSoup& soup() const;
+
+private:
+    struct Scene;
+    std::unique_ptr<Scene> scene_;
+};
+
+} // namespace fppg

@@ -1,0 +1,46 @@
+#include "files/helpers.h"
+#include "files/vtk_reader.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+VtkFile vtk_of(const std::vector<ShapePolygons>& shapes)
+{
+    return VtkFile(written([&](OutputFile& file) { write_shapes_vtk(file, shapes); }));
+}
+
+const ShapePolygons triangle_and_line{
+    4, 10, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}}, {{0, 1, 2}, {0, 2}}};
+
+TEST(WriteShapesVtk, CountsVerticesOverAllObjects)
+{
+    const VtkFile file = vtk_of({triangle_and_line, triangle_and_line});
+    EXPECT_EQ(file.points.size(), 18U);
+    EXPECT_EQ(file.points[8], 0.1f);
+    EXPECT_EQ(file.cells.at("POLYGONS"), (std::vector<int>{3, 0, 1, 2, 3, 3, 4, 5}));
+    EXPECT_EQ(file.cells.at("LINES"), (std::vector<int>{2, 0, 2, 2, 3, 5}));
+}
+
+TEST(WriteShapesVtk, OrdersCellValuesAsPointsLinesFaces)
+{
+    const ShapePolygons point{7, -1, {{0, 0, 0}}, {{0}}};
+    const VtkFile file = vtk_of({triangle_and_line, point});
+    EXPECT_EQ(file.cells.at("VERTICES"), (std::vector<int>{1, 3}));
+    EXPECT_EQ(file.arrays.at("Mk"), (std::vector<double>{-1, 10, 10}));
+    EXPECT_EQ(file.arrays.at("ObjId"), (std::vector<double>{7, 4, 4}));
+}
+
+TEST(WriteShapesVtk, LeavesEmptyPartsOut)
+{
+    const VtkFile file =
+        vtk_of({{0, 10, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}}});
+    EXPECT_EQ(file.cells.size(), 1U);
+    EXPECT_EQ(file.cells.at("POLYGONS"), (std::vector<int>{4, 0, 1, 2, 3}));
+}
+
+} // namespace
+
+} // namespace fppg
