@@ -338,4 +338,9 @@ struct CaseOptions
 ///          it uses a command that is known but not built ("not supported yet"), or if `abort` runs
 CaseDef read_case(const std::string& path, const CaseOptions& options);
 
+/// The definition as a tree, not executed; what -clean prints.
+///
+/// throws IoError, CaseError as read_case does for a file that is no XML
+Element read_definition_tree(const std::string& path);
+
 } // namespace fppg

@@ -81,4 +81,19 @@ using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
                           LatticeReport& report);
 
+struct ShapePolygons;
+
+/// One shape file that `shapeout` asks for.
+struct ShapeFile
+{
+    std::string name;   ///< behind the case name: "_name_Actual.vtk", "_name_Dp.vtk"
+    std::vector<ShapePolygons> shapes;
+};
+
+/// The shapes of a case as polygons, for every `shapeout`: as drawn (Actual) and with corners on the
+/// lattice (Dp). Spheres and cylinders have as many sides as setdpctes says (24), points give nothing.
+///
+/// throws IoError, GeometryError for mesh files
+std::vector<ShapeFile> collect_shape_files(const CaseDef& def);
+
 } // namespace fppg

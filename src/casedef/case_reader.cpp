@@ -399,4 +399,6 @@ CaseDef read_case(const std::string& path, const CaseOptions& options)
     return CaseReader(path, options).run();
 }
 
+Element read_definition_tree(const std::string& path) { return read_xml(path); }
+
 } // namespace fppg

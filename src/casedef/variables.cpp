@@ -279,15 +279,16 @@ std::string Variables::interpolate(std::string_view text) const
             open.back().push_back(c);
     }
     std::string result = open.front();
-    for (std::size_t i = 1; i < open.size(); ++i) result += "[" + open[i];
+    for (std::size_t i = 1; i < open.size(); ++i) result.append("[").append(open[i]);
     return result;
 }
 
 std::string Variables::describe(const Variable& variable)
 {
-    std::string value = value_text(variable.value);
-    if (is_text(variable)) value = '"' + value + '"';
-    return variable.name + '=' + (variable.is_constant ? '[' + value + ']' : value);
+    const std::string_view quote = is_text(variable) ? "\"" : "";
+    const std::string value = fmt::format("{0}{1}{0}", quote, value_text(variable.value));
+    return variable.is_constant ? fmt::format("{}=[{}]", variable.name, value)
+                                : fmt::format("{}={}", variable.name, value);
 }
 
 std::string Variables::describe_all() const

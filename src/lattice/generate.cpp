@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "lattice/flood.h"
+#include "lattice/mesh_path.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <numeric>
 
@@ -197,20 +197,11 @@ private:
     void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
     void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
 
-    /// GenCase takes file names from the working directory; the folder of the definition is tried next.
     const MeshFile& mesh(const std::string& file)
     {
         const auto known = meshes_.find(file);
         if (known != meshes_.end()) return known->second;
-        std::string path = file;
-        if (!std::filesystem::exists(path))
-        {
-            const auto beside = std::filesystem::path(def_.file).parent_path() / file;
-            if (!std::filesystem::exists(beside))
-                throw IoError(fmt::format("{}: cannot open the file \"{}\" (looked for {} and {})", place(),
-                                          file, path, beside.string()));
-            path = beside.string();
-        }
+        const std::string path = find_mesh_file(def_, op_->source, file);
         MeshFile read = read_stl(path);
         report_.mesh_files.push_back(path);
         for (const std::string& w : read.warnings)

@@ -1,8 +1,9 @@
+#include "fppg/shapes.h"
+
 #include <algorithm>
 #include <cstdint>
 
 #include "core/parallel.h"
-#include "fppg/shapes.h"
 #include "shapes/column_cut.h"
 
 namespace fppg

@@ -1,3 +1,7 @@
+#include "fppg/shapes.h"
+
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -9,7 +13,6 @@
 #include "core/file_map.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
-#include "fppg/shapes.h"
 
 namespace fppg
 {

@@ -63,14 +63,22 @@ void add(TriangleSoup& soup, const Tetrahedron& t)
     test::add_facet(soup, p[1], p[3], p[2]);
 }
 
-/// Compares all nodes of the lattice at multiples of `step` with the closed tetrahedra.
-void check_union(const std::vector<Tetrahedron>& parts, std::int64_t size, std::int64_t step)
+/// Compares the closed tetrahedra, moved by `offset`, with all nodes of the lattice around them
+/// that are multiples of `step` away from `offset`.
+void check_union(std::vector<Tetrahedron> parts, std::int64_t size, std::int64_t step,
+                 const Point& offset = {0, 0, 0})
 {
     TriangleSoup soup;
-    for (const Tetrahedron& part : parts) add(soup, part);
+    for (Tetrahedron& part : parts)
+    {
+        for (Point& p : part)
+            for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += offset[axis];
+        add(soup, part);
+    }
     const std::int64_t half = size / step + 1;
-    const auto low = static_cast<double>(-half * step);
-    const LatticeGrid grid = test::cube_grid({low, low, low}, static_cast<double>(step),
+    const auto low = [&](std::size_t axis)
+    { return static_cast<double>(offset[axis] - half * step); };
+    const LatticeGrid grid = test::cube_grid({low(0), low(1), low(2)}, static_cast<double>(step),
                                              static_cast<std::uint32_t>(2 * half + 1));
     const std::vector<bool> nodes = test::nodes_of(inside_spans(soup, grid, 1), grid);
     std::size_t at = 0;
@@ -81,7 +89,9 @@ void check_union(const std::vector<Tetrahedron>& parts, std::int64_t size, std::
             {
                 bool is_inside = false;
                 for (const Tetrahedron& part : parts)
-                    is_inside = is_inside || contains(part, {i * step, j * step, k * step});
+                    is_inside =
+                        is_inside || contains(part, {offset[0] + i * step, offset[1] + j * step,
+                                                     offset[2] + k * step});
                 wrong += nodes[at] != is_inside ? 1 : 0;
             }
     RC_ASSERT(wrong == 0u);
@@ -104,12 +114,9 @@ RC_GTEST_PROP(InsideSpansProperty, TetrahedronOfAnyShapeIsFound, ())
     check_union({any_tetrahedron(1000)}, 1000, 101);
 }
 
-RC_GTEST_PROP(InsideSpansProperty, SliverFarFromTheOriginIsFound, ())
+RC_GTEST_PROP(InsideSpansProperty, TetrahedronFarFromTheOriginIsClosed, ())
 {
-    Tetrahedron t = any_tetrahedron(3);
-    for (Point& p : t)
-        for (std::int64_t& x : p) x += 1000;
-    check_union({t}, 1003, 17);
+    check_union({any_tetrahedron(4)}, 4, 1, {1000003, -2000003, 500009});
 }
 
 } // namespace fppg

@@ -1,0 +1,185 @@
+#include "app/command_line.h"
+
+#include "fppg/error.h"
+#include "fppg/version.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+std::vector<std::string> split(const std::string& text, char separator)
+{
+    std::vector<std::string> out;
+    std::size_t begin = 0;
+    while (begin <= text.size())
+    {
+        const std::size_t end = std::min(text.find(separator, begin), text.size());
+        out.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return out;
+}
+
+template <typename Number>
+Number number_of(const std::string& option, const std::string& value, const char* expected)
+{
+    Number n{};
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), n);
+    if (error != std::errc() || end != value.data() + value.size())
+        throw UsageError(fmt::format("{}: \"{}\" is invalid, expected {}", option, value, expected));
+    return n;
+}
+
+bool flag_of(const std::string& option, const std::string& value)
+{
+    if (value.empty() || value == "1" || value == "true") return true;
+    if (value == "0" || value == "false") return false;
+    throw UsageError(fmt::format("{}: \"{}\" is invalid, expected 0 or 1", option, value));
+}
+
+void choose_formats(const std::string& list, DropInOptions& options)
+{
+    for (std::string word : split(list, ','))
+    {
+        bool on = true;
+        if (!word.empty() && (word[0] == '+' || word[0] == '-'))
+        {
+            on = word[0] == '+';
+            word.erase(0, 1);
+        }
+        const bool all = word == "all";
+        if (!all && word != "bi" && word != "vtkcells" && word != "vtkfreept" && word != "vtkall" &&
+            word != "vtkbound" && word != "vtkfluid")
+            throw UsageError(fmt::format("-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
+                                         "vtkbound or vtkfluid, each with + or - before it",
+                                         word));
+        if (all || word == "bi") options.save_bi4 = on;
+        if (all || word == "vtkcells") options.save_cells = on;
+        if (all || word == "vtkall") options.save_all = on;
+        if (all || word == "vtkbound") options.save_bound = on;
+        if (all || word == "vtkfluid") options.save_fluid = on;
+    }
+}
+
+void read_option(const std::string& argument, DropInOptions& options)
+{
+    const std::size_t colon = argument.find(':');
+    const std::string name = argument.substr(0, colon);
+    const std::string value = colon == std::string::npos ? "" : argument.substr(colon + 1);
+    using Action = DropInOptions::Action;
+    if (name == "-h" || name == "--help" || name == "-help")
+        options.action = Action::Help;
+    else if (name == "-ver" || name == "--version")
+        options.action = Action::Version;
+    else if (name == "-info")
+        options.action = Action::Info;
+    else if (name == "-templates" || name == "-template")
+        options.action = Action::Templates;
+    else if (name == "-clean")
+        options.action = Action::Clean;
+    else if (name == "-dp")
+    {
+        options.dp = number_of<double>(name, value, "a particle distance above 0");
+        if (!(*options.dp > 0) || !std::isfinite(*options.dp))
+            throw UsageError(fmt::format("-dp: \"{}\" is invalid, expected a particle distance above 0", value));
+    }
+    else if (name == "-evars")
+    {
+        for (const std::string& part : split(value, ':'))
+        {
+            const std::size_t equals = part.find('=');
+            if (equals == std::string::npos || equals == 0)
+                throw UsageError(fmt::format("-evars: \"{}\" is invalid, expected NAME=VALUE", part));
+            options.evars.emplace_back(part.substr(0, equals), part.substr(equals + 1));
+        }
+    }
+    else if (name == "-threads" || name == "-ompthreads")
+    {
+        options.threads = number_of<int>(name, value, "a number of threads, 0 for all");
+        if (options.threads < 0 || options.threads > 4096)
+            throw UsageError(fmt::format("-threads: {} is out of range, expected 0 to 4096", options.threads));
+    }
+    else if (name == "-save")
+        choose_formats(value, options);
+    else if (name == "-save3vtk")
+        options.save_three_vtk = flag_of(name, value);
+    else if (name == "-createdirs")
+        options.create_folders = flag_of(name, value);
+    else if (name == "-debug")
+        options.debug = number_of<int>(name, value, "a debug level");
+    else
+        throw UsageError(fmt::format("the option {} is unknown; {} lists what there is", argument, "fppg --help"));
+}
+
+std::string file_name(const std::string& path)
+{
+    const std::size_t slash = path.find_last_of('/');
+    return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+} // namespace
+
+DropInOptions parse_command_line(const std::vector<std::string>& arguments)
+{
+    DropInOptions options;
+    std::vector<std::string> names;
+    for (const std::string& a : arguments)
+    {
+        if (a.size() > 1 && a[0] == '-')
+            read_option(a, options);
+        else
+            names.push_back(a);
+    }
+    if (arguments.empty()) options.action = DropInOptions::Action::Help;
+    if (options.action != DropInOptions::Action::Run && options.action != DropInOptions::Action::Clean) return options;
+    if (names.empty()) throw UsageError("the name of the case definition is missing; fppg --help shows the form");
+    if (names.size() > 2)
+        throw UsageError(fmt::format("\"{}\" is one name too many, expected a definition and an output name", names[2]));
+    options.input = names[0];
+    options.output = names.back();
+    const std::size_t star = options.output.find('*');
+    if (names.size() == 2 && star != std::string::npos)
+        options.output.replace(star, 1, file_name(options.input));
+    return options;
+}
+
+std::string help_text()
+{
+    return fmt::format(
+        "fppg {}: particles for DualSPHysics from GenCase's case definitions\n"
+        "\n"
+        "Usage:\n"
+        "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
+        "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
+        "\n"
+        "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, OUTPUT.out and\n"
+        "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
+        "\n"
+        "Options (GenCase's own):\n"
+        "  -dp:VALUE              particle distance, in place of the definition's\n"
+        "  -evars:A=1:B=2         new values for variables that the definition defines\n"
+        "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
+        "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before each:\n"
+        "                         bi, vtkcells, vtkfreept (these three by default), vtkall, vtkbound,\n"
+        "                         vtkfluid, all\n"
+        "  -save3vtk:0|1          three more copies of every VTK, _r00 to _r02 (default 0)\n"
+        "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
+        "  -debug:N               accepted, changes nothing\n"
+        "  -clean                 only write OUTPUT.xml, a tidy copy of the definition\n"
+        "  -templates             write FppgCaseTemplate.xml, a commented case, into this folder\n"
+        "  -info                  what this program can do, as JSON\n"
+        "  -ver, --version        the version\n"
+        "  -h, --help             this text\n"
+        "\n"
+        "Exit code: 0 done (with or without warnings), 2 wrong usage, 3 the case or its geometry is wrong or not\n"
+        "supported yet, 4 a file cannot be read or written, 5 a fault of the program, 130 stopped by Ctrl-C.\n",
+        version);
+}
+
+} // namespace fppg

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// What a call in GenCase's form asks for.
+struct DropInOptions
+{
+    enum class Action
+    {
+        Run,
+        Help,
+        Version,
+        Info,
+        Templates,
+        Clean,
+    };
+
+    Action action = Action::Run;
+    std::string input;  ///< without ".xml"
+    std::string output; ///< without extension
+    std::optional<double> dp;
+    std::vector<std::pair<std::string, std::string>> evars;
+    int threads = 0; ///< 0: what the machine or its scheduler allows
+    int debug = 0;
+    bool save_bi4 = true;
+    bool save_cells = true;
+    bool save_all = false;
+    bool save_bound = false;
+    bool save_fluid = false;
+    bool save_three_vtk = false;
+    bool create_folders = true;
+};
+
+/// Reads arguments in GenCase's form: `in out`, `in a*b` (the star stands for the input's name), or one
+/// name for both, and `-name:value` options.
+///
+/// throws UsageError for what is not known, or has a value that cannot be read
+DropInOptions parse_command_line(const std::vector<std::string>& arguments);
+
+/// The text of --help.
+std::string help_text();
+
+} // namespace fppg

@@ -1,0 +1,445 @@
+#include "app/drop_in.h"
+
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/files.h"
+#include "fppg/lattice.h"
+#include "fppg/particles.h"
+#include "fppg/version.h"
+
+#include "app/case_template.h"
+#include "app/run_log.h"
+#include "app/threads.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace fppg
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// 12345678 as 12,345,678.
+std::string thousands(std::uint64_t n)
+{
+    std::string text = std::to_string(n);
+    for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
+        text.insert(static_cast<std::size_t>(at), ",");
+    return text;
+}
+
+class Stopwatch
+{
+public:
+    double seconds() const
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string full_name() { return fmt::format("fppg v{} (compatible with GenCase v5.4)", version); }
+
+class DropInRun
+{
+public:
+    explicit DropInRun(const DropInOptions& options)
+        : options_(options), threads_(options.threads > 0 ? options.threads : default_threads())
+    {
+    }
+
+    int run()
+    {
+        const Stopwatch total;
+        log_.line(full_name());
+        log_.line(std::string(full_name().size(), '='));
+        log_.line(fmt::format("OmpThreads: {}", threads_));
+        try
+        {
+            prepare_folder();
+            read();
+            draw();
+            prepare();
+            save();
+        }
+        catch (const std::exception& error)
+        {
+            write_failed_log(error);
+            throw;
+        }
+        print_warnings();
+        log_.line(fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), threads_));
+        log_.line();
+        log_.line("Finished execution (code=0).");
+        add_file(".out").append(log_.text());
+        commit();
+        return 0;
+    }
+
+private:
+    template <typename Body>
+    void stage(const char* name, const Body& body)
+    {
+        const Stopwatch time;
+        log_.line();
+        log_.line(fmt::format("[{}]", name));
+        body();
+        log_.line(fmt::format("[{}-End  time:{:.3f}s]", name, time.seconds()));
+    }
+
+    void prepare_folder() const
+    {
+        const fs::path folder = fs::path(options_.output).parent_path();
+        if (folder.empty() || fs::is_directory(folder)) return;
+        if (!options_.create_folders)
+            throw IoError(fmt::format("{}: the folder does not exist (and -createdirs:0 is given)", folder.string()));
+        std::error_code error;
+        fs::create_directories(folder, error);
+        if (error)
+            throw IoError(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+    }
+
+    void read()
+    {
+        stage("LoadXMLInit",
+              [this]
+              {
+                  CaseOptions case_options;
+                  case_options.dp = options_.dp;
+                  case_options.evars = options_.evars;
+                  case_options.case_name = fs::path(options_.output).filename().string();
+                  def_ = read_case(options_.input + ".xml", case_options);
+                  log_.line(fmt::format("Total operations: {}", def_.ops.size()));
+              });
+    }
+
+    void draw()
+    {
+        stage("Draw",
+              [this]
+              {
+                  const LatticeGrid& grid = def_.grid;
+                  log_.line("List of available variables: " + def_.variables_log);
+                  log_.line();
+                  log_.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})", def_.case_pos_min.x,
+                                        def_.case_pos_min.y, def_.case_pos_min.z, def_.case_pos_max.x,
+                                        def_.case_pos_max.y, def_.case_pos_max.z));
+                  log_.line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
+                  log_.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1));
+                  for (const std::string& line : def_.list_log) log_.line(line);
+                  LatticeReport report;
+                  field_ = generate_lattice(def_, threads_, {}, report);
+                  for (const std::string& file : report.mesh_files) log_.line("Mesh file: " + file);
+                  for (std::string& w : def_.warnings) warn(std::move(w));
+                  for (std::string& w : report.warnings) warn(std::move(w));
+                  log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles, report.triangles_ignored));
+              });
+    }
+
+    void prepare()
+    {
+        stage("PreparePoints",
+              [this]
+              {
+                  std::vector<std::string> warnings;
+                  particles_ = make_particles(def_, field_, threads_, constants_, warnings);
+                  print_blocks();
+                  for (std::string& w : warnings) warn(std::move(w));
+              });
+    }
+
+    void print_blocks()
+    {
+        struct Group
+        {
+            const char* title;
+            const char* label;
+            ParticleType type;
+            std::uint64_t count;
+        };
+        const std::array<Group, 4> groups{
+            Group{"Fixed-Boundary", "Fixed....", ParticleType::Fixed, particles_.n_fixed},
+            Group{"Moving-Boundary", "Moving...", ParticleType::Moving, particles_.n_moving},
+            Group{"Floating-Boundary", "Floating.", ParticleType::Floating, particles_.n_floating},
+            Group{"Fluid", "Fluid....", ParticleType::Fluid, particles_.n_fluid}};
+        log_.line("List of Points:");
+        std::array<std::size_t, 4> blocks{};
+        std::vector<std::string> summary;
+        for (const Group& group : groups)
+        {
+            std::vector<int> mks;
+            std::uint64_t begin = 0;
+            for (std::size_t b = 0; b < particles_.blocks.size(); ++b)
+            {
+                const ParticleBlock& block = particles_.blocks[b];
+                if (block.type != group.type) continue;
+                if (mks.empty())
+                {
+                    log_.line(fmt::format("Points -> {} particles:", group.title));
+                    begin = block.begin;
+                }
+                log_.line(fmt::format("  block[{:3}] (mk:{:3}): {:6}", b, block.mk, block.count));
+                mks.push_back(block.mk);
+                ++blocks[static_cast<std::size_t>(group.type)];
+            }
+            summary.push_back(mks.empty() ? fmt::format("  {}: 0", group.label)
+                                          : fmt::format("  {}: {}  id:({}-{})   MKs:{} ({})", group.label,
+                                                        thousands(group.count), begin, begin + group.count - 1,
+                                                        mks.size(), format_ranges(mks)));
+        }
+        log_.line();
+        log_.line("Particle summary:");
+        for (const std::string& line : summary) log_.line(line);
+        log_.line();
+        log_.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})", thousands(particles_.np),
+                              thousands(particles_.np - particles_.n_fluid), thousands(particles_.n_fixed),
+                              thousands(particles_.n_moving), thousands(particles_.n_floating),
+                              thousands(particles_.n_fluid)));
+        log_.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})", particles_.blocks.size(),
+                              blocks[0] + blocks[1] + blocks[2], blocks[0], blocks[1], blocks[2], blocks[3]));
+        log_.line();
+        const ConstantsDef& c = def_.constants;
+        const char* depth_source = c.rhop_gradient != 3 && particles_.n_floating > 0
+                                       ? "automatic from the height of water+floating bodies"
+                                       : "automatic";
+        log_.line(fmt::format("Maximum depth: {:g} ({})", constants_.hswl, c.hswl ? "fixed" : depth_source));
+        log_.line(fmt::format("Speed of system: {:g} ({})", constants_.speed_system,
+                              c.speed_system ? "fixed" : "automatic"));
+        log_.line(
+            fmt::format("Speed of sound: {:g} ({})", constants_.speed_sound, c.speed_sound ? "fixed" : "automatic"));
+        log_.line();
+        const double hdp = def_.h / def_.grid.dp;
+        log_.line(fmt::format("Coefh:{:.6f} (hdp:{:.6f})", hdp / std::sqrt(def_.grid.is_2d ? 2.0 : 3.0), hdp));
+    }
+
+    /// A new output file; it gets its name in commit().
+    OutputFile& add_file(const std::string& ending)
+    {
+        files_.emplace_back(options_.output + ending);
+        return files_.back();
+    }
+
+    void save()
+    {
+        stage("SaveCase3D",
+              [this]
+              {
+                  files_.reserve(64);
+                  const FileOrigin origin{full_name(),
+                                          fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
+                                          def_.case_name};
+                  std::vector<VtkOutEntry> vtk_out;
+                  save_shapes(vtk_out);
+                  if (options_.save_cells)
+                      timed("_MkCells.vtk", "", [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
+                  field_ = {};
+                  if (options_.save_bi4)
+                      timed(".bi4", "<double>",
+                            [&](OutputFile& f) { write_bi4(f, particles_, constants_, origin, threads_); });
+                  const auto picture = [&](bool wanted, const char* ending, VtkSelection selection, std::uint64_t count)
+                  {
+                      if (wanted && count > 0)
+                          timed(ending, "", [&](OutputFile& f)
+                                { write_particles_vtk(f, particles_, constants_, selection, threads_); });
+                  };
+                  picture(options_.save_all, "_All.vtk", VtkSelection::All, particles_.np);
+                  picture(options_.save_bound, "_Bound.vtk", VtkSelection::Bound, particles_.np - particles_.n_fluid);
+                  picture(options_.save_fluid, "_Fluid.vtk", VtkSelection::Fluid, particles_.n_fluid);
+                  keep_overwritten_definition();
+                  timed(".xml", "", [&](OutputFile& f)
+                        { write_case_xml(f, def_, particles_, constants_, vtk_out, origin); });
+                  log_.line();
+                  log_.line("Particle limits:");
+                  for (int axis = 0; axis < 3; ++axis)
+                      log_.line(fmt::format("  {} range: {:g} to {:g} [m]", "XYZ"[axis], particles_.pos_min[axis],
+                                            particles_.pos_max[axis]));
+                  log_.line();
+              });
+        log_.line();
+    }
+
+    template <typename Body>
+    void timed(const std::string& ending, const char* note, const Body& body)
+    {
+        const Stopwatch time;
+        OutputFile& file = add_file(ending);
+        body(file);
+        log_.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+    }
+
+    void save_shapes(std::vector<VtkOutEntry>& vtk_out)
+    {
+        for (const ShapeFile& shape_file : collect_shape_files(def_))
+        {
+            timed(shape_file.name, "", [&](OutputFile& f) { write_shapes_vtk(f, shape_file.shapes); });
+            std::vector<int> mk;
+            std::vector<int> mk_bound;
+            std::vector<int> mk_fluid;
+            for (const ShapePolygons& s : shape_file.shapes)
+            {
+                if (s.mk <= 0) continue;
+                mk.push_back(s.mk);
+                (s.mk >= def_.mk_bound_first ? mk_bound : mk_fluid)
+                    .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first : def_.mk_fluid_first));
+            }
+            vtk_out.push_back({fs::path(options_.output + shape_file.name).filename().string(), format_ranges(mk),
+                               format_ranges(mk_bound), format_ranges(mk_fluid)});
+        }
+    }
+
+    std::vector<ParticleType> types() const
+    {
+        std::vector<ParticleType> out(65536, ParticleType::Fixed);
+        for (const ParticleBlock& b : particles_.blocks) out[b.mk] = b.type;
+        return out;
+    }
+
+    /// With one name for both, Case.xml takes the place of the definition, as with GenCase; the definition
+    /// is kept beside it.
+    void keep_overwritten_definition()
+    {
+        const std::string source = options_.input + ".xml";
+        const std::string target = options_.output + ".xml";
+        std::error_code error;
+        if (!fs::exists(target, error) || !fs::equivalent(source, target, error)) return;
+        const std::string kept = target + ".orig";
+        if (!fs::exists(kept)) fs::copy_file(source, kept, error);
+        if (error) throw IoError(fmt::format("{}: cannot keep a copy of the definition: {}", kept, error.message()));
+        warn(fmt::format("{} is the definition and the output: it now holds the generated case, the definition was "
+                         "kept as {}.",
+                         target, kept));
+    }
+
+    void warn(std::string text)
+    {
+        log_.line("*** WARNING: " + text);
+        warnings_.push_back(std::move(text));
+    }
+
+    void print_warnings()
+    {
+        if (warnings_.empty()) return;
+        log_.line("[WARNINGS]");
+        for (std::size_t i = 0; i < warnings_.size(); ++i) log_.line(fmt::format("{}. {}", i + 1, warnings_[i]));
+        log_.line();
+    }
+
+    /// What went wrong goes into Case.out, unless one of an older run stands beside older results.
+    void write_failed_log(const std::exception& error)
+    {
+        const std::string path = options_.output + ".out";
+        std::error_code ignored;
+        if (fs::exists(path, ignored)) return;
+        files_.clear();
+        try
+        {
+            const auto* known = dynamic_cast<const Error*>(&error);
+            OutputFile& file = add_file(".out");
+            file.append(fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n", log_.text(), error.what(),
+                                    known != nullptr ? known->exit_code() : 5));
+            file.commit();
+        }
+        catch (const std::exception&)
+        {
+            // The folder cannot be written: the error itself is what the user has to see.
+        }
+        files_.clear();
+    }
+
+    void commit()
+    {
+        std::vector<std::string> pictures;
+        // A signal between two renames would leave a mixture of old and new.
+        sigset_t signals;
+        sigset_t before;
+        sigemptyset(&signals);
+        sigaddset(&signals, SIGINT);
+        sigaddset(&signals, SIGTERM);
+        pthread_sigmask(SIG_BLOCK, &signals, &before);
+        for (OutputFile& file : files_)
+        {
+            file.commit();
+            if (file.path().ends_with(".vtk")) pictures.push_back(file.path());
+        }
+        files_.clear();
+        pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        if (!options_.save_three_vtk) return;
+        for (const std::string& path : pictures)
+            for (const char* copy : {"_r00", "_r01", "_r02"})
+                fs::copy_file(path, path.substr(0, path.size() - 4) + copy + ".vtk",
+                              fs::copy_options::overwrite_existing);
+    }
+
+    DropInOptions options_;
+    int threads_;
+    RunLog log_;
+    CaseDef def_;
+    RunField field_;
+    CaseParticles particles_;
+    CaseConstants constants_;
+    std::vector<OutputFile> files_;
+    std::vector<std::string> warnings_;
+};
+
+void print_info()
+{
+    fmt::print("{{ \"ShortName\" : \"GenCase\", \"FullName\" : \"{}\", \"Version\" : \"v{}\", \"Date\" : \"21-11-2026\", "
+               "\"Features\" : {{ \"MaximumMkValues\" : 65000 }} }}\n",
+               full_name(), version);
+}
+
+int write_clean_copy(const DropInOptions& options)
+{
+    const Element root = read_definition_tree(options.input + ".xml");
+    OutputFile file(options.output + ".xml");
+    file.append("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n" + print_element(root, 0));
+    file.commit();
+    fmt::print("{}\n{}.xml\nFinished execution (code=0).\n", full_name(), options.output);
+    return 0;
+}
+
+} // namespace
+
+int run_drop_in(const DropInOptions& options)
+{
+    switch (options.action)
+    {
+        case DropInOptions::Action::Help:
+            fmt::print("{}", help_text());
+            return 0;
+        case DropInOptions::Action::Version:
+            fmt::print("{}\n", full_name());
+            return 0;
+        case DropInOptions::Action::Info:
+            print_info();
+            return 0;
+        case DropInOptions::Action::Templates:
+        {
+            OutputFile file("FppgCaseTemplate.xml");
+            file.append(case_template_text());
+            file.commit();
+            fmt::print("{}\nFppgCaseTemplate.xml\n", full_name());
+            return 0;
+        }
+        case DropInOptions::Action::Clean:
+            return write_clean_copy(options);
+        case DropInOptions::Action::Run:
+            break;
+    }
+    return DropInRun(options).run();
+}
+
+} // namespace fppg

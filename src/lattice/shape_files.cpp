@@ -1,0 +1,179 @@
+#include "fppg/case_def.h"
+#include "fppg/files.h"
+#include "fppg/lattice.h"
+#include "fppg/shapes.h"
+
+#include "lattice/mesh_path.h"
+#include "lattice/snap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fppg
+{
+namespace
+{
+
+/// Two directions across an axis.
+std::pair<Vec3, Vec3> across(const Vec3& axis)
+{
+    const Vec3 u = axis / norm(axis);
+    const Vec3 helper = std::fabs(u.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+    const Vec3 v = cross(u, helper) / norm(cross(u, helper));
+    return {v, cross(u, v)};
+}
+
+class ShapeCollector
+{
+public:
+    explicit ShapeCollector(const CaseDef& def) : def_(def) {}
+
+    std::vector<ShapeFile> run()
+    {
+        const bool has_output = std::any_of(def_.ops.begin(), def_.ops.end(), [](const DrawOp& op)
+                                            { return std::holds_alternative<ShapeOutOp>(op.what); });
+        if (!has_output) return {};
+        for (const DrawOp& op : def_.ops)
+        {
+            if (std::holds_alternative<ResetOp>(op.what))
+                drawn_.clear();
+            else if (const auto* out = std::get_if<ShapeOutOp>(&op.what))
+                write(*out);
+            else if (op.state->draw_shapes && is_shape(op.what))
+                drawn_.push_back(&op);
+        }
+        return std::move(files_);
+    }
+
+private:
+    static bool is_shape(const DrawVariant& what)
+    {
+        return std::holds_alternative<LinesOp>(what) || std::holds_alternative<FigureOp>(what) ||
+               std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
+               std::holds_alternative<MeshFileOp>(what);
+    }
+
+    void write(const ShapeOutOp& out)
+    {
+        for (const bool snapped : {true, false})
+        {
+            if (!(snapped ? out.snapped : out.actual)) continue;
+            ShapeFile file;
+            file.name = "_" + out.file + (snapped ? "_Dp.vtk" : "_Actual.vtk");
+            std::uint32_t id = 0;
+            for (const DrawOp* op : drawn_)
+            {
+                const std::uint32_t object = id++;
+                if (!out.kinds[static_cast<std::size_t>(op->state->mk.kind)]) continue;
+                ShapePolygons shape = polygons(*op, snapped);
+                shape.object_id = object;
+                shape.mk = op->state->mk.kind == MkKind::Void ? -1 : op->state->mk.mk;
+                if (op->state->normal_invert)
+                    for (auto& p : shape.polygons)
+                        if (p.size() > 2) std::reverse(p.begin(), p.end());
+                if (!shape.polygons.empty()) file.shapes.push_back(std::move(shape));
+            }
+            if (!file.shapes.empty()) files_.push_back(std::move(file));
+        }
+        if (out.reset) drawn_.clear();
+    }
+
+    Vec3 place(const Vec3& p, bool snapped) const
+    {
+        return snapped ? position(snap(p, def_.grid), def_.grid) : p;
+    }
+
+    ShapePolygons polygons(const DrawOp& op, bool snapped) const
+    {
+        ShapePolygons out;
+        const DrawConstants& constants = op.state->constants;
+        if (const auto* lines = std::get_if<LinesOp>(&op.what))
+            for (const auto& [from, to] : lines->segments)
+            {
+                const auto i = static_cast<std::uint32_t>(out.vertices.size());
+                out.vertices.push_back(place(from, snapped));
+                out.vertices.push_back(place(to, snapped));
+                out.polygons.push_back({i, i + 1});
+            }
+        else if (const auto* figure = std::get_if<FigureOp>(&op.what))
+        {
+            for (const Vec3& v : figure->vertices) out.vertices.push_back(place(v, snapped));
+            for (const FigureFace& f : figure->faces)
+                if (f.is_visible) out.polygons.push_back(f.vertices);
+        }
+        else if (const auto* sphere = std::get_if<SphereOp>(&op.what))
+            add_sphere(out, place(sphere->center, snapped), radius(sphere->radius, snapped), constants.sphere_sides);
+        else if (const auto* cylinder = std::get_if<CylinderOp>(&op.what))
+            add_cylinder(out, *cylinder, place(cylinder->p0, snapped), place(cylinder->p1, snapped),
+                         radius(cylinder->radius, snapped), constants.cylinder_sides);
+        else if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+        {
+            const MeshFile file = read_stl(find_mesh_file(def_, op.source, mesh->file));
+            for (const Vec3& v : file.soup.vertices) out.vertices.push_back(place(mesh->transform(v), snapped));
+            for (std::uint32_t t = 0; t < file.soup.size(); ++t)
+                out.polygons.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        }
+        return out;
+    }
+
+    double radius(double r, bool snapped) const
+    {
+        return snapped ? std::floor(r / def_.grid.dp + 0.5) * def_.grid.dp : r;
+    }
+
+    static void add_sphere(ShapePolygons& out, const Vec3& center, double r, int sides)
+    {
+        const auto n = static_cast<std::uint32_t>(sides);
+        out.vertices.push_back(center - Vec3{0, 0, r});
+        for (std::uint32_t ring = 1; ring < n; ++ring)
+            for (std::uint32_t i = 0; i < n; ++i)
+            {
+                const double polar = std::numbers::pi * ring / n;
+                const double turn = -std::numbers::pi / 2 - 2 * std::numbers::pi * i / n;
+                out.vertices.push_back(center + Vec3{r * std::sin(polar) * std::cos(turn),
+                                                     r * std::sin(polar) * std::sin(turn), -r * std::cos(polar)});
+            }
+        out.vertices.push_back(center + Vec3{0, 0, r});
+        const auto at = [n](std::uint32_t ring, std::uint32_t i) { return 1 + (ring - 1) * n + i % n; };
+        const auto top = static_cast<std::uint32_t>(out.vertices.size() - 1);
+        for (std::uint32_t i = 0; i < n; ++i) out.polygons.push_back({0, at(1, i), at(1, i + 1)});
+        for (std::uint32_t ring = 1; ring + 1 < n; ++ring)
+            for (std::uint32_t i = 0; i < n; ++i)
+                out.polygons.push_back({at(ring, i + 1), at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+        for (std::uint32_t i = 0; i < n; ++i) out.polygons.push_back({at(n - 1, i + 1), at(n - 1, i), top});
+    }
+
+    static void add_cylinder(ShapePolygons& out, const CylinderOp& cylinder, const Vec3& a, const Vec3& b, double r,
+                             int sides)
+    {
+        if (norm(b - a) == 0) return;
+        const auto n = static_cast<std::uint32_t>(sides);
+        const auto [v, w] = across(b - a);
+        for (const Vec3& end : {a, b})
+            for (std::uint32_t i = 0; i < n; ++i)
+            {
+                const double turn = 2 * std::numbers::pi * i / n;
+                out.vertices.push_back(end + v * (r * std::cos(turn)) + w * (r * std::sin(turn)));
+            }
+        out.vertices.push_back(a);
+        out.vertices.push_back(b);
+        for (std::uint32_t i = 0; i < n; ++i)
+        {
+            const std::uint32_t j = (i + 1) % n;
+            if (cylinder.is_visible[0]) out.polygons.push_back({j, i, 2 * n});
+            if (cylinder.is_visible[1]) out.polygons.push_back({n + i, n + j, 2 * n + 1});
+            if (cylinder.is_visible[2]) out.polygons.push_back({i, j, n + j, n + i});
+        }
+    }
+
+    const CaseDef& def_;
+    std::vector<const DrawOp*> drawn_;
+    std::vector<ShapeFile> files_;
+};
+
+} // namespace
+
+std::vector<ShapeFile> collect_shape_files(const CaseDef& def) { return ShapeCollector(def).run(); }
+
+} // namespace fppg
