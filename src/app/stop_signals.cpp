@@ -1,0 +1,32 @@
+#include "app/stop_signals.h"
+
+#include "files/output_file_registry.h"
+
+#include <unistd.h>
+
+#include <csignal>
+
+namespace fppg
+{
+namespace
+{
+
+extern "C" void stop(int)
+{
+    remove_temporary_files();
+    constexpr char text[] = "\n*** Stopped by the user; no output file was changed.\n";
+    const auto written = write(STDERR_FILENO, text, sizeof text - 1);
+    static_cast<void>(written);
+    _exit(130);
+}
+
+} // namespace
+
+void catch_stop_signals()
+{
+    std::signal(SIGINT, stop);
+    std::signal(SIGTERM, stop);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+} // namespace fppg
