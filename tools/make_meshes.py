@@ -179,6 +179,19 @@ def extrude_ring(outer, inner, z0, z1):
     return mesh
 
 
+def prism_about_axis(polygon, z0, z1):
+    """A prism over a polygon that is seen whole from the origin; its caps are fans."""
+    mesh = Mesh()
+    low, high = ([mesh.vertex(x, y, z) for x, y in polygon] for z in (z0, z1))
+    low_centre, high_centre = mesh.vertex(0, 0, z0), mesh.vertex(0, 0, z1)
+    for i in range(len(polygon)):
+        k = (i + 1) % len(polygon)
+        mesh.quad(low[i], low[k], high[k], high[i])
+        mesh.triangle(low_centre, low[k], low[i])
+        mesh.triangle(high_centre, high[i], high[k])
+    return mesh
+
+
 def revolve(profile, sides, closed):
     """Turns a profile of (r, z) about z, the solid on its left.
 
@@ -280,7 +293,7 @@ def gear(module=0.1, teeth=18, width=0.3, bore=0.4, pressure_angle=20.0):
     """A spur gear about z with involute teeth; `bore` is a diameter, 0 for a full gear."""
     outline = gear_outline(module, teeth, pressure_angle)
     if bore == 0:
-        return extrude(outline, -width / 2, width / 2)
+        return prism_about_axis(outline, -width / 2, width / 2)
     inner = [(bore / 2 * x / math.hypot(x, y), bore / 2 * y / math.hypot(x, y)) for x, y in outline]
     return extrude_ring(outline, inner, -width / 2, width / 2)
 

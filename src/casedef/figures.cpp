@@ -47,10 +47,10 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
     const std::uint32_t diagonal_back =
         add({corner(0, 1, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 1, 1)});
     box.bodies.push_back({add({corner(0, 0, 0), corner(0, 1, 0), corner(1, 0, 0)}),
-                          add({corner(0, 0, 1), corner(1, 0, 1), corner(0, 1, 1)}), box_left, box_front,
+                          add({corner(0, 0, 1), corner(1, 0, 1), corner(0, 1, 1)}), BoxLeft, BoxFront,
                           diagonal});
     box.bodies.push_back({add({corner(1, 1, 0), corner(1, 0, 0), corner(0, 1, 0)}),
-                          add({corner(1, 1, 1), corner(0, 1, 1), corner(1, 0, 1)}), box_right, box_back,
+                          add({corner(1, 1, 1), corner(0, 1, 1), corner(1, 0, 1)}), BoxRight, BoxBack,
                           diagonal_back});
     box.inner_faces = {diagonal};
     return box;
@@ -75,12 +75,12 @@ std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1, const s
         Vec3 l = low;
         Vec3 h = high;
         const double shift = layer * dp;
-        if (sides[box_bottom]) l.z -= shift;
-        if (sides[box_top]) h.z += shift;
-        if (sides[box_left]) l.x -= shift;
-        if (sides[box_right]) h.x += shift;
-        if (sides[box_front]) l.y -= shift;
-        if (sides[box_back]) h.y += shift;
+        if (sides[BoxBottom]) l.z -= shift;
+        if (sides[BoxTop]) h.z += shift;
+        if (sides[BoxLeft]) l.x -= shift;
+        if (sides[BoxRight]) h.x += shift;
+        if (sides[BoxFront]) l.y -= shift;
+        if (sides[BoxBack]) h.y += shift;
         out.push_back(make_one_box(l, h, sides, is_solid));
     }
     return out;

@@ -11,12 +11,12 @@ namespace fppg
 /// Which sides of a box are meant, in GenCase's order.
 enum BoxSide
 {
-    box_bottom,
-    box_top,
-    box_left,
-    box_right,
-    box_front,
-    box_back,
+    BoxBottom,
+    BoxTop,
+    BoxLeft,
+    BoxRight,
+    BoxFront,
+    BoxBack,
 };
 
 /// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it is

@@ -344,12 +344,12 @@ bool ProgramRunner::run_clip(const Element& e)
                  read_.words(e, which->text, "box face", {"all", "bottom", "top", "left", "right", "front", "back"}))
             {
                 if (w == "all") faces = {true, true, true, true, true, true};
-                if (w == "bottom") faces[box_bottom] = true;
-                if (w == "top") faces[box_top] = true;
-                if (w == "left") faces[box_left] = true;
-                if (w == "right") faces[box_right] = true;
-                if (w == "front") faces[box_front] = true;
-                if (w == "back") faces[box_back] = true;
+                if (w == "bottom") faces[BoxBottom] = true;
+                if (w == "top") faces[BoxTop] = true;
+                if (w == "left") faces[BoxLeft] = true;
+                if (w == "right") faces[BoxRight] = true;
+                if (w == "front") faces[BoxFront] = true;
+                if (w == "back") faces[BoxBack] = true;
             }
         }
         const Transform matrix = matrix_;
@@ -371,12 +371,12 @@ bool ProgramRunner::run_clip(const Element& e)
             else
                 state_.clips.push_back({matrix_(at), matrix_(at + outward) - matrix_(at)});
         };
-        side(box_bottom, low, {0, 0, -1});
-        side(box_top, high, {0, 0, 1});
-        side(box_left, low, {-1, 0, 0});
-        side(box_right, high, {1, 0, 0});
-        side(box_front, low, {0, -1, 0});
-        side(box_back, high, {0, 1, 0});
+        side(BoxBottom, low, {0, 0, -1});
+        side(BoxTop, high, {0, 0, 1});
+        side(BoxLeft, low, {-1, 0, 0});
+        side(BoxRight, high, {1, 0, 0});
+        side(BoxFront, low, {0, -1, 0});
+        side(BoxBack, high, {0, 1, 0});
     }
     else
         return false;
@@ -530,12 +530,12 @@ void ProgramRunner::draw_box(const Element& e)
     {
         if (w == "solid") is_solid = true;
         if (w == "solid" || w == "all") sides = {true, true, true, true, true, true};
-        if (w == "bottom") sides[box_bottom] = true;
-        if (w == "top") sides[box_top] = true;
-        if (w == "left") sides[box_left] = true;
-        if (w == "right") sides[box_right] = true;
-        if (w == "front") sides[box_front] = true;
-        if (w == "back") sides[box_back] = true;
+        if (w == "bottom") sides[BoxBottom] = true;
+        if (w == "top") sides[BoxTop] = true;
+        if (w == "left") sides[BoxLeft] = true;
+        if (w == "right") sides[BoxRight] = true;
+        if (w == "front") sides[BoxFront] = true;
+        if (w == "back") sides[BoxBack] = true;
     }
     const Transform matrix = matrix_;
     matrix_ = {};
@@ -774,7 +774,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
                     if (w == "all" || w == names[d]) op.directions[d] = true;
             }
         if (name == "redrawnearbox") op.region = box_of(e);
-        add(e, std::move(op));
+        add(e, op);
     }
     else
         return false;

@@ -21,8 +21,8 @@ enum class Medium : std::uint8_t
 class DepthMeter
 {
 public:
-    DepthMeter(const CaseDef& def, const RunField& field, const std::vector<ParticleType>& type_of_mk)
-        : def_(def), field_(field), type_of_mk_(type_of_mk)
+    DepthMeter(const RunField& field, const std::vector<ParticleType>& type_of_mk)
+        : field_(field), type_of_mk_(type_of_mk)
     {
     }
 
@@ -48,7 +48,6 @@ public:
     }
 
 private:
-    const CaseDef& def_;
     const RunField& field_;
     const std::vector<ParticleType>& type_of_mk_;
 };
@@ -126,7 +125,7 @@ public:
         for (std::size_t x = field_.slabs.size(); x-- > 0;)
         {
             const std::vector<Run>& runs = field_.slabs[x];
-            const SlabSteps steps = count(x, next);
+            SlabSteps steps = count(x, next);
             const std::vector<std::uint32_t> top = meter_.depths_along_z(x);
             for (std::size_t i = 0; i < runs.size(); ++i)
             {
@@ -207,7 +206,7 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
     const ConstantsDef& c = def.constants;
     const double g = norm(c.gravity);
     const double dp = def.grid.dp;
-    const DepthMeter meter(def, field, type_of_mk);
+    const DepthMeter meter(field, type_of_mk);
     const bool is_vertical = c.gravity.x == 0 && c.gravity.y == 0;
     const bool by_height = c.rhop_gradient == 3;
 

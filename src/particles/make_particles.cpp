@@ -64,7 +64,7 @@ private:
         collect_moving(def_.motion, false, moving);
         for (const int mk : moving)
             if (mk + def_.mk_bound_first < 65536)
-                type_of_mk_[static_cast<std::size_t>(mk + def_.mk_bound_first)] = ParticleType::Moving;
+                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] = ParticleType::Moving;
         for (const FloatingDef& f : def_.floatings)
             for (const std::uint16_t mk : f.mkbound)
             {
@@ -74,7 +74,7 @@ private:
                                     fmt::format("<floating>: mkbound {} is moved by <motion> too, combining floating and "
                                                 "moving objects is not possible",
                                                 mk));
-                type_of_mk_[static_cast<std::size_t>(mk + def_.mk_bound_first)] = ParticleType::Floating;
+                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] = ParticleType::Floating;
             }
     }
 
