@@ -29,8 +29,8 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
     const std::array<Face, 6> quads{
         Face{corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0), corner(1, 0, 0)},
         Face{corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)},
-        Face{corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0), corner(0, 0, 0)},
-        Face{corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1), corner(1, 0, 0)},
+        Face{corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0)},
+        Face{corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1)},
         Face{corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)},
         Face{corner(1, 1, 0), corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1)}};
     for (std::size_t side = 0; side < 6; ++side) box.faces.push_back({quads[side], sides[side]});

@@ -331,6 +331,7 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
             [&](std::uint32_t item)
             {
                 const auto& [from, to] = (*shared)[item];
+                if (from == to) return;
                 const NodeBox box = box_of(from, to, grid);
                 const Vec3 a = position(from, grid);
                 const Vec3 b = position(to, grid);
@@ -339,7 +340,6 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                 const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
                 const auto holds = [&](std::int64_t y, std::int64_t z)
                 {
-                    if (from == to) return true;
                     const Vec3 p{x, grid.origin.y + static_cast<double>(y) * grid.dp,
                                  grid.origin.z + static_cast<double>(z) * grid.dp};
                     const double area = norm(cross(a - p, b - p)) / 2;
@@ -372,10 +372,9 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                 std::int64_t y1 = 0;
                 std::int64_t z0 = 0;
                 std::int64_t z1 = 0;
-                if (steepest == 0 || std::fabs(dx) == steepest)
+                if (std::fabs(dx) == steepest)
                 {
-                    around(dx == 0 ? 0 : (static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0,
-                           y1, z0, z1);
+                    around((static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0, y1, z0, z1);
                     test_all(y0, y1, z0, z1);
                 }
                 else if (std::fabs(dy) == steepest)
