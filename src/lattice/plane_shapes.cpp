@@ -330,7 +330,8 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
             slab,
             [&](std::uint32_t item)
             {
-                const auto& [from, to] = (*shared)[item];
+                const auto& from = (*shared)[item].first;
+                const auto& to = (*shared)[item].second;
                 if (from == to) return;
                 const NodeBox box = box_of(from, to, grid);
                 const Vec3 a = position(from, grid);
