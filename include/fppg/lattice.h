@@ -63,7 +63,7 @@ struct CaseDef;
 /// What the lattice stage says besides the nodes.
 struct LatticeReport
 {
-    std::vector<std::string> warnings; ///< whole sentences that name file, line and element
+    std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<std::string> mesh_files; ///< read, as they were found
@@ -72,7 +72,8 @@ struct LatticeReport
 /// Called before every draw with the number of draws done and of all.
 using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Executes the draws of a case on the lattice, in order: each paints over what was there (rule O1).
+/// Executes the draws of a case on the lattice, in order: each paints over what was there (rule
+/// O1).
 ///
 /// threads   number of threads; the result does not depend on it
 /// progress  may be empty; an exception thrown in it stops the work
@@ -86,12 +87,13 @@ struct ShapePolygons;
 /// One shape file that `shapeout` asks for.
 struct ShapeFile
 {
-    std::string name;   ///< behind the case name: "_name_Actual.vtk", "_name_Dp.vtk"
+    std::string name; ///< behind the case name: "_name_Actual.vtk", "_name_Dp.vtk"
     std::vector<ShapePolygons> shapes;
 };
 
-/// The shapes of a case as polygons, for every `shapeout`: as drawn (Actual) and with corners on the
-/// lattice (Dp). Spheres and cylinders have as many sides as setdpctes says (24), points give nothing.
+/// The shapes of a case as polygons, for every `shapeout`: as drawn (Actual) and with corners on
+/// the lattice (Dp). Spheres and cylinders have as many sides as setdpctes says (24), points give
+/// nothing.
 ///
 /// throws IoError, GeometryError for mesh files
 std::vector<ShapeFile> collect_shape_files(const CaseDef& def);

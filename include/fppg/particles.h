@@ -101,15 +101,15 @@ struct CaseParticles
 
 struct CaseDef;
 
-/// Turns the nodes of a case into its particles and derives the constants that depend on them: order
-/// and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
+/// Turns the nodes of a case into its particles and derives the constants that depend on them:
+/// order and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
 ///
 /// threads    number of threads; the result does not depend on it
 /// constants  filled: what the definition fixes, the rest by formula
-/// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b zero
-/// throws     CaseError when a block is both moving and floating
-/// cost       O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
-CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads, CaseConstants& constants,
-                             std::vector<std::string>& warnings);
+/// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b
+/// zero throws     CaseError when a block is both moving and floating cost       O(runs) time and
+/// memory; O(particles) only where gravity is neither zero nor along z
+CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
+                             CaseConstants& constants, std::vector<std::string>& warnings);
 
 } // namespace fppg

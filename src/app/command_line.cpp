@@ -32,7 +32,8 @@ Number number_of(const std::string& option, const std::string& value, const char
     Number n{};
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), n);
     if (error != std::errc() || end != value.data() + value.size())
-        throw UsageError(fmt::format("{}: \"{}\" is invalid, expected {}", option, value, expected));
+        throw UsageError(
+            fmt::format("{}: \"{}\" is invalid, expected {}", option, value, expected));
     return n;
 }
 
@@ -56,9 +57,10 @@ void choose_formats(const std::string& list, DropInOptions& options)
         const bool all = word == "all";
         if (!all && word != "bi" && word != "vtkcells" && word != "vtkfreept" && word != "vtkall" &&
             word != "vtkbound" && word != "vtkfluid")
-            throw UsageError(fmt::format("-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
-                                         "vtkbound or vtkfluid, each with + or - before it",
-                                         word));
+            throw UsageError(fmt::format(
+                "-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
+                "vtkbound or vtkfluid, each with + or - before it",
+                word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
         if (all || word == "vtkall") options.save_all = on;
@@ -87,7 +89,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     {
         options.dp = number_of<double>(name, value, "a particle distance above 0");
         if (!(*options.dp > 0) || !std::isfinite(*options.dp))
-            throw UsageError(fmt::format("-dp: \"{}\" is invalid, expected a particle distance above 0", value));
+            throw UsageError(
+                fmt::format("-dp: \"{}\" is invalid, expected a particle distance above 0", value));
     }
     else if (name == "-evars")
     {
@@ -95,7 +98,8 @@ void read_option(const std::string& argument, DropInOptions& options)
         {
             const std::size_t equals = part.find('=');
             if (equals == std::string::npos || equals == 0)
-                throw UsageError(fmt::format("-evars: \"{}\" is invalid, expected NAME=VALUE", part));
+                throw UsageError(
+                    fmt::format("-evars: \"{}\" is invalid, expected NAME=VALUE", part));
             options.evars.emplace_back(part.substr(0, equals), part.substr(equals + 1));
         }
     }
@@ -103,7 +107,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     {
         options.threads = number_of<int>(name, value, "a number of threads, 0 for all");
         if (options.threads < 0 || options.threads > 4096)
-            throw UsageError(fmt::format("-threads: {} is out of range, expected 0 to 4096", options.threads));
+            throw UsageError(
+                fmt::format("-threads: {} is out of range, expected 0 to 4096", options.threads));
     }
     else if (name == "-save")
         choose_formats(value, options);
@@ -114,7 +119,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     else if (name == "-debug")
         options.debug = number_of<int>(name, value, "a debug level");
     else
-        throw UsageError(fmt::format("the option {} is unknown; {} lists what there is", argument, "fppg --help"));
+        throw UsageError(fmt::format("the option {} is unknown; {} lists what there is", argument,
+                                     "fppg --help"));
 }
 
 std::string file_name(const std::string& path)
@@ -137,10 +143,14 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
             names.push_back(a);
     }
     if (arguments.empty()) options.action = DropInOptions::Action::Help;
-    if (options.action != DropInOptions::Action::Run && options.action != DropInOptions::Action::Clean) return options;
-    if (names.empty()) throw UsageError("the name of the case definition is missing; fppg --help shows the form");
+    if (options.action != DropInOptions::Action::Run &&
+        options.action != DropInOptions::Action::Clean)
+        return options;
+    if (names.empty())
+        throw UsageError("the name of the case definition is missing; fppg --help shows the form");
     if (names.size() > 2)
-        throw UsageError(fmt::format("\"{}\" is one name too many, expected a definition and an output name", names[2]));
+        throw UsageError(fmt::format(
+            "\"{}\" is one name too many, expected a definition and an output name", names[2]));
     options.input = names[0];
     options.output = names.back();
     const std::size_t star = options.output.find('*');
@@ -158,15 +168,18 @@ std::string help_text()
         "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
         "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
         "\n"
-        "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, OUTPUT.out and\n"
+        "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "
+        "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
         "Options (GenCase's own):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
-        "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before each:\n"
-        "                         bi, vtkcells, vtkfreept (these three by default), vtkall, vtkbound,\n"
+        "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
+        "each:\n"
+        "                         bi, vtkcells, vtkfreept (these three by default), vtkall, "
+        "vtkbound,\n"
         "                         vtkfluid, all\n"
         "  -save3vtk:0|1          three more copies of every VTK, _r00 to _r02 (default 0)\n"
         "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
@@ -177,8 +190,10 @@ std::string help_text()
         "  -ver, --version        the version\n"
         "  -h, --help             this text\n"
         "\n"
-        "Exit code: 0 done (with or without warnings), 2 wrong usage, 3 the case or its geometry is wrong or not\n"
-        "supported yet, 4 a file cannot be read or written, 5 a fault of the program, 130 stopped by Ctrl-C.\n",
+        "Exit code: 0 done (with or without warnings), 2 wrong usage, 3 the case or its geometry "
+        "is wrong or not\n"
+        "supported yet, 4 a file cannot be read or written, 5 a fault of the program, 130 stopped "
+        "by Ctrl-C.\n",
         version);
 }
 

@@ -38,8 +38,8 @@ struct DropInOptions
     bool create_folders = true;
 };
 
-/// Reads arguments in GenCase's form: `in out`, `in a*b` (the star stands for the input's name), or one
-/// name for both, and `-name:value` options.
+/// Reads arguments in GenCase's form: `in out`, `in a*b` (the star stands for the input's name), or
+/// one name for both, and `-name:value` options.
 ///
 /// throws UsageError for what is not known, or has a value that cannot be read
 DropInOptions parse_command_line(const std::vector<std::string>& arguments);

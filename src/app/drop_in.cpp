@@ -51,7 +51,10 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::string full_name() { return fmt::format("fppg v{} (compatible with GenCase v5.4)", version); }
+std::string full_name()
+{
+    return fmt::format("fppg v{} (compatible with GenCase v5.4)", version);
+}
 
 class DropInRun
 {
@@ -81,7 +84,8 @@ public:
             throw;
         }
         print_warnings();
-        log_.line(fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), threads_));
+        log_.line(
+            fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), threads_));
         log_.line();
         log_.line("Finished execution (code=0).");
         add_file(".out").append(log_.text());
@@ -105,11 +109,13 @@ private:
         const fs::path folder = fs::path(options_.output).parent_path();
         if (folder.empty() || fs::is_directory(folder)) return;
         if (!options_.create_folders)
-            throw IoError(fmt::format("{}: the folder does not exist (and -createdirs:0 is given)", folder.string()));
+            throw IoError(fmt::format("{}: the folder does not exist (and -createdirs:0 is given)",
+                                      folder.string()));
         std::error_code error;
         fs::create_directories(folder, error);
         if (error)
-            throw IoError(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+            throw IoError(
+                fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
     }
 
     void read()
@@ -134,18 +140,21 @@ private:
                   const LatticeGrid& grid = def_.grid;
                   log_.line("List of available variables: " + def_.variables_log);
                   log_.line();
-                  log_.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})", def_.case_pos_min.x,
-                                        def_.case_pos_min.y, def_.case_pos_min.z, def_.case_pos_max.x,
+                  log_.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})",
+                                        def_.case_pos_min.x, def_.case_pos_min.y,
+                                        def_.case_pos_min.z, def_.case_pos_max.x,
                                         def_.case_pos_max.y, def_.case_pos_max.z));
                   log_.line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
-                  log_.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1));
+                  log_.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1,
+                                        grid.n[1] - 1, grid.n[2] - 1));
                   for (const std::string& line : def_.list_log) log_.line(line);
                   LatticeReport report;
                   field_ = generate_lattice(def_, threads_, {}, report);
                   for (const std::string& file : report.mesh_files) log_.line("Mesh file: " + file);
                   for (std::string& w : def_.warnings) warn(std::move(w));
                   for (std::string& w : report.warnings) warn(std::move(w));
-                  log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles, report.triangles_ignored));
+                  log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
+                                        report.triangles_ignored));
               });
     }
 
@@ -196,33 +205,38 @@ private:
                 ++blocks[static_cast<std::size_t>(group.type)];
             }
             summary.push_back(mks.empty() ? fmt::format("  {}: 0", group.label)
-                                          : fmt::format("  {}: {}  id:({}-{})   MKs:{} ({})", group.label,
-                                                        thousands(group.count), begin, begin + group.count - 1,
-                                                        mks.size(), format_ranges(mks)));
+                                          : fmt::format("  {}: {}  id:({}-{})   MKs:{} ({})",
+                                                        group.label, thousands(group.count), begin,
+                                                        begin + group.count - 1, mks.size(),
+                                                        format_ranges(mks)));
         }
         log_.line();
         log_.line("Particle summary:");
         for (const std::string& line : summary) log_.line(line);
         log_.line();
-        log_.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})", thousands(particles_.np),
-                              thousands(particles_.np - particles_.n_fluid), thousands(particles_.n_fixed),
-                              thousands(particles_.n_moving), thousands(particles_.n_floating),
-                              thousands(particles_.n_fluid)));
-        log_.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})", particles_.blocks.size(),
-                              blocks[0] + blocks[1] + blocks[2], blocks[0], blocks[1], blocks[2], blocks[3]));
+        log_.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                              thousands(particles_.np),
+                              thousands(particles_.np - particles_.n_fluid),
+                              thousands(particles_.n_fixed), thousands(particles_.n_moving),
+                              thousands(particles_.n_floating), thousands(particles_.n_fluid)));
+        log_.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                              particles_.blocks.size(), blocks[0] + blocks[1] + blocks[2],
+                              blocks[0], blocks[1], blocks[2], blocks[3]));
         log_.line();
         const ConstantsDef& c = def_.constants;
         const char* depth_source = c.rhop_gradient != 3 && particles_.n_floating > 0
                                        ? "automatic from the height of water+floating bodies"
                                        : "automatic";
-        log_.line(fmt::format("Maximum depth: {:g} ({})", constants_.hswl, c.hswl ? "fixed" : depth_source));
+        log_.line(fmt::format("Maximum depth: {:g} ({})", constants_.hswl,
+                              c.hswl ? "fixed" : depth_source));
         log_.line(fmt::format("Speed of system: {:g} ({})", constants_.speed_system,
                               c.speed_system ? "fixed" : "automatic"));
-        log_.line(
-            fmt::format("Speed of sound: {:g} ({})", constants_.speed_sound, c.speed_sound ? "fixed" : "automatic"));
+        log_.line(fmt::format("Speed of sound: {:g} ({})", constants_.speed_sound,
+                              c.speed_sound ? "fixed" : "automatic"));
         log_.line();
         const double hdp = def_.h / def_.grid.dp;
-        log_.line(fmt::format("Coefh:{:.6f} (hdp:{:.6f})", hdp / std::sqrt(def_.grid.is_2d ? 2.0 : 3.0), hdp));
+        log_.line(fmt::format("Coefh:{:.6f} (hdp:{:.6f})",
+                              hdp / std::sqrt(def_.grid.is_2d ? 2.0 : 3.0), hdp));
     }
 
     /// A new output file; it gets its name in commit().
@@ -238,34 +252,44 @@ private:
               [this]
               {
                   files_.reserve(64);
-                  const FileOrigin origin{full_name(),
-                                          fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
-                                          def_.case_name};
+                  const FileOrigin origin{
+                      full_name(),
+                      fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
+                      def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
                   save_shapes(vtk_out);
                   if (options_.save_cells)
-                      timed("_MkCells.vtk", "", [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
+                      timed("_MkCells.vtk", "",
+                            [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
                   field_ = {};
                   if (options_.save_bi4)
                       timed(".bi4", "<double>",
-                            [&](OutputFile& f) { write_bi4(f, particles_, constants_, origin, threads_); });
-                  const auto picture = [&](bool wanted, const char* ending, VtkSelection selection, std::uint64_t count)
+                            [&](OutputFile& f)
+                            { write_bi4(f, particles_, constants_, origin, threads_); });
+                  const auto picture = [&](bool wanted, const char* ending, VtkSelection selection,
+                                           std::uint64_t count)
                   {
                       if (wanted && count > 0)
-                          timed(ending, "", [&](OutputFile& f)
-                                { write_particles_vtk(f, particles_, constants_, selection, threads_); });
+                          timed(ending, "",
+                                [&](OutputFile& f) {
+                                    write_particles_vtk(f, particles_, constants_, selection,
+                                                        threads_);
+                                });
                   };
                   picture(options_.save_all, "_All.vtk", VtkSelection::All, particles_.np);
-                  picture(options_.save_bound, "_Bound.vtk", VtkSelection::Bound, particles_.np - particles_.n_fluid);
-                  picture(options_.save_fluid, "_Fluid.vtk", VtkSelection::Fluid, particles_.n_fluid);
+                  picture(options_.save_bound, "_Bound.vtk", VtkSelection::Bound,
+                          particles_.np - particles_.n_fluid);
+                  picture(options_.save_fluid, "_Fluid.vtk", VtkSelection::Fluid,
+                          particles_.n_fluid);
                   keep_overwritten_definition();
-                  timed(".xml", "", [&](OutputFile& f)
+                  timed(".xml", "",
+                        [&](OutputFile& f)
                         { write_case_xml(f, def_, particles_, constants_, vtk_out, origin); });
                   log_.line();
                   log_.line("Particle limits:");
                   for (int axis = 0; axis < 3; ++axis)
-                      log_.line(fmt::format("  {} range: {:g} to {:g} [m]", "XYZ"[axis], particles_.pos_min[axis],
-                                            particles_.pos_max[axis]));
+                      log_.line(fmt::format("  {} range: {:g} to {:g} [m]", "XYZ"[axis],
+                                            particles_.pos_min[axis], particles_.pos_max[axis]));
                   log_.line();
               });
         log_.line();
@@ -284,7 +308,8 @@ private:
     {
         for (const ShapeFile& shape_file : collect_shape_files(def_))
         {
-            timed(shape_file.name, "", [&](OutputFile& f) { write_shapes_vtk(f, shape_file.shapes); });
+            timed(shape_file.name, "",
+                  [&](OutputFile& f) { write_shapes_vtk(f, shape_file.shapes); });
             std::vector<int> mk;
             std::vector<int> mk_bound;
             std::vector<int> mk_fluid;
@@ -293,10 +318,12 @@ private:
                 if (s.mk <= 0) continue;
                 mk.push_back(s.mk);
                 (s.mk >= def_.mk_bound_first ? mk_bound : mk_fluid)
-                    .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first : def_.mk_fluid_first));
+                    .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first
+                                                                   : def_.mk_fluid_first));
             }
-            vtk_out.push_back({fs::path(options_.output + shape_file.name).filename().string(), format_ranges(mk),
-                               format_ranges(mk_bound), format_ranges(mk_fluid)});
+            vtk_out.push_back({fs::path(options_.output + shape_file.name).filename().string(),
+                               format_ranges(mk), format_ranges(mk_bound),
+                               format_ranges(mk_fluid)});
         }
     }
 
@@ -307,8 +334,8 @@ private:
         return out;
     }
 
-    /// With one name for both, Case.xml takes the place of the definition, as with GenCase; the definition
-    /// is kept beside it.
+    /// With one name for both, Case.xml takes the place of the definition, as with GenCase; the
+    /// definition is kept beside it.
     void keep_overwritten_definition()
     {
         const std::string source = options_.input + ".xml";
@@ -317,10 +344,14 @@ private:
         if (!fs::exists(target, error) || !fs::equivalent(source, target, error)) return;
         const std::string kept = target + ".orig";
         if (!fs::exists(kept)) fs::copy_file(source, kept, error);
-        if (error) throw IoError(fmt::format("{}: cannot keep a copy of the definition: {}", kept, error.message()));
-        warn(fmt::format("{} is the definition and the output: it now holds the generated case, the definition was "
-                         "kept as {}.",
-                         target, kept));
+        if (error)
+            throw IoError(
+                fmt::format("{}: cannot keep a copy of the definition: {}", kept, error.message()));
+        warn(
+            fmt::format("{} is the definition and the output: it now holds the generated case, the "
+                        "definition was "
+                        "kept as {}.",
+                        target, kept));
     }
 
     void warn(std::string text)
@@ -333,7 +364,8 @@ private:
     {
         if (warnings_.empty()) return;
         log_.line("[WARNINGS]");
-        for (std::size_t i = 0; i < warnings_.size(); ++i) log_.line(fmt::format("{}. {}", i + 1, warnings_[i]));
+        for (std::size_t i = 0; i < warnings_.size(); ++i)
+            log_.line(fmt::format("{}. {}", i + 1, warnings_[i]));
         log_.line();
     }
 
@@ -348,7 +380,8 @@ private:
         {
             const auto* known = dynamic_cast<const Error*>(&error);
             OutputFile& file = add_file(".out");
-            file.append(fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n", log_.text(), error.what(),
+            file.append(fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n",
+                                    log_.text(), error.what(),
                                     known != nullptr ? known->exit_code() : 5));
             file.commit();
         }
@@ -396,9 +429,11 @@ private:
 
 void print_info()
 {
-    fmt::print("{{ \"ShortName\" : \"GenCase\", \"FullName\" : \"{}\", \"Version\" : \"v{}\", \"Date\" : \"21-11-2026\", "
-               "\"Features\" : {{ \"MaximumMkValues\" : 65000 }} }}\n",
-               full_name(), version);
+    fmt::print(
+        "{{ \"ShortName\" : \"GenCase\", \"FullName\" : \"{}\", \"Version\" : \"v{}\", \"Date\" : "
+        "\"21-11-2026\", "
+        "\"Features\" : {{ \"MaximumMkValues\" : 65000 }} }}\n",
+        full_name(), version);
 }
 
 int write_clean_copy(const DropInOptions& options)

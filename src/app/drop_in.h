@@ -5,11 +5,11 @@
 namespace fppg
 {
 
-/// Does what GenCase does with the same arguments: reads the definition, generates, writes the files and
-/// prints what callers read (the particle counts, the limits, the time).
+/// Does what GenCase does with the same arguments: reads the definition, generates, writes the
+/// files and prints what callers read (the particle counts, the limits, the time).
 ///
-/// All files appear together at the end, each whole; a run that fails or is stopped leaves older ones as
-/// they were.
+/// All files appear together at the end, each whole; a run that fails or is stopped leaves older
+/// ones as they were.
 ///
 /// returns  the exit code
 /// throws   Error

@@ -21,11 +21,13 @@ int default_threads()
         int n = 0;
         // OMP_NUM_THREADS may be a list, one entry a nesting level; the first one counts.
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-        if (error == std::errc() && n > 0 && (end == text.data() + text.size() || *end == ',')) return n;
+        if (error == std::errc() && n > 0 && (end == text.data() + text.size() || *end == ','))
+            return n;
     }
     cpu_set_t allowed;
     CPU_ZERO(&allowed);
-    if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+    if (sched_getaffinity(0, sizeof allowed, &allowed) == 0)
+        return std::max(1, CPU_COUNT(&allowed));
     return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 

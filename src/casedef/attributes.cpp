@@ -77,7 +77,8 @@ double AttributeReader::number(const Element& e, std::string_view name) const
     {
         fail(e, fmt::format("attribute {}=\"{}\": {}", name, value, error.what()));
     }
-    fail(e, fmt::format("attribute {}=\"{}\" is not a valid real number, expected a finite number or #expression",
+    fail(e, fmt::format("attribute {}=\"{}\" is not a valid real number, expected a finite number "
+                        "or #expression",
                         name, value));
 }
 
@@ -101,16 +102,18 @@ int AttributeReader::integer(const Element& e, std::string_view name, int min, i
     {
         const double v = number(e, name);
         if (!(v >= min && v <= max))
-            fail(e, fmt::format("attribute {}=\"{}\" is {:g}, expected {} to {}", name, value, v, min, max));
+            fail(e, fmt::format("attribute {}=\"{}\" is {:g}, expected {} to {}", name, value, v,
+                                min, max));
         return static_cast<int>(v);
     }
     const char* begin = value.data() + (!value.empty() && value[0] == '+' ? 1 : 0);
     const auto [end, error] = std::from_chars(begin, value.data() + value.size(), result);
     if (error != std::errc() || end != value.data() + value.size())
-        fail(e, fmt::format("attribute {}=\"{}\" is not a valid integer number, expected {} to {}", name, value,
-                            min, max));
+        fail(e, fmt::format("attribute {}=\"{}\" is not a valid integer number, expected {} to {}",
+                            name, value, min, max));
     if (result < min || result > max)
-        fail(e, fmt::format("attribute {}=\"{}\" is out of range, expected {} to {}", name, value, min, max));
+        fail(e, fmt::format("attribute {}=\"{}\" is out of range, expected {} to {}", name, value,
+                            min, max));
     return result;
 }
 
@@ -123,7 +126,8 @@ bool AttributeReader::flag_or(const Element& e, std::string_view name, bool othe
         lower += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     if (lower == "true" || lower == "1") return true;
     if (lower == "false" || lower == "0") return false;
-    fail(e, fmt::format("attribute {}=\"{}\" is not a valid boolean, expected true or false", name, *value));
+    fail(e, fmt::format("attribute {}=\"{}\" is not a valid boolean, expected true or false", name,
+                        *value));
 }
 
 Vec3 AttributeReader::vec3(const Element& e) const
@@ -133,7 +137,8 @@ Vec3 AttributeReader::vec3(const Element& e) const
 
 Vec3 AttributeReader::vec3_or(const Element& e, const Vec3& otherwise) const
 {
-    return {number_or(e, "x", otherwise.x), number_or(e, "y", otherwise.y), number_or(e, "z", otherwise.z)};
+    return {number_or(e, "x", otherwise.x), number_or(e, "y", otherwise.y),
+            number_or(e, "z", otherwise.z)};
 }
 
 const Element& AttributeReader::child(const Element& e, std::string_view name) const
@@ -151,26 +156,31 @@ std::vector<Vec3> AttributeReader::points(const Element& e) const
     return out;
 }
 
-std::vector<std::string> AttributeReader::words(const Element& e, const std::string& list, const char* what,
+std::vector<std::string> AttributeReader::words(const Element& e, const std::string& list,
+                                                const char* what,
                                                 const std::vector<std::string_view>& known) const
 {
     std::vector<std::string> out = split(list, '|');
     for (const std::string& word : out)
     {
         if (std::find(known.begin(), known.end(), word) == known.end())
-            fail(e, fmt::format("{} \"{}\" is invalid, expected {}", what, word, fmt::join(known, ", ")));
+            fail(e, fmt::format("{} \"{}\" is invalid, expected {}", what, word,
+                                fmt::join(known, ", ")));
     }
     return out;
 }
 
-std::vector<std::uint16_t> AttributeReader::number_list(const Element& e, std::string_view name) const
+std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
+                                                        std::string_view name) const
 {
     std::vector<std::uint16_t> out;
     const std::string& list = text(e, name);
     const auto wrong = [&]
     {
-        fail(e, fmt::format("attribute {}=\"{}\" is not a list of whole numbers, expected one like \"1-3,5\"",
-                            name, list));
+        fail(e,
+             fmt::format(
+                 "attribute {}=\"{}\" is not a list of whole numbers, expected one like \"1-3,5\"",
+                 name, list));
     };
     const auto whole = [&](const std::string& part)
     {

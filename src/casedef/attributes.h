@@ -30,14 +30,16 @@ public:
     [[noreturn]] void fail_unsupported(const Element& e, const std::string& what = "") const;
 
     const std::string& text(const Element& e, std::string_view name) const;
-    std::string text_or(const Element& e, std::string_view name, const std::string& otherwise) const;
+    std::string text_or(const Element& e, std::string_view name,
+                        const std::string& otherwise) const;
 
     double number(const Element& e, std::string_view name) const;
     double number_or(const Element& e, std::string_view name, double otherwise) const;
     std::optional<double> number_if(const Element& e, std::string_view name) const;
 
     /// A plain whole number within [min, max]; expressions only where `may_be_expression`.
-    int integer(const Element& e, std::string_view name, int min, int max, bool may_be_expression) const;
+    int integer(const Element& e, std::string_view name, int min, int max,
+                bool may_be_expression) const;
     bool flag_or(const Element& e, std::string_view name, bool otherwise) const;
 
     /// Attributes x, y, z.

@@ -36,7 +36,8 @@ public:
         const Element root = read_xml(def_.file);
         if (root.name != "case")
             throw CaseError(def_.file, root.line,
-                            fmt::format("<{}>: the root must be <case>, as in a GenCase definition", root.name));
+                            fmt::format("<{}>: the root must be <case>, as in a GenCase definition",
+                                        root.name));
         const Element& casedef = read_.child(root, "casedef");
         check_version(casedef);
         def_.casedef = casedef;
@@ -45,7 +46,8 @@ public:
         read_mk_config(read_.child(casedef, "mkconfig"));
         const Element& geometry = read_.child(casedef, "geometry");
         set_early_variables();
-        if (const Element* before = geometry.find_child("predefinition")) run_predefinition(*before);
+        if (const Element* before = geometry.find_child("predefinition"))
+            run_predefinition(*before);
         read_definition(read_.child(geometry, "definition"));
         apply_formulas();
         set_case_variables();
@@ -57,7 +59,8 @@ public:
         if (const Element* e = casedef.find_child("initials")) refuse_children(*e);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
         if (const Element* e = casedef.find_child("properties")) read_properties(*e);
-        if (const Element* e = casedef.find_child("motion")) def_.motion = evaluated_motion(*e, read_);
+        if (const Element* e = casedef.find_child("motion"))
+            def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
         if (const Element* e = casedef.find_child("vres"))
@@ -66,8 +69,9 @@ public:
         for (const Variable& v : variables_.exported())
         {
             const auto* text = std::get_if<std::string>(&v.value);
-            def_.user_variables.push_back(
-                {v.name, text != nullptr, text != nullptr ? 0 : std::get<double>(v.value), text != nullptr ? *text : ""});
+            def_.user_variables.push_back({v.name, text != nullptr,
+                                           text != nullptr ? 0 : std::get<double>(v.value),
+                                           text != nullptr ? *text : ""});
         }
         def_.variables_log = variables_.describe_all();
         return std::move(def_);
@@ -79,12 +83,15 @@ private:
         const std::string* wanted = casedef.find_attribute("requiredversion");
         if (wanted == nullptr) return;
         std::array<int, 3> version{};
-        const int fields = std::sscanf(wanted->c_str() + (wanted->starts_with('v') ? 1 : 0), "%d.%d.%d", // NOLINT
-                                       version.data(), &version[1], &version[2]);
+        const int fields =
+            std::sscanf(wanted->c_str() + (wanted->starts_with('v') ? 1 : 0), "%d.%d.%d", // NOLINT
+                        version.data(), &version[1], &version[2]);
         if (fields >= 1 && version > language_version)
-            read_.fail(casedef, fmt::format("the case asks for version {} of GenCase or later, this program follows "
-                                            "v{}.{}.{}",
-                                            *wanted, language_version[0], language_version[1], language_version[2]));
+            read_.fail(casedef,
+                       fmt::format(
+                           "the case asks for version {} of GenCase or later, this program follows "
+                           "v{}.{}.{}",
+                           *wanted, language_version[0], language_version[1], language_version[2]));
     }
 
     void read_execution(const Element& root)
@@ -96,11 +103,13 @@ private:
         // valid definition again.
         const std::set<std::string> own{"particles", "constants", "uservars", "motion", "vtkout"};
         for (const Element& e : execution->children)
-            if (e.kind == Element::Kind::Comment || !own.contains(e.name)) def_.execution.push_back(e);
+            if (e.kind == Element::Kind::Comment || !own.contains(e.name))
+                def_.execution.push_back(e);
     }
 
     /// A constant that `auto="true"` leaves to its formula.
-    std::optional<double> fixed_value(const Element& constants, const char* name, bool is_required) const
+    std::optional<double> fixed_value(const Element& constants, const char* name,
+                                      bool is_required) const
     {
         const Element* e = constants.find_child(name);
         if (e == nullptr)
@@ -145,8 +154,12 @@ private:
         c.b = fixed_value(e, "b", false);
         c.mass_bound = fixed_value(e, "massbound", false);
         c.mass_fluid = fixed_value(e, "massfluid", false);
-        if (!(c.rhop0 > 0)) read_.fail(*e.find_child("rhop0"), fmt::format("{:g} is no density, expected more than 0", c.rhop0));
-        if (!(c.gamma > 0)) read_.fail(*e.find_child("gamma"), fmt::format("{:g} is invalid, expected more than 0", c.gamma));
+        if (!(c.rhop0 > 0))
+            read_.fail(*e.find_child("rhop0"),
+                       fmt::format("{:g} is no density, expected more than 0", c.rhop0));
+        if (!(c.gamma > 0))
+            read_.fail(*e.find_child("gamma"),
+                       fmt::format("{:g} is invalid, expected more than 0", c.gamma));
     }
 
     void read_mk_config(const Element& e)
@@ -160,10 +173,12 @@ private:
             if (o.kind != Element::Kind::Tag || o.name.starts_with('_')) continue;
             const bool is_bound = o.name == "mkorientbound";
             if (!is_bound && o.name != "mkorientfluid")
-                read_.fail(o, "is not known in <mkconfig>, expected mkorientbound or mkorientfluid");
+                read_.fail(o,
+                           "is not known in <mkconfig>, expected mkorientbound or mkorientfluid");
             MkOrient orient;
-            orient.mk = static_cast<std::uint16_t>(read_.integer(o, "mk", 0, 60000, false) +
-                                                   (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
+            orient.mk =
+                static_cast<std::uint16_t>(read_.integer(o, "mk", 0, 60000, false) +
+                                           (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
             const std::string& order = read_.text(o, "orient");
             std::set<int> seen;
             for (std::size_t i = 0; i < order.size() && i < 3; ++i)
@@ -175,9 +190,11 @@ private:
                 seen.insert(lower);
             }
             if (order.size() != 3 || seen.size() != 3)
-                read_.fail(o, fmt::format("orient=\"{}\" is invalid, expected the letters x, y, z in some order, "
-                                          "capital for descending",
-                                          order));
+                read_.fail(
+                    o, fmt::format(
+                           "orient=\"{}\" is invalid, expected the letters x, y, z in some order, "
+                           "capital for descending",
+                           order));
             def_.mk_orients.push_back(orient);
         }
     }
@@ -195,9 +212,12 @@ private:
     {
         for (const Element& c : e.children)
         {
-            if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c)) continue;
-            if (c.name != "newvarcte" && c.name != "newvarstrcte" && c.name != "newvar" && c.name != "newvarstr")
-                read_.fail(c, "is not known in <predefinition>, expected newvarcte or newvarstrcte");
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c))
+                continue;
+            if (c.name != "newvarcte" && c.name != "newvarstrcte" && c.name != "newvar" &&
+                c.name != "newvarstr")
+                read_.fail(c,
+                           "is not known in <predefinition>, expected newvarcte or newvarstrcte");
             commands_.run(c, def_.list_log);
         }
     }
@@ -213,9 +233,11 @@ private:
         grid.is_2d = low.y == high.y;
         for (int axis = 0; axis < 3; ++axis)
             if (low[axis] > high[axis])
-                read_.fail(*e.find_child("pointmin"),
-                           fmt::format("the lower limit {:g} of {} is above the upper limit {:g} in <pointmax>",
-                                       low[axis], "xyz"[axis], high[axis]));
+                read_.fail(
+                    *e.find_child("pointmin"),
+                    fmt::format(
+                        "the lower limit {:g} of {} is above the upper limit {:g} in <pointmax>",
+                        low[axis], "xyz"[axis], high[axis]));
         grid.origin = low;
         // The lattice goes through pointref (rule L1); a flat case keeps its y.
         if (const Element* ref = e.find_child("pointref"))
@@ -223,27 +245,34 @@ private:
             const Vec3 r = read_.vec3_or(*ref, {});
             for (int axis = 0; axis < 3; ++axis)
                 if (!(grid.is_2d && axis == 1))
-                    grid.origin[axis] = r[axis] + std::floor((low[axis] - r[axis]) / grid.dp) * grid.dp;
+                    grid.origin[axis] =
+                        r[axis] + std::floor((low[axis] - r[axis]) / grid.dp) * grid.dp;
         }
         for (int axis = 0; axis < 3; ++axis)
         {
             const double n = std::floor((high[axis] - grid.origin[axis]) / grid.dp);
             // Four thousand million nodes an axis: the index type of the lattice.
             if (!(n < 4.0e9))
-                read_.fail(e, fmt::format("the domain has {:g} nodes along {}, more than 4e9; dp = {:g} is too small "
-                                          "for it",
-                                          n, "xyz"[axis], grid.dp));
+                read_.fail(
+                    e,
+                    fmt::format(
+                        "the domain has {:g} nodes along {}, more than 4e9; dp = {:g} is too small "
+                        "for it",
+                        n, "xyz"[axis], grid.dp));
             grid.n[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(std::max(1.0, n));
         }
         if (grid.is_2d) grid.n[1] = 1;
         if (grid.n[0] > 200'000'000)
-            read_.fail(e, fmt::format("the domain has {} nodes along x, more than this program can hold (2e8)", grid.n[0]));
+            read_.fail(e,
+                       fmt::format(
+                           "the domain has {} nodes along x, more than this program can hold (2e8)",
+                           grid.n[0]));
         def_.case_pos_min = grid.origin;
         def_.case_pos_max = high;
     }
 
-    /// h = coefh * sqrt(dim) * dp or hdp * dp, masses rhop0 * dp^dim, unless they are given. Verified
-    /// against GenCase v5.4: 3D dp 0.0085 coefh 1 gives h 0.014722431864.
+    /// h = coefh * sqrt(dim) * dp or hdp * dp, masses rhop0 * dp^dim, unless they are given.
+    /// Verified against GenCase v5.4: 3D dp 0.0085 coefh 1 gives h 0.014722431864.
     void apply_formulas()
     {
         const ConstantsDef& c = def_.constants;
@@ -277,7 +306,8 @@ private:
     void refuse_children(const Element& e) const
     {
         for (const Element& c : e.children)
-            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read_.flag_or(c, "active", true))
+            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') &&
+                read_.flag_or(c, "active", true))
                 read_.fail_unsupported(c);
     }
 
@@ -294,7 +324,8 @@ private:
         for (const Element& e : list.children)
         {
             if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
-            if (e.name != "floating") read_.fail(e, "is not known in <floatings>, expected floating");
+            if (e.name != "floating")
+                read_.fail(e, "is not known in <floatings>, expected floating");
             FloatingDef f;
             f.line = e.line;
             f.mkbound = read_.number_list(e, "mkbound");
@@ -305,11 +336,14 @@ private:
             if (rhop && *rhop != 0) f.rhop_body = rhop;
             if (weight && *weight != 0)
             {
-                if (f.rhop_body) read_.fail(e, "only one value must be defined, massbody, relativeweight or rhopbody");
+                if (f.rhop_body)
+                    read_.fail(
+                        e, "only one value must be defined, massbody, relativeweight or rhopbody");
                 f.rhop_body = *weight * def_.constants.rhop0;
             }
             if (f.mass_body && f.rhop_body)
-                read_.fail(e, "only one value must be defined, massbody, relativeweight or rhopbody");
+                read_.fail(e,
+                           "only one value must be defined, massbody, relativeweight or rhopbody");
             if (!f.mass_body && !f.rhop_body)
                 read_.fail(e, "one value must be defined, massbody, relativeweight or rhopbody");
             if (const Element* part = e.find_child("masspart"))
@@ -319,13 +353,16 @@ private:
             }
             if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
             read_inertia(e, f);
-            static const std::set<std::string> copied{"translationDOF", "rotationDOF",  "linearvelini", "angularvelini",
-                                                      "linearvel",      "angularvel",   "linearforce",  "angularforce"};
-            static const std::set<std::string> own{"massbody", "rhopbody", "relativeweight", "masspart",
-                                                   "center",   "inertia",  "inertiafull"};
+            static const std::set<std::string> copied{
+                "translationDOF", "rotationDOF", "linearvelini", "angularvelini",
+                "linearvel",      "angularvel",  "linearforce",  "angularforce"};
+            static const std::set<std::string> own{"massbody",   "rhopbody", "relativeweight",
+                                                   "masspart",   "center",   "inertia",
+                                                   "inertiafull"};
             for (const Element& c : e.children)
             {
-                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name)) continue;
+                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
+                    continue;
                 if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
                 f.extra.push_back(c);
             }
@@ -346,7 +383,8 @@ private:
         for (const Element& v : full->children)
             for (int row = 0; row < 3; ++row)
                 for (int column = 0; column < 3; ++column)
-                    if (const auto value = read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
+                    if (const auto value =
+                            read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
                         rows[static_cast<std::size_t>(row)][column] = *value;
         f.inertia = rows;
     }
@@ -366,7 +404,8 @@ private:
                 for (const char* type : {"mkbound", "mkfluid"})
                 {
                     if (link.find_attribute(type) == nullptr) continue;
-                    const int first = type == std::string_view("mkbound") ? def_.mk_bound_first : def_.mk_fluid_first;
+                    const int first = type == std::string_view("mkbound") ? def_.mk_bound_first
+                                                                          : def_.mk_fluid_first;
                     for (const std::uint16_t mk : read_.number_list(link, type))
                         def_.property_links.emplace_back(static_cast<std::uint16_t>(mk + first),
                                                          read_.text(link, "property"));
@@ -399,6 +438,9 @@ CaseDef read_case(const std::string& path, const CaseOptions& options)
     return CaseReader(path, options).run();
 }
 
-Element read_definition_tree(const std::string& path) { return read_xml(path); }
+Element read_definition_tree(const std::string& path)
+{
+    return read_xml(path);
+}
 
 } // namespace fppg

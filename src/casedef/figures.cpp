@@ -18,9 +18,13 @@ std::vector<std::uint32_t> all_faces(const FigureOp& figure)
 }
 
 /// Corner of a box by its bits x, y, z.
-constexpr std::uint32_t corner(unsigned x, unsigned y, unsigned z) { return x | (y << 1) | (z << 2); }
+constexpr std::uint32_t corner(unsigned x, unsigned y, unsigned z)
+{
+    return x | (y << 1) | (z << 2);
+}
 
-FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 6>& sides, bool is_solid)
+FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 6>& sides,
+                      bool is_solid)
 {
     FigureOp box;
     for (unsigned c = 0; c < 8; ++c)
@@ -47,19 +51,20 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
     const std::uint32_t diagonal_back =
         add({corner(0, 1, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 1, 1)});
     box.bodies.push_back({add({corner(0, 0, 0), corner(0, 1, 0), corner(1, 0, 0)}),
-                          add({corner(0, 0, 1), corner(1, 0, 1), corner(0, 1, 1)}), BoxLeft, BoxFront,
-                          diagonal});
+                          add({corner(0, 0, 1), corner(1, 0, 1), corner(0, 1, 1)}), BoxLeft,
+                          BoxFront, diagonal});
     box.bodies.push_back({add({corner(1, 1, 0), corner(1, 0, 0), corner(0, 1, 0)}),
-                          add({corner(1, 1, 1), corner(0, 1, 1), corner(1, 0, 1)}), BoxRight, BoxBack,
-                          diagonal_back});
+                          add({corner(1, 1, 1), corner(0, 1, 1), corner(1, 0, 1)}), BoxRight,
+                          BoxBack, diagonal_back});
     box.inner_faces = {diagonal};
     return box;
 }
 
 } // namespace
 
-std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1, const std::array<bool, 6>& sides,
-                               bool is_solid, const std::vector<double>& layers_dp, double dp)
+std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1,
+                               const std::array<bool, 6>& sides, bool is_solid,
+                               const std::vector<double>& layers_dp, double dp)
 {
     Vec3 low;
     Vec3 high;
@@ -135,7 +140,8 @@ FigureOp make_strip(const std::vector<Vec3>& points)
 {
     FigureOp strip;
     strip.vertices = points;
-    for (std::uint32_t i = 2; i < points.size(); ++i) strip.faces.push_back({{i - 2, i - 1, i}, true});
+    for (std::uint32_t i = 2; i < points.size(); ++i)
+        strip.faces.push_back({{i - 2, i - 1, i}, true});
     return strip;
 }
 

@@ -19,19 +19,22 @@ enum BoxSide
     BoxBack,
 };
 
-/// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it is
-/// filled as two prisms that share the diagonal from (x0, y1) to (x1, y0) (rule S4).
+/// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it
+/// is filled as two prisms that share the diagonal from (x0, y1) to (x1, y0) (rule S4).
 ///
-/// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them (rule
+/// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them
+/// (rule
 ///            S7); one figure a value. Empty: the box itself
-std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1, const std::array<bool, 6>& sides,
-                               bool is_solid, const std::vector<double>& layers_dp, double dp);
+std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1,
+                               const std::array<bool, 6>& sides, bool is_solid,
+                               const std::vector<double>& layers_dp, double dp);
 
-/// A prism: the first half of the points is its bottom, the second its top. Faces: bottom, top, sides;
-/// filled when the bottom is counter-clockwise seen from the top (rules S2, S10).
+/// A prism: the first half of the points is its bottom, the second its top. Faces: bottom, top,
+/// sides; filled when the bottom is counter-clockwise seen from the top (rules S2, S10).
 FigureOp make_prism(const std::vector<Vec3>& points);
 
-/// A pyramid: apex, then the base counter-clockwise seen from it. Faces: base, sides (rules S2, S10).
+/// A pyramid: apex, then the base counter-clockwise seen from it. Faces: base, sides (rules S2,
+/// S10).
 FigureOp make_pyramid(const std::vector<Vec3>& points);
 
 /// Triangles (0, i, i + 1).

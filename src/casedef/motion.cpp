@@ -11,8 +11,9 @@ namespace
 {
 
 constexpr auto movements = std::to_array<std::string_view>(
-    {"wait",       "mvrect",    "mvrectace",  "mvrot",      "mvrotace",      "mvcir",      "mvcirace", "mvrectsinu",
-     "mvrotsinu", "mvcirsinu", "mvrectfile", "mvrotfile", "mvrotadvfile", "mvpathfile", "mvpredef"});
+    {"wait", "mvrect", "mvrectace", "mvrot", "mvrotace", "mvcir", "mvcirace", "mvrectsinu",
+     "mvrotsinu", "mvcirsinu", "mvrectfile", "mvrotfile", "mvrotadvfile", "mvpathfile",
+     "mvpredef"});
 
 Element evaluated(const Element& source, const AttributeReader& read)
 {
@@ -22,8 +23,9 @@ Element evaluated(const Element& source, const AttributeReader& read)
     for (const Element::Attribute& a : source.attributes)
     {
         if (a.name == "if") continue;
-        out.attributes.push_back(
-            {a.name, a.value.starts_with('#') ? fmt::format("{}", read.number(source, a.name)) : a.value});
+        out.attributes.push_back({a.name, a.value.starts_with('#')
+                                              ? fmt::format("{}", read.number(source, a.name))
+                                              : a.value});
     }
     for (const Element& c : source.children)
         if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read.is_active(c))

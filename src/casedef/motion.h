@@ -7,8 +7,9 @@
 namespace fppg
 {
 
-/// The motion of a definition with all numbers evaluated: `#expressions` become plain numbers, elements
-/// that begin with `_`, comments and elements with a false `if` are left out. objreal refs stay mkbound.
+/// The motion of a definition with all numbers evaluated: `#expressions` become plain numbers,
+/// elements that begin with `_`, comments and elements with a false `if` are left out. objreal refs
+/// stay mkbound.
 ///
 /// throws CaseError for an element that is not known or a number that cannot be read
 Element evaluated_motion(const Element& motion, const AttributeReader& read);

@@ -21,7 +21,10 @@ namespace
 constexpr int max_list_depth = 100;
 constexpr std::size_t max_commands = 50'000'000;
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double radians(double degrees)
+{
+    return degrees * std::numbers::pi / 180;
+}
 
 Transform translation(const Vec3& by)
 {
@@ -92,7 +95,8 @@ void ProgramRunner::run(const Element& commands)
 void ProgramRunner::run_list(const Element& list, const std::string& name)
 {
     if (++depth_ > max_list_depth)
-        read_.fail(list, fmt::format("lists call one another more than {} deep (list '{}')", max_list_depth, name));
+        read_.fail(list, fmt::format("lists call one another more than {} deep (list '{}')",
+                                     max_list_depth, name));
     for (const Element& e : list.children)
         if (e.kind == Element::Kind::Tag && !e.name.starts_with('_')) run_command(e);
     --depth_;
@@ -105,10 +109,12 @@ void ProgramRunner::run_command(const Element& e)
         read_.fail(e, "is not a command, see the templates for what can stand in a list");
     if (!read_.is_active(e)) return;
     if (++commands_run_ > max_commands)
-        read_.fail(e, fmt::format("more than {} commands were run, the lists seem to be endless", max_commands));
+        read_.fail(e, fmt::format("more than {} commands were run, the lists seem to be endless",
+                                  max_commands));
     if (support == CommandSupport::Planned) read_.fail_unsupported(e);
-    if (!run_state_command(e) && !run_transform(e) && !run_clip(e) && !variables_.run(e, def_.list_log) &&
-        !run_flow_command(e) && !run_draw(e) && !run_fill_or_redraw(e))
+    if (!run_state_command(e) && !run_transform(e) && !run_clip(e) &&
+        !variables_.run(e, def_.list_log) && !run_flow_command(e) && !run_draw(e) &&
+        !run_fill_or_redraw(e))
         read_.fail_unsupported(e);
 }
 
@@ -116,9 +122,10 @@ void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
 {
     const int count = kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
     if (kind != MkKind::Void && (mk_type < 0 || mk_type >= count))
-        read_.fail(e, fmt::format("mk {} is invalid, <mkconfig> leaves 0 to {} for {} (raise {} there)", mk_type,
-                                  count - 1, kind == MkKind::Bound ? "boundary" : "fluid",
-                                  kind == MkKind::Bound ? "boundcount" : "fluidcount"));
+        read_.fail(
+            e, fmt::format("mk {} is invalid, <mkconfig> leaves 0 to {} for {} (raise {} there)",
+                           mk_type, count - 1, kind == MkKind::Bound ? "boundary" : "fluid",
+                           kind == MkKind::Bound ? "boundcount" : "fluidcount"));
     MkValue value;
     value.kind = kind;
     value.mk_type = static_cast<std::uint16_t>(mk_type);
@@ -145,7 +152,8 @@ bool ProgramRunner::run_state_command(const Element& e)
     if (name == "setmkvoid")
         set_mk(e, MkKind::Void, 0);
     else if (name == "setmkfluid" || name == "setmkbound")
-        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound, read_.integer(e, "mk", 0, 65000, false));
+        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound,
+               read_.integer(e, "mk", 0, 65000, false));
     else if (name == "setmknextfluid")
         next_mk(MkKind::Fluid);
     else if (name == "setmknextbound")
@@ -166,7 +174,8 @@ bool ProgramRunner::run_state_command(const Element& e)
         else if (mode == "full")
             state_.mode = DrawMode::Full;
         else
-            read_.fail(e, fmt::format("mode \"{}\" is invalid, expected wire, face, solid or full", mode));
+            read_.fail(
+                e, fmt::format("mode \"{}\" is invalid, expected wire, face, solid or full", mode));
     }
     else if (name == "setboxlimitmode")
     {
@@ -177,7 +186,8 @@ bool ProgramRunner::run_state_command(const Element& e)
     }
     else if (name == "setfrdrawmode")
     {
-        if (read_.flag_or(e, "auto", false)) read_.fail_unsupported(e, "auto=\"true\" (free particles)");
+        if (read_.flag_or(e, "auto", false))
+            read_.fail_unsupported(e, "auto=\"true\" (free particles)");
     }
     else if (name == "setnormalinvert")
         state_.normal_invert = read_.flag_or(e, "invert", true);
@@ -283,7 +293,8 @@ bool ProgramRunner::run_transform(const Element& e)
     else if (name == "rotateline")
     {
         const std::vector<Vec3> points = read_.points(e);
-        if (points.size() != 2) read_.fail(e, fmt::format("has {} points, expected 2", points.size()));
+        if (points.size() != 2)
+            read_.fail(e, fmt::format("has {} points, expected 2", points.size()));
         const Vec3 axis = points[1] - points[0];
         if (norm(axis) == 0) read_.fail(e, "its two points are the same, expected an axis");
         matrix_ = matrix_ * around(points[0], rotation(axis, -radians(read_.number(e, "ang"))));
@@ -330,7 +341,8 @@ bool ProgramRunner::run_clip(const Element& e)
             plane.normal = matrix_(point + read_.child_vec3(e, "vector")) - plane.point;
             if (matrix_.is_identity()) plane.normal = read_.child_vec3(e, "vector");
         }
-        if (norm(plane.normal) == 0) read_.fail(e, "the plane has no direction, expected a vector that is not zero");
+        if (norm(plane.normal) == 0)
+            read_.fail(e, "the plane has no direction, expected a vector that is not zero");
         state_.clips.push_back(plane);
     }
     else if (name == "clipbox")
@@ -341,7 +353,8 @@ bool ProgramRunner::run_clip(const Element& e)
         {
             faces = {};
             for (const std::string& w :
-                 read_.words(e, which->text, "box face", {"all", "bottom", "top", "left", "right", "front", "back"}))
+                 read_.words(e, which->text, "box face",
+                             {"all", "bottom", "top", "left", "right", "front", "back"}))
             {
                 if (w == "all") faces = {true, true, true, true, true, true};
                 if (w == "bottom") faces[BoxBottom] = true;
@@ -392,8 +405,9 @@ bool ProgramRunner::run_flow_command(const Element& e)
         const std::string& list = read_.text(e, "name");
         const auto found = lists_.find(list);
         if (found == lists_.end()) read_.fail(e, fmt::format("there is no list named '{}'", list));
-        const int times =
-            e.find_attribute("times") != nullptr ? read_.integer(e, "times", 0, 1'000'000'000, true) : 1;
+        const int times = e.find_attribute("times") != nullptr
+                              ? read_.integer(e, "times", 0, 1'000'000'000, true)
+                              : 1;
         const bool is_printed = read_.flag_or(*found->second, "printcall", true);
         for (int i = 0; i < times; ++i)
         {
@@ -433,9 +447,10 @@ std::vector<Vec3> ProgramRunner::transformed_points(const Element& e, std::size_
 {
     std::vector<Vec3> points = read_.points(e);
     if (points.size() < at_least || points.size() > at_most)
-        read_.fail(e, at_least == at_most
-                          ? fmt::format("has {} points, expected {}", points.size(), at_least)
-                          : fmt::format("has {} points, expected at least {}", points.size(), at_least));
+        read_.fail(
+            e, at_least == at_most
+                   ? fmt::format("has {} points, expected {}", points.size(), at_least)
+                   : fmt::format("has {} points, expected at least {}", points.size(), at_least));
     for (Vec3& p : points) p = matrix_(p);
     return points;
 }
@@ -486,7 +501,9 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
         const char* first = part.data() + (!part.empty() && part[0] == '+' ? 1 : 0);
         const auto [stop, error] = std::from_chars(first, part.data() + part.size(), value);
         if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value))
-            read_.fail(*layers, fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
+            read_.fail(
+                *layers,
+                fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
         out.push_back(value);
         begin = end + 1;
     }
@@ -508,8 +525,10 @@ std::vector<int> ProgramRunner::mask_of(const Element& e) const
         int value = 0;
         const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
         if (error != std::errc() || stop != part.data() + part.size() || value < 0)
-            read_.fail(e, fmt::format("mask=\"{}\" is invalid, expected face numbers like \"1 | 3\" or a bit mask",
-                                      *mask));
+            read_.fail(
+                e, fmt::format(
+                       "mask=\"{}\" is invalid, expected face numbers like \"1 | 3\" or a bit mask",
+                       *mask));
         numbers.push_back(value);
         begin = end + 1;
     }
@@ -526,7 +545,8 @@ void ProgramRunner::draw_box(const Element& e)
     std::array<bool, 6> sides{};
     bool is_solid = false;
     for (const std::string& w :
-         read_.words(e, fill.text, "boxfill", {"solid", "all", "bottom", "top", "left", "right", "front", "back"}))
+         read_.words(e, fill.text, "boxfill",
+                     {"solid", "all", "bottom", "top", "left", "right", "front", "back"}))
     {
         if (w == "solid") is_solid = true;
         if (w == "solid" || w == "all") sides = {true, true, true, true, true, true};
@@ -541,7 +561,8 @@ void ProgramRunner::draw_box(const Element& e)
     matrix_ = {};
     const BoxRegion box = box_of(e);
     matrix_ = matrix;
-    for (FigureOp& figure : make_box(box.corner0, box.corner1, sides, is_solid, layers_of(e), def_.grid.dp))
+    for (FigureOp& figure :
+         make_box(box.corner0, box.corner1, sides, is_solid, layers_of(e), def_.grid.dp))
         add_figure(e, std::move(figure));
 }
 
@@ -581,8 +602,9 @@ void ProgramRunner::draw_mesh_file(const Element& e)
             if (high) op.depth_max = *high;
         }
     }
-    // Scale, then rotate right-handed about y, x, z in this order, about the centre; then move (rule T5;
-    // the order was found with four random triples of angles: only this one puts all corners right).
+    // Scale, then rotate right-handed about y, x, z in this order, about the centre; then move
+    // (rule T5; the order was found with four random triples of angles: only this one puts all
+    // corners right).
     Transform t = scaling(scale);
     for (const int axis : {1, 0, 2})
         if (angles[axis] != 0) t = rotation_about_axis(axis, radians(angles[axis])) * t;
@@ -611,7 +633,8 @@ bool ProgramRunner::run_draw(const Element& e)
     {
         const std::vector<Vec3> points = transformed_points(e, 2, name == "drawline" ? 2 : many);
         LinesOp op;
-        for (std::size_t i = 1; i < points.size(); ++i) op.segments.emplace_back(points[i - 1], points[i]);
+        for (std::size_t i = 1; i < points.size(); ++i)
+            op.segments.emplace_back(points[i - 1], points[i]);
         add(e, std::move(op));
     }
     else if (name == "drawtriangle" || name == "drawquadri")
@@ -619,8 +642,9 @@ bool ProgramRunner::run_draw(const Element& e)
         const std::size_t n = name == "drawtriangle" ? 3 : 4;
         FigureOp op;
         op.vertices = transformed_points(e, n, n);
-        op.faces.push_back({n == 3 ? std::vector<std::uint32_t>{0, 1, 2} : std::vector<std::uint32_t>{0, 1, 2, 3},
-                            true});
+        op.faces.push_back(
+            {n == 3 ? std::vector<std::uint32_t>{0, 1, 2} : std::vector<std::uint32_t>{0, 1, 2, 3},
+             true});
         add(e, std::move(op));
     }
     else if (name == "drawtrianglesstrip")
@@ -645,7 +669,9 @@ bool ProgramRunner::run_draw(const Element& e)
     {
         const std::vector<Vec3> points = transformed_points(e, 6, many);
         if (points.size() % 2 != 0)
-            read_.fail(e, fmt::format("has {} points, expected as many for the bottom as for the top", points.size()));
+            read_.fail(e,
+                       fmt::format("has {} points, expected as many for the bottom as for the top",
+                                   points.size()));
         FigureOp op = make_prism(points);
         hide_faces(op, mask_of(e));
         add(e, std::move(op));
@@ -670,9 +696,11 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawcylinder")
     {
         if (state_.mode == DrawMode::Wire)
-            read_.fail(e, "draw mode wire is not possible for a cylinder, expected face, solid or full");
+            read_.fail(
+                e, "draw mode wire is not possible for a cylinder, expected face, solid or full");
         const std::vector<Vec3> points = transformed_points(e, 2, 2);
-        CylinderOp op{points[0], points[1], read_.number(e, "radius"), {true, true, true}, layers_of(e)};
+        CylinderOp op{
+            points[0], points[1], read_.number(e, "radius"), {true, true, true}, layers_of(e)};
         for (const int face : mask_of(e))
             if (face >= 1 && face <= 3) op.is_visible[static_cast<std::size_t>(face - 1)] = false;
         add(e, std::move(op));
@@ -693,7 +721,8 @@ bool ProgramRunner::run_draw(const Element& e)
 FillFilter ProgramRunner::fill_filter(const Element& e, const std::string& words) const
 {
     FillFilter filter;
-    for (const std::string& w : read_.words(e, words, "modefill", {"void", "fluid", "bound", "border"}))
+    for (const std::string& w :
+         read_.words(e, words, "modefill", {"void", "fluid", "bound", "border"}))
     {
         if (w == "void") filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
         if (w == "bound") filter.names[static_cast<std::size_t>(MkKind::Bound)] = true;
@@ -725,7 +754,8 @@ MkFilter ProgramRunner::near_filter(const Element& e, const char* type, const ch
     else if (word == "fluid")
         filter.kind = MkKind::Fluid;
     else
-        read_.fail(e, fmt::format("attribute {}=\"{}\" is invalid, expected void, fluid or bound", type, word));
+        read_.fail(e, fmt::format("attribute {}=\"{}\" is invalid, expected void, fluid or bound",
+                                  type, word));
     if (filter.kind != MkKind::Void) filter.mk = absolute_mk(e, mk, filter.kind);
     return filter;
 }
@@ -733,12 +763,13 @@ MkFilter ProgramRunner::near_filter(const Element& e, const char* type, const ch
 bool ProgramRunner::run_fill_or_redraw(const Element& e)
 {
     const std::string& name = e.name;
-    if (name == "fillpoint" || name == "fillvoidpoint" || name == "fillbox" || name == "fillfigure" ||
-        name == "fillprism")
+    if (name == "fillpoint" || name == "fillvoidpoint" || name == "fillbox" ||
+        name == "fillfigure" || name == "fillprism")
     {
         FillOp op;
         op.seed = matrix_(read_.vec3(e));
-        op.filter = fill_filter(e, name == "fillvoidpoint" ? "void" : read_.child(e, "modefill").text);
+        op.filter =
+            fill_filter(e, name == "fillvoidpoint" ? "void" : read_.child(e, "modefill").text);
         if (name == "fillbox") op.region = box_of(e);
         if (name == "fillfigure")
         {
@@ -754,8 +785,10 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
     else if (name == "redraw" || name == "redrawbox")
     {
         RedrawOp op;
-        if (const auto mk = absolute_mk(e, "mkfluid", MkKind::Fluid)) op.filters.push_back({MkKind::Fluid, mk});
-        if (const auto mk = absolute_mk(e, "mkbound", MkKind::Bound)) op.filters.push_back({MkKind::Bound, mk});
+        if (const auto mk = absolute_mk(e, "mkfluid", MkKind::Fluid))
+            op.filters.push_back({MkKind::Fluid, mk});
+        if (const auto mk = absolute_mk(e, "mkbound", MkKind::Bound))
+            op.filters.push_back({MkKind::Bound, mk});
         if (name == "redrawbox") op.region = box_of(e);
         add(e, std::move(op));
     }
@@ -764,12 +797,15 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         RedrawNearOp op;
         op.target = near_filter(e, "targettp", "targetmk");
         op.border = near_filter(e, "bordertp", "bordermk");
-        if (e.find_attribute("times") != nullptr) op.times = read_.integer(e, "times", 0, 1'000'000, true);
+        if (e.find_attribute("times") != nullptr)
+            op.times = read_.integer(e, "times", 0, 1'000'000, true);
         if (const Element* filter = e.find_child("dirfilter"))
-            for (const std::string& w : read_.words(e, filter->text, "direction",
-                                                    {"all", "top", "bottom", "right", "left", "back", "front"}))
+            for (const std::string& w :
+                 read_.words(e, filter->text, "direction",
+                             {"all", "top", "bottom", "right", "left", "back", "front"}))
             {
-                constexpr std::array<std::string_view, 6> names{"top", "bottom", "right", "left", "back", "front"};
+                constexpr std::array<std::string_view, 6> names{"top",  "bottom", "right",
+                                                                "left", "back",   "front"};
                 for (std::size_t d = 0; d < 6; ++d)
                     if (w == "all" || w == names[d]) op.directions[d] = true;
             }

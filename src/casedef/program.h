@@ -13,12 +13,14 @@ namespace fppg
 /// Executes the commands of a case into draw operations.
 ///
 /// State (rules O1 to O4, T1 to T4, found by experiment with GenCase v5.4.354):
-/// - every transform multiplies the current matrix on the right: the one written last acts first. Points
+/// - every transform multiplies the current matrix on the right: the one written last acts first.
+/// Points
 ///   of draws, fills, clips and redraws all go through it
 /// - statesave and stateload keep mk, matrix, draw mode, draw constants, box limit mode and what is
 ///   active, but not the clips; loading from an empty stack does nothing
 /// - resetdraw forgets what was drawn and the whole state, matrix and clips included
-/// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is no
+/// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is
+/// no
 ///   bound one; setmknextfluid likewise
 class ProgramRunner
 {
@@ -41,13 +43,15 @@ private:
     void set_mk(const Element& e, MkKind kind, int mk_type);
     void add(const Element& e, DrawVariant what);
     void add_figure(const Element& e, FigureOp figure);
-    std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least, std::size_t at_most) const;
+    std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,
+                                         std::size_t at_most) const;
     FigureOp figure_of(const Element& e) const;
     BoxRegion box_of(const Element& e) const;
     std::vector<double> layers_of(const Element& e) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;
-    std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute, MkKind kind) const;
+    std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute,
+                                             MkKind kind) const;
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     void draw_box(const Element& e);
     void draw_mesh_file(const Element& e);
@@ -71,7 +75,7 @@ private:
     std::vector<Transform> saved_matrices_;
     std::vector<MkValue> saved_mks_;
     std::vector<DrawConstants> saved_constants_;
-    std::array<bool, 2> shape_forms_{true, false};       ///< actual, dp
+    std::array<bool, 2> shape_forms_{true, false};        ///< actual, dp
     std::array<bool, 3> shape_kinds_{false, true, false}; ///< void, bound, fluid
     int depth_ = 0;
     std::size_t commands_run_ = 0;

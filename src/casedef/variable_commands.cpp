@@ -9,7 +9,8 @@
 namespace fppg
 {
 
-void VariableCommands::assign(const std::string& command, const std::string& name, const std::string& value)
+void VariableCommands::assign(const std::string& command, const std::string& name,
+                              const std::string& value)
 {
     std::string text = value;
     if (command.starts_with("new"))

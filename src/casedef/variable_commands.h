@@ -11,8 +11,8 @@
 namespace fppg
 {
 
-/// Executes newvar, newvarcte, setvar, newvarstr, newvarstrcte, setvarstr, delvar, exportvar, varssave
-/// and varsload, with the values that -evars puts in place of those in the case.
+/// Executes newvar, newvarcte, setvar, newvarstr, newvarstrcte, setvarstr, delvar, exportvar,
+/// varssave and varsload, with the values that -evars puts in place of those in the case.
 class VariableCommands
 {
 public:

@@ -95,7 +95,8 @@ Element parse_xml(std::string text, const std::string& name)
     tinyxml2::XMLDocument document;
     const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
-        throw CaseError(name, 0, "the file is empty, expected an XML document with the root <case>");
+        throw CaseError(name, 0,
+                        "the file is empty, expected an XML document with the root <case>");
     if (error != tinyxml2::XML_SUCCESS)
         throw CaseError(name, document.ErrorLineNum(),
                         fmt::format("this is not well-formed XML ({})",

@@ -77,7 +77,8 @@ std::vector<Spans> flood(const RunField& field, const Node& seed, const std::vec
             {
                 const std::size_t x = x_begin + i;
                 const bool has = x >= mask->x_begin && x < mask->x_begin + mask->slabs.size();
-                slab.intervals = has ? intersect(slab.intervals, mask->slabs[x - mask->x_begin]) : Spans{};
+                slab.intervals =
+                    has ? intersect(slab.intervals, mask->slabs[x - mask->x_begin]) : Spans{};
             }
             slab.row_begin.assign(rows + 1, 0);
             for (const Span& s : slab.intervals) ++slab.row_begin[s.y - y_begin + 1];
@@ -92,7 +93,8 @@ std::vector<Spans> flood(const RunField& field, const Node& seed, const std::vec
     };
     std::vector<Item> stack;
     const auto seed_slab = static_cast<std::size_t>(seed.x) - x_begin;
-    const std::size_t start = slabs[seed_slab].find(static_cast<std::size_t>(seed.y) - y_begin, seed.z);
+    const std::size_t start =
+        slabs[seed_slab].find(static_cast<std::size_t>(seed.y) - y_begin, seed.z);
     if (start == SIZE_MAX) return reached;
     slabs[seed_slab].is_reached[start] = 1;
     stack.push_back({static_cast<std::uint32_t>(seed_slab), static_cast<std::uint32_t>(start)});
@@ -101,17 +103,18 @@ std::vector<Spans> flood(const RunField& field, const Node& seed, const std::vec
         Slab& slab = slabs[slab_index];
         const auto first = slab.intervals.begin() + slab.row_begin[row];
         const auto last = slab.intervals.begin() + slab.row_begin[row + 1];
-        auto it = last - first > 8
-                      ? std::lower_bound(first, last, from.z_begin,
-                                         [](const Span& s, std::uint32_t z) { return s.z_end <= z; })
-                      : first;
+        auto it = last - first > 8 ? std::lower_bound(first, last, from.z_begin,
+                                                      [](const Span& s, std::uint32_t z)
+                                                      { return s.z_end <= z; })
+                                   : first;
         for (; it != last && it->z_begin < from.z_end; ++it)
         {
             if (it->z_end <= from.z_begin) continue;
             const auto k = static_cast<std::size_t>(it - slab.intervals.begin());
             if (slab.is_reached[k]) continue;
             slab.is_reached[k] = 1;
-            stack.push_back({static_cast<std::uint32_t>(slab_index), static_cast<std::uint32_t>(k)});
+            stack.push_back(
+                {static_cast<std::uint32_t>(slab_index), static_cast<std::uint32_t>(k)});
         }
     };
     while (!stack.empty())

@@ -133,8 +133,10 @@ private:
     void draw_triangles(std::vector<SnappedTriangle> triangles)
     {
         report_.triangles += triangles.size();
-        for (const SnappedTriangle& t : triangles) report_.triangles_ignored += t.a == t.b && t.b == t.c;
-        paint_region(triangles_region(std::move(triangles), grid(), state().constants.triangle_weight,
+        for (const SnappedTriangle& t : triangles)
+            report_.triangles_ignored += t.a == t.b && t.b == t.c;
+        paint_region(triangles_region(std::move(triangles), grid(),
+                                      state().constants.triangle_weight,
                                       state().constants.triangle_limits));
     }
 
@@ -146,8 +148,8 @@ private:
             for (std::size_t f = 0; f < op.faces.size(); ++f)
             {
                 const FigureFace& face = op.faces[f];
-                const bool is_inner =
-                    std::find(op.inner_faces.begin(), op.inner_faces.end(), f) != op.inner_faces.end();
+                const bool is_inner = std::find(op.inner_faces.begin(), op.inner_faces.end(), f) !=
+                                      op.inner_faces.end();
                 if (!face.is_visible && !is_inner) continue;
                 for (std::size_t i = 0; i < face.vertices.size(); ++i)
                     segments.emplace_back(
@@ -158,14 +160,15 @@ private:
             return;
         }
         const bool fills = state().mode != DrawMode::Face && !op.bodies.empty();
-        if (state().mode == DrawMode::Full || !fills) draw_triangles(snapped_triangles(op, grid(), true));
+        if (state().mode == DrawMode::Full || !fills)
+            draw_triangles(snapped_triangles(op, grid(), true));
         if (!fills) return;
         for (const auto& body : op.bodies) paint_region(body_region(op, body, grid()));
         if (!op.inner_faces.empty()) draw_inner_faces(op);
     }
 
-    /// The faces between the bodies, without the nodes of the outer faces that they end on, but with
-    /// those of the edges along them (rule S4: the two corner columns of a solid box).
+    /// The faces between the bodies, without the nodes of the outer faces that they end on, but
+    /// with those of the edges along them (rule S4: the two corner columns of a solid box).
     void draw_inner_faces(const FigureOp& op)
     {
         FigureOp inner;
@@ -220,7 +223,8 @@ private:
             moved.size(), threads_,
             [&](std::size_t t)
             {
-                triangles[t] = {snap(moved.vertices[3 * t], grid()), snap(moved.vertices[3 * t + 1], grid()),
+                triangles[t] = {snap(moved.vertices[3 * t], grid()),
+                                snap(moved.vertices[3 * t + 1], grid()),
                                 snap(moved.vertices[3 * t + 2], grid())};
             },
             4096);
@@ -240,12 +244,14 @@ private:
         SlabRegion region;
         region.x_begin = shared->x_begin;
         region.x_end = shared->x_begin + static_cast<std::uint32_t>(shared->slabs.size());
-        region.emit = [shared](std::uint32_t x, Spans& out) { out = shared->slabs[x - shared->x_begin]; };
+        region.emit = [shared](std::uint32_t x, Spans& out)
+        { out = shared->slabs[x - shared->x_begin]; };
         return region;
     }
 
-    /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box (rule
-    /// X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says so.
+    /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
+    /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
+    /// so.
     void autofill(const TriangleSoup& soup)
     {
         Box3 bounds;
@@ -267,7 +273,8 @@ private:
                      [&](std::size_t x)
                      {
                          const Spans empty;
-                         const bool has = x >= inside.x_begin && x < inside.x_begin + inside.slabs.size();
+                         const bool has =
+                             x >= inside.x_begin && x < inside.x_begin + inside.slabs.size();
                          const Spans& in = has ? inside.slabs[x - inside.x_begin] : empty;
                          wrong[x] = subtract(filled[x], in);
                          missing[x] = subtract(subtract(in, filled[x]), occupied(field_.slabs[x]));
@@ -275,11 +282,13 @@ private:
         const std::uint64_t n_wrong = node_count(wrong);
         const std::uint64_t n_missing = node_count(missing);
         if (n_wrong + n_missing > 0)
-            report_.warnings.push_back(fmt::format(
-                "{}: autofill is a flood from the centre of the bounding box, as in GenCase: it filled {} nodes that "
-                "lie outside the body and left out {} inside it. The attribute fppg:fill=\"inside\" in place of "
-                "autofill fills the true inside.",
-                place(), n_wrong, n_missing));
+            report_.warnings.push_back(
+                fmt::format("{}: autofill is a flood from the centre of the bounding box, as in "
+                            "GenCase: it filled {} nodes that "
+                            "lie outside the body and left out {} inside it. The attribute "
+                            "fppg:fill=\"inside\" in place of "
+                            "autofill fills the true inside.",
+                            place(), n_wrong, n_missing));
         paint_nodes(filled);
     }
 
@@ -318,11 +327,12 @@ private:
             mask_used = &mask;
         }
         const Node seed = snap(op.seed, grid());
-        const std::vector<Spans> nodes =
-            flood(field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
+        const std::vector<Spans> nodes = flood(
+            field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
         if (state().draw_points && node_count(nodes) == 0)
             report_.warnings.push_back(
-                fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside its region or on a "
+                fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside "
+                            "its region or on a "
                             "node that modefill does not name.",
                             place(), op.seed.x, op.seed.y, op.seed.z));
         paint_nodes(nodes);
@@ -336,7 +346,8 @@ private:
 
     void draw(const RedrawNearOp& op)
     {
-        const NodeBox box = op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
+        const NodeBox box =
+            op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
         for (int i = 0; i < op.times; ++i)
             paint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
     }

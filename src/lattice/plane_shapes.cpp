@@ -32,7 +32,8 @@ public:
         for (std::size_t i = 0; i < items; ++i)
         {
             const auto [begin, end] = range_of(i);
-            for (std::int64_t x = begin; x < end; ++x) ++starts_[static_cast<std::size_t>(x - first) + 1];
+            for (std::int64_t x = begin; x < end; ++x)
+                ++starts_[static_cast<std::size_t>(x - first) + 1];
         }
         for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
         items_.resize(starts_.back());
@@ -110,7 +111,8 @@ Plane plane_through(const Vec3& a, const Vec3& b, const Vec3& c)
     return plane;
 }
 
-/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, is above `limit`.
+/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, is above
+/// `limit`.
 void narrow(double& lo, double& hi, double v0, double step, double limit)
 {
     const double gap = limit - v0;
@@ -136,20 +138,22 @@ bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max, st
 
 /// A snapped triangle made ready for tests of nodes.
 ///
-/// The arithmetic is GenCase's, found by experiment with v5.4.354 (2592 random triangles, two thirds of
-/// them with nodes exactly at the limit, no node different): the distance from the plane is the plane's
-/// value over the length of its normal; beyond the edges three planes across the triangle, moved outwards
-/// by the limit, refuse what is not strictly behind them.
+/// The arithmetic is GenCase's, found by experiment with v5.4.354 (2592 random triangles, two
+/// thirds of them with nodes exactly at the limit, no node different): the distance from the plane
+/// is the plane's value over the length of its normal; beyond the edges three planes across the
+/// triangle, moved outwards by the limit, refuse what is not strictly behind them.
 class TriangleTest
 {
 public:
-    TriangleTest(const SnappedTriangle& t, const LatticeGrid& grid, double weight_dp, double limits_dp)
+    TriangleTest(const SnappedTriangle& t, const LatticeGrid& grid, double weight_dp,
+                 double limits_dp)
         : grid_(grid), box_(box_of(t, grid)), weight_(weight_dp * grid.dp)
     {
         is_node_ = t.a == t.b && t.b == t.c;
         const std::array<std::int64_t, 3> u{t.b.x - t.a.x, t.b.y - t.a.y, t.b.z - t.a.z};
         const std::array<std::int64_t, 3> v{t.c.x - t.a.x, t.c.y - t.a.y, t.c.z - t.a.z};
-        is_flat_ = u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
+        is_flat_ =
+            u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
         if (is_flat_) return;
         const Vec3 a = position(t.a, grid);
         const Vec3 b = position(t.b, grid);
@@ -198,7 +202,8 @@ public:
             const double step = plane_.normal.z * grid_.dp;
             narrow(lo, hi, height, step, -weight_ * length_);
             narrow(lo, hi, -height, -step, -weight_ * length_);
-            for (const Plane& limit : limits_) narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0);
+            for (const Plane& limit : limits_)
+                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0);
             std::int64_t first = 0;
             std::int64_t last = 0;
             if (!to_index_range(lo, hi, box_.begin[2], box_.end[2] - 1, first, last)) continue;
@@ -301,7 +306,8 @@ SlabRegion points_region(const std::vector<Vec3>& points, const LatticeGrid& gri
     region.emit = [nodes](std::uint32_t x, Spans& out)
     {
         const auto less = [](const Node& n, std::int64_t value) { return n.x < value; };
-        for (auto it = std::lower_bound(nodes->begin(), nodes->end(), static_cast<std::int64_t>(x), less);
+        for (auto it =
+                 std::lower_bound(nodes->begin(), nodes->end(), static_cast<std::int64_t>(x), less);
              it != nodes->end() && it->x == x; ++it)
             out.push_back(one_node(it->y, it->z));
     };
@@ -312,15 +318,14 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                         double width_dp)
 {
     auto shared = std::make_shared<std::vector<std::pair<Node, Node>>>(segments);
-    auto index = std::make_shared<SlabIndex>(shared->size(), grid.n[0],
-                                             [&](std::size_t i)
-                                             {
-                                                 const NodeBox b =
-                                                     box_of((*shared)[i].first, (*shared)[i].second, grid);
-                                                 return b.is_empty()
-                                                            ? std::pair<std::int64_t, std::int64_t>{0, 0}
-                                                            : std::pair{b.begin[0], b.end[0]};
-                                             });
+    auto index = std::make_shared<SlabIndex>(
+        shared->size(), grid.n[0],
+        [&](std::size_t i)
+        {
+            const NodeBox b = box_of((*shared)[i].first, (*shared)[i].second, grid);
+            return b.is_empty() ? std::pair<std::int64_t, std::int64_t>{0, 0}
+                                : std::pair{b.begin[0], b.end[0]};
+        });
     SlabRegion region;
     region.x_begin = index->x_begin();
     region.x_end = index->x_end();
@@ -346,24 +351,27 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                     const double area = norm(cross(a - p, b - p)) / 2;
                     return 2 * area / length < limit;
                 };
-                // Where the slab's plane, or in it the row, meets the line: nodes in reach lie within
-                // `reach` of it along the other axes, the line's steepest axis being walked.
+                // Where the slab's plane, or in it the row, meets the line: nodes in reach lie
+                // within `reach` of it along the other axes, the line's steepest axis being walked.
                 const double dx = static_cast<double>(to.x - from.x);
                 const double dy = static_cast<double>(to.y - from.y);
                 const double dz = static_cast<double>(to.z - from.z);
                 const double steepest = std::max({std::fabs(dx), std::fabs(dy), std::fabs(dz)});
                 const auto reach = static_cast<std::int64_t>(std::ceil(width_dp * 1.8)) + 1;
-                const auto around = [&](double t, std::int64_t& y0, std::int64_t& y1, std::int64_t& z0,
-                                        std::int64_t& z1)
+                const auto around = [&](double t, std::int64_t& y0, std::int64_t& y1,
+                                        std::int64_t& z0, std::int64_t& z1)
                 {
-                    const auto y = static_cast<std::int64_t>(std::floor(static_cast<double>(from.y) + t * dy));
-                    const auto z = static_cast<std::int64_t>(std::floor(static_cast<double>(from.z) + t * dz));
+                    const auto y =
+                        static_cast<std::int64_t>(std::floor(static_cast<double>(from.y) + t * dy));
+                    const auto z =
+                        static_cast<std::int64_t>(std::floor(static_cast<double>(from.z) + t * dz));
                     y0 = std::max(y - reach, box.begin[1]);
                     y1 = std::min(y + reach + 1, box.end[1] - 1);
                     z0 = std::max(z - reach, box.begin[2]);
                     z1 = std::min(z + reach + 1, box.end[2] - 1);
                 };
-                const auto test_all = [&](std::int64_t y0, std::int64_t y1, std::int64_t z0, std::int64_t z1)
+                const auto test_all =
+                    [&](std::int64_t y0, std::int64_t y1, std::int64_t z0, std::int64_t z1)
                 {
                     for (std::int64_t y = y0; y <= y1; ++y)
                         for (std::int64_t z = z0; z <= z1; ++z)
@@ -375,7 +383,8 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                 std::int64_t z1 = 0;
                 if (std::fabs(dx) == steepest)
                 {
-                    around((static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0, y1, z0, z1);
+                    around((static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0, y1,
+                           z0, z1);
                     test_all(y0, y1, z0, z1);
                 }
                 else if (std::fabs(dy) == steepest)
@@ -384,8 +393,8 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                     {
                         std::int64_t unused0 = 0;
                         std::int64_t unused1 = 0;
-                        around((static_cast<double>(y) - static_cast<double>(from.y)) / dy, unused0, unused1,
-                               z0, z1);
+                        around((static_cast<double>(y) - static_cast<double>(from.y)) / dy, unused0,
+                               unused1, z0, z1);
                         test_all(y, y, z0, z1);
                     }
                 }
@@ -395,8 +404,8 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
                     {
                         std::int64_t unused0 = 0;
                         std::int64_t unused1 = 0;
-                        around((static_cast<double>(z) - static_cast<double>(from.z)) / dz, y0, y1, unused0,
-                               unused1);
+                        around((static_cast<double>(z) - static_cast<double>(from.z)) / dz, y0, y1,
+                               unused0, unused1);
                         test_all(y0, y1, z, z);
                     }
                 }
@@ -409,14 +418,14 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
                             double weight_dp, double limits_dp)
 {
     auto shared = std::make_shared<std::vector<SnappedTriangle>>(std::move(triangles));
-    auto index = std::make_shared<SlabIndex>(shared->size(), grid.n[0],
-                                             [&](std::size_t i)
-                                             {
-                                                 const NodeBox b = box_of((*shared)[i], grid);
-                                                 return b.is_empty()
-                                                            ? std::pair<std::int64_t, std::int64_t>{0, 0}
-                                                            : std::pair{b.begin[0], b.end[0]};
-                                             });
+    auto index = std::make_shared<SlabIndex>(
+        shared->size(), grid.n[0],
+        [&](std::size_t i)
+        {
+            const NodeBox b = box_of((*shared)[i], grid);
+            return b.is_empty() ? std::pair<std::int64_t, std::int64_t>{0, 0}
+                                : std::pair{b.begin[0], b.end[0]};
+        });
     SlabRegion region;
     region.x_begin = index->x_begin();
     region.x_end = index->x_end();
@@ -478,7 +487,9 @@ SlabRegion body_region(const FigureOp& figure, const std::vector<std::uint32_t>&
                 }
             const std::array<std::int64_t, 3> u{t.b.x - t.a.x, t.b.y - t.a.y, t.b.z - t.a.z};
             const std::array<std::int64_t, 3> v{t.c.x - t.a.x, t.c.y - t.a.y, t.c.z - t.a.z};
-            WholePlane p{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}, 0};
+            WholePlane p{
+                {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]},
+                0};
             if (p.normal[0] == 0 && p.normal[1] == 0 && p.normal[2] == 0) continue;
             p.offset = -(p.normal[0] * t.a.x + p.normal[1] * t.a.y + p.normal[2] * t.a.z);
             planes->push_back(p);
@@ -511,8 +522,8 @@ SlabRegion body_region(const FigureOp& figure, const std::vector<std::uint32_t>&
                     __int128 q = -rest / nz;
                     if (q * nz >= -rest) --q; // largest q with q * nz < -rest
                     while ((q + 1) * nz < -rest) ++q;
-                    hi = std::min<std::int64_t>(hi, static_cast<std::int64_t>(
-                                                        std::clamp<__int128>(q, -1, INT64_MAX / 4)));
+                    hi = std::min<std::int64_t>(
+                        hi, static_cast<std::int64_t>(std::clamp<__int128>(q, -1, INT64_MAX / 4)));
                 }
                 else
                 {
@@ -520,8 +531,8 @@ SlabRegion body_region(const FigureOp& figure, const std::vector<std::uint32_t>&
                     __int128 q = rest / -nz;
                     while (q * -nz <= rest) ++q;
                     while ((q - 1) * -nz > rest) --q;
-                    lo = std::max<std::int64_t>(lo, static_cast<std::int64_t>(
-                                                        std::clamp<__int128>(q, -1, INT64_MAX / 4)));
+                    lo = std::max<std::int64_t>(
+                        lo, static_cast<std::int64_t>(std::clamp<__int128>(q, -1, INT64_MAX / 4)));
                 }
                 if (lo > hi) break;
             }

@@ -11,8 +11,9 @@ namespace fppg
 /// The nodes of points: each point's nearest node (rule P1).
 SlabRegion points_region(const std::vector<Vec3>& points, const LatticeGrid& grid);
 
-/// The nodes of segments: with both ends snapped, the nodes of their index box whose distance to the
-/// line is less than `width_dp` * dp (rule P2); both ends on one node give nothing (golden line_random).
+/// The nodes of segments: with both ends snapped, the nodes of their index box whose distance to
+/// the line is less than `width_dp` * dp (rule P2); both ends on one node give nothing (golden
+/// line_random).
 SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, const LatticeGrid& grid,
                         double width_dp);
 

@@ -40,14 +40,17 @@ std::vector<Spans> nodes_of(const RunField& field, const MkFilter& filter, const
 }
 
 /// Appends `spans` moved by (dy, dz), cut at the lattice.
-void append_moved(const Spans& spans, int dy, int dz_low, int dz_high, const LatticeGrid& grid, Spans& out)
+void append_moved(const Spans& spans, int dy, int dz_low, int dz_high, const LatticeGrid& grid,
+                  Spans& out)
 {
     for (const Span& s : spans)
     {
         const std::int64_t y = static_cast<std::int64_t>(s.y) + dy;
         if (y < 0 || y >= grid.n[1]) continue;
-        const std::int64_t begin = std::max<std::int64_t>(static_cast<std::int64_t>(s.z_begin) + dz_low, 0);
-        const std::int64_t end = std::min<std::int64_t>(static_cast<std::int64_t>(s.z_end) + dz_high, grid.n[2]);
+        const std::int64_t begin =
+            std::max<std::int64_t>(static_cast<std::int64_t>(s.z_begin) + dz_low, 0);
+        const std::int64_t end =
+            std::min<std::int64_t>(static_cast<std::int64_t>(s.z_end) + dz_high, grid.n[2]);
         if (begin < end)
             out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(begin),
                            static_cast<std::uint32_t>(end)});
@@ -75,8 +78,8 @@ std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const
     return out;
 }
 
-std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op, const NodeBox& box,
-                                     std::uint16_t mk_bound_first, int threads)
+std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op,
+                                     const NodeBox& box, std::uint16_t mk_bound_first, int threads)
 {
     const NodeBox whole = whole_lattice(field.grid);
     // A border node one step outside the box counts for a target inside it.
@@ -104,7 +107,8 @@ std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& 
                          for (int dy = -1; dy <= 1; ++dy)
                          {
                              for (const Spans* side : {left, right})
-                                 if (side != nullptr) append_moved(*side, dy, -1, 1, field.grid, near);
+                                 if (side != nullptr)
+                                     append_moved(*side, dy, -1, 1, field.grid, near);
                              if (dy != 0) append_moved(borders[x], dy, -1, 1, field.grid, near);
                          }
                          append_moved(borders[x], 0, -1, -1, field.grid, near);
@@ -115,8 +119,10 @@ std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& 
                          const auto& [top, bottom, to_right, to_left, back, front] = op.directions;
                          if (top) append_moved(borders[x], 0, 1, 1, field.grid, near);
                          if (bottom) append_moved(borders[x], 0, -1, -1, field.grid, near);
-                         if (to_right && left != nullptr) append_moved(*left, 0, 0, 0, field.grid, near);
-                         if (to_left && right != nullptr) append_moved(*right, 0, 0, 0, field.grid, near);
+                         if (to_right && left != nullptr)
+                             append_moved(*left, 0, 0, 0, field.grid, near);
+                         if (to_left && right != nullptr)
+                             append_moved(*right, 0, 0, 0, field.grid, near);
                          if (back) append_moved(borders[x], 1, 0, 0, field.grid, near);
                          if (front) append_moved(borders[x], -1, 0, 0, field.grid, near);
                      }

@@ -13,7 +13,7 @@ std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const
 
 /// The nodes that one step of a redrawnear recolours (rules D3 to D5): those of the target type,
 /// inside `box`, with a neighbour of the border type.
-std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op, const NodeBox& box,
-                                     std::uint16_t mk_bound_first, int threads);
+std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op,
+                                     const NodeBox& box, std::uint16_t mk_bound_first, int threads);
 
 } // namespace fppg

@@ -60,7 +60,10 @@ void push_without(Spans& out, std::int64_t y, const Interval& outer, const Inter
     push(out, y, std::max(outer.first, inner.last + 1), outer.last);
 }
 
-double rounded_radius(double radius, double dp) { return std::floor(radius / dp + 0.5); }
+double rounded_radius(double radius, double dp)
+{
+    return std::floor(radius / dp + 0.5);
+}
 
 } // namespace
 
@@ -112,13 +115,17 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
                     const double rest = limit * limit - flat;
                     const auto half = static_cast<std::int64_t>(std::sqrt(std::max(rest, 0.0)));
                     Interval i{c.z - half, c.z + half};
-                    if (limit < 0 || !trim_interval(i.first, i.last, INT64_MIN / 2, INT64_MAX / 2, holds)) return {};
+                    if (limit < 0 ||
+                        !trim_interval(i.first, i.last, INT64_MIN / 2, INT64_MAX / 2, holds))
+                        return {};
                     return i;
                 };
-                Interval outer = ball(s.outer, [&](std::int64_t z)
-                                      { return s.is_open ? distance(z) < s.outer : distance(z) <= s.outer; });
-                const Interval inner =
-                    s.inner < 0 ? Interval{} : ball(s.inner, [&](std::int64_t z) { return distance(z) <= s.inner; });
+                Interval outer =
+                    ball(s.outer, [&](std::int64_t z)
+                         { return s.is_open ? distance(z) < s.outer : distance(z) <= s.outer; });
+                const Interval inner = s.inner < 0 ? Interval{}
+                                                   : ball(s.inner, [&](std::int64_t z)
+                                                          { return distance(z) <= s.inner; });
                 outer = meet(outer, {box.begin[2], box.end[2] - 1});
                 push_without(out, y, outer, inner);
             }
@@ -127,7 +134,8 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
     return region;
 }
 
-SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, const LatticeGrid& grid)
+SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
+                           const LatticeGrid& grid)
 {
     const Node a = snap(cylinder.p0, grid);
     const Node b = snap(cylinder.p1, grid);
@@ -151,16 +159,20 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
         double q_min = -1; // q <= q_min is left out; negative: nothing is
     };
     std::vector<Piece> pieces;
-    const bool all_visible = cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
+    const bool all_visible =
+        cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
     const auto add_faces = [&](double radius, double cover_shift)
     {
         const double r = rounded_radius(radius, grid.dp);
         const double real = radius / grid.dp;
         const double low = -cover_shift;
         const double high = length + cover_shift;
-        if (cylinder.is_visible[2]) pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
-        if (cylinder.is_visible[0]) pieces.push_back({low - cover_width, low + cover_width, true, real, false});
-        if (cylinder.is_visible[1]) pieces.push_back({high - cover_width, high + cover_width, true, real, false});
+        if (cylinder.is_visible[2])
+            pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
+        if (cylinder.is_visible[0])
+            pieces.push_back({low - cover_width, low + cover_width, true, real, false});
+        if (cylinder.is_visible[1])
+            pieces.push_back({high - cover_width, high + cover_width, true, real, false});
     };
     if (!cylinder.layers_dp.empty())
     {
@@ -172,9 +184,12 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
             const double shift = std::floor(layer + 0.5);
             const double low = cylinder.is_visible[0] ? -shift : 0;
             const double high = length + (cylinder.is_visible[1] ? shift : 0);
-            if (cylinder.is_visible[2]) pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
-            if (cylinder.is_visible[0]) pieces.push_back({low - cover_width, low + cover_width, true, real, false});
-            if (cylinder.is_visible[1]) pieces.push_back({high - cover_width, high + cover_width, true, real, false});
+            if (cylinder.is_visible[2])
+                pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
+            if (cylinder.is_visible[0])
+                pieces.push_back({low - cover_width, low + cover_width, true, real, false});
+            if (cylinder.is_visible[1])
+                pieces.push_back({high - cover_width, high + cover_width, true, real, false});
         }
     }
     else
@@ -201,8 +216,10 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
         const double e0 = static_cast<double>(a[k]) + t_low * u[k];
         const double e1 = static_cast<double>(a[k]) + t_high * u[k];
         const double side = reach * std::sqrt(std::max(0.0, 1 - u[k] * u[k]));
-        box.begin[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(std::min(e0, e1) - side)) - 1;
-        box.end[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::ceil(std::max(e0, e1) + side)) + 2;
+        box.begin[static_cast<std::size_t>(k)] =
+            static_cast<std::int64_t>(std::floor(std::min(e0, e1) - side)) - 1;
+        box.end[static_cast<std::size_t>(k)] =
+            static_cast<std::int64_t>(std::ceil(std::max(e0, e1) + side)) + 2;
     }
     box = intersect(box, whole_lattice(grid));
     region = region_of(box);
@@ -237,10 +254,13 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                     const double root = std::sqrt(std::max(disc, 0.0));
                     lo = (-qb - root) / qa + static_cast<double>(a.z);
                     hi = (-qb + root) / qa + static_cast<double>(a.z);
-                    lo = std::clamp(lo, static_cast<double>(z_min) - 3, static_cast<double>(z_max) + 3);
-                    hi = std::clamp(hi, static_cast<double>(z_min) - 3, static_cast<double>(z_max) + 3);
+                    lo = std::clamp(lo, static_cast<double>(z_min) - 3,
+                                    static_cast<double>(z_max) + 3);
+                    hi = std::clamp(hi, static_cast<double>(z_min) - 3,
+                                    static_cast<double>(z_max) + 3);
                 }
-                Interval i{static_cast<std::int64_t>(std::floor(lo)), static_cast<std::int64_t>(std::ceil(hi))};
+                Interval i{static_cast<std::int64_t>(std::floor(lo)),
+                           static_cast<std::int64_t>(std::ceil(hi))};
                 if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
                 return i;
             };
@@ -255,7 +275,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                     lo = std::clamp(std::min(e0, e1), lo - 3, hi + 3);
                     hi = std::clamp(std::max(e0, e1), lo, hi + 3);
                 }
-                Interval t{static_cast<std::int64_t>(std::floor(lo)), static_cast<std::int64_t>(std::ceil(hi))};
+                Interval t{static_cast<std::int64_t>(std::floor(lo)),
+                           static_cast<std::int64_t>(std::ceil(hi))};
                 const auto in_slab = [&](std::int64_t z)
                 {
                     const double v = along(z);
@@ -263,10 +284,12 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                 };
                 if (!trim_interval(t.first, t.last, z_min, z_max, in_slab)) continue;
                 const Interval outer =
-                    ring(p.q_max, [&](std::int64_t z) { return p.q_open ? across(z) < p.q_max : across(z) <= p.q_max; });
+                    ring(p.q_max, [&](std::int64_t z)
+                         { return p.q_open ? across(z) < p.q_max : across(z) <= p.q_max; });
                 if (outer.is_empty()) continue;
-                const Interval inner =
-                    p.q_min < 0 ? Interval{} : ring(p.q_min, [&](std::int64_t z) { return across(z) <= p.q_min; });
+                const Interval inner = p.q_min < 0 ? Interval{}
+                                                   : ring(p.q_min, [&](std::int64_t z)
+                                                          { return across(z) <= p.q_min; });
                 push_without(out, y, meet(outer, t), inner);
             }
         }
@@ -274,13 +297,15 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
     return region;
 }
 
-SlabRegion ellipsoid_region(const EllipsoidOp& ellipsoid, const DrawState& state, const LatticeGrid& grid)
+SlabRegion ellipsoid_region(const EllipsoidOp& ellipsoid, const DrawState& state,
+                            const LatticeGrid& grid)
 {
     const Node f0 = snap(ellipsoid.focus0, grid);
     const Node f1 = snap(ellipsoid.focus1, grid);
     const double s0 = rounded_radius(ellipsoid.radius, grid.dp);
     const double width = state.constants.ellipsoid;
-    const double outer_limit = state.mode == DrawMode::Solid ? ellipsoid.radius / grid.dp : s0 + width;
+    const double outer_limit =
+        state.mode == DrawMode::Solid ? ellipsoid.radius / grid.dp : s0 + width;
     const bool is_open = state.mode != DrawMode::Solid;
     const double inner_limit = state.mode == DrawMode::Face ? s0 - width : -1;
     const auto reach = static_cast<std::int64_t>(std::ceil(std::min(outer_limit, 4e9)));
@@ -334,10 +359,12 @@ SlabRegion ellipsoid_region(const EllipsoidOp& ellipsoid, const DrawState& state
                 }
                 return {first, last};
             };
-            const Interval outer = widest([&](std::int64_t z)
-                                          { return is_open ? sum(y, z) < outer_limit : sum(y, z) <= outer_limit; });
+            const Interval outer =
+                widest([&](std::int64_t z)
+                       { return is_open ? sum(y, z) < outer_limit : sum(y, z) <= outer_limit; });
             const Interval inner =
-                inner_limit < 0 ? Interval{} : widest([&](std::int64_t z) { return sum(y, z) <= inner_limit; });
+                inner_limit < 0 ? Interval{}
+                                : widest([&](std::int64_t z) { return sum(y, z) <= inner_limit; });
             push_without(out, y, outer, inner);
         }
     };

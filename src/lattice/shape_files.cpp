@@ -31,8 +31,9 @@ public:
 
     std::vector<ShapeFile> run()
     {
-        const bool has_output = std::any_of(def_.ops.begin(), def_.ops.end(), [](const DrawOp& op)
-                                            { return std::holds_alternative<ShapeOutOp>(op.what); });
+        const bool has_output = std::any_of(
+            def_.ops.begin(), def_.ops.end(),
+            [](const DrawOp& op) { return std::holds_alternative<ShapeOutOp>(op.what); });
         if (!has_output) return {};
         for (const DrawOp& op : def_.ops)
         {
@@ -103,14 +104,16 @@ private:
                 if (f.is_visible) out.polygons.push_back(f.vertices);
         }
         else if (const auto* sphere = std::get_if<SphereOp>(&op.what))
-            add_sphere(out, place(sphere->center, snapped), radius(sphere->radius, snapped), constants.sphere_sides);
+            add_sphere(out, place(sphere->center, snapped), radius(sphere->radius, snapped),
+                       constants.sphere_sides);
         else if (const auto* cylinder = std::get_if<CylinderOp>(&op.what))
             add_cylinder(out, *cylinder, place(cylinder->p0, snapped), place(cylinder->p1, snapped),
                          radius(cylinder->radius, snapped), constants.cylinder_sides);
         else if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
         {
             const MeshFile file = read_stl(find_mesh_file(def_, op.source, mesh->file));
-            for (const Vec3& v : file.soup.vertices) out.vertices.push_back(place(mesh->transform(v), snapped));
+            for (const Vec3& v : file.soup.vertices)
+                out.vertices.push_back(place(mesh->transform(v), snapped));
             for (std::uint32_t t = 0; t < file.soup.size(); ++t)
                 out.polygons.push_back({3 * t, 3 * t + 1, 3 * t + 2});
         }
@@ -132,20 +135,24 @@ private:
                 const double polar = std::numbers::pi * ring / n;
                 const double turn = -std::numbers::pi / 2 - 2 * std::numbers::pi * i / n;
                 out.vertices.push_back(center + Vec3{r * std::sin(polar) * std::cos(turn),
-                                                     r * std::sin(polar) * std::sin(turn), -r * std::cos(polar)});
+                                                     r * std::sin(polar) * std::sin(turn),
+                                                     -r * std::cos(polar)});
             }
         out.vertices.push_back(center + Vec3{0, 0, r});
-        const auto at = [n](std::uint32_t ring, std::uint32_t i) { return 1 + (ring - 1) * n + i % n; };
+        const auto at = [n](std::uint32_t ring, std::uint32_t i)
+        { return 1 + (ring - 1) * n + i % n; };
         const auto top = static_cast<std::uint32_t>(out.vertices.size() - 1);
         for (std::uint32_t i = 0; i < n; ++i) out.polygons.push_back({0, at(1, i), at(1, i + 1)});
         for (std::uint32_t ring = 1; ring + 1 < n; ++ring)
             for (std::uint32_t i = 0; i < n; ++i)
-                out.polygons.push_back({at(ring, i + 1), at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
-        for (std::uint32_t i = 0; i < n; ++i) out.polygons.push_back({at(n - 1, i + 1), at(n - 1, i), top});
+                out.polygons.push_back(
+                    {at(ring, i + 1), at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+        for (std::uint32_t i = 0; i < n; ++i)
+            out.polygons.push_back({at(n - 1, i + 1), at(n - 1, i), top});
     }
 
-    static void add_cylinder(ShapePolygons& out, const CylinderOp& cylinder, const Vec3& a, const Vec3& b, double r,
-                             int sides)
+    static void add_cylinder(ShapePolygons& out, const CylinderOp& cylinder, const Vec3& a,
+                             const Vec3& b, double r, int sides)
     {
         if (norm(b - a) == 0) return;
         const auto n = static_cast<std::uint32_t>(sides);
@@ -174,6 +181,9 @@ private:
 
 } // namespace
 
-std::vector<ShapeFile> collect_shape_files(const CaseDef& def) { return ShapeCollector(def).run(); }
+std::vector<ShapeFile> collect_shape_files(const CaseDef& def)
+{
+    return ShapeCollector(def).run();
+}
 
 } // namespace fppg

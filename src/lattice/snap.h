@@ -47,7 +47,8 @@ inline Vec3 position(const Node& n, const LatticeGrid& grid)
 
 inline bool is_inside(const Node& n, const LatticeGrid& grid)
 {
-    return n.x >= 0 && n.y >= 0 && n.z >= 0 && n.x < grid.n[0] && n.y < grid.n[1] && n.z < grid.n[2];
+    return n.x >= 0 && n.y >= 0 && n.z >= 0 && n.x < grid.n[0] && n.y < grid.n[1] &&
+           n.z < grid.n[2];
 }
 
 /// Cuts a search interval [lo, hi] (both inclusive) down to the nodes where `holds` is true. The

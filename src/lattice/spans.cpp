@@ -24,7 +24,8 @@ void append_joined(Spans& out, const Span& s)
 
 void append_run(std::vector<Run>& out, const Run& r)
 {
-    if (!out.empty() && out.back().y == r.y && out.back().z_end == r.z_begin && out.back().mk == r.mk)
+    if (!out.empty() && out.back().y == r.y && out.back().z_end == r.z_begin &&
+        out.back().mk == r.mk)
         out.back().z_end = r.z_end;
     else
         out.push_back(r);
@@ -126,7 +127,8 @@ Spans clip_to_box(const Spans& spans, const NodeBox& box)
         const std::int64_t begin = std::max<std::int64_t>(s.z_begin, box.begin[2]);
         const std::int64_t end = std::min<std::int64_t>(s.z_end, box.end[2]);
         if (begin < end)
-            out.push_back({s.y, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+            out.push_back(
+                {s.y, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
     }
     return out;
 }

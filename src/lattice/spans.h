@@ -17,10 +17,7 @@ struct NodeBox
     std::array<std::int64_t, 3> begin{0, 0, 0};
     std::array<std::int64_t, 3> end{0, 0, 0};
 
-    bool is_empty() const
-    {
-        return end[0] <= begin[0] || end[1] <= begin[1] || end[2] <= begin[2];
-    }
+    bool is_empty() const { return end[0] <= begin[0] || end[1] <= begin[1] || end[2] <= begin[2]; }
 };
 
 /// All nodes of the lattice.

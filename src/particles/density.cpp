@@ -29,7 +29,8 @@ public:
     Medium medium(std::uint16_t mk) const
     {
         const ParticleType type = type_of_mk_[mk];
-        return type == ParticleType::Fluid || type == ParticleType::Floating ? Medium::Water : Medium::Wall;
+        return type == ParticleType::Fluid || type == ParticleType::Floating ? Medium::Water
+                                                                             : Medium::Wall;
     }
 
     /// For every run of a slab the steps from its highest node to the top of its column.
@@ -42,7 +43,8 @@ public:
             if (medium(runs[i].mk) != Medium::Water || i + 1 == runs.size()) continue;
             const Run& above = runs[i + 1];
             if (above.y != runs[i].y || above.z_begin != runs[i].z_end) continue;
-            depth[i] = medium(above.mk) == Medium::Wall ? 1 : depth[i + 1] + (above.z_end - above.z_begin);
+            depth[i] =
+                medium(above.mk) == Medium::Wall ? 1 : depth[i + 1] + (above.z_end - above.z_begin);
         }
         return depth;
     }
@@ -52,15 +54,17 @@ private:
     const std::vector<ParticleType>& type_of_mk_;
 };
 
-/// Calls body(run index in the slab, block, run index in the block) for all runs of water, slab by slab.
-/// Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
+/// Calls body(run index in the slab, block, run index in the block) for all runs of water, slab by
+/// slab. Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
 class BlockCursor
 {
 public:
-    explicit BlockCursor(CaseParticles& particles) : particles_(particles), next_(particles.blocks.size(), 0)
+    explicit BlockCursor(CaseParticles& particles)
+        : particles_(particles), next_(particles.blocks.size(), 0)
     {
         block_of_mk_.assign(65536, SIZE_MAX);
-        for (std::size_t b = 0; b < particles.blocks.size(); ++b) block_of_mk_[particles.blocks[b].mk] = b;
+        for (std::size_t b = 0; b < particles.blocks.size(); ++b)
+            block_of_mk_[particles.blocks[b].mk] = b;
     }
 
     template <typename Body>
@@ -87,11 +91,11 @@ struct SlabSteps
     std::vector<std::uint32_t> y;
 };
 
-/// For the nodes of `run` the value that the neighbour runs [first, last) give: 0 where there is none, 1
-/// below a wall, the neighbour's own + 1 in water.
+/// For the nodes of `run` the value that the neighbour runs [first, last) give: 0 where there is
+/// none, 1 below a wall, the neighbour's own + 1 in water.
 template <typename NeighbourValue>
-void steps_to_neighbour(const Run& run, const Run* first, const Run* last, const NeighbourValue& value_of,
-                        std::uint32_t* out)
+void steps_to_neighbour(const Run& run, const Run* first, const Run* last,
+                        const NeighbourValue& value_of, std::uint32_t* out)
 {
     std::fill(out, out + (run.z_end - run.z_begin), 0u);
     for (const Run* n = first; n != last && n->z_begin < run.z_end; ++n)
@@ -104,7 +108,8 @@ void steps_to_neighbour(const Run& run, const Run* first, const Run* last, const
 
 const Run* row_begin(const std::vector<Run>& runs, std::uint32_t y)
 {
-    const auto it = std::lower_bound(runs.begin(), runs.end(), y, [](const Run& r, std::uint32_t v) { return r.y < v; });
+    const auto it = std::lower_bound(runs.begin(), runs.end(), y,
+                                     [](const Run& r, std::uint32_t v) { return r.y < v; });
     return runs.data() + (it - runs.begin());
 }
 
@@ -113,11 +118,16 @@ class TiltedDepths
 {
 public:
     TiltedDepths(const CaseDef& def, const RunField& field, const DepthMeter& meter)
-        : field_(field), meter_(meter), gravity_(def.constants.gravity), dp_(def.grid.dp), g_(norm(gravity_))
+        : field_(field),
+          meter_(meter),
+          gravity_(def.constants.gravity),
+          dp_(def.grid.dp),
+          g_(norm(gravity_))
     {
     }
 
-    /// Calls body(run index, node in the run, depth) for the water nodes of every slab, last slab first.
+    /// Calls body(run index, node in the run, depth) for the water nodes of every slab, last slab
+    /// first.
     template <typename Body>
     void for_each(const Body& body)
     {
@@ -165,18 +175,22 @@ private:
             return [this, &of, &known, &values](const Run& n, std::uint32_t z) -> std::uint32_t
             {
                 if (meter_.medium(n.mk) == Medium::Wall) return 1;
-                return values[known.begin[static_cast<std::size_t>(&n - of.data())] + (z - n.z_begin)] + 1;
+                return values[known.begin[static_cast<std::size_t>(&n - of.data())] +
+                              (z - n.z_begin)] +
+                       1;
             };
         };
         for (std::size_t i = runs.size(); i-- > 0;)
         {
             if (meter_.medium(runs[i].mk) != Medium::Water) continue;
             if (gravity_.x != 0)
-                steps_to_neighbour(runs[i], row_begin(beyond, runs[i].y), row_begin(beyond, runs[i].y + 1),
-                                   value(beyond, next, next.x), steps.x.data() + steps.begin[i]);
+                steps_to_neighbour(runs[i], row_begin(beyond, runs[i].y),
+                                   row_begin(beyond, runs[i].y + 1), value(beyond, next, next.x),
+                                   steps.x.data() + steps.begin[i]);
             if (gravity_.y != 0)
-                steps_to_neighbour(runs[i], row_begin(runs, runs[i].y + 1), row_begin(runs, runs[i].y + 2),
-                                   value(runs, steps, steps.y), steps.y.data() + steps.begin[i]);
+                steps_to_neighbour(runs[i], row_begin(runs, runs[i].y + 1),
+                                   row_begin(runs, runs[i].y + 2), value(runs, steps, steps.y),
+                                   steps.y.data() + steps.begin[i]);
         }
         return steps;
     }
@@ -200,8 +214,9 @@ void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
 
 } // namespace
 
-void compute_densities(const CaseDef& def, const RunField& field, const std::vector<ParticleType>& type_of_mk,
-                       CaseParticles& particles, CaseConstants& constants, int threads)
+void compute_densities(const CaseDef& def, const RunField& field,
+                       const std::vector<ParticleType>& type_of_mk, CaseParticles& particles,
+                       CaseConstants& constants, int threads)
 {
     const ConstantsDef& c = def.constants;
     const double g = norm(c.gravity);
@@ -211,7 +226,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
     const bool by_height = c.rhop_gradient == 3;
 
     std::vector<std::vector<std::uint32_t>> top(field.slabs.size());
-    parallel_for(field.slabs.size(), threads, [&](std::size_t x) { top[x] = meter.depths_along_z(x); }, 16);
+    parallel_for(
+        field.slabs.size(), threads, [&](std::size_t x) { top[x] = meter.depths_along_z(x); }, 16);
 
     // Limits of s = -position . gravity / g over the fluid, for rhopgradient 3.
     double s_max = -std::numeric_limits<double>::infinity();
@@ -232,7 +248,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
             if (g > 0 && by_height)
                 for (const std::uint32_t z : {r.z_begin, r.z_end - 1})
                 {
-                    const double s = height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z));
+                    const double s =
+                        height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z));
                     s_max = std::max(s_max, s);
                     s_min = std::min(s_min, s);
                 }
@@ -250,7 +267,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
     {
         double most = 0;
         TiltedDepths(def, field, meter)
-            .for_each([&](std::size_t, std::size_t, std::uint32_t, double d) { most = std::max(most, d); });
+            .for_each([&](std::size_t, std::size_t, std::uint32_t, double d)
+                      { most = std::max(most, d); });
         constants.hswl = most;
     }
     set_speeds(def, g, constants);
@@ -259,8 +277,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
     const auto rhop = [&](double d)
     {
         return is_uniform ? static_cast<float>(c.rhop0)
-                          : static_cast<float>(c.rhop0 *
-                                               std::pow(1 + c.rhop0 * g * d / constants.b, 1 / c.gamma));
+                          : static_cast<float>(
+                                c.rhop0 * std::pow(1 + c.rhop0 * g * d / constants.b, 1 / c.gamma));
     };
     if (particles.n_fluid == 0) return;
 
@@ -275,7 +293,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
                      [&](std::size_t i, ParticleBlock& block, std::size_t at)
                      {
                          if (!is_by_steps) run_of[x][i] = at;
-                         if (block.type != ParticleType::Fluid || !is_by_steps || is_uniform) return;
+                         if (block.type != ParticleType::Fluid || !is_by_steps || is_uniform)
+                             return;
                          ParticleRun& run = block.runs[at];
                          run.depth = by_height ? z_max - (run.z + run.count - 1) : top[x][i];
                          most_steps = std::max(most_steps, run.depth + run.count - 1);
@@ -285,7 +304,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
     {
         for (const ParticleBlock& block : particles.blocks)
             if (block.type == ParticleType::Fluid)
-                for (const ParticleRun& run : block.runs) most_steps = std::max(most_steps, run.count - 1);
+                for (const ParticleRun& run : block.runs)
+                    most_steps = std::max(most_steps, run.count - 1);
     }
     if (is_by_steps)
     {
@@ -335,7 +355,8 @@ void compute_densities(const CaseDef& def, const RunField& field, const std::vec
                          if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
                          for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
                              set(x, i, z - r.z_begin,
-                                 s_max - height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z)));
+                                 s_max - height(place(0, static_cast<std::uint32_t>(x)),
+                                                place(1, r.y), place(2, z)));
                      }
                  });
 }

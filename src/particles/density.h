@@ -6,19 +6,23 @@
 namespace fppg
 {
 
-/// Depths of the fluid below the top of its water, and what follows from them (rules R1 to R6 of the
-/// experiments with GenCase v5.4.354):
-/// - rhopgradient 2 (and 1 for hswl): for every axis with gravity, n = steps in the + direction while the
-///   next node holds fluid or a floating body, plus 1 when the node that ends the run is a fixed or moving
-///   boundary particle; d = |(n dp gravity)| / |gravity|
+/// Depths of the fluid below the top of its water, and what follows from them (rules R1 to R6 of
+/// the experiments with GenCase v5.4.354):
+/// - rhopgradient 2 (and 1 for hswl): for every axis with gravity, n = steps in the + direction
+/// while the
+///   next node holds fluid or a floating body, plus 1 when the node that ends the run is a fixed or
+///   moving boundary particle; d = |(n dp gravity)| / |gravity|
 /// - rhopgradient 3: d = max over the fluid of s, minus s, with s = -position . gravity / |gravity|
-/// - hswl automatic = max of d over fluid and floating particles, over fluid only for rhopgradient 3
-/// - rhop = rhop0 (1 + rhop0 |gravity| d / b)^(1 / gamma), as float; rhop0 for rhopgradient 1, and where
+/// - hswl automatic = max of d over fluid and floating particles, over fluid only for rhopgradient
+/// 3
+/// - rhop = rhop0 (1 + rhop0 |gravity| d / b)^(1 / gamma), as float; rhop0 for rhopgradient 1, and
+/// where
 ///   b or gravity is zero (GenCase writes NaN there)
 ///
 /// Sets hswl, speed_system, speed_sound, b of `constants`, the depths of the fluid runs, and
 /// rhop_of_depth or rhop of `particles`. Fluid runs must be in the default order (x, y, z).
-void compute_densities(const CaseDef& def, const RunField& field, const std::vector<ParticleType>& type_of_mk,
-                       CaseParticles& particles, CaseConstants& constants, int threads);
+void compute_densities(const CaseDef& def, const RunField& field,
+                       const std::vector<ParticleType>& type_of_mk, CaseParticles& particles,
+                       CaseConstants& constants, int threads);
 
 } // namespace fppg

@@ -5,8 +5,8 @@
 namespace fppg
 {
 
-FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particles, std::size_t block_index,
-                           double mass_bound)
+FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particles,
+                           std::size_t block_index, double mass_bound)
 {
     const ParticleBlock& block = particles.blocks[block_index];
     const LatticeGrid& grid = particles.grid;
@@ -20,13 +20,15 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
     for (const ParticleRun& run : block.runs)
     {
         // A run's nodes differ in z only, whichever way they follow one another.
-        const std::int64_t low = block.run_descending ? static_cast<std::int64_t>(run.z) - run.count + 1 : run.z;
+        const std::int64_t low =
+            block.run_descending ? static_cast<std::int64_t>(run.z) - run.count + 1 : run.z;
         const Whole x = static_cast<std::int64_t>(run.x) - from[0];
         const Whole y = static_cast<std::int64_t>(run.y) - from[1];
         const Whole count = run.count;
         const Whole z = low - from[2];
         const Whole z_sum = count * z + count * (count - 1) / 2;
-        const Whole z_squares = count * z * z + z * count * (count - 1) + (count - 1) * count * (2 * count - 1) / 6;
+        const Whole z_squares =
+            count * z * z + z * count * (count - 1) + (count - 1) * count * (2 * count - 1) / 6;
         sum[0] += count * x;
         sum[1] += count * y;
         sum[2] += z_sum;
@@ -48,7 +50,8 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
     {
         const auto k = static_cast<std::size_t>(axis);
         mean[axis] = static_cast<double>(sum[k]) / n;
-        body.center[axis] = grid.origin[axis] + (static_cast<double>(from[k]) + mean[axis]) * grid.dp;
+        body.center[axis] =
+            grid.origin[axis] + (static_cast<double>(from[k]) + mean[axis]) * grid.dp;
     }
     Vec3 offset; // from the centre that the inertia is about to the mean, metres
     if (def.center)
@@ -62,7 +65,8 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
         body.inertia = *def.inertia;
         return body;
     }
-    // Second moments about the mean, n * product - sum * sum in whole numbers, then about the centre.
+    // Second moments about the mean, n * product - sum * sum in whole numbers, then about the
+    // centre.
     std::array<std::array<double, 3>, 3> moment{};
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = i; j < 3; ++j)

@@ -16,7 +16,8 @@ namespace fppg
 namespace
 {
 
-/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay fixed.
+/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay
+/// fixed.
 void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
 {
     for (const Element& c : e.children)
@@ -59,22 +60,26 @@ private:
 
     void set_types()
     {
-        for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk) type_of_mk_[mk] = ParticleType::Fluid;
+        for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk)
+            type_of_mk_[mk] = ParticleType::Fluid;
         std::set<int> moving;
         collect_moving(def_.motion, false, moving);
         for (const int mk : moving)
             if (mk + def_.mk_bound_first < 65536)
-                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] = ParticleType::Moving;
+                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
+                    ParticleType::Moving;
         for (const FloatingDef& f : def_.floatings)
             for (const std::uint16_t mk : f.mkbound)
             {
                 if (mk + def_.mk_bound_first >= 65536) continue;
                 if (moving.contains(mk))
                     throw CaseError(def_.file, f.line,
-                                    fmt::format("<floating>: mkbound {} is moved by <motion> too, combining floating and "
+                                    fmt::format("<floating>: mkbound {} is moved by <motion> too, "
+                                                "combining floating and "
                                                 "moving objects is not possible",
                                                 mk));
-                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] = ParticleType::Floating;
+                type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
+                    ParticleType::Floating;
             }
     }
 
@@ -83,8 +88,8 @@ private:
         std::vector<char> used(65536, 0);
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab) used[r.mk] = 1;
-        for (const ParticleType type :
-             {ParticleType::Fixed, ParticleType::Moving, ParticleType::Floating, ParticleType::Fluid})
+        for (const ParticleType type : {ParticleType::Fixed, ParticleType::Moving,
+                                        ParticleType::Floating, ParticleType::Fluid})
             for (std::uint32_t mk = 1; mk < 65536; ++mk)
             {
                 if (!used[mk] || type_of_mk_[mk] != type) continue;
@@ -146,8 +151,9 @@ private:
             field_.slabs.size(), threads_,
             [&](std::size_t x)
             {
-                std::vector<std::uint64_t> next(run_begin_.begin() + static_cast<std::ptrdiff_t>(x * n),
-                                                run_begin_.begin() + static_cast<std::ptrdiff_t>((x + 1) * n));
+                std::vector<std::uint64_t> next(
+                    run_begin_.begin() + static_cast<std::ptrdiff_t>(x * n),
+                    run_begin_.begin() + static_cast<std::ptrdiff_t>((x + 1) * n));
                 for (const Run& r : field_.slabs[x])
                 {
                     const std::size_t b = block_of_mk_[r.mk];
@@ -168,12 +174,15 @@ private:
             for (const ParticleRun& r : block.runs)
             {
                 low = {std::min(low[0], r.x), std::min(low[1], r.y), std::min(low[2], r.z)};
-                high = {std::max(high[0], r.x), std::max(high[1], r.y), std::max(high[2], r.z + r.count - 1)};
+                high = {std::max(high[0], r.x), std::max(high[1], r.y),
+                        std::max(high[2], r.z + r.count - 1)};
             }
         for (int axis = 0; axis < 3; ++axis)
         {
-            out_.pos_min[axis] = def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp;
-            out_.pos_max[axis] = def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp;
+            out_.pos_min[axis] =
+                def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp;
+            out_.pos_max[axis] =
+                def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp;
         }
     }
 
@@ -194,14 +203,15 @@ private:
         constants.mass_fluid = def_.mass_fluid;
     }
 
-    /// Puts the particles of a block into the order that mkorient asks for (rule N2). Where z is not the
-    /// fastest axis, every node becomes a run of its own.
+    /// Puts the particles of a block into the order that mkorient asks for (rule N2). Where z is
+    /// not the fastest axis, every node becomes a run of its own.
     void orient_blocks()
     {
         for (const MkOrient& orient : def_.mk_orients)
         {
-            const auto found = std::find_if(out_.blocks.begin(), out_.blocks.end(),
-                                            [&](const ParticleBlock& b) { return b.mk == orient.mk; });
+            const auto found =
+                std::find_if(out_.blocks.begin(), out_.blocks.end(),
+                             [&](const ParticleBlock& b) { return b.mk == orient.mk; });
             if (found == out_.blocks.end()) continue;
             ParticleBlock& block = *found;
             const bool z_is_fastest = orient.axes[2] == 2;
@@ -210,7 +220,8 @@ private:
             const bool has_values = block.type == ParticleType::Fluid && !out_.rhop.empty();
             const std::uint64_t first = block.begin - (out_.np - out_.n_fluid);
             if (has_values)
-                for (std::size_t i = 0; i < block.runs.size(); ++i) block.runs[i].depth = static_cast<std::uint32_t>(i);
+                for (std::size_t i = 0; i < block.runs.size(); ++i)
+                    block.runs[i].depth = static_cast<std::uint32_t>(i);
             if (z_is_fastest && orient.descending[2])
             {
                 block.run_descending = true;
@@ -230,8 +241,9 @@ private:
             std::sort(block.runs.begin(), block.runs.end(),
                       [&](const ParticleRun& a, const ParticleRun& b) { return key(a) < key(b); });
             if (!has_values) continue;
-            const std::vector<float> old(out_.rhop.begin() + static_cast<std::ptrdiff_t>(first),
-                                         out_.rhop.begin() + static_cast<std::ptrdiff_t>(first + block.count));
+            const std::vector<float> old(
+                out_.rhop.begin() + static_cast<std::ptrdiff_t>(first),
+                out_.rhop.begin() + static_cast<std::ptrdiff_t>(first + block.count));
             for (std::size_t i = 0; i < block.runs.size(); ++i)
             {
                 out_.rhop[first + i] = old[block.runs[i].depth];
@@ -257,7 +269,8 @@ private:
             if (out_.blocks[b].type != ParticleType::Floating) continue;
             // A later entry for the same mkbound wins.
             for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
-                if (std::find(f->mkbound.begin(), f->mkbound.end(), out_.blocks[b].mk_type) != f->mkbound.end())
+                if (std::find(f->mkbound.begin(), f->mkbound.end(), out_.blocks[b].mk_type) !=
+                    f->mkbound.end())
                 {
                     out_.floatings.push_back(floating_body(*f, out_, b, def_.mass_bound));
                     break;
@@ -272,13 +285,15 @@ private:
             std::vector<std::string> names;
             if (block.type == ParticleType::Floating)
                 for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
-                    if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) != f->mkbound.end())
+                    if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) !=
+                        f->mkbound.end())
                     {
                         if (!f->property.empty()) names.push_back(f->property);
                         break;
                     }
             for (const auto& [mk, name] : def_.property_links)
-                if (mk == block.mk && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+                if (mk == block.mk && std::find(names.begin(), names.end(), name) == names.end())
+                    names.push_back(name);
             block.property = fmt::format("{}", fmt::join(names, "+"));
         }
     }
@@ -287,14 +302,17 @@ private:
     {
         const double g = norm(def_.constants.gravity);
         if (out_.np == 0)
-            warnings.push_back("No particles were created in the defined domain. The solver refuses such a case.");
+            warnings.push_back(
+                "No particles were created in the defined domain. The solver refuses such a case.");
         else if (out_.n_fluid == 0)
             warnings.push_back("No fluid particles were created in the defined domain.");
         if (!def_.constants.hswl && out_.n_fluid == 0)
-            warnings.push_back("Automatic maximum depth is zero since there are no fluid particles.");
+            warnings.push_back(
+                "Automatic maximum depth is zero since there are no fluid particles.");
         else if (!def_.constants.hswl && g == 0)
             warnings.push_back("Automatic maximum depth is zero since gravity is zero.");
-        if (constants.b == 0) warnings.push_back("Constant B is zero. The solver refuses such a case.");
+        if (constants.b == 0)
+            warnings.push_back("Constant B is zero. The solver refuses such a case.");
     }
 
     const CaseDef& def_;
@@ -308,8 +326,8 @@ private:
 
 } // namespace
 
-CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads, CaseConstants& constants,
-                             std::vector<std::string>& warnings)
+CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
+                             CaseConstants& constants, std::vector<std::string>& warnings)
 {
     return ParticleMaker(def, field, threads).run(constants, warnings);
 }
