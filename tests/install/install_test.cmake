@@ -29,8 +29,8 @@ endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G Ninja -DCMAKE_BUILD_TYPE=${CONFIG}
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${flags})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/consumer)
-expect_text("fppg ${VERSION}")
+run(${WORK_DIR}/build/consumer ${CASE})
+expect_text("fppg ${VERSION}, dp 0.01")
 
 if(HAS_PROGRAM)
   run(${WORK_DIR}/prefix/bin/fppg -h)

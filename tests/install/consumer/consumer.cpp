@@ -1,11 +1,9 @@
-#include <fppg/vec.h>
+#include <fppg/case_def.h>
 #include <fppg/version.h>
 #include <iostream>
 
-int main()
+int main(int, char** argv)
 {
-    fppg::Transform move;
-    move.offset = {1, 0, 0};
-    std::cout << "fppg " << fppg::version << '\n';
-    return (move * move)({0, 0, 0}).x == 2 ? 0 : 1;
+    const fppg::CaseDef def = fppg::read_case(argv[1], {});
+    std::cout << "fppg " << fppg::version << ", dp " << def.grid.dp << '\n';
 }
