@@ -97,24 +97,35 @@ struct LinesOp
     std::vector<std::pair<Vec3, Vec3>> segments;
 };
 
-/// A polygon of a figure; it is cut into triangles (0, 1, 2), (0, 2, 3), ... (rule P5).
+/// A polygon of a figure.
 struct FigureFace
 {
     std::vector<std::uint32_t> vertices; ///< three or more indices into FigureOp::vertices
     bool is_visible = true;              ///< false: hidden by mask or boxfill
+    /// Empty: the polygon is cut into triangles (0, 1, 2), (0, 2, 3), ... (rule P5). Else these
+    /// vertices are the polygon that is cut by least perimeter, and cut_offset leads from each to
+    /// the one drawn (the top of a prism is cut as its bottom).
+    std::vector<std::uint32_t> cut;
+    std::uint32_t cut_offset = 0;
+};
+
+/// How the inside of a figure is found.
+enum class SolidKind : std::uint8_t
+{
+    None,    ///< an open surface: nothing is filled
+    Prism,   ///< solid_vertices: bottom polygon, then the top one, pairs in the same order
+    Pyramid, ///< solid_vertices: apex, then the base polygon
+    Faces,   ///< strictly behind all faces
 };
 
 /// Everything that is bounded by planes: triangles, quads, strips, fans, polygons, figures, boxes,
-/// prisms, pyramids, beaches, extrusions.
+/// prisms, pyramids, extrusions. In solid and full mode the inside is filled (rules S1 to S4).
 struct FigureOp
 {
     std::vector<Vec3> vertices; ///< after all transforms, not snapped
     std::vector<FigureFace> faces;
-    /// Closed bodies whose strict interior is filled in solid and full mode: each a list of indices
-    /// into `faces` (a solid box is two prisms, rule S4). Empty: an open surface.
-    std::vector<std::vector<std::uint32_t>> bodies;
-    /// Faces between the bodies, drawn where the bodies are filled (rule S4).
-    std::vector<std::uint32_t> inner_faces;
+    SolidKind solid = SolidKind::None;
+    std::vector<std::uint32_t> solid_vertices; ///< indices into `vertices`
 };
 
 /// `drawsphere`

@@ -7,10 +7,10 @@ namespace fppg
 
 void RunLog::line(std::string_view text)
 {
+    const std::size_t begin = text_.size();
     text_.append(text);
     text_ += '\n';
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fputc('\n', stdout);
+    std::fwrite(text_.data() + begin, 1, text_.size() - begin, stdout);
     std::fflush(stdout);
 }
 

@@ -20,7 +20,7 @@ enum BoxSide
 };
 
 /// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it
-/// is filled as two prisms that share the diagonal from (x0, y1) to (x1, y0) (rule S4).
+/// is filled as a prism of four corners (rule S4).
 ///
 /// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them
 /// (rule
@@ -41,7 +41,7 @@ FigureOp make_pyramid(const std::vector<Vec3>& points);
 FigureOp make_fan(const std::vector<Vec3>& points);
 /// Triangles (i, i + 1, i + 2).
 FigureOp make_strip(const std::vector<Vec3>& points);
-/// One polygon, concave allowed, cut by ears.
+/// One polygon, cut by least perimeter.
 FigureOp make_polygon(const std::vector<Vec3>& points);
 /// Quads that a polyline sweeps along `extrude`.
 FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed);

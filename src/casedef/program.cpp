@@ -644,7 +644,9 @@ bool ProgramRunner::run_draw(const Element& e)
         op.vertices = transformed_points(e, n, n);
         op.faces.push_back(
             {n == 3 ? std::vector<std::uint32_t>{0, 1, 2} : std::vector<std::uint32_t>{0, 1, 2, 3},
-             true});
+             true,
+             {},
+             0});
         add(e, std::move(op));
     }
     else if (name == "drawtrianglesstrip")
@@ -656,11 +658,7 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawtriangles" || name == "drawfigure")
     {
         FigureOp op = figure_of(e);
-        if (name == "drawfigure")
-        {
-            op.bodies.emplace_back();
-            for (std::uint32_t f = 0; f < op.faces.size(); ++f) op.bodies[0].push_back(f);
-        }
+        if (name == "drawfigure") op.solid = SolidKind::Faces;
         add_figure(e, std::move(op));
     }
     else if (name == "drawbox")
@@ -774,8 +772,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         if (name == "fillfigure")
         {
             FigureOp figure = figure_of(e);
-            figure.bodies.emplace_back();
-            for (std::uint32_t f = 0; f < figure.faces.size(); ++f) figure.bodies[0].push_back(f);
+            figure.solid = SolidKind::Faces;
             transform_figure(figure, matrix_);
             op.region = std::move(figure);
         }

@@ -145,55 +145,30 @@ private:
         if (state().mode == DrawMode::Wire)
         {
             std::vector<std::pair<Node, Node>> segments;
-            for (std::size_t f = 0; f < op.faces.size(); ++f)
+            const auto add = [&](std::uint32_t a, std::uint32_t b)
+            { segments.emplace_back(snap(op.vertices[a], grid()), snap(op.vertices[b], grid())); };
+            for (const FigureFace& face : op.faces)
+                for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
+                    add(face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]);
+            // The wire of a solid box shows the cut between its two prisms (rule S4).
+            if (op.solid == SolidKind::Prism && op.solid_vertices.size() == 8)
             {
-                const FigureFace& face = op.faces[f];
-                const bool is_inner = std::find(op.inner_faces.begin(), op.inner_faces.end(), f) !=
-                                      op.inner_faces.end();
-                if (!face.is_visible && !is_inner) continue;
-                for (std::size_t i = 0; i < face.vertices.size(); ++i)
-                    segments.emplace_back(
-                        snap(op.vertices[face.vertices[i]], grid()),
-                        snap(op.vertices[face.vertices[(i + 1) % face.vertices.size()]], grid()));
+                add(op.solid_vertices[1], op.solid_vertices[3]);
+                add(op.solid_vertices[5], op.solid_vertices[7]);
             }
             paint_region(lines_region(segments, grid(), state().constants.line));
             return;
         }
-        const bool fills = state().mode != DrawMode::Face && !op.bodies.empty();
+        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
         if (state().mode == DrawMode::Full || !fills)
             draw_triangles(snapped_triangles(op, grid(), true));
-        if (!fills) return;
-        for (const auto& body : op.bodies) paint_region(body_region(op, body, grid()));
-        if (!op.inner_faces.empty()) draw_inner_faces(op);
+        if (fills) paint_region(solid_of(op));
     }
 
-    /// The faces between the bodies, without the nodes of the outer faces that they end on, but
-    /// with those of the edges along them (rule S4: the two corner columns of a solid box).
-    void draw_inner_faces(const FigureOp& op)
+    SlabRegion solid_of(const FigureOp& op) const
     {
-        FigureOp inner;
-        inner.vertices = op.vertices;
-        for (const std::uint32_t f : op.inner_faces) inner.faces.push_back(op.faces[f]);
-        for (FigureFace& f : inner.faces) f.is_visible = true;
-        const SlabRegion region =
-            triangles_region(snapped_triangles(inner, grid(), true), grid(),
-                             state().constants.triangle_weight, state().constants.triangle_limits);
-        if (state().mode == DrawMode::Full)
-        {
-            paint_region(region);
-            return;
-        }
-        // The first two faces of a box are its bottom and its top.
-        FigureOp ends;
-        ends.vertices = op.vertices;
-        ends.faces = {op.faces[0], op.faces[1]};
-        const SlabRegion caps =
-            triangles_region(snapped_triangles(ends, grid(), false), grid(),
-                             state().constants.triangle_weight, state().constants.triangle_limits);
-        SlabRegion open = region;
-        open.emit = [this, region, caps](std::uint32_t x, Spans& out)
-        { out = subtract(listed(region, x, false), listed(caps, x, false)); };
-        paint_region(open);
+        return solid_region(op, grid(), state().constants.triangle_weight,
+                            state().constants.triangle_limits);
     }
 
     void draw(const SphereOp& op) { paint_region(sphere_region(op, state(), grid())); }
@@ -318,12 +293,9 @@ private:
         else if (const auto* figure = std::get_if<FigureOp>(&op.region))
         {
             mask.slabs.resize(grid().n[0]);
-            for (const auto& body : figure->bodies)
-            {
-                const SlabRegion inside = body_region(*figure, body, grid());
-                for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
-                    mask.slabs[x] = unite(mask.slabs[x], listed(inside, x, false));
-            }
+            const SlabRegion inside = solid_of(*figure);
+            for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
+                mask.slabs[x] = listed(inside, x, false);
             mask_used = &mask;
         }
         const Node seed = snap(op.seed, grid());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 namespace fppg
 {
@@ -288,6 +289,51 @@ private:
     std::array<Plane, 3> limits_;
 };
 
+/// A polygon in triangles, and the diagonals between them.
+struct PolygonCut
+{
+    std::vector<std::array<std::size_t, 3>> triangles;
+    std::vector<std::array<std::size_t, 2>> diagonals; ///< the one that cut triangle k off
+};
+
+/// Cuts a polygon as GenCase does (432 random prisms, ties included): the corner whose triangle
+/// with its neighbours has the least perimeter goes first, the first of equal ones.
+///
+/// polygon  indices into `nodes`, three or more
+PolygonCut cut_polygon(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon,
+                       const LatticeGrid& grid)
+{
+    PolygonCut cut;
+    std::vector<std::size_t> rest = polygon;
+    const auto distance = [&](std::size_t i, std::size_t j)
+    { return norm(position(nodes[i], grid) - position(nodes[j], grid)); };
+    while (rest.size() > 3)
+    {
+        const std::size_t n = rest.size();
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            const std::size_t a = rest[(k + n - 1) % n];
+            const std::size_t b = rest[k];
+            const std::size_t c = rest[(k + 1) % n];
+            const double perimeter = distance(a, b) + distance(b, c) + distance(a, c);
+            if (perimeter < least)
+            {
+                least = perimeter;
+                best = k;
+            }
+        }
+        const std::size_t a = rest[(best + n - 1) % n];
+        const std::size_t c = rest[(best + 1) % n];
+        cut.triangles.push_back({a, rest[best], c});
+        cut.diagonals.push_back({a, c});
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    cut.triangles.push_back({rest[0], rest[1], rest[2]});
+    return cut;
+}
+
 } // namespace
 
 SlabRegion points_region(const std::vector<Vec3>& points, const LatticeGrid& grid)
@@ -448,97 +494,262 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
                                                bool only_visible)
 {
     std::vector<SnappedTriangle> out;
+    std::vector<Node> nodes;
+    for (const Vec3& v : figure.vertices) nodes.push_back(snap(v, grid));
     for (const FigureFace& face : figure.faces)
     {
         if (only_visible && !face.is_visible) continue;
-        for (std::size_t i = 2; i < face.vertices.size(); ++i)
-            out.push_back({snap(figure.vertices[face.vertices[0]], grid),
-                           snap(figure.vertices[face.vertices[i - 1]], grid),
-                           snap(figure.vertices[face.vertices[i]], grid)});
+        if (face.cut.empty())
+        {
+            for (std::size_t i = 2; i < face.vertices.size(); ++i)
+                out.push_back({nodes[face.vertices[0]], nodes[face.vertices[i - 1]],
+                               nodes[face.vertices[i]]});
+            continue;
+        }
+        const PolygonCut cut = cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid);
+        for (const auto& t : cut.triangles)
+            out.push_back({nodes[t[0] + face.cut_offset], nodes[t[1] + face.cut_offset],
+                           nodes[t[2] + face.cut_offset]});
     }
     return out;
 }
 
-SlabRegion body_region(const FigureOp& figure, const std::vector<std::uint32_t>& body,
-                       const LatticeGrid& grid)
+namespace
 {
-    // In whole numbers of dp, so that the test is exact: a node is inside when it lies strictly
-    // behind the plane of every triangle.
-    struct WholePlane
+
+/// A convex part of a solid: nodes with a positive value in all planes, inside a box.
+struct SolidPart
+{
+    std::vector<Plane> planes;
+    NodeBox box;
+};
+
+/// Nodes of a face between two parts that are strictly on the inner side of all planes of one of
+/// the sets.
+struct InnerFace
+{
+    std::vector<SnappedTriangle> triangles;
+    std::vector<std::vector<Plane>> sides;
+};
+
+class SolidCutter
+{
+public:
+    SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
     {
-        std::array<std::int64_t, 3> normal;
-        std::int64_t offset;
-    };
-    auto planes = std::make_shared<std::vector<WholePlane>>();
-    NodeBox box{{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-    for (const std::uint32_t f : body)
+        for (const std::uint32_t v : figure.solid_vertices)
+            nodes_.push_back(snap(figure.vertices[v], grid));
+        if (figure.solid == SolidKind::Prism) cut_prism();
+        if (figure.solid == SolidKind::Pyramid) cut_pyramid();
+        if (figure.solid == SolidKind::Faces) take_faces(figure);
+    }
+
+    std::vector<SolidPart> parts;
+    std::vector<InnerFace> inner_faces;
+
+private:
+    Plane plane(const Node& a, const Node& b, const Node& c) const
     {
-        FigureOp one;
-        one.vertices = figure.vertices;
-        one.faces = {figure.faces[f]};
-        for (const SnappedTriangle& t : snapped_triangles(one, grid, false))
+        return plane_through(position(a, grid_), position(b, grid_), position(c, grid_));
+    }
+
+    void add_part(std::vector<Plane> planes, const std::vector<Node>& corners)
+    {
+        SolidPart part;
+        part.planes = std::move(planes);
+        part.box = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
+        for (const Node& n : corners)
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                const auto k = static_cast<std::size_t>(axis);
+                part.box.begin[k] = std::min(part.box.begin[k], n[axis]);
+                part.box.end[k] = std::max(part.box.end[k], n[axis] + 1);
+            }
+        part.box = intersect(part.box, whole_lattice(grid_));
+        if (!part.box.is_empty()) parts.push_back(std::move(part));
+    }
+
+    static bool has_edge(const std::array<std::size_t, 3>& triangle,
+                         const std::array<std::size_t, 2>& edge)
+    {
+        return std::find(triangle.begin(), triangle.end(), edge[0]) != triangle.end() &&
+               std::find(triangle.begin(), triangle.end(), edge[1]) != triangle.end();
+    }
+
+    void cut_prism()
+    {
+        const std::size_t n = nodes_.size() / 2;
+        std::vector<std::size_t> polygon(n);
+        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
+        const PolygonCut cut = cut_polygon(nodes_, polygon, grid_);
+        std::vector<std::vector<Plane>> ends;
+        for (const auto& t : cut.triangles)
         {
-            for (const Node& n : {t.a, t.b, t.c})
-                for (int axis = 0; axis < 3; ++axis)
-                {
-                    const auto k = static_cast<std::size_t>(axis);
-                    box.begin[k] = std::min(box.begin[k], n[axis]);
-                    box.end[k] = std::max(box.end[k], n[axis] + 1);
-                }
-            const std::array<std::int64_t, 3> u{t.b.x - t.a.x, t.b.y - t.a.y, t.b.z - t.a.z};
-            const std::array<std::int64_t, 3> v{t.c.x - t.a.x, t.c.y - t.a.y, t.c.z - t.a.z};
-            WholePlane p{
-                {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]},
-                0};
-            if (p.normal[0] == 0 && p.normal[1] == 0 && p.normal[2] == 0) continue;
-            p.offset = -(p.normal[0] * t.a.x + p.normal[1] * t.a.y + p.normal[2] * t.a.z);
-            planes->push_back(p);
+            std::array<Node, 3> p;
+            std::array<Node, 3> q;
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                p[i] = nodes_[t[i]];
+                q[i] = nodes_[n + t[i]];
+            }
+            std::vector<Plane> planes{plane(p[0], p[1], p[2]), plane(q[0], q[2], q[1])};
+            ends.push_back(planes);
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
+            add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
+        }
+        for (const auto& d : cut.diagonals)
+        {
+            InnerFace face;
+            const Node& a = nodes_[d[0]];
+            const Node& b = nodes_[d[1]];
+            const Node& b_top = nodes_[n + d[1]];
+            const Node& a_top = nodes_[n + d[0]];
+            face.triangles = {{a, b, b_top}, {a, b_top, a_top}};
+            for (std::size_t t = 0; t < cut.triangles.size(); ++t)
+                if (has_edge(cut.triangles[t], d)) face.sides.push_back(ends[t]);
+            inner_faces.push_back(std::move(face));
         }
     }
-    box = intersect(box, whole_lattice(grid));
-    SlabRegion region;
-    if (planes->empty() || box.is_empty()) return region;
-    region.x_begin = static_cast<std::uint32_t>(box.begin[0]);
-    region.x_end = static_cast<std::uint32_t>(box.end[0]);
-    region.emit = [planes, box](std::uint32_t x, Spans& out)
+
+    bool is_flat(const std::vector<std::size_t>& polygon) const
     {
-        for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
+        const Node& a = nodes_[polygon[0]];
+        const Node& b = nodes_[polygon[1]];
+        const Node& c = nodes_[polygon[2]];
+        const std::array<__int128, 3> u{b.x - a.x, b.y - a.y, b.z - a.z};
+        const std::array<__int128, 3> v{c.x - a.x, c.y - a.y, c.z - a.z};
+        for (std::size_t k = 3; k < polygon.size(); ++k)
         {
-            std::int64_t lo = box.begin[2];
-            std::int64_t hi = box.end[2] - 1;
-            for (const WholePlane& p : *planes)
-            {
-                // normal . n + offset < 0
-                const __int128 rest = static_cast<__int128>(p.normal[0]) * x +
-                                      static_cast<__int128>(p.normal[1]) * y + p.offset;
-                const __int128 nz = p.normal[2];
-                if (nz == 0)
+            const Node& d = nodes_[polygon[k]];
+            const std::array<__int128, 3> w{d.x - a.x, d.y - a.y, d.z - a.z};
+            const __int128 volume = (u[1] * v[2] - u[2] * v[1]) * w[0] +
+                                    (u[2] * v[0] - u[0] * v[2]) * w[1] +
+                                    (u[0] * v[1] - u[1] * v[0]) * w[2];
+            if (volume != 0) return false;
+        }
+        return true;
+    }
+
+    void cut_pyramid()
+    {
+        const std::size_t n = nodes_.size() - 1;
+        std::vector<std::size_t> base(n);
+        std::iota(base.begin(), base.end(), std::size_t{1});
+        const Node& apex = nodes_[0];
+        if (is_flat(base))
+        {
+            std::vector<Plane> planes{plane(nodes_[1], nodes_[2], nodes_[3])};
+            for (std::size_t i = 0; i < n; ++i)
+                planes.push_back(plane(apex, nodes_[1 + (i + 1) % n], nodes_[1 + i]));
+            add_part(std::move(planes), nodes_);
+            return;
+        }
+        const PolygonCut cut = cut_polygon(nodes_, base, grid_);
+        for (const auto& t : cut.triangles)
+        {
+            const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
+            std::vector<Plane> planes{plane(b[0], b[1], b[2])};
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            add_part(std::move(planes), {apex, b[0], b[1], b[2]});
+        }
+        for (const auto& d : cut.diagonals)
+        {
+            InnerFace face;
+            face.triangles = {{apex, nodes_[d[0]], nodes_[d[1]]}};
+            for (const auto& t : cut.triangles)
+                if (has_edge(t, d))
+                    face.sides.push_back({plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])});
+            inner_faces.push_back(std::move(face));
+        }
+    }
+
+    void take_faces(const FigureOp& figure)
+    {
+        std::vector<Plane> planes;
+        for (const SnappedTriangle& t : snapped_triangles(figure, grid_, false))
+            planes.push_back(plane(t.a, t.c, t.b));
+        for (const Vec3& v : figure.vertices) nodes_.push_back(snap(v, grid_));
+        add_part(std::move(planes), nodes_);
+    }
+
+    LatticeGrid grid_;
+    std::vector<Node> nodes_;
+};
+
+void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t slab, Spans& out)
+{
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+    for (std::int64_t iy = part.box.begin[1]; iy < part.box.end[1]; ++iy)
+    {
+        const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
+        double lo = static_cast<double>(part.box.begin[2]);
+        double hi = static_cast<double>(part.box.end[2] - 1);
+        for (const Plane& p : part.planes)
+            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0);
+        std::int64_t first = 0;
+        std::int64_t last = 0;
+        if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;
+        const auto is_inside = [&](std::int64_t k)
+        {
+            const Vec3 p{x, y, grid.origin.z + static_cast<double>(k) * grid.dp};
+            return std::all_of(part.planes.begin(), part.planes.end(),
+                               [&](const Plane& plane) { return plane.value(p) > 0; });
+        };
+        if (trim_interval(first, last, part.box.begin[2], part.box.end[2] - 1, is_inside))
+            out.push_back({static_cast<std::uint32_t>(iy), static_cast<std::uint32_t>(first),
+                           static_cast<std::uint32_t>(last) + 1});
+    }
+}
+
+} // namespace
+
+SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
+                        double limits_dp)
+{
+    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    SlabRegion region;
+    if (cutter->parts.empty()) return region;
+    std::int64_t begin = INT64_MAX;
+    std::int64_t end = 0;
+    for (const SolidPart& part : cutter->parts)
+    {
+        begin = std::min(begin, part.box.begin[0]);
+        end = std::max(end, part.box.end[0]);
+    }
+    region.x_begin = static_cast<std::uint32_t>(begin);
+    region.x_end = static_cast<std::uint32_t>(end);
+    struct Between
+    {
+        SlabRegion face;
+        std::vector<std::vector<Plane>> sides;
+    };
+    auto between = std::make_shared<std::vector<Between>>();
+    for (const InnerFace& face : cutter->inner_faces)
+        between->push_back(
+            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.sides});
+    region.emit = [cutter, between, grid](std::uint32_t slab, Spans& out)
+    {
+        for (const SolidPart& part : cutter->parts)
+            if (slab >= part.box.begin[0] && slab < part.box.end[0])
+                emit_part(part, grid, slab, out);
+        const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+        for (const Between& b : *between)
+        {
+            if (slab < b.face.x_begin || slab >= b.face.x_end) continue;
+            Spans nodes;
+            b.face.emit(slab, nodes);
+            for (const Span& s : nodes)
+                for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
                 {
-                    if (rest >= 0) hi = lo - 1;
+                    const Vec3 p{x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp};
+                    const auto is_between = [&](const std::vector<Plane>& planes)
+                    {
+                        return std::all_of(planes.begin(), planes.end(),
+                                           [&](const Plane& plane) { return plane.value(p) > 0; });
+                    };
+                    if (std::any_of(b.sides.begin(), b.sides.end(), is_between))
+                        out.push_back({s.y, z, z + 1});
                 }
-                else if (nz > 0)
-                {
-                    // z < -rest / nz
-                    __int128 q = -rest / nz;
-                    if (q * nz >= -rest) --q; // largest q with q * nz < -rest
-                    while ((q + 1) * nz < -rest) ++q;
-                    hi = std::min<std::int64_t>(
-                        hi, static_cast<std::int64_t>(std::clamp<__int128>(q, -1, INT64_MAX / 4)));
-                }
-                else
-                {
-                    // z > rest / -nz
-                    __int128 q = rest / -nz;
-                    while (q * -nz <= rest) ++q;
-                    while ((q - 1) * -nz > rest) --q;
-                    lo = std::max<std::int64_t>(
-                        lo, static_cast<std::int64_t>(std::clamp<__int128>(q, -1, INT64_MAX / 4)));
-                }
-                if (lo > hi) break;
-            }
-            if (lo <= hi)
-                out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(lo),
-                               static_cast<std::uint32_t>(hi) + 1});
         }
     };
     return region;
