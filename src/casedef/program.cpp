@@ -592,7 +592,8 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     {
         op.depth_min = 0;
         op.depth_max = 2 * def_.grid.dp;
-        op.reverse = read_.flag_or(e, "reverse", false);
+        if (read_.flag_or(e, "reverse", false)) read_.fail_unsupported(e, "reverse=\"true\"");
+        if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
         if (const Element* depth = e.find_child("depth"))
         {
             const auto low = read_.number_if(*depth, "depthmin");

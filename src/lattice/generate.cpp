@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "core/parallel.h"
+#include "lattice/depth_region.h"
 #include "lattice/flood.h"
 #include "lattice/mesh_path.h"
 #include "lattice/plane_shapes.h"
@@ -203,6 +204,11 @@ private:
                                 snap(moved.vertices[3 * t + 2], grid())};
             },
             4096);
+        if (op.advanced)
+        {
+            paint_region(depth_region(moved, op.depth_min, op.depth_max, grid(), threads_));
+            return;
+        }
         if (op.fill_inside)
         {
             paint_region(region_of(inside_spans(moved, grid(), threads_)));

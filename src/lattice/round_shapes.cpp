@@ -70,227 +70,239 @@ double rounded_radius(double radius, double dp)
 SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const LatticeGrid& grid)
 {
     const Node c = snap(sphere.center, grid);
-    const double width = state.constants.sphere;
+    const Vec3 center = position(c, grid);
+    const double width = state.constants.sphere * grid.dp;
     struct Shell
     {
-        double outer;      // d < outer, or d <= outer
-        bool is_open;      // d < outer
-        double inner = -1; // d <= inner is left out; negative: nothing is
+        bool has_face = false; // |distance - radius| < width
+        double radius = 0;
+        bool has_ball = false; // distance <= ball
+        double ball = 0;
     };
     std::vector<Shell> shells;
-    const auto add_face = [&](double radius)
-    {
-        const double r = rounded_radius(radius, grid.dp);
-        shells.push_back({r + width, true, r - width});
-    };
+    const auto add = [&](double radius, bool face, bool ball)
+    { shells.push_back({face, rounded_radius(radius, grid.dp) * grid.dp, ball, radius}); };
     if (!sphere.layers_dp.empty())
-        for (const double layer : sphere.layers_dp) add_face(sphere.radius + layer * grid.dp);
-    else if (state.mode == DrawMode::Face)
-        add_face(sphere.radius);
-    else if (state.mode == DrawMode::Full)
-        shells.push_back({rounded_radius(sphere.radius, grid.dp) + width, true});
+        for (const double layer : sphere.layers_dp) add(sphere.radius + layer * grid.dp, true, false);
     else
-        shells.push_back({sphere.radius / grid.dp, false});
+        add(sphere.radius, state.mode != DrawMode::Solid, state.mode != DrawMode::Face);
 
     double reach = 0;
-    for (const Shell& s : shells) reach = std::max(reach, s.outer);
-    const NodeBox box = around(c, static_cast<std::int64_t>(std::ceil(std::min(reach, 4e9))), grid);
+    for (const Shell& s : shells) reach = std::max({reach, s.radius + width, s.ball});
+    const NodeBox box =
+        around(c, static_cast<std::int64_t>(std::ceil(std::min(std::max(reach, 0.0) / grid.dp, 4e9))) + 1, grid);
     SlabRegion region = region_of(box);
-    region.emit = [=](std::uint32_t x, Spans& out)
+    region.emit = [=](std::uint32_t slab, Spans& out)
     {
+        const Interval column{box.begin[2], box.end[2] - 1};
+        const double dx = center.x - (grid.origin.x + slab * grid.dp);
         for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
         {
-            const auto dx = static_cast<double>(x - c.x);
-            const auto dy = static_cast<double>(y - c.y);
+            const double dy = center.y - (grid.origin.y + static_cast<double>(y) * grid.dp);
             const double flat = dx * dx + dy * dy;
+            const auto distance = [&](std::int64_t z)
+            {
+                const double dz = center.z - (grid.origin.z + static_cast<double>(z) * grid.dp);
+                return std::sqrt(flat + dz * dz);
+            };
+            // Nodes nearer than `limit`, an interval around the centre.
+            const auto ball = [&](double limit, const auto& holds) -> Interval
+            {
+                const double rest = limit * limit - flat;
+                if (limit < 0 || rest < -4 * grid.dp * limit) return {};
+                const double half = std::min(std::sqrt(std::max(rest, 0.0)) / grid.dp, 4e9);
+                Interval i{c.z - static_cast<std::int64_t>(half), c.z + static_cast<std::int64_t>(half)};
+                if (!trim_interval(i.first, i.last, column.first, column.last, holds)) return {};
+                return i;
+            };
             for (const Shell& s : shells)
             {
-                const auto distance = [&](std::int64_t z)
+                if (s.has_face)
                 {
-                    const auto dz = static_cast<double>(z - c.z);
-                    return std::sqrt(flat + dz * dz);
-                };
-                const auto ball = [&](double limit, const auto& holds) -> Interval
-                {
-                    const double rest = limit * limit - flat;
-                    const auto half = static_cast<std::int64_t>(std::sqrt(std::max(rest, 0.0)));
-                    Interval i{c.z - half, c.z + half};
-                    if (limit < 0 ||
-                        !trim_interval(i.first, i.last, INT64_MIN / 2, INT64_MAX / 2, holds))
-                        return {};
-                    return i;
-                };
-                Interval outer =
-                    ball(s.outer, [&](std::int64_t z)
-                         { return s.is_open ? distance(z) < s.outer : distance(z) <= s.outer; });
-                const Interval inner = s.inner < 0 ? Interval{}
-                                                   : ball(s.inner, [&](std::int64_t z)
-                                                          { return distance(z) <= s.inner; });
-                outer = meet(outer, {box.begin[2], box.end[2] - 1});
-                push_without(out, y, outer, inner);
+                    const Interval outer =
+                        ball(s.radius + width, [&](std::int64_t z) { return distance(z) - s.radius < width; });
+                    const Interval inner =
+                        ball(s.radius - width, [&](std::int64_t z) { return !(s.radius - distance(z) < width); });
+                    push_without(out, y, outer, inner);
+                }
+                if (s.has_ball)
+                    push_without(out, y, ball(s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }), {});
             }
         }
     };
     return region;
 }
 
-SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
-                           const LatticeGrid& grid)
+SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, const LatticeGrid& grid)
 {
-    const Node a = snap(cylinder.p0, grid);
-    const Node b = snap(cylinder.p1, grid);
-    const Vec3 axis_vector{static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y),
-                           static_cast<double>(b.z - a.z)};
-    const double length = norm(axis_vector);
-    SlabRegion region;
-    if (length == 0) return region;
-    const Vec3 u = axis_vector / length;
-    const double tube_width = state.constants.cylinder_tube;
-    const double cover_width = state.constants.cylinder_cover;
-
-    // One piece: t within [t_min, t_max] (open or closed) and q in a ring.
+    // One way to be taken: the values va and vb at the two ends of the axis (along it, unnormalised), and
+    // the distance from the axis.
     struct Piece
     {
-        double t_min;
-        double t_max;
-        bool t_open;
-        double q_max;
-        bool q_open;
-        double q_min = -1; // q <= q_min is left out; negative: nothing is
+        int cover = -1; // 0, 1: near that end's plane; -1: between the two
+        double radius = 0;
+        bool is_shell = false; // |distance - radius| < width, else distance <= radius
     };
-    std::vector<Piece> pieces;
-    const bool all_visible =
-        cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
-    const auto add_faces = [&](double radius, double cover_shift)
+    struct Body
     {
-        const double r = rounded_radius(radius, grid.dp);
-        const double real = radius / grid.dp;
-        const double low = -cover_shift;
-        const double high = length + cover_shift;
+        Node a;
+        Node b;
+        std::vector<Piece> pieces;
+    };
+    std::vector<Body> bodies;
+    const bool all_visible = cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
+    const auto add_faces = [&](Body& body, double radius)
+    {
         if (cylinder.is_visible[2])
-            pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
-        if (cylinder.is_visible[0])
-            pieces.push_back({low - cover_width, low + cover_width, true, real, false});
-        if (cylinder.is_visible[1])
-            pieces.push_back({high - cover_width, high + cover_width, true, real, false});
+            body.pieces.push_back({-1, rounded_radius(radius, grid.dp) * grid.dp, true});
+        if (cylinder.is_visible[0]) body.pieces.push_back({0, radius, false});
+        if (cylinder.is_visible[1]) body.pieces.push_back({1, radius, false});
     };
     if (!cylinder.layers_dp.empty())
     {
+        const double length = norm(cylinder.p1 - cylinder.p0);
+        const Vec3 u = length > 0 ? (cylinder.p1 - cylinder.p0) / length : Vec3{};
         for (const double layer : cylinder.layers_dp)
         {
             // Visible covers move outwards with the layer, hidden ones stay where they are.
-            const double r = rounded_radius(cylinder.radius + layer * grid.dp, grid.dp);
-            const double real = (cylinder.radius + layer * grid.dp) / grid.dp;
-            const double shift = std::floor(layer + 0.5);
-            const double low = cylinder.is_visible[0] ? -shift : 0;
-            const double high = length + (cylinder.is_visible[1] ? shift : 0);
-            if (cylinder.is_visible[2])
-                pieces.push_back({low, high, false, r + tube_width, true, r - tube_width});
-            if (cylinder.is_visible[0])
-                pieces.push_back({low - cover_width, low + cover_width, true, real, false});
-            if (cylinder.is_visible[1])
-                pieces.push_back({high - cover_width, high + cover_width, true, real, false});
+            const double shift = layer * grid.dp;
+            Body body{snap(cylinder.is_visible[0] ? cylinder.p0 - u * shift : cylinder.p0, grid),
+                      snap(cylinder.is_visible[1] ? cylinder.p1 + u * shift : cylinder.p1, grid),
+                      {}};
+            add_faces(body, cylinder.radius + shift);
+            bodies.push_back(body);
         }
     }
     else
     {
-        if (state.mode != DrawMode::Solid || !all_visible) add_faces(cylinder.radius, 0);
-        if (state.mode != DrawMode::Face && all_visible)
-            pieces.push_back({0, length, false, cylinder.radius / grid.dp, false});
+        Body body{snap(cylinder.p0, grid), snap(cylinder.p1, grid), {}};
+        if (state.mode != DrawMode::Solid || !all_visible) add_faces(body, cylinder.radius);
+        if (state.mode != DrawMode::Face && all_visible) body.pieces.push_back({-1, cylinder.radius, false});
+        bodies.push_back(body);
     }
-    if (pieces.empty()) return region;
 
-    // The box of the round body, with room for rounding.
-    NodeBox box;
-    double reach = 0;
-    double t_low = 0;
-    double t_high = length;
-    for (const Piece& p : pieces)
+    const double tube_width = state.constants.cylinder_tube * grid.dp;
+    const double cover_width = state.constants.cylinder_cover * grid.dp;
+    NodeBox all{{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
+    std::vector<NodeBox> boxes;
+    for (const Body& body : bodies)
     {
-        reach = std::max(reach, p.q_max);
-        t_low = std::min(t_low, p.t_min);
-        t_high = std::max(t_high, p.t_max);
-    }
-    for (int k = 0; k < 3; ++k)
-    {
-        const double e0 = static_cast<double>(a[k]) + t_low * u[k];
-        const double e1 = static_cast<double>(a[k]) + t_high * u[k];
-        const double side = reach * std::sqrt(std::max(0.0, 1 - u[k] * u[k]));
-        box.begin[static_cast<std::size_t>(k)] =
-            static_cast<std::int64_t>(std::floor(std::min(e0, e1) - side)) - 1;
-        box.end[static_cast<std::size_t>(k)] =
-            static_cast<std::int64_t>(std::ceil(std::max(e0, e1) + side)) + 2;
-    }
-    box = intersect(box, whole_lattice(grid));
-    region = region_of(box);
-    region.emit = [=](std::uint32_t x, Spans& out)
-    {
-        const std::int64_t z_min = box.begin[2];
-        const std::int64_t z_max = box.end[2] - 1;
-        for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
+        double reach = 0;
+        for (const Piece& p : body.pieces) reach = std::max(reach, p.radius + (p.is_shell ? tube_width : 0));
+        const Vec3 a = position(body.a, grid);
+        const Vec3 axis = position(body.b, grid) - a;
+        const double length = norm(axis);
+        NodeBox box;
+        for (int k = 0; k < 3; ++k)
         {
-            const auto dx = static_cast<double>(static_cast<std::int64_t>(x) - a.x);
-            const auto dy = static_cast<double>(y - a.y);
-            const auto along = [&](std::int64_t z)
-            { return dx * u.x + dy * u.y + static_cast<double>(z - a.z) * u.z; };
-            const auto across = [&](std::int64_t z)
+            const auto i = static_cast<std::size_t>(k);
+            const double u = length > 0 ? axis[k] / length : 0;
+            const double side = (reach * std::sqrt(std::max(0.0, 1 - u * u)) + cover_width * std::fabs(u)) / grid.dp;
+            box.begin[i] = std::min(body.a[k], body.b[k]) - static_cast<std::int64_t>(std::ceil(side)) - 1;
+            box.end[i] = std::max(body.a[k], body.b[k]) + static_cast<std::int64_t>(std::ceil(side)) + 2;
+        }
+        box = intersect(box, whole_lattice(grid));
+        // An axis of no length draws nothing.
+        if (length == 0) box = {};
+        boxes.push_back(box);
+        if (box.is_empty()) continue;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            all.begin[i] = std::min(all.begin[i], box.begin[i]);
+            all.end[i] = std::max(all.end[i], box.end[i]);
+        }
+    }
+    SlabRegion region = region_of(all);
+    region.emit = [=](std::uint32_t slab, Spans& out)
+    {
+        for (std::size_t n = 0; n < bodies.size(); ++n)
+        {
+            const NodeBox& box = boxes[n];
+            if (box.is_empty() || slab < box.begin[0] || slab >= box.end[0]) continue;
+            const Vec3 a = position(bodies[n].a, grid);
+            const Vec3 b = position(bodies[n].b, grid);
+            const Vec3 axis = b - a;
+            const double length = norm(axis);
+            const double offset_a = -dot(axis, a);
+            const double offset_b = -dot(axis, b);
+            const std::int64_t z_min = box.begin[2];
+            const std::int64_t z_max = box.end[2] - 1;
+            const double x = grid.origin.x + slab * grid.dp;
+            const Vec3 u = axis / length;
+            for (std::int64_t iy = box.begin[1]; iy < box.end[1]; ++iy)
             {
-                const Vec3 d{dx, dy, static_cast<double>(z - a.z)};
-                return norm(cross(d, axis_vector)) / length;
-            };
-            // q^2 = qa w^2 + 2 qb w + qc with w = z - a.z
-            const double flat = dx * u.x + dy * u.y;
-            const double qa = 1 - u.z * u.z;
-            const double qb = -flat * u.z;
-            const double qc = dx * dx + dy * dy - flat * flat;
-            const auto ring = [&](double limit, const auto& holds) -> Interval
-            {
-                if (limit < 0) return {};
-                double lo = static_cast<double>(z_min);
-                double hi = static_cast<double>(z_max);
-                if (qa > 1e-12)
+                const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
+                const auto at = [&](std::int64_t k)
+                { return Vec3{x, y, grid.origin.z + static_cast<double>(k) * grid.dp}; };
+                const auto distance = [&](std::int64_t k)
                 {
-                    const double disc = qb * qb - qa * (qc - limit * limit);
-                    const double root = std::sqrt(std::max(disc, 0.0));
-                    lo = (-qb - root) / qa + static_cast<double>(a.z);
-                    hi = (-qb + root) / qa + static_cast<double>(a.z);
-                    lo = std::clamp(lo, static_cast<double>(z_min) - 3,
-                                    static_cast<double>(z_max) + 3);
-                    hi = std::clamp(hi, static_cast<double>(z_min) - 3,
-                                    static_cast<double>(z_max) + 3);
-                }
-                Interval i{static_cast<std::int64_t>(std::floor(lo)),
-                           static_cast<std::int64_t>(std::ceil(hi))};
-                if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
-                return i;
-            };
-            for (const Piece& p : pieces)
-            {
-                double lo = static_cast<double>(z_min);
-                double hi = static_cast<double>(z_max);
-                if (std::fabs(u.z) > 1e-12)
-                {
-                    const double e0 = (p.t_min - flat) / u.z + static_cast<double>(a.z);
-                    const double e1 = (p.t_max - flat) / u.z + static_cast<double>(a.z);
-                    lo = std::clamp(std::min(e0, e1), lo - 3, hi + 3);
-                    hi = std::clamp(std::max(e0, e1), lo, hi + 3);
-                }
-                Interval t{static_cast<std::int64_t>(std::floor(lo)),
-                           static_cast<std::int64_t>(std::ceil(hi))};
-                const auto in_slab = [&](std::int64_t z)
-                {
-                    const double v = along(z);
-                    return p.t_open ? v > p.t_min && v < p.t_max : v >= p.t_min && v <= p.t_max;
+                    const Vec3 p = at(k);
+                    return norm(cross(a - p, b - p)) / length;
                 };
-                if (!trim_interval(t.first, t.last, z_min, z_max, in_slab)) continue;
-                const Interval outer =
-                    ring(p.q_max, [&](std::int64_t z)
-                         { return p.q_open ? across(z) < p.q_max : across(z) <= p.q_max; });
-                if (outer.is_empty()) continue;
-                const Interval inner = p.q_min < 0 ? Interval{}
-                                                   : ring(p.q_min, [&](std::int64_t z)
-                                                          { return across(z) <= p.q_min; });
-                push_without(out, y, meet(outer, t), inner);
+                const auto value_a = [&](std::int64_t k) { return dot(axis, at(k)) + offset_a; };
+                const auto value_b = [&](std::int64_t k) { return dot(axis, at(k)) + offset_b; };
+
+                // Estimates: distance^2 = qa w^2 + 2 qb w + qc with w the height above a, in metres.
+                const double flat = (x - a.x) * u.x + (y - a.y) * u.y;
+                const double qa = 1 - u.z * u.z;
+                const double qb = -flat * u.z;
+                const double qc = (x - a.x) * (x - a.x) + (y - a.y) * (y - a.y) - flat * flat;
+                const auto to_index = [&](double w)
+                {
+                    const double i = (a.z + w - grid.origin.z) / grid.dp;
+                    return std::clamp(i, static_cast<double>(z_min) - 3, static_cast<double>(z_max) + 3);
+                };
+                const auto within = [&](double limit, const auto& holds) -> Interval
+                {
+                    if (limit < 0) return {};
+                    Interval i{z_min, z_max};
+                    if (qa > 1e-12)
+                    {
+                        const double root = std::sqrt(std::max(0.0, qb * qb - qa * (qc - limit * limit)));
+                        i.first = static_cast<std::int64_t>(std::floor(to_index((-qb - root) / qa)));
+                        i.last = static_cast<std::int64_t>(std::ceil(to_index((-qb + root) / qa)));
+                    }
+                    if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
+                    return i;
+                };
+                const auto along = [&](double t_min, double t_max, const auto& holds) -> Interval
+                {
+                    Interval i{z_min, z_max};
+                    if (std::fabs(u.z) > 1e-12)
+                    {
+                        const double e0 = to_index((t_min - flat) / u.z);
+                        const double e1 = to_index((t_max - flat) / u.z);
+                        i.first = static_cast<std::int64_t>(std::floor(std::min(e0, e1)));
+                        i.last = static_cast<std::int64_t>(std::ceil(std::max(e0, e1)));
+                    }
+                    if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
+                    return i;
+                };
+                for (const Piece& p : bodies[n].pieces)
+                {
+                    Interval t;
+                    if (p.cover < 0)
+                        t = along(0, length, [&](std::int64_t k) { return value_a(k) >= 0 && value_b(k) <= 0; });
+                    else if (p.cover == 0)
+                        t = along(-cover_width, cover_width,
+                                  [&](std::int64_t k) { return std::fabs(value_a(k) / length) < cover_width; });
+                    else
+                        t = along(length - cover_width, length + cover_width,
+                                  [&](std::int64_t k) { return std::fabs(value_b(k) / length) < cover_width; });
+                    if (t.is_empty()) continue;
+                    if (!p.is_shell)
+                    {
+                        const Interval disc =
+                            within(p.radius, [&](std::int64_t k) { return distance(k) <= p.radius; });
+                        push_without(out, iy, meet(disc, t), {});
+                        continue;
+                    }
+                    const Interval outer = within(p.radius + tube_width, [&](std::int64_t k)
+                                                  { return distance(k) - p.radius < tube_width; });
+                    const Interval inner = within(p.radius - tube_width, [&](std::int64_t k)
+                                                  { return !(p.radius - distance(k) < tube_width); });
+                    push_without(out, iy, meet(outer, t), inner);
+                }
             }
         }
     };
