@@ -107,6 +107,8 @@ struct FigureFace
     /// the one drawn (the top of a prism is cut as its bottom).
     std::vector<std::uint32_t> cut;
     std::uint32_t cut_offset = 0;
+    /// Triangles that stand for the polygon whatever its shape; empty: as above.
+    std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 /// How the inside of a figure is found.
@@ -114,6 +116,7 @@ enum class SolidKind : std::uint8_t
 {
     None,    ///< an open surface: nothing is filled
     Prism,   ///< solid_vertices: bottom polygon, then the top one, pairs in the same order
+    Box,     ///< as Prism, four corners, always cut from the second to the fourth
     Pyramid, ///< solid_vertices: apex, then the base polygon
     Faces,   ///< strictly behind all faces
 };

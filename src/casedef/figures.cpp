@@ -30,12 +30,12 @@ void add_prism_faces(FigureOp& figure, const std::vector<std::uint32_t>& corners
     const auto n = static_cast<std::uint32_t>(corners.size() / 2);
     const Face bottom(corners.begin(), corners.begin() + n);
     const Face top(corners.begin() + n, corners.end());
-    figure.faces.push_back({Face(bottom.rbegin(), bottom.rend()), true, bottom, 0});
-    figure.faces.push_back({top, true, bottom, top[0] - bottom[0]});
+    figure.faces.push_back({Face(bottom.rbegin(), bottom.rend()), true, bottom, 0, {}});
+    figure.faces.push_back({top, true, bottom, top[0] - bottom[0], {}});
     for (std::uint32_t i = 0; i < n; ++i)
     {
         const std::uint32_t j = (i + 1) % n;
-        figure.faces.push_back({{bottom[i], bottom[j], top[j], top[i]}, true, {}, 0});
+        figure.faces.push_back({{bottom[i], bottom[j], top[j], top[i]}, true, {}, 0, {}});
     }
 }
 
@@ -48,10 +48,13 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
                                 (c & 4) != 0 ? high.z : low.z});
     if (is_solid)
     {
-        box.solid = SolidKind::Prism;
+        box.solid = SolidKind::Box;
         box.solid_vertices = {corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0),
                               corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)};
         add_prism_faces(box, box.solid_vertices);
+        const std::vector<std::uint32_t>& c = box.solid_vertices;
+        box.faces[0].triangles = {{c[3], c[1], c[0]}, {c[1], c[3], c[2]}};
+        box.faces[1].triangles = {{c[7], c[5], c[4]}, {c[5], c[7], c[6]}};
         return box;
     }
     const std::array<Face, 6> quads{
@@ -62,7 +65,7 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
         Face{corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)},
         Face{corner(1, 1, 0), corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1)}};
     for (std::size_t side = 0; side < 6; ++side)
-        box.faces.push_back({quads[side], sides[side], {}, 0});
+        box.faces.push_back({quads[side], sides[side], {}, 0, {}});
     return box;
 }
 
@@ -114,9 +117,9 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
     Face base;
     for (std::uint32_t i = 0; i < n; ++i) base.push_back(n - i);
-    pyramid.faces.push_back({base, true, Face(base.rbegin(), base.rend()), 0});
+    pyramid.faces.push_back({base, true, Face(base.rbegin(), base.rend()), 0, {}});
     for (std::uint32_t i = 0; i < n; ++i)
-        pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0});
+        pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
     pyramid.solid_vertices = all_vertices(pyramid);
     return pyramid;
@@ -127,7 +130,7 @@ FigureOp make_fan(const std::vector<Vec3>& points)
     FigureOp fan;
     fan.vertices = points;
     for (std::uint32_t i = 2; i < points.size(); ++i)
-        fan.faces.push_back({{0, i - 1, i}, true, {}, 0});
+        fan.faces.push_back({{0, i - 1, i}, true, {}, 0, {}});
     return fan;
 }
 
@@ -136,7 +139,7 @@ FigureOp make_strip(const std::vector<Vec3>& points)
     FigureOp strip;
     strip.vertices = points;
     for (std::uint32_t i = 2; i < points.size(); ++i)
-        strip.faces.push_back({{i - 2, i - 1, i}, true, {}, 0});
+        strip.faces.push_back({{i - 2, i - 1, i}, true, {}, 0, {}});
     return strip;
 }
 
@@ -145,7 +148,7 @@ FigureOp make_polygon(const std::vector<Vec3>& points)
     FigureOp polygon;
     polygon.vertices = points;
     const Face face = all_vertices(polygon);
-    polygon.faces.push_back({face, true, face, 0});
+    polygon.faces.push_back({face, true, face, 0, {}});
     return polygon;
 }
 
@@ -158,7 +161,7 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
     for (std::uint32_t i = 0; i + (is_closed ? 0 : 1) < n; ++i)
     {
         const std::uint32_t j = (i + 1) % n;
-        out.faces.push_back({{i, j, n + j, n + i}, true, {}, 0});
+        out.faces.push_back({{i, j, n + j, n + i}, true, {}, 0, {}});
     }
     return out;
 }

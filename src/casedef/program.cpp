@@ -647,7 +647,8 @@ bool ProgramRunner::run_draw(const Element& e)
             {n == 3 ? std::vector<std::uint32_t>{0, 1, 2} : std::vector<std::uint32_t>{0, 1, 2, 3},
              true,
              {},
-             0});
+             0,
+             {}});
         add(e, std::move(op));
     }
     else if (name == "drawtrianglesstrip")

@@ -152,7 +152,7 @@ private:
                 for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
                     add(face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]);
             // The wire of a solid box shows the cut between its two prisms (rule S4).
-            if (op.solid == SolidKind::Prism && op.solid_vertices.size() == 8)
+            if (op.solid == SolidKind::Box)
             {
                 add(op.solid_vertices[1], op.solid_vertices[3]);
                 add(op.solid_vertices[5], op.solid_vertices[7]);

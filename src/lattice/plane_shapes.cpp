@@ -112,11 +112,12 @@ Plane plane_through(const Vec3& a, const Vec3& b, const Vec3& c)
     return plane;
 }
 
-/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, is above
-/// `limit`.
-void narrow(double& lo, double& hi, double v0, double step, double limit)
+/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, may be above `limit`.
+/// `noise` is what v0 may be off by rounding: where the function hardly changes along the column, nothing is
+/// cut off that the exact test might take.
+void narrow(double& lo, double& hi, double v0, double step, double limit, double noise)
 {
-    const double gap = limit - v0;
+    const double gap = limit - v0 - noise;
     if (step > 0)
         lo = std::max(lo, gap / step);
     else if (step < 0)
@@ -124,6 +125,9 @@ void narrow(double& lo, double& hi, double v0, double step, double limit)
     else if (gap > 0)
         hi = -std::numeric_limits<double>::infinity();
 }
+
+/// Rounding of a plane's values near the lattice, with room to spare.
+double noise_of(const Plane& plane, double dp) { return 1e-7 * norm(plane.normal) * dp; }
 
 /// Turns estimated real limits of an index range into integers, safely for infinities.
 bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max, std::int64_t& first,
@@ -201,10 +205,11 @@ public:
             const Vec3 foot{x, y, grid_.origin.z};
             const double height = plane_.value(foot);
             const double step = plane_.normal.z * grid_.dp;
-            narrow(lo, hi, height, step, -weight_ * length_);
-            narrow(lo, hi, -height, -step, -weight_ * length_);
+            const double noise = 1e-7 * length_ * grid_.dp;
+            narrow(lo, hi, height, step, -weight_ * length_, noise);
+            narrow(lo, hi, -height, -step, -weight_ * length_, noise);
             for (const Plane& limit : limits_)
-                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0);
+                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0, noise_of(limit, grid_.dp));
             std::int64_t first = 0;
             std::int64_t last = 0;
             if (!to_index_range(lo, hi, box_.begin[2], box_.end[2] - 1, first, last)) continue;
@@ -289,11 +294,10 @@ private:
     std::array<Plane, 3> limits_;
 };
 
-/// A polygon in triangles, and the diagonals between them.
+/// A polygon in triangles.
 struct PolygonCut
 {
     std::vector<std::array<std::size_t, 3>> triangles;
-    std::vector<std::array<std::size_t, 2>> diagonals; ///< the one that cut triangle k off
 };
 
 /// Cuts a polygon as GenCase does (432 random prisms, ties included): the corner whose triangle
@@ -327,7 +331,6 @@ PolygonCut cut_polygon(const std::vector<Node>& nodes, const std::vector<std::si
         const std::size_t a = rest[(best + n - 1) % n];
         const std::size_t c = rest[(best + 1) % n];
         cut.triangles.push_back({a, rest[best], c});
-        cut.diagonals.push_back({a, c});
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
     }
     cut.triangles.push_back({rest[0], rest[1], rest[2]});
@@ -499,6 +502,8 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
     for (const FigureFace& face : figure.faces)
     {
         if (only_visible && !face.is_visible) continue;
+        for (const auto& t : face.triangles) out.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
+        if (!face.triangles.empty()) continue;
         if (face.cut.empty())
         {
             for (std::size_t i = 2; i < face.vertices.size(); ++i)
@@ -507,9 +512,12 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
             continue;
         }
         const PolygonCut cut = cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid);
-        for (const auto& t : cut.triangles)
+        for (auto t : cut.triangles)
+        {
+            if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
             out.push_back({nodes[t[0] + face.cut_offset], nodes[t[1] + face.cut_offset],
                            nodes[t[2] + face.cut_offset]});
+        }
     }
     return out;
 }
@@ -524,12 +532,11 @@ struct SolidPart
     NodeBox box;
 };
 
-/// Nodes of a face between two parts that are strictly on the inner side of all planes of one of
-/// the sets.
+/// A face of one part towards another, of which the nodes strictly inside all of `limits` are drawn.
 struct InnerFace
 {
     std::vector<SnappedTriangle> triangles;
-    std::vector<std::vector<Plane>> sides;
+    std::vector<Plane> limits;
 };
 
 class SolidCutter
@@ -539,7 +546,8 @@ public:
     {
         for (const std::uint32_t v : figure.solid_vertices)
             nodes_.push_back(snap(figure.vertices[v], grid));
-        if (figure.solid == SolidKind::Prism) cut_prism();
+        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box)
+            cut_prism(figure.solid == SolidKind::Box);
         if (figure.solid == SolidKind::Pyramid) cut_pyramid();
         if (figure.solid == SolidKind::Faces) take_faces(figure);
     }
@@ -569,19 +577,35 @@ private:
         if (!part.box.is_empty()) parts.push_back(std::move(part));
     }
 
-    static bool has_edge(const std::array<std::size_t, 3>& triangle,
-                         const std::array<std::size_t, 2>& edge)
+    /// Calls body(i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
+    template <typename Body>
+    static void for_each_shared_side(const PolygonCut& cut, const Body& body)
     {
-        return std::find(triangle.begin(), triangle.end(), edge[0]) != triangle.end() &&
-               std::find(triangle.begin(), triangle.end(), edge[1]) != triangle.end();
+        for (std::size_t t = 0; t < cut.triangles.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                const std::size_t i = cut.triangles[t][k];
+                const std::size_t j = cut.triangles[t][(k + 1) % 3];
+                for (std::size_t u = 0; u < cut.triangles.size(); ++u)
+                {
+                    const auto& other = cut.triangles[u];
+                    if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
+                        std::find(other.begin(), other.end(), j) != other.end())
+                        body(i, j, u);
+                }
+            }
     }
 
-    void cut_prism()
+    void cut_prism(bool is_box)
     {
         const std::size_t n = nodes_.size() / 2;
         std::vector<std::size_t> polygon(n);
         std::iota(polygon.begin(), polygon.end(), std::size_t{0});
-        const PolygonCut cut = cut_polygon(nodes_, polygon, grid_);
+        PolygonCut cut;
+        if (is_box)
+            cut.triangles = {{3, 0, 1}, {1, 2, 3}};
+        else
+            cut = cut_polygon(nodes_, polygon, grid_);
         std::vector<std::vector<Plane>> ends;
         for (const auto& t : cut.triangles)
         {
@@ -597,18 +621,15 @@ private:
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
             add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
         }
-        for (const auto& d : cut.diagonals)
-        {
-            InnerFace face;
-            const Node& a = nodes_[d[0]];
-            const Node& b = nodes_[d[1]];
-            const Node& b_top = nodes_[n + d[1]];
-            const Node& a_top = nodes_[n + d[0]];
-            face.triangles = {{a, b, b_top}, {a, b_top, a_top}};
-            for (std::size_t t = 0; t < cut.triangles.size(); ++t)
-                if (has_edge(cut.triangles[t], d)) face.sides.push_back(ends[t]);
-            inner_faces.push_back(std::move(face));
-        }
+        for_each_shared_side(cut,
+                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const Node& a = nodes_[i];
+                                 const Node& b = nodes_[j];
+                                 const Node& b_top = nodes_[n + j];
+                                 const Node& a_top = nodes_[n + i];
+                                 inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
+                             });
     }
 
     bool is_flat(const std::vector<std::size_t>& polygon) const
@@ -649,18 +670,18 @@ private:
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
             std::vector<Plane> planes{plane(b[0], b[1], b[2])};
-            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            for (std::size_t i = 0; i < 3; ++i)
+                planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
             add_part(std::move(planes), {apex, b[0], b[1], b[2]});
         }
-        for (const auto& d : cut.diagonals)
-        {
-            InnerFace face;
-            face.triangles = {{apex, nodes_[d[0]], nodes_[d[1]]}};
-            for (const auto& t : cut.triangles)
-                if (has_edge(t, d))
-                    face.sides.push_back({plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])});
-            inner_faces.push_back(std::move(face));
-        }
+        for_each_shared_side(cut,
+                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const auto& t = cut.triangles[neighbour];
+                                 inner_faces.push_back(
+                                     {{{apex, nodes_[i], nodes_[j]}},
+                                      {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
+                             });
     }
 
     void take_faces(const FigureOp& figure)
@@ -685,7 +706,7 @@ void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t sla
         double lo = static_cast<double>(part.box.begin[2]);
         double hi = static_cast<double>(part.box.end[2] - 1);
         for (const Plane& p : part.planes)
-            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0);
+            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0, noise_of(p, grid.dp));
         std::int64_t first = 0;
         std::int64_t last = 0;
         if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;
@@ -721,12 +742,12 @@ SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double 
     struct Between
     {
         SlabRegion face;
-        std::vector<std::vector<Plane>> sides;
+        std::vector<Plane> limits;
     };
     auto between = std::make_shared<std::vector<Between>>();
     for (const InnerFace& face : cutter->inner_faces)
         between->push_back(
-            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.sides});
+            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.limits});
     region.emit = [cutter, between, grid](std::uint32_t slab, Spans& out)
     {
         for (const SolidPart& part : cutter->parts)
@@ -742,12 +763,8 @@ SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double 
                 for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
                 {
                     const Vec3 p{x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp};
-                    const auto is_between = [&](const std::vector<Plane>& planes)
-                    {
-                        return std::all_of(planes.begin(), planes.end(),
-                                           [&](const Plane& plane) { return plane.value(p) > 0; });
-                    };
-                    if (std::any_of(b.sides.begin(), b.sides.end(), is_between))
+                    if (std::all_of(b.limits.begin(), b.limits.end(),
+                                    [&](const Plane& limit) { return limit.value(p) > 0; }))
                         out.push_back({s.y, z, z + 1});
                 }
         }

@@ -262,6 +262,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                         i.first = static_cast<std::int64_t>(std::floor(to_index((-qb - root) / qa)));
                         i.last = static_cast<std::int64_t>(std::ceil(to_index((-qb + root) / qa)));
                     }
+                    else if (!holds(z_min))
+                        return {};
                     if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
                     return i;
                 };
@@ -275,11 +277,38 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                         i.first = static_cast<std::int64_t>(std::floor(std::min(e0, e1)));
                         i.last = static_cast<std::int64_t>(std::ceil(std::max(e0, e1)));
                     }
+                    else if (!holds(z_min))
+                        return {};
                     if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
                     return i;
                 };
+                // Upright axes: the distance is the same all along the column but for rounding. Within
+                // rounding of a limit, nodes are asked one by one; else the first stands for all.
+                const auto is_tie = [&](const Piece& p)
+                {
+                    if (qa > 1e-12) return false;
+                    const double d = distance(z_min);
+                    const double gap = p.is_shell ? std::fabs(std::fabs(d - p.radius) - tube_width)
+                                                  : std::fabs(d - p.radius);
+                    return gap < 1e-6 * grid.dp;
+                };
+                const auto is_taken = [&](const Piece& p, std::int64_t k)
+                {
+                    if (p.cover == 0 ? !(std::fabs(value_a(k) / length) < cover_width)
+                        : p.cover == 1
+                            ? !(std::fabs(value_b(k) / length) < cover_width)
+                            : !(value_a(k) >= 0 && value_b(k) <= 0))
+                        return false;
+                    return p.is_shell ? std::fabs(distance(k) - p.radius) < tube_width : distance(k) <= p.radius;
+                };
                 for (const Piece& p : bodies[n].pieces)
                 {
+                    if (is_tie(p))
+                    {
+                        for (std::int64_t k = z_min; k <= z_max; ++k)
+                            if (is_taken(p, k)) push(out, iy, k, k);
+                        continue;
+                    }
                     Interval t;
                     if (p.cover < 0)
                         t = along(0, length, [&](std::int64_t k) { return value_a(k) >= 0 && value_b(k) <= 0; });
