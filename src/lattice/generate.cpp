@@ -3,6 +3,7 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/flood.h"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <numeric>
 
@@ -110,15 +112,28 @@ private:
                      [&](std::size_t i)
                      {
                          const auto x = region.x_begin + static_cast<std::uint32_t>(i);
-                         paint(field_.slabs[x], listed(region, x, true), state().mk.mk);
+                         paint_slab(x, listed(region, x, true));
                      });
     }
 
     void paint_nodes(const std::vector<Spans>& nodes)
     {
         if (!state().draw_points) return;
-        parallel_for(nodes.size(), threads_,
-                     [&](std::size_t x) { paint(field_.slabs[x], nodes[x], state().mk.mk); });
+        parallel_for(nodes.size(), threads_, [&](std::size_t x) { paint_slab(x, nodes[x]); });
+    }
+
+    /// Stops with a message where the machine would start to swap or kill the process.
+    void paint_slab(std::size_t x, const Spans& spans)
+    {
+        std::vector<Run>& slab = field_.slabs[x];
+        const std::size_t before = slab.size();
+        paint(slab, spans, state().mk.mk);
+        const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
+        if (runs > run_limit_ && runs < UINT64_MAX / 2)
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: the drawn regions need more memory than this machine has left: {} runs "
+                                        "of nodes so far; a larger dp or a smaller domain needs less",
+                                        op_->source.command, runs));
     }
 
     void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
@@ -289,6 +304,19 @@ private:
         return intersect(box, whole_lattice(grid()));
     }
 
+    /// An index of all columns of a fill's box is kept while it runs.
+    void check_columns(const NodeBox& box) const
+    {
+        if (box.is_empty()) return;
+        const double columns =
+            static_cast<double>(box.end[0] - box.begin[0]) * static_cast<double>(box.end[1] - box.begin[1]);
+        if (columns * 40 > static_cast<double>(memory_))
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: the fill reaches over {:g} columns of nodes, more than fit into this "
+                                        "machine's memory; <fillbox> limits it",
+                                        op_->source.command, columns));
+    }
+
     void draw(const FillOp& op)
     {
         NodeBox box = whole_lattice(grid());
@@ -304,6 +332,7 @@ private:
                 mask.slabs[x] = listed(inside, x, false);
             mask_used = &mask;
         }
+        check_columns(box);
         const Node seed = snap(op.seed, grid());
         const std::vector<Spans> nodes = flood(
             field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
@@ -342,6 +371,9 @@ private:
     LatticeReport& report_;
     RunField field_;
     const DrawOp* op_ = nullptr;
+    std::atomic<std::uint64_t> runs_ = 0;
+    std::uint64_t memory_ = available_memory();
+    std::uint64_t run_limit_ = memory_ / 5 * 4 / sizeof(Run);
     std::map<std::string, MeshFile> meshes_;
 };
 

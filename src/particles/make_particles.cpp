@@ -128,6 +128,14 @@ private:
                 run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
                 out_.blocks[b].count += nodes[x * n + b];
             }
+        std::uint64_t all = 0;
+        for (const ParticleBlock& block : out_.blocks) all += block.count;
+        // Ids in Case.bi4 are 32-bit numbers, the last of which means none.
+        if (all >= UINT32_MAX)
+            throw CaseError(def_.file, 0,
+                            fmt::format("the case has {} particles, the file format holds at most 4,294,967,294; a "
+                                        "larger dp gives fewer",
+                                        all));
         int moving = 0;
         for (std::size_t b = 0; b < n; ++b)
         {
