@@ -148,7 +148,8 @@ FigureOp make_polygon(const std::vector<Vec3>& points)
     FigureOp polygon;
     polygon.vertices = points;
     const Face face = all_vertices(polygon);
-    polygon.faces.push_back({face, true, face, 0, {}});
+    // Four corners are cut as a quad.
+    polygon.faces.push_back({face, true, face.size() == 4 ? Face{} : face, 0, {}});
     return polygon;
 }
 

@@ -11,6 +11,7 @@
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
+#include "lattice/solids.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,8 @@
 #include "lattice/plane_shapes.h"
 
+#include "lattice/planes.h"
+#include "lattice/polygon_cut.h"
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -92,53 +95,6 @@ Span one_node(std::int64_t y, std::int64_t z)
 {
     return {static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
             static_cast<std::uint32_t>(z) + 1};
-}
-
-/// A plane through three points, normal . x + offset, kept in the form in which it is evaluated, so
-/// that ties fall as in GenCase.
-struct Plane
-{
-    Vec3 normal;
-    double offset = 0;
-
-    double value(const Vec3& p) const { return dot(normal, p) + offset; }
-};
-
-Plane plane_through(const Vec3& a, const Vec3& b, const Vec3& c)
-{
-    Plane plane;
-    plane.normal = cross(b - a, c - a);
-    plane.offset = -dot(plane.normal, a);
-    return plane;
-}
-
-/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, may be above `limit`.
-/// `noise` is what v0 may be off by rounding: where the function hardly changes along the column, nothing is
-/// cut off that the exact test might take.
-void narrow(double& lo, double& hi, double v0, double step, double limit, double noise)
-{
-    const double gap = limit - v0 - noise;
-    if (step > 0)
-        lo = std::max(lo, gap / step);
-    else if (step < 0)
-        hi = std::min(hi, gap / step);
-    else if (gap > 0)
-        hi = -std::numeric_limits<double>::infinity();
-}
-
-/// Rounding of a plane's values near the lattice, with room to spare.
-double noise_of(const Plane& plane, double dp) { return 1e-7 * norm(plane.normal) * dp; }
-
-/// Turns estimated real limits of an index range into integers, safely for infinities.
-bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max, std::int64_t& first,
-                    std::int64_t& last)
-{
-    if (!(lo <= hi + 2)) return false;
-    lo = std::clamp(lo, static_cast<double>(min) - 4, static_cast<double>(max) + 4);
-    hi = std::clamp(hi, static_cast<double>(min) - 4, static_cast<double>(max) + 4);
-    first = static_cast<std::int64_t>(std::floor(lo));
-    last = static_cast<std::int64_t>(std::ceil(hi));
-    return true;
 }
 
 /// A snapped triangle made ready for tests of nodes.
@@ -293,49 +249,6 @@ private:
     double length_ = 1;
     std::array<Plane, 3> limits_;
 };
-
-/// A polygon in triangles.
-struct PolygonCut
-{
-    std::vector<std::array<std::size_t, 3>> triangles;
-};
-
-/// Cuts a polygon as GenCase does (432 random prisms, ties included): the corner whose triangle
-/// with its neighbours has the least perimeter goes first, the first of equal ones.
-///
-/// polygon  indices into `nodes`, three or more
-PolygonCut cut_polygon(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon,
-                       const LatticeGrid& grid)
-{
-    PolygonCut cut;
-    std::vector<std::size_t> rest = polygon;
-    const auto distance = [&](std::size_t i, std::size_t j)
-    { return norm(position(nodes[i], grid) - position(nodes[j], grid)); };
-    while (rest.size() > 3)
-    {
-        const std::size_t n = rest.size();
-        std::size_t best = 0;
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < n; ++k)
-        {
-            const std::size_t a = rest[(k + n - 1) % n];
-            const std::size_t b = rest[k];
-            const std::size_t c = rest[(k + 1) % n];
-            const double perimeter = distance(a, b) + distance(b, c) + distance(a, c);
-            if (perimeter < least)
-            {
-                least = perimeter;
-                best = k;
-            }
-        }
-        const std::size_t a = rest[(best + n - 1) % n];
-        const std::size_t c = rest[(best + 1) % n];
-        cut.triangles.push_back({a, rest[best], c});
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
-    }
-    cut.triangles.push_back({rest[0], rest[1], rest[2]});
-    return cut;
-}
 
 } // namespace
 
@@ -511,8 +424,7 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
                                nodes[face.vertices[i]]});
             continue;
         }
-        const PolygonCut cut = cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid);
-        for (auto t : cut.triangles)
+        for (auto t : cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid))
         {
             if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
             out.push_back({nodes[t[0] + face.cut_offset], nodes[t[1] + face.cut_offset],
@@ -520,256 +432,6 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
         }
     }
     return out;
-}
-
-namespace
-{
-
-/// A convex part of a solid: nodes with a positive value in all planes, inside a box.
-struct SolidPart
-{
-    std::vector<Plane> planes;
-    NodeBox box;
-};
-
-/// A face of one part towards another, of which the nodes strictly inside all of `limits` are drawn.
-struct InnerFace
-{
-    std::vector<SnappedTriangle> triangles;
-    std::vector<Plane> limits;
-};
-
-class SolidCutter
-{
-public:
-    SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
-    {
-        for (const std::uint32_t v : figure.solid_vertices)
-            nodes_.push_back(snap(figure.vertices[v], grid));
-        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box)
-            cut_prism(figure.solid == SolidKind::Box);
-        if (figure.solid == SolidKind::Pyramid) cut_pyramid();
-        if (figure.solid == SolidKind::Faces) take_faces(figure);
-    }
-
-    std::vector<SolidPart> parts;
-    std::vector<InnerFace> inner_faces;
-
-private:
-    Plane plane(const Node& a, const Node& b, const Node& c) const
-    {
-        return plane_through(position(a, grid_), position(b, grid_), position(c, grid_));
-    }
-
-    void add_part(std::vector<Plane> planes, const std::vector<Node>& corners)
-    {
-        SolidPart part;
-        part.planes = std::move(planes);
-        part.box = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-        for (const Node& n : corners)
-            for (int axis = 0; axis < 3; ++axis)
-            {
-                const auto k = static_cast<std::size_t>(axis);
-                part.box.begin[k] = std::min(part.box.begin[k], n[axis]);
-                part.box.end[k] = std::max(part.box.end[k], n[axis] + 1);
-            }
-        part.box = intersect(part.box, whole_lattice(grid_));
-        if (!part.box.is_empty()) parts.push_back(std::move(part));
-    }
-
-    /// Calls body(i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
-    template <typename Body>
-    static void for_each_shared_side(const PolygonCut& cut, const Body& body)
-    {
-        for (std::size_t t = 0; t < cut.triangles.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k)
-            {
-                const std::size_t i = cut.triangles[t][k];
-                const std::size_t j = cut.triangles[t][(k + 1) % 3];
-                for (std::size_t u = 0; u < cut.triangles.size(); ++u)
-                {
-                    const auto& other = cut.triangles[u];
-                    if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
-                        std::find(other.begin(), other.end(), j) != other.end())
-                        body(i, j, u);
-                }
-            }
-    }
-
-    void cut_prism(bool is_box)
-    {
-        const std::size_t n = nodes_.size() / 2;
-        std::vector<std::size_t> polygon(n);
-        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
-        PolygonCut cut;
-        if (is_box)
-            cut.triangles = {{3, 0, 1}, {1, 2, 3}};
-        else
-            cut = cut_polygon(nodes_, polygon, grid_);
-        std::vector<std::vector<Plane>> ends;
-        for (const auto& t : cut.triangles)
-        {
-            std::array<Node, 3> p;
-            std::array<Node, 3> q;
-            for (std::size_t i = 0; i < 3; ++i)
-            {
-                p[i] = nodes_[t[i]];
-                q[i] = nodes_[n + t[i]];
-            }
-            std::vector<Plane> planes{plane(p[0], p[1], p[2]), plane(q[0], q[2], q[1])};
-            ends.push_back(planes);
-            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
-            add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
-        }
-        for_each_shared_side(cut,
-                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
-                             {
-                                 const Node& a = nodes_[i];
-                                 const Node& b = nodes_[j];
-                                 const Node& b_top = nodes_[n + j];
-                                 const Node& a_top = nodes_[n + i];
-                                 inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
-                             });
-    }
-
-    bool is_flat(const std::vector<std::size_t>& polygon) const
-    {
-        const Node& a = nodes_[polygon[0]];
-        const Node& b = nodes_[polygon[1]];
-        const Node& c = nodes_[polygon[2]];
-        const std::array<__int128, 3> u{b.x - a.x, b.y - a.y, b.z - a.z};
-        const std::array<__int128, 3> v{c.x - a.x, c.y - a.y, c.z - a.z};
-        for (std::size_t k = 3; k < polygon.size(); ++k)
-        {
-            const Node& d = nodes_[polygon[k]];
-            const std::array<__int128, 3> w{d.x - a.x, d.y - a.y, d.z - a.z};
-            const __int128 volume = (u[1] * v[2] - u[2] * v[1]) * w[0] +
-                                    (u[2] * v[0] - u[0] * v[2]) * w[1] +
-                                    (u[0] * v[1] - u[1] * v[0]) * w[2];
-            if (volume != 0) return false;
-        }
-        return true;
-    }
-
-    void cut_pyramid()
-    {
-        const std::size_t n = nodes_.size() - 1;
-        std::vector<std::size_t> base(n);
-        std::iota(base.begin(), base.end(), std::size_t{1});
-        const Node& apex = nodes_[0];
-        if (is_flat(base))
-        {
-            std::vector<Plane> planes{plane(nodes_[1], nodes_[2], nodes_[3])};
-            for (std::size_t i = 0; i < n; ++i)
-                planes.push_back(plane(apex, nodes_[1 + (i + 1) % n], nodes_[1 + i]));
-            add_part(std::move(planes), nodes_);
-            return;
-        }
-        const PolygonCut cut = cut_polygon(nodes_, base, grid_);
-        for (const auto& t : cut.triangles)
-        {
-            const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
-            std::vector<Plane> planes{plane(b[0], b[1], b[2])};
-            for (std::size_t i = 0; i < 3; ++i)
-                planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
-            add_part(std::move(planes), {apex, b[0], b[1], b[2]});
-        }
-        for_each_shared_side(cut,
-                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
-                             {
-                                 const auto& t = cut.triangles[neighbour];
-                                 inner_faces.push_back(
-                                     {{{apex, nodes_[i], nodes_[j]}},
-                                      {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
-                             });
-    }
-
-    void take_faces(const FigureOp& figure)
-    {
-        std::vector<Plane> planes;
-        for (const SnappedTriangle& t : snapped_triangles(figure, grid_, false))
-            planes.push_back(plane(t.a, t.c, t.b));
-        for (const Vec3& v : figure.vertices) nodes_.push_back(snap(v, grid_));
-        add_part(std::move(planes), nodes_);
-    }
-
-    LatticeGrid grid_;
-    std::vector<Node> nodes_;
-};
-
-void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t slab, Spans& out)
-{
-    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-    for (std::int64_t iy = part.box.begin[1]; iy < part.box.end[1]; ++iy)
-    {
-        const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
-        double lo = static_cast<double>(part.box.begin[2]);
-        double hi = static_cast<double>(part.box.end[2] - 1);
-        for (const Plane& p : part.planes)
-            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0, noise_of(p, grid.dp));
-        std::int64_t first = 0;
-        std::int64_t last = 0;
-        if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;
-        const auto is_inside = [&](std::int64_t k)
-        {
-            const Vec3 p{x, y, grid.origin.z + static_cast<double>(k) * grid.dp};
-            return std::all_of(part.planes.begin(), part.planes.end(),
-                               [&](const Plane& plane) { return plane.value(p) > 0; });
-        };
-        if (trim_interval(first, last, part.box.begin[2], part.box.end[2] - 1, is_inside))
-            out.push_back({static_cast<std::uint32_t>(iy), static_cast<std::uint32_t>(first),
-                           static_cast<std::uint32_t>(last) + 1});
-    }
-}
-
-} // namespace
-
-SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
-                        double limits_dp)
-{
-    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
-    SlabRegion region;
-    if (cutter->parts.empty()) return region;
-    std::int64_t begin = INT64_MAX;
-    std::int64_t end = 0;
-    for (const SolidPart& part : cutter->parts)
-    {
-        begin = std::min(begin, part.box.begin[0]);
-        end = std::max(end, part.box.end[0]);
-    }
-    region.x_begin = static_cast<std::uint32_t>(begin);
-    region.x_end = static_cast<std::uint32_t>(end);
-    struct Between
-    {
-        SlabRegion face;
-        std::vector<Plane> limits;
-    };
-    auto between = std::make_shared<std::vector<Between>>();
-    for (const InnerFace& face : cutter->inner_faces)
-        between->push_back(
-            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.limits});
-    region.emit = [cutter, between, grid](std::uint32_t slab, Spans& out)
-    {
-        for (const SolidPart& part : cutter->parts)
-            if (slab >= part.box.begin[0] && slab < part.box.end[0])
-                emit_part(part, grid, slab, out);
-        const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-        for (const Between& b : *between)
-        {
-            if (slab < b.face.x_begin || slab >= b.face.x_end) continue;
-            Spans nodes;
-            b.face.emit(slab, nodes);
-            for (const Span& s : nodes)
-                for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
-                {
-                    const Vec3 p{x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp};
-                    if (std::all_of(b.limits.begin(), b.limits.end(),
-                                    [&](const Plane& limit) { return limit.value(p) > 0; }))
-                        out.push_back({s.y, z, z + 1});
-                }
-        }
-    };
-    return region;
 }
 
 } // namespace fppg

@@ -35,18 +35,4 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible);
 
-/// The inside of a figure, found by experiment with GenCase v5.4.354 (rules S1 to S4): nodes
-/// strictly inside all planes of its parts, in double and without tolerance; none when it is wound
-/// inwards.
-/// - a prism of more than three corners is cut into prisms of three: from the bottom polygon the
-/// corner
-///   whose triangle has the least perimeter is cut off again and again; the quads between the parts
-///   are drawn too (rule P5), of which only nodes strictly between the bottom and the top of a part
-///   next to them are kept
-/// - a pyramid with a base that is not flat after snapping is cut into tetrahedra in the same way,
-/// with
-///   the triangles between them; a flat base is one plane
-SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
-                        double limits_dp);
-
 } // namespace fppg

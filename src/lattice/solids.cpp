@@ -1,0 +1,245 @@
+#include "lattice/solids.h"
+
+#include "lattice/planes.h"
+#include "lattice/polygon_cut.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+namespace fppg
+{
+namespace
+{
+
+using Triangles = std::vector<std::array<std::size_t, 3>>;
+
+/// A convex part of a solid: nodes with a positive value in all planes, inside a box.
+struct SolidPart
+{
+    std::vector<Plane> planes;
+    NodeBox box;
+};
+
+/// A face of one part towards another, of which the nodes strictly inside all of `limits` are drawn.
+struct InnerFace
+{
+    std::vector<SnappedTriangle> triangles;
+    std::vector<Plane> limits;
+};
+
+class SolidCutter
+{
+public:
+    SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
+    {
+        for (const std::uint32_t v : figure.solid_vertices)
+            nodes_.push_back(snap(figure.vertices[v], grid));
+        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box)
+            cut_prism(figure.solid == SolidKind::Box);
+        if (figure.solid == SolidKind::Pyramid) cut_pyramid();
+        if (figure.solid == SolidKind::Faces) take_faces(figure);
+    }
+
+    std::vector<SolidPart> parts;
+    std::vector<InnerFace> inner_faces;
+
+private:
+    Plane plane(const Node& a, const Node& b, const Node& c) const
+    {
+        return plane_through(position(a, grid_), position(b, grid_), position(c, grid_));
+    }
+
+    void add_part(std::vector<Plane> planes, const std::vector<Node>& corners)
+    {
+        SolidPart part;
+        part.planes = std::move(planes);
+        part.box = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
+        for (const Node& n : corners)
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                const auto k = static_cast<std::size_t>(axis);
+                part.box.begin[k] = std::min(part.box.begin[k], n[axis]);
+                part.box.end[k] = std::max(part.box.end[k], n[axis] + 1);
+            }
+        part.box = intersect(part.box, whole_lattice(grid_));
+        if (!part.box.is_empty()) parts.push_back(std::move(part));
+    }
+
+    /// Calls body(i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
+    template <typename Body>
+    static void for_each_shared_side(const Triangles& cut, const Body& body)
+    {
+        for (std::size_t t = 0; t < cut.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                const std::size_t i = cut[t][k];
+                const std::size_t j = cut[t][(k + 1) % 3];
+                for (std::size_t u = 0; u < cut.size(); ++u)
+                {
+                    const auto& other = cut[u];
+                    if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
+                        std::find(other.begin(), other.end(), j) != other.end())
+                        body(i, j, u);
+                }
+            }
+    }
+
+    void cut_prism(bool is_box)
+    {
+        const std::size_t n = nodes_.size() / 2;
+        std::vector<std::size_t> polygon(n);
+        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
+        Triangles cut;
+        if (is_box)
+            cut = {{3, 0, 1}, {1, 2, 3}};
+        else
+            cut = cut_polygon(nodes_, polygon, grid_);
+        std::vector<std::vector<Plane>> ends;
+        for (const auto& t : cut)
+        {
+            std::array<Node, 3> p;
+            std::array<Node, 3> q;
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                p[i] = nodes_[t[i]];
+                q[i] = nodes_[n + t[i]];
+            }
+            std::vector<Plane> planes{plane(p[0], p[1], p[2]), plane(q[0], q[2], q[1])};
+            ends.push_back(planes);
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
+            add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
+        }
+        for_each_shared_side(cut,
+                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const Node& a = nodes_[i];
+                                 const Node& b = nodes_[j];
+                                 const Node& b_top = nodes_[n + j];
+                                 const Node& a_top = nodes_[n + i];
+                                 inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
+                             });
+    }
+
+    void cut_pyramid()
+    {
+        const std::size_t n = nodes_.size() - 1;
+        std::vector<std::size_t> base(n);
+        std::iota(base.begin(), base.end(), std::size_t{1});
+        const Node& apex = nodes_[0];
+        if (is_flat(nodes_, base))
+        {
+            std::vector<Plane> planes{plane(nodes_[1], nodes_[2], nodes_[3])};
+            for (std::size_t i = 0; i < n; ++i)
+                planes.push_back(plane(apex, nodes_[1 + (i + 1) % n], nodes_[1 + i]));
+            add_part(std::move(planes), nodes_);
+            return;
+        }
+        const Triangles cut = cut_polygon(nodes_, base, grid_);
+        for (const auto& t : cut)
+        {
+            const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
+            std::vector<Plane> planes{plane(b[0], b[1], b[2])};
+            for (std::size_t i = 0; i < 3; ++i)
+                planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            add_part(std::move(planes), {apex, b[0], b[1], b[2]});
+        }
+        for_each_shared_side(cut,
+                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const auto& t = cut[neighbour];
+                                 inner_faces.push_back(
+                                     {{{apex, nodes_[i], nodes_[j]}},
+                                      {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
+                             });
+    }
+
+    void take_faces(const FigureOp& figure)
+    {
+        std::vector<Plane> planes;
+        for (const SnappedTriangle& t : snapped_triangles(figure, grid_, false))
+            planes.push_back(plane(t.a, t.c, t.b));
+        for (const Vec3& v : figure.vertices) nodes_.push_back(snap(v, grid_));
+        add_part(std::move(planes), nodes_);
+    }
+
+    LatticeGrid grid_;
+    std::vector<Node> nodes_;
+};
+
+void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t slab, Spans& out)
+{
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+    for (std::int64_t iy = part.box.begin[1]; iy < part.box.end[1]; ++iy)
+    {
+        const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
+        double lo = static_cast<double>(part.box.begin[2]);
+        double hi = static_cast<double>(part.box.end[2] - 1);
+        for (const Plane& p : part.planes)
+            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0, noise_of(p, grid.dp));
+        std::int64_t first = 0;
+        std::int64_t last = 0;
+        if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;
+        const auto is_inside = [&](std::int64_t k)
+        {
+            const Vec3 p{x, y, grid.origin.z + static_cast<double>(k) * grid.dp};
+            return std::all_of(part.planes.begin(), part.planes.end(),
+                               [&](const Plane& plane) { return plane.value(p) > 0; });
+        };
+        if (trim_interval(first, last, part.box.begin[2], part.box.end[2] - 1, is_inside))
+            out.push_back({static_cast<std::uint32_t>(iy), static_cast<std::uint32_t>(first),
+                           static_cast<std::uint32_t>(last) + 1});
+    }
+}
+
+} // namespace
+
+SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
+                        double limits_dp)
+{
+    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    SlabRegion region;
+    if (cutter->parts.empty()) return region;
+    std::int64_t begin = INT64_MAX;
+    std::int64_t end = 0;
+    for (const SolidPart& part : cutter->parts)
+    {
+        begin = std::min(begin, part.box.begin[0]);
+        end = std::max(end, part.box.end[0]);
+    }
+    region.x_begin = static_cast<std::uint32_t>(begin);
+    region.x_end = static_cast<std::uint32_t>(end);
+    struct Between
+    {
+        SlabRegion face;
+        std::vector<Plane> limits;
+    };
+    auto between = std::make_shared<std::vector<Between>>();
+    for (const InnerFace& face : cutter->inner_faces)
+        between->push_back(
+            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.limits});
+    region.emit = [cutter, between, grid](std::uint32_t slab, Spans& out)
+    {
+        for (const SolidPart& part : cutter->parts)
+            if (slab >= part.box.begin[0] && slab < part.box.end[0])
+                emit_part(part, grid, slab, out);
+        const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+        for (const Between& b : *between)
+        {
+            if (slab < b.face.x_begin || slab >= b.face.x_end) continue;
+            Spans nodes;
+            b.face.emit(slab, nodes);
+            for (const Span& s : nodes)
+                for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
+                {
+                    const Vec3 p{x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp};
+                    if (std::all_of(b.limits.begin(), b.limits.end(),
+                                    [&](const Plane& limit) { return limit.value(p) > 0; }))
+                        out.push_back({s.y, z, z + 1});
+                }
+        }
+    };
+    return region;
+}
+
+} // namespace fppg
