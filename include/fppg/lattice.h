@@ -60,13 +60,21 @@ struct RunField
 
 struct CaseDef;
 
+/// A mesh file that a draw uses.
+struct MeshFileUse
+{
+    std::string name; ///< as the definition writes it
+    std::string path; ///< where it was found
+    int line = 0;     ///< of the first draw that uses it
+};
+
 /// What the lattice stage says besides the nodes.
 struct LatticeReport
 {
     std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
-    std::vector<std::string> mesh_files; ///< read, as they were found
+    std::vector<MeshFileUse> mesh_files; ///< in order of use, each once
 };
 
 /// Called before every draw with the number of draws done and of all.

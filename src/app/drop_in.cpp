@@ -150,7 +150,7 @@ private:
                   for (const std::string& line : def_.list_log) log_.line(line);
                   LatticeReport report;
                   field_ = generate_lattice(def_, threads_, {}, report);
-                  for (const std::string& file : report.mesh_files) log_.line("Mesh file: " + file);
+                  mesh_files_ = std::move(report.mesh_files);
                   for (std::string& w : def_.warnings) warn(std::move(w));
                   for (std::string& w : report.warnings) warn(std::move(w));
                   log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
@@ -257,6 +257,7 @@ private:
                       fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
                       def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
+                  copy_meshes();
                   save_shapes(vtk_out);
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
@@ -293,6 +294,27 @@ private:
                   log_.line();
               });
         log_.line();
+    }
+
+    /// Meshes go beside the result, as with GenCase; those outside the folder of the case stay where they are.
+    void copy_meshes()
+    {
+        for (const MeshFileUse& mesh : mesh_files_)
+        {
+            const fs::path name(mesh.name);
+            if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end()) continue;
+            const fs::path target = fs::path(options_.output).parent_path() / name;
+            std::error_code error;
+            if (fs::exists(target, error) && fs::equivalent(target, mesh.path, error)) continue;
+            if (!target.parent_path().empty()) fs::create_directories(target.parent_path(), error);
+            OutputFile& file = files_.emplace_back(target.string());
+            std::ifstream in(mesh.path, std::ios::binary);
+            std::string block(1 << 20, '\0');
+            while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+                file.append(block.data(), static_cast<std::size_t>(in.gcount()));
+            if (in.bad()) throw IoError(fmt::format("{}: cannot read the file again to copy it", mesh.path));
+            log_.line(fmt::format("Geometry file copied: {} (xml row:{})", mesh.name, mesh.line));
+        }
     }
 
     template <typename Body>
@@ -424,6 +446,7 @@ private:
     CaseParticles particles_;
     CaseConstants constants_;
     std::vector<OutputFile> files_;
+    std::vector<MeshFileUse> mesh_files_;
     std::vector<std::string> warnings_;
 };
 

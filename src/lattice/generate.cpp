@@ -198,7 +198,7 @@ private:
         if (known != meshes_.end()) return known->second;
         const std::string path = find_mesh_file(def_, op_->source, file);
         MeshFile read = read_stl(path);
-        report_.mesh_files.push_back(path);
+        report_.mesh_files.push_back({file, path, op_->source.line});
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
         return meshes_.emplace(file, std::move(read)).first->second;
