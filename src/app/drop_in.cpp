@@ -16,6 +16,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <ctime>
@@ -251,7 +252,7 @@ private:
         stage("SaveCase3D",
               [this]
               {
-                  files_.reserve(64);
+                  files_.reserve(1024);
                   const FileOrigin origin{
                       full_name(),
                       fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
@@ -296,13 +297,15 @@ private:
         log_.line();
     }
 
-    /// Meshes go beside the result, as with GenCase; those outside the folder of the case stay where they are.
+    /// Meshes go beside the result, as with GenCase; those outside the folder of the case stay
+    /// where they are.
     void copy_meshes()
     {
         for (const MeshFileUse& mesh : mesh_files_)
         {
             const fs::path name(mesh.name);
-            if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end()) continue;
+            if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+                continue;
             const fs::path target = fs::path(options_.output).parent_path() / name;
             std::error_code error;
             if (fs::exists(target, error) && fs::equivalent(target, mesh.path, error)) continue;
@@ -310,9 +313,11 @@ private:
             OutputFile& file = files_.emplace_back(target.string());
             std::ifstream in(mesh.path, std::ios::binary);
             std::string block(1 << 20, '\0');
-            while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+            while (in.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+                   in.gcount() > 0)
                 file.append(block.data(), static_cast<std::size_t>(in.gcount()));
-            if (in.bad()) throw IoError(fmt::format("{}: cannot read the file again to copy it", mesh.path));
+            if (in.bad())
+                throw IoError(fmt::format("{}: cannot read the file again to copy it", mesh.path));
             log_.line(fmt::format("Geometry file copied: {} (xml row:{})", mesh.name, mesh.line));
         }
     }

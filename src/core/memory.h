@@ -5,8 +5,8 @@
 namespace fppg
 {
 
-/// Bytes of memory that the machine can still give to a process without swapping; a large number where
-/// the system does not say.
+/// Bytes of memory that the machine can still give to a process without swapping; a large number
+/// where the system does not say.
 std::uint64_t available_memory();
 
 } // namespace fppg

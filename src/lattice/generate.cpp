@@ -131,10 +131,12 @@ private:
         paint(slab, spans, state().mk.mk);
         const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
         if (runs > run_limit_ && runs < UINT64_MAX / 2)
-            throw CaseError(def_.file, op_->source.line,
-                            fmt::format("<{}>: the drawn regions need more memory than this machine has left: {} runs "
-                                        "of nodes so far; a larger dp or a smaller domain needs less",
-                                        op_->source.command, runs));
+            throw CaseError(
+                def_.file, op_->source.line,
+                fmt::format(
+                    "<{}>: the drawn regions need more memory than this machine has left: {} runs "
+                    "of nodes so far; a larger dp or a smaller domain needs less",
+                    op_->source.command, runs));
     }
 
     void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
@@ -309,13 +311,15 @@ private:
     void check_columns(const NodeBox& box) const
     {
         if (box.is_empty()) return;
-        const double columns =
-            static_cast<double>(box.end[0] - box.begin[0]) * static_cast<double>(box.end[1] - box.begin[1]);
+        const double columns = static_cast<double>(box.end[0] - box.begin[0]) *
+                               static_cast<double>(box.end[1] - box.begin[1]);
         if (columns * 40 > static_cast<double>(memory_))
-            throw CaseError(def_.file, op_->source.line,
-                            fmt::format("<{}>: the fill reaches over {:g} columns of nodes, more than fit into this "
-                                        "machine's memory; <fillbox> limits it",
-                                        op_->source.command, columns));
+            throw CaseError(
+                def_.file, op_->source.line,
+                fmt::format(
+                    "<{}>: the fill reaches over {:g} columns of nodes, more than fit into this "
+                    "machine's memory; <fillbox> limits it",
+                    op_->source.command, columns));
     }
 
     void draw(const FillOp& op)

@@ -165,7 +165,8 @@ public:
             narrow(lo, hi, height, step, -weight_ * length_, noise);
             narrow(lo, hi, -height, -step, -weight_ * length_, noise);
             for (const Plane& limit : limits_)
-                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0, noise_of(limit, grid_.dp));
+                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0,
+                       noise_of(limit, grid_.dp));
             std::int64_t first = 0;
             std::int64_t last = 0;
             if (!to_index_range(lo, hi, box_.begin[2], box_.end[2] - 1, first, last)) continue;

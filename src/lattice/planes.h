@@ -28,9 +28,9 @@ inline Plane plane_through(const Vec3& a, const Vec3& b, const Vec3& c)
     return plane;
 }
 
-/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, may be above `limit`.
-/// `noise` is what v0 may be off by rounding: where the function hardly changes along the column, nothing is
-/// cut off that the exact test might take.
+/// What remains of [lo, hi] where a linear function of the index k, v0 + k * step, may be above
+/// `limit`. `noise` is what v0 may be off by rounding: where the function hardly changes along the
+/// column, nothing is cut off that the exact test might take.
 inline void narrow(double& lo, double& hi, double v0, double step, double limit, double noise)
 {
     const double gap = limit - v0 - noise;
@@ -43,11 +43,14 @@ inline void narrow(double& lo, double& hi, double v0, double step, double limit,
 }
 
 /// Rounding of a plane's values near the lattice, with room to spare.
-inline double noise_of(const Plane& plane, double dp) { return 1e-7 * norm(plane.normal) * dp; }
+inline double noise_of(const Plane& plane, double dp)
+{
+    return 1e-7 * norm(plane.normal) * dp;
+}
 
 /// Turns estimated real limits of an index range into integers, safely for infinities.
-inline bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max, std::int64_t& first,
-                    std::int64_t& last)
+inline bool to_index_range(double lo, double hi, std::int64_t min, std::int64_t max,
+                           std::int64_t& first, std::int64_t& last)
 {
     if (!(lo <= hi + 2)) return false;
     lo = std::clamp(lo, static_cast<double>(min) - 4, static_cast<double>(max) + 4);

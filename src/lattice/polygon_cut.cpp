@@ -10,14 +10,20 @@ namespace
 using Whole = __int128;
 using WholeVec = std::array<Whole, 3>;
 
-WholeVec minus(const Node& a, const Node& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+WholeVec minus(const Node& a, const Node& b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 
 WholeVec cross(const WholeVec& a, const WholeVec& b)
 {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Whole dot(const WholeVec& a, const WholeVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Whole dot(const WholeVec& a, const WholeVec& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /// The polygon's area vector: the sum over its sides, in whole numbers.
 WholeVec area_of(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon)
@@ -26,7 +32,8 @@ WholeVec area_of(const std::vector<Node>& nodes, const std::vector<std::size_t>&
     const Node& from = nodes[polygon[0]];
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
     {
-        const WholeVec part = cross(minus(nodes[polygon[i]], from), minus(nodes[polygon[i + 1]], from));
+        const WholeVec part =
+            cross(minus(nodes[polygon[i]], from), minus(nodes[polygon[i + 1]], from));
         for (std::size_t k = 0; k < 3; ++k) area[k] += part[k];
     }
     return area;
@@ -74,14 +81,16 @@ private:
         {
             const Node& p = nodes_[i];
             if (p == a || p == b || p == c) continue;
-            if (dot(cross(minus(b, a), minus(p, a)), area_) >= 0 && dot(cross(minus(c, b), minus(p, b)), area_) >= 0 &&
+            if (dot(cross(minus(b, a), minus(p, a)), area_) >= 0 &&
+                dot(cross(minus(c, b), minus(p, b)), area_) >= 0 &&
                 dot(cross(minus(a, c), minus(p, c)), area_) >= 0)
                 return false;
         }
         return true;
     }
 
-    /// The corner to cut off; where no corner is an ear (corners on one line), the one of least perimeter.
+    /// The corner to cut off; where no corner is an ear (corners on one line), the one of least
+    /// perimeter.
     std::size_t next_corner() const
     {
         for (const bool only_ears : {true, false})
@@ -90,8 +99,9 @@ private:
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t k = first_; k < rest_.size(); ++k)
             {
-                const double perimeter =
-                    distance(before(k), rest_[k]) + distance(rest_[k], after(k)) + distance(before(k), after(k));
+                const double perimeter = distance(before(k), rest_[k]) +
+                                         distance(rest_[k], after(k)) +
+                                         distance(before(k), after(k));
                 if (perimeter < least && (!only_ears || is_ear(k)))
                 {
                     least = perimeter;
@@ -121,7 +131,8 @@ std::vector<std::array<std::size_t, 3>> cut_polygon(const std::vector<Node>& nod
 
 bool is_flat(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon)
 {
-    const WholeVec normal = cross(minus(nodes[polygon[1]], nodes[polygon[0]]), minus(nodes[polygon[2]], nodes[polygon[0]]));
+    const WholeVec normal = cross(minus(nodes[polygon[1]], nodes[polygon[0]]),
+                                  minus(nodes[polygon[2]], nodes[polygon[0]]));
     for (std::size_t k = 3; k < polygon.size(); ++k)
         if (dot(normal, minus(nodes[polygon[k]], nodes[polygon[0]])) != 0) return false;
     return true;

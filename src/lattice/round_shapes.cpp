@@ -80,17 +80,20 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
         double ball = 0;
     };
     std::vector<Shell> shells;
-    const auto add = [&](double radius, bool face, bool ball)
-    { shells.push_back({face, rounded_radius(radius, grid.dp) * grid.dp, ball, radius}); };
+    const auto add = [&](double radius, bool face, bool ball) {
+        shells.push_back({face, rounded_radius(radius, grid.dp) * grid.dp, ball, radius});
+    };
     if (!sphere.layers_dp.empty())
-        for (const double layer : sphere.layers_dp) add(sphere.radius + layer * grid.dp, true, false);
+        for (const double layer : sphere.layers_dp)
+            add(sphere.radius + layer * grid.dp, true, false);
     else
         add(sphere.radius, state.mode != DrawMode::Solid, state.mode != DrawMode::Face);
 
     double reach = 0;
     for (const Shell& s : shells) reach = std::max({reach, s.radius + width, s.ball});
-    const NodeBox box =
-        around(c, static_cast<std::int64_t>(std::ceil(std::min(std::max(reach, 0.0) / grid.dp, 4e9))) + 1, grid);
+    const NodeBox box = around(
+        c, static_cast<std::int64_t>(std::ceil(std::min(std::max(reach, 0.0) / grid.dp, 4e9))) + 1,
+        grid);
     SlabRegion region = region_of(box);
     region.emit = [=](std::uint32_t slab, Spans& out)
     {
@@ -111,7 +114,8 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
                 const double rest = limit * limit - flat;
                 if (limit < 0 || rest < -4 * grid.dp * limit) return {};
                 const double half = std::min(std::sqrt(std::max(rest, 0.0)) / grid.dp, 4e9);
-                Interval i{c.z - static_cast<std::int64_t>(half), c.z + static_cast<std::int64_t>(half)};
+                Interval i{c.z - static_cast<std::int64_t>(half),
+                           c.z + static_cast<std::int64_t>(half)};
                 if (!trim_interval(i.first, i.last, column.first, column.last, holds)) return {};
                 return i;
             };
@@ -119,24 +123,27 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
             {
                 if (s.has_face)
                 {
-                    const Interval outer =
-                        ball(s.radius + width, [&](std::int64_t z) { return distance(z) - s.radius < width; });
-                    const Interval inner =
-                        ball(s.radius - width, [&](std::int64_t z) { return !(s.radius - distance(z) < width); });
+                    const Interval outer = ball(s.radius + width, [&](std::int64_t z)
+                                                { return distance(z) - s.radius < width; });
+                    const Interval inner = ball(s.radius - width, [&](std::int64_t z)
+                                                { return !(s.radius - distance(z) < width); });
                     push_without(out, y, outer, inner);
                 }
                 if (s.has_ball)
-                    push_without(out, y, ball(s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }), {});
+                    push_without(
+                        out, y, ball(s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }),
+                        {});
             }
         }
     };
     return region;
 }
 
-SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, const LatticeGrid& grid)
+SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
+                           const LatticeGrid& grid)
 {
-    // One way to be taken: the values va and vb at the two ends of the axis (along it, unnormalised), and
-    // the distance from the axis.
+    // One way to be taken: the values va and vb at the two ends of the axis (along it,
+    // unnormalised), and the distance from the axis.
     struct Piece
     {
         int cover = -1; // 0, 1: near that end's plane; -1: between the two
@@ -150,7 +157,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
         std::vector<Piece> pieces;
     };
     std::vector<Body> bodies;
-    const bool all_visible = cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
+    const bool all_visible =
+        cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
     const auto add_faces = [&](Body& body, double radius)
     {
         if (cylinder.is_visible[2])
@@ -177,7 +185,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
     {
         Body body{snap(cylinder.p0, grid), snap(cylinder.p1, grid), {}};
         if (state.mode != DrawMode::Solid || !all_visible) add_faces(body, cylinder.radius);
-        if (state.mode != DrawMode::Face && all_visible) body.pieces.push_back({-1, cylinder.radius, false});
+        if (state.mode != DrawMode::Face && all_visible)
+            body.pieces.push_back({-1, cylinder.radius, false});
         bodies.push_back(body);
     }
 
@@ -188,7 +197,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
     for (const Body& body : bodies)
     {
         double reach = 0;
-        for (const Piece& p : body.pieces) reach = std::max(reach, p.radius + (p.is_shell ? tube_width : 0));
+        for (const Piece& p : body.pieces)
+            reach = std::max(reach, p.radius + (p.is_shell ? tube_width : 0));
         const Vec3 a = position(body.a, grid);
         const Vec3 axis = position(body.b, grid) - a;
         const double length = norm(axis);
@@ -197,9 +207,13 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
         {
             const auto i = static_cast<std::size_t>(k);
             const double u = length > 0 ? axis[k] / length : 0;
-            const double side = (reach * std::sqrt(std::max(0.0, 1 - u * u)) + cover_width * std::fabs(u)) / grid.dp;
-            box.begin[i] = std::min(body.a[k], body.b[k]) - static_cast<std::int64_t>(std::ceil(side)) - 1;
-            box.end[i] = std::max(body.a[k], body.b[k]) + static_cast<std::int64_t>(std::ceil(side)) + 2;
+            const double side =
+                (reach * std::sqrt(std::max(0.0, 1 - u * u)) + cover_width * std::fabs(u)) /
+                grid.dp;
+            box.begin[i] =
+                std::min(body.a[k], body.b[k]) - static_cast<std::int64_t>(std::ceil(side)) - 1;
+            box.end[i] =
+                std::max(body.a[k], body.b[k]) + static_cast<std::int64_t>(std::ceil(side)) + 2;
         }
         box = intersect(box, whole_lattice(grid));
         // An axis of no length draws nothing.
@@ -232,8 +246,9 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
             for (std::int64_t iy = box.begin[1]; iy < box.end[1]; ++iy)
             {
                 const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
-                const auto at = [&](std::int64_t k)
-                { return Vec3{x, y, grid.origin.z + static_cast<double>(k) * grid.dp}; };
+                const auto at = [&](std::int64_t k) {
+                    return Vec3{x, y, grid.origin.z + static_cast<double>(k) * grid.dp};
+                };
                 const auto distance = [&](std::int64_t k)
                 {
                     const Vec3 p = at(k);
@@ -242,7 +257,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                 const auto value_a = [&](std::int64_t k) { return dot(axis, at(k)) + offset_a; };
                 const auto value_b = [&](std::int64_t k) { return dot(axis, at(k)) + offset_b; };
 
-                // Estimates: distance^2 = qa w^2 + 2 qb w + qc with w the height above a, in metres.
+                // Estimates: distance^2 = qa w^2 + 2 qb w + qc with w the height above a, in
+                // metres.
                 const double flat = (x - a.x) * u.x + (y - a.y) * u.y;
                 const double qa = 1 - u.z * u.z;
                 const double qb = -flat * u.z;
@@ -250,7 +266,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                 const auto to_index = [&](double w)
                 {
                     const double i = (a.z + w - grid.origin.z) / grid.dp;
-                    return std::clamp(i, static_cast<double>(z_min) - 3, static_cast<double>(z_max) + 3);
+                    return std::clamp(i, static_cast<double>(z_min) - 3,
+                                      static_cast<double>(z_max) + 3);
                 };
                 const auto within = [&](double limit, const auto& holds) -> Interval
                 {
@@ -258,8 +275,10 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                     Interval i{z_min, z_max};
                     if (qa > 1e-12)
                     {
-                        const double root = std::sqrt(std::max(0.0, qb * qb - qa * (qc - limit * limit)));
-                        i.first = static_cast<std::int64_t>(std::floor(to_index((-qb - root) / qa)));
+                        const double root =
+                            std::sqrt(std::max(0.0, qb * qb - qa * (qc - limit * limit)));
+                        i.first =
+                            static_cast<std::int64_t>(std::floor(to_index((-qb - root) / qa)));
                         i.last = static_cast<std::int64_t>(std::ceil(to_index((-qb + root) / qa)));
                     }
                     else if (!holds(z_min))
@@ -282,8 +301,9 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                     if (!trim_interval(i.first, i.last, z_min, z_max, holds)) return {};
                     return i;
                 };
-                // Upright axes: the distance is the same all along the column but for rounding. Within
-                // rounding of a limit, nodes are asked one by one; else the first stands for all.
+                // Upright axes: the distance is the same all along the column but for rounding.
+                // Within rounding of a limit, nodes are asked one by one; else the first stands for
+                // all.
                 const auto is_tie = [&](const Piece& p)
                 {
                     if (qa > 1e-12) return false;
@@ -294,12 +314,12 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                 };
                 const auto is_taken = [&](const Piece& p, std::int64_t k)
                 {
-                    if (p.cover == 0 ? !(std::fabs(value_a(k) / length) < cover_width)
-                        : p.cover == 1
-                            ? !(std::fabs(value_b(k) / length) < cover_width)
-                            : !(value_a(k) >= 0 && value_b(k) <= 0))
+                    if (p.cover == 0   ? !(std::fabs(value_a(k) / length) < cover_width)
+                        : p.cover == 1 ? !(std::fabs(value_b(k) / length) < cover_width)
+                                       : !(value_a(k) >= 0 && value_b(k) <= 0))
                         return false;
-                    return p.is_shell ? std::fabs(distance(k) - p.radius) < tube_width : distance(k) <= p.radius;
+                    return p.is_shell ? std::fabs(distance(k) - p.radius) < tube_width
+                                      : distance(k) <= p.radius;
                 };
                 for (const Piece& p : bodies[n].pieces)
                 {
@@ -311,25 +331,30 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state, c
                     }
                     Interval t;
                     if (p.cover < 0)
-                        t = along(0, length, [&](std::int64_t k) { return value_a(k) >= 0 && value_b(k) <= 0; });
+                        t = along(0, length,
+                                  [&](std::int64_t k)
+                                  { return value_a(k) >= 0 && value_b(k) <= 0; });
                     else if (p.cover == 0)
                         t = along(-cover_width, cover_width,
-                                  [&](std::int64_t k) { return std::fabs(value_a(k) / length) < cover_width; });
+                                  [&](std::int64_t k)
+                                  { return std::fabs(value_a(k) / length) < cover_width; });
                     else
                         t = along(length - cover_width, length + cover_width,
-                                  [&](std::int64_t k) { return std::fabs(value_b(k) / length) < cover_width; });
+                                  [&](std::int64_t k)
+                                  { return std::fabs(value_b(k) / length) < cover_width; });
                     if (t.is_empty()) continue;
                     if (!p.is_shell)
                     {
-                        const Interval disc =
-                            within(p.radius, [&](std::int64_t k) { return distance(k) <= p.radius; });
+                        const Interval disc = within(
+                            p.radius, [&](std::int64_t k) { return distance(k) <= p.radius; });
                         push_without(out, iy, meet(disc, t), {});
                         continue;
                     }
                     const Interval outer = within(p.radius + tube_width, [&](std::int64_t k)
                                                   { return distance(k) - p.radius < tube_width; });
-                    const Interval inner = within(p.radius - tube_width, [&](std::int64_t k)
-                                                  { return !(p.radius - distance(k) < tube_width); });
+                    const Interval inner =
+                        within(p.radius - tube_width, [&](std::int64_t k)
+                               { return !(p.radius - distance(k) < tube_width); });
                     push_without(out, iy, meet(outer, t), inner);
                 }
             }

@@ -21,7 +21,8 @@ struct SolidPart
     NodeBox box;
 };
 
-/// A face of one part towards another, of which the nodes strictly inside all of `limits` are drawn.
+/// A face of one part towards another, of which the nodes strictly inside all of `limits` are
+/// drawn.
 struct InnerFace
 {
     std::vector<SnappedTriangle> triangles;
@@ -110,15 +111,16 @@ private:
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
             add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
         }
-        for_each_shared_side(cut,
-                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
-                             {
-                                 const Node& a = nodes_[i];
-                                 const Node& b = nodes_[j];
-                                 const Node& b_top = nodes_[n + j];
-                                 const Node& a_top = nodes_[n + i];
-                                 inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
-                             });
+        for_each_shared_side(
+            cut,
+            [&](std::size_t i, std::size_t j, std::size_t neighbour)
+            {
+                const Node& a = nodes_[i];
+                const Node& b = nodes_[j];
+                const Node& b_top = nodes_[n + j];
+                const Node& a_top = nodes_[n + i];
+                inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
+            });
     }
 
     void cut_pyramid()
@@ -140,18 +142,17 @@ private:
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
             std::vector<Plane> planes{plane(b[0], b[1], b[2])};
-            for (std::size_t i = 0; i < 3; ++i)
-                planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
             add_part(std::move(planes), {apex, b[0], b[1], b[2]});
         }
-        for_each_shared_side(cut,
-                             [&](std::size_t i, std::size_t j, std::size_t neighbour)
-                             {
-                                 const auto& t = cut[neighbour];
-                                 inner_faces.push_back(
-                                     {{{apex, nodes_[i], nodes_[j]}},
-                                      {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
-                             });
+        for_each_shared_side(
+            cut,
+            [&](std::size_t i, std::size_t j, std::size_t neighbour)
+            {
+                const auto& t = cut[neighbour];
+                inner_faces.push_back({{{apex, nodes_[i], nodes_[j]}},
+                                       {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
+            });
     }
 
     void take_faces(const FigureOp& figure)
@@ -176,7 +177,8 @@ void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t sla
         double lo = static_cast<double>(part.box.begin[2]);
         double hi = static_cast<double>(part.box.end[2] - 1);
         for (const Plane& p : part.planes)
-            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0, noise_of(p, grid.dp));
+            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0,
+                   noise_of(p, grid.dp));
         std::int64_t first = 0;
         std::int64_t last = 0;
         if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;

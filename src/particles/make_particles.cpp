@@ -132,10 +132,12 @@ private:
         for (const ParticleBlock& block : out_.blocks) all += block.count;
         // Ids in Case.bi4 are 32-bit numbers, the last of which means none.
         if (all >= UINT32_MAX)
-            throw CaseError(def_.file, 0,
-                            fmt::format("the case has {} particles, the file format holds at most 4,294,967,294; a "
-                                        "larger dp gives fewer",
-                                        all));
+            throw CaseError(
+                def_.file, 0,
+                fmt::format(
+                    "the case has {} particles, the file format holds at most 4,294,967,294; a "
+                    "larger dp gives fewer",
+                    all));
         int moving = 0;
         for (std::size_t b = 0; b < n; ++b)
         {
