@@ -150,13 +150,27 @@ private:
                                         grid.n[1] - 1, grid.n[2] - 1));
                   for (const std::string& line : def_.list_log) log_.line(line);
                   LatticeReport report;
-                  field_ = generate_lattice(def_, threads_, {}, report);
+                  field_ = generate_lattice(def_, threads_, draw_progress(), report);
                   mesh_files_ = std::move(report.mesh_files);
                   for (std::string& w : def_.warnings) warn(std::move(w));
                   for (std::string& w : report.warnings) warn(std::move(w));
                   log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
                                         report.triangles_ignored));
               });
+    }
+
+    /// A line on the terminal that shows how far a long drawing is; nothing where the output is a
+    /// file.
+    LatticeProgress draw_progress() const
+    {
+        if (isatty(STDERR_FILENO) == 0) return {};
+        return [time = Stopwatch(), shown = 0.0](std::size_t done, std::size_t all) mutable
+        {
+            if (time.seconds() < shown + 0.5) return;
+            shown = time.seconds();
+            fmt::print(stderr, "\rdraw {} of {}  ({:.0f} s)\x1b[K", done, all, shown);
+            if (done + 1 >= all) fmt::print(stderr, "\r\x1b[K");
+        };
     }
 
     void prepare()

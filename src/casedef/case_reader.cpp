@@ -55,6 +55,7 @@ public:
         ProgramRunner program(def_, commands_, read_);
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
+        evaluate_parameters();
 
         if (const Element* e = casedef.find_child("initials")) refuse_children(*e);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
@@ -105,6 +106,19 @@ private:
         for (const Element& e : execution->children)
             if (e.kind == Element::Kind::Comment || !own.contains(e.name))
                 def_.execution.push_back(e);
+    }
+
+    /// GenCase evaluates `#expressions` in the values of `<parameters>`.
+    void evaluate_parameters()
+    {
+        for (Element& e : def_.execution)
+        {
+            if (e.name != "parameters") continue;
+            for (Element& parameter : e.children)
+                for (Element::Attribute& a : parameter.attributes)
+                    if (a.name == "value" && a.value.starts_with('#'))
+                        a.value = fmt::format("{}", read_.number(parameter, a.name));
+        }
     }
 
     /// A constant that `auto="true"` leaves to its formula.
@@ -364,7 +378,7 @@ private:
                 if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
                     continue;
                 if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
-                f.extra.push_back(c);
+                f.extra.push_back(evaluated_element(c, read_));
             }
             def_.floatings.push_back(std::move(f));
         }

@@ -71,32 +71,34 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
 
 } // namespace
 
-std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1,
+std::vector<FigureOp> make_box(const Vec3& corner, const Vec3& size,
                                const std::array<bool, 6>& sides, bool is_solid,
                                const std::vector<double>& layers_dp, double dp)
 {
-    Vec3 low;
-    Vec3 high;
-    for (int axis = 0; axis < 3; ++axis)
+    // The arithmetic is GenCase's, halves included: 375 random boxes, 3375 coordinates.
+    const auto grown = [&](double layer)
     {
-        low[axis] = std::min(corner0[axis], corner1[axis]);
-        high[axis] = std::max(corner0[axis], corner1[axis]);
-    }
-    if (layers_dp.empty()) return {make_one_box(low, high, sides, is_solid)};
+        const double h = layer * dp;
+        Vec3 low;
+        Vec3 high;
+        const std::array<std::array<BoxSide, 2>, 3> sides_of_axis{
+            {{BoxLeft, BoxRight}, {BoxFront, BoxBack}, {BoxBottom, BoxTop}}};
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double near = corner[axis] - h;
+            const double far = near + (size[axis] + 2 * h);
+            const auto& [first, second] = sides_of_axis[static_cast<std::size_t>(axis)];
+            const double begin = sides[static_cast<std::size_t>(first)] ? near : corner[axis];
+            const double end =
+                sides[static_cast<std::size_t>(second)] ? far : corner[axis] + size[axis];
+            low[axis] = std::min(begin, end);
+            high[axis] = std::max(begin, end);
+        }
+        return make_one_box(low, high, sides, is_solid);
+    };
     std::vector<FigureOp> out;
-    for (const double layer : layers_dp)
-    {
-        Vec3 l = low;
-        Vec3 h = high;
-        const double shift = layer * dp;
-        if (sides[BoxBottom]) l.z -= shift;
-        if (sides[BoxTop]) h.z += shift;
-        if (sides[BoxLeft]) l.x -= shift;
-        if (sides[BoxRight]) h.x += shift;
-        if (sides[BoxFront]) l.y -= shift;
-        if (sides[BoxBack]) h.y += shift;
-        out.push_back(make_one_box(l, h, sides, is_solid));
-    }
+    for (const double layer : layers_dp) out.push_back(grown(layer));
+    if (layers_dp.empty()) out.push_back(grown(0));
     return out;
 }
 

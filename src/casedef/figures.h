@@ -19,13 +19,13 @@ enum BoxSide
     BoxBack,
 };
 
-/// A box between two corners, its sides cut as rule S3 says. `sides` are drawn; with `is_solid` it
-/// is filled as a prism of four corners (rule S4).
+/// A box from a corner over a size that may be negative, its sides cut as rule S3 says. `sides` are
+/// drawn; with `is_solid` it is filled as a prism of four corners (rule S4).
 ///
 /// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them
 /// (rule
 ///            S7); one figure a value. Empty: the box itself
-std::vector<FigureOp> make_box(const Vec3& corner0, const Vec3& corner1,
+std::vector<FigureOp> make_box(const Vec3& corner, const Vec3& size,
                                const std::array<bool, 6>& sides, bool is_solid,
                                const std::vector<double>& layers_dp, double dp);
 

@@ -15,24 +15,6 @@ constexpr auto movements = std::to_array<std::string_view>(
      "mvrotsinu", "mvcirsinu", "mvrectfile", "mvrotfile", "mvrotadvfile", "mvpathfile",
      "mvpredef"});
 
-Element evaluated(const Element& source, const AttributeReader& read)
-{
-    Element out;
-    out.name = source.name;
-    out.line = source.line;
-    for (const Element::Attribute& a : source.attributes)
-    {
-        if (a.name == "if") continue;
-        out.attributes.push_back({a.name, a.value.starts_with('#')
-                                              ? fmt::format("{}", read.number(source, a.name))
-                                              : a.value});
-    }
-    for (const Element& c : source.children)
-        if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read.is_active(c))
-            out.children.push_back(evaluated(c, read));
-    return out;
-}
-
 void check(const Element& e, const AttributeReader& read)
 {
     for (const Element& c : e.children)
@@ -54,9 +36,27 @@ void check(const Element& e, const AttributeReader& read)
 
 } // namespace
 
+Element evaluated_element(const Element& source, const AttributeReader& read)
+{
+    Element out;
+    out.name = source.name;
+    out.line = source.line;
+    for (const Element::Attribute& a : source.attributes)
+    {
+        if (a.name == "if") continue;
+        out.attributes.push_back({a.name, a.value.starts_with('#')
+                                              ? fmt::format("{}", read.number(source, a.name))
+                                              : a.value});
+    }
+    for (const Element& c : source.children)
+        if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read.is_active(c))
+            out.children.push_back(evaluated_element(c, read));
+    return out;
+}
+
 Element evaluated_motion(const Element& motion, const AttributeReader& read)
 {
-    Element out = evaluated(motion, read);
+    Element out = evaluated_element(motion, read);
     check(out, read);
     return out;
 }

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "fppg/mesh.h"
+#include "fppg/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// No facet, no vertex, no edge.
+inline constexpr std::uint32_t no_index = 0xFFFFFFFF;
+
+/// A mesh with welded vertices, ready for walking over it.
+///
+/// Facet f has the corners facets[f], counter-clockwise from outside; its side s runs from corner s
+/// to corner (s + 1) % 3, belongs to edge facet_edges[f][s] and leads to facet neighbours[f][s]
+/// (no_index where the edge is open or has more than two facets).
+struct SurfaceMesh
+{
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> facets;
+    std::vector<std::array<std::uint32_t, 3>> neighbours;
+    std::vector<std::array<std::uint32_t, 3>> facet_edges;
+    /// Per edge its two vertices, the smaller index first; edges sorted by vertices.
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    /// Per edge its facets: one (the second no_index) where it is open; of edges with more than two
+    /// facets the first two, and is_manifold[e] is 0.
+    std::vector<std::array<std::uint32_t, 2>> edge_facets;
+    std::vector<char> is_manifold;
+    /// Per facet its outward unit normal, and its area (metres squared).
+    std::vector<Vec3> normals;
+    std::vector<double> areas;
+};
+
+/// What the intake found and mended.
+struct MeshReport
+{
+    std::size_t facets_read = 0;
+    std::size_t duplicate_facets = 0;  ///< dropped
+    std::size_t degenerate_facets = 0; ///< dropped: no area after welding
+    std::size_t flipped_facets = 0;    ///< turned to agree with their neighbours
+    std::size_t open_edges = 0;
+    std::size_t non_manifold_edges = 0;
+    std::size_t t_junctions = 0; ///< vertices that lie inside an open edge
+    std::size_t self_intersections =
+        0;                  ///< facet pairs without a common vertex that cross; counted on request
+    std::size_t shells = 0; ///< parts connected through edges
+    bool is_watertight = false; ///< every edge has two facets that run opposite ways
+    double volume = 0;          ///< signed sum, metres cubed
+    double area = 0;
+    Box3 bounds;
+    std::vector<std::string> warnings; ///< whole sentences with counts and one place each
+};
+
+struct MeshIntakeOptions
+{
+    double weld_distance = 0; ///< metres; 0: corners with equal coordinates only
+    bool count_self_intersections = false;
+};
+
+/// Welds, cleans and orients the facets of a file.
+///
+/// Facets are turned to agree across edges within a shell; a closed shell whose volume is negative
+/// and that no other shell holds is turned as a whole, so that normals look outwards.
+///
+/// threads  number of threads; the result does not depend on it
+/// throws   GeometryError when no facet is left
+/// cost     O(n log n)
+SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
+                         MeshReport& report);
+
+} // namespace fppg

@@ -1,0 +1,294 @@
+// Commands that change the state: mk, modes, constants, transforms, clips.
+#include "fppg/error.h"
+
+#include "casedef/figures.h"
+#include "casedef/program.h"
+#include "casedef/transforms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fppg
+{
+
+void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
+{
+    const int count = kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
+    if (kind != MkKind::Void && (mk_type < 0 || mk_type >= count))
+        read_.fail(
+            e, fmt::format("mk {} is invalid, <mkconfig> leaves 0 to {} for {} (raise {} there)",
+                           mk_type, count - 1, kind == MkKind::Bound ? "boundary" : "fluid",
+                           kind == MkKind::Bound ? "boundcount" : "fluidcount"));
+    MkValue value;
+    value.kind = kind;
+    value.mk_type = static_cast<std::uint16_t>(mk_type);
+    if (kind == MkKind::Bound) value.mk = static_cast<std::uint16_t>(mk_type + def_.mk_bound_first);
+    if (kind == MkKind::Fluid) value.mk = static_cast<std::uint16_t>(mk_type + def_.mk_fluid_first);
+    state_.mk = value;
+    shared_state_.reset();
+}
+
+bool ProgramRunner::run_state_command(const Element& e)
+{
+    const std::string& name = e.name;
+    const auto next_mk = [&](MkKind kind)
+    {
+        const int step = read_.flag_or(e, "next", true) ? 1 : -1;
+        set_mk(e, kind, state_.mk.kind == kind ? std::max(0, state_.mk.mk_type + step) : 0);
+    };
+    const auto pop = [](auto& stack, auto& target)
+    {
+        if (stack.empty()) return;
+        target = stack.back();
+        stack.pop_back();
+    };
+    if (name == "setmkvoid")
+        set_mk(e, MkKind::Void, 0);
+    else if (name == "setmkfluid" || name == "setmkbound")
+        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound,
+               read_.integer(e, "mk", 0, 65000, false));
+    else if (name == "setmknextfluid")
+        next_mk(MkKind::Fluid);
+    else if (name == "setmknextbound")
+        next_mk(MkKind::Bound);
+    else if (name == "setmknextauto")
+    {
+        if (read_.flag_or(e, "auto", false)) read_.fail_unsupported(e, "auto=\"true\"");
+    }
+    else if (name == "setdrawmode")
+    {
+        const std::string& mode = read_.text(e, "mode");
+        if (mode == "wire")
+            state_.mode = DrawMode::Wire;
+        else if (mode == "face")
+            state_.mode = DrawMode::Face;
+        else if (mode == "solid")
+            state_.mode = DrawMode::Solid;
+        else if (mode == "full")
+            state_.mode = DrawMode::Full;
+        else
+            read_.fail(
+                e, fmt::format("mode \"{}\" is invalid, expected wire, face, solid or full", mode));
+    }
+    else if (name == "setboxlimitmode")
+    {
+        const std::string& mode = read_.text(e, "mode");
+        if (mode != "inner" && mode != "full")
+            read_.fail(e, fmt::format("mode \"{}\" is invalid, expected inner or full", mode));
+        state_.box_limit_full = mode == "full";
+    }
+    else if (name == "setfrdrawmode")
+    {
+        if (read_.flag_or(e, "auto", false))
+            read_.fail_unsupported(e, "auto=\"true\" (free particles)");
+    }
+    else if (name == "setnormalinvert")
+        state_.normal_invert = read_.flag_or(e, "invert", true);
+    else if (name == "setactive")
+    {
+        state_.draw_points = read_.flag_or(e, "drawpoints", state_.draw_points);
+        state_.draw_shapes = read_.flag_or(e, "drawshapes", state_.draw_shapes);
+    }
+    else if (name == "setdpctes")
+    {
+        DrawConstants& c = state_.constants;
+        c.line = read_.number_or(e, "cteline", c.line);
+        c.triangle_weight = read_.number_or(e, "ctetriangleweight", c.triangle_weight);
+        c.triangle_limits = read_.number_or(e, "ctetrianglelimits", c.triangle_limits);
+        c.sphere = read_.number_or(e, "ctesphere", c.sphere);
+        c.ellipsoid = read_.number_or(e, "cteellipsoid", c.ellipsoid);
+        c.cylinder_tube = read_.number_or(e, "ctecylindertube", c.cylinder_tube);
+        c.cylinder_cover = read_.number_or(e, "ctecylindercover", c.cylinder_cover);
+        if (e.find_attribute("ctespherenumsides") != nullptr)
+            c.sphere_sides = read_.integer(e, "ctespherenumsides", 3, 100000, true);
+        if (e.find_attribute("ctecylindernumsides") != nullptr)
+            c.cylinder_sides = read_.integer(e, "ctecylindernumsides", 3, 100000, true);
+    }
+    else if (name == "dpctessave")
+        saved_constants_.push_back(state_.constants);
+    else if (name == "dpctesload")
+        pop(saved_constants_, state_.constants);
+    else if (name == "dpctesreset")
+        state_.constants = {};
+    else if (name == "mksave")
+        saved_mks_.push_back(state_.mk);
+    else if (name == "mkload")
+        pop(saved_mks_, state_.mk);
+    else if (name == "statesave")
+        saved_states_.push_back({state_, matrix_});
+    else if (name == "stateload")
+    {
+        if (!saved_states_.empty())
+        {
+            std::vector<ClipPlane> clips = std::move(state_.clips);
+            state_ = saved_states_.back().state;
+            state_.clips = std::move(clips);
+            matrix_ = saved_states_.back().matrix;
+            saved_states_.pop_back();
+        }
+    }
+    else if (name == "resetdraw")
+    {
+        add(e, ResetOp{});
+        state_ = {};
+        matrix_ = {};
+    }
+    else if (name == "setshapemode")
+    {
+        const auto words = read_.words(e, e.text, "shape mode",
+                                       {"null", "actual", "dp", "all", "bound", "fluid", "void"});
+        std::array<bool, 2> forms{};
+        std::array<bool, 3> kinds{};
+        for (const std::string& w : words)
+        {
+            if (w == "actual") forms[0] = true;
+            if (w == "dp") forms[1] = true;
+            if (w == "void") kinds[0] = true;
+            if (w == "bound") kinds[1] = true;
+            if (w == "fluid") kinds[2] = true;
+            if (w == "all") kinds = {true, true, true};
+        }
+        shape_forms_ = forms;
+        shape_kinds_ = kinds;
+    }
+    else
+        return false;
+    shared_state_.reset();
+    return true;
+}
+
+bool ProgramRunner::run_transform(const Element& e)
+{
+    const std::string& name = e.name;
+    if (name == "matrixreset")
+        matrix_ = {};
+    else if (name == "matrixsave")
+        saved_matrices_.push_back(matrix_);
+    else if (name == "matrixload")
+    {
+        if (!saved_matrices_.empty())
+        {
+            matrix_ = saved_matrices_.back();
+            saved_matrices_.pop_back();
+        }
+    }
+    else if (name == "move")
+        matrix_ = matrix_ * translation(read_.vec3(e));
+    else if (name == "scale")
+        matrix_ = matrix_ * scaling(read_.vec3(e));
+    else if (name == "rotate")
+    {
+        const Vec3 axis = read_.vec3(e);
+        if (norm(axis) == 0) read_.fail(e, "the axis (x, y, z) is zero, expected a direction");
+        // Clockwise seen from the tip of the axis (rule T2).
+        matrix_ = matrix_ * rotation(axis, -radians(read_.number(e, "ang")));
+    }
+    else if (name == "rotateline")
+    {
+        const std::vector<Vec3> points = read_.points(e);
+        if (points.size() != 2)
+            read_.fail(e, fmt::format("has {} points, expected 2", points.size()));
+        const Vec3 axis = points[1] - points[0];
+        if (norm(axis) == 0) read_.fail(e, "its two points are the same, expected an axis");
+        matrix_ = matrix_ * around(points[0], rotation(axis, -radians(read_.number(e, "ang"))));
+    }
+    else if (name == "rotateadv")
+    {
+        const std::string axes = read_.text_or(e, "axes", "XYZ");
+        const auto is_axis = [](char c) { return c >= 'X' && c <= 'Z'; };
+        if (axes.size() != 3 || !std::all_of(axes.begin(), axes.end(), is_axis))
+            read_.fail(e, fmt::format("axes \"{}\" is invalid, expected three of X, Y, Z", axes));
+        std::array<Transform, 3> turns;
+        const std::array<const char*, 3> names{"ang1", "ang2", "ang3"};
+        for (std::size_t i = 0; i < 3; ++i)
+            turns[i] = rotation_about_axis(axes[i] - 'X', radians(read_.number_or(e, names[i], 0)));
+        const Transform t = read_.flag_or(e, "intrinsic", true) ? turns[0] * turns[1] * turns[2]
+                                                                : turns[2] * turns[1] * turns[0];
+        const Element* center = e.find_child("center");
+        matrix_ = matrix_ * (center != nullptr ? around(read_.vec3(*center), t) : t);
+    }
+    else
+        return false;
+    return true;
+}
+
+bool ProgramRunner::run_clip(const Element& e)
+{
+    const std::string& name = e.name;
+    if (name == "clipreset")
+        state_.clips.clear();
+    else if (name == "clipplane")
+    {
+        ClipPlane plane;
+        if (e.find_child("point1") != nullptr)
+        {
+            const Vec3 p1 = matrix_(read_.child_vec3(e, "point1"));
+            const Vec3 p2 = matrix_(read_.child_vec3(e, "point2"));
+            const Vec3 p3 = matrix_(read_.child_vec3(e, "point3"));
+            plane = {p1, cross(p2 - p1, p3 - p1)};
+        }
+        else
+        {
+            const Vec3 point = read_.child_vec3(e, "point");
+            plane.point = matrix_(point);
+            plane.normal = matrix_(point + read_.child_vec3(e, "vector")) - plane.point;
+            if (matrix_.is_identity()) plane.normal = read_.child_vec3(e, "vector");
+        }
+        if (norm(plane.normal) == 0)
+            read_.fail(e, "the plane has no direction, expected a vector that is not zero");
+        state_.clips.push_back(plane);
+    }
+    else if (name == "clipbox")
+    {
+        if (e.find_child("angles") != nullptr) read_.fail_unsupported(e, "<angles>");
+        std::array<bool, 6> faces{true, true, true, true, true, true};
+        if (const Element* which = e.find_child("boxfaces"))
+        {
+            faces = {};
+            for (const std::string& w :
+                 read_.words(e, which->text, "box face",
+                             {"all", "bottom", "top", "left", "right", "front", "back"}))
+            {
+                if (w == "all") faces = {true, true, true, true, true, true};
+                if (w == "bottom") faces[BoxBottom] = true;
+                if (w == "top") faces[BoxTop] = true;
+                if (w == "left") faces[BoxLeft] = true;
+                if (w == "right") faces[BoxRight] = true;
+                if (w == "front") faces[BoxFront] = true;
+                if (w == "back") faces[BoxBack] = true;
+            }
+        }
+        const Transform matrix = matrix_;
+        matrix_ = {};
+        const BoxRegion box = box_of(e);
+        matrix_ = matrix;
+        Vec3 low;
+        Vec3 high;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = std::min(box.corner0[axis], box.corner1[axis]);
+            high[axis] = std::max(box.corner0[axis], box.corner1[axis]);
+        }
+        const auto side = [&](BoxSide which, const Vec3& at, const Vec3& outward)
+        {
+            if (!faces[which]) return;
+            if (matrix_.is_identity())
+                state_.clips.push_back({at, outward});
+            else
+                state_.clips.push_back({matrix_(at), matrix_(at + outward) - matrix_(at)});
+        };
+        side(BoxBottom, low, {0, 0, -1});
+        side(BoxTop, high, {0, 0, 1});
+        side(BoxLeft, low, {-1, 0, 0});
+        side(BoxRight, high, {1, 0, 0});
+        side(BoxFront, low, {0, -1, 0});
+        side(BoxBack, high, {0, 1, 0});
+    }
+    else
+        return false;
+    shared_state_.reset();
+    return true;
+}
+
+} // namespace fppg

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "fppg/vec.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace fppg
+{
+
+inline double radians(double degrees)
+{
+    return degrees * std::numbers::pi / 180;
+}
+
+inline Transform translation(const Vec3& by)
+{
+    Transform t;
+    t.offset = by;
+    return t;
+}
+
+inline Transform scaling(const Vec3& s)
+{
+    Transform t;
+    t.linear = {Vec3{s.x, 0, 0}, Vec3{0, s.y, 0}, Vec3{0, 0, s.z}};
+    return t;
+}
+
+/// Right-handed rotation about an axis through the origin, angle in radians.
+inline Transform rotation(const Vec3& axis, double angle)
+{
+    const Vec3 u = axis / norm(axis);
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double k = 1 - c;
+    Transform t;
+    t.linear = {Vec3{c + u.x * u.x * k, u.x * u.y * k - u.z * s, u.x * u.z * k + u.y * s},
+                Vec3{u.y * u.x * k + u.z * s, c + u.y * u.y * k, u.y * u.z * k - u.x * s},
+                Vec3{u.z * u.x * k - u.y * s, u.z * u.y * k + u.x * s, c + u.z * u.z * k}};
+    return t;
+}
+
+inline Transform rotation_about_axis(int axis, double angle)
+{
+    Vec3 u;
+    u[axis] = 1;
+    return rotation(u, angle);
+}
+
+/// The map `t` with `center` in the place of the origin.
+inline Transform around(const Vec3& center, const Transform& t)
+{
+    return translation(center) * t * translation(-center);
+}
+
+} // namespace fppg
