@@ -56,8 +56,7 @@ struct CaseText
 {
     std::string gravity = R"(<gravity x="0" y="0" z="-9.81" />)";
     std::string constants =
-        R"(<rhop0 value="1000" /><hswl value="0" auto="true" /><gamma value="7" />
-<coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />)";
+        R"(<rhop0 value="1000" /><hswl value="0" auto="true" /><gamma value="7" /><coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />)";
     std::string rhopgradient = R"(<rhopgradient value="2" />)";
     std::string mkconfig = R"(<mkconfig boundcount="240" fluidcount="9" />)";
     std::string predefinition;

@@ -1,0 +1,660 @@
+#include "fppg/case_def.h"
+
+#include "fppg/error.h"
+
+#include "casedef/known_commands.h"
+#include "helpers/case_text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace fppg
+{
+namespace
+{
+
+using test::CaseText;
+
+CaseDef read(const std::string& text, const CaseOptions& options = {})
+{
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "Case_Def.xml", text);
+    return read_case(folder / "Case_Def.xml", options);
+}
+
+CaseDef read(const CaseText& text, const CaseOptions& options = {})
+{
+    return read(text.text(), options);
+}
+
+CaseDef run(const std::string& commands)
+{
+    CaseText text;
+    text.mainlist = commands;
+    return read(text);
+}
+
+/// The message without the folder of the file.
+std::string error_of(const CaseText& text, const CaseOptions& options = {})
+{
+    try
+    {
+        read(text, options);
+    }
+    catch (const Error& error)
+    {
+        const std::string what = error.what();
+        const std::size_t at = what.find("Case_Def.xml");
+        return at == std::string::npos ? what : what.substr(at);
+    }
+    return "no error";
+}
+
+std::string error_of(const std::string& commands)
+{
+    CaseText text;
+    text.mainlist = commands;
+    return error_of(text);
+}
+
+void expect_near(const Vec3& found, const Vec3& expected)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(found[axis], expected[axis], 1e-12) << "xyz"[axis];
+}
+
+/// Where the commands put the point (1, 2, 3).
+Vec3 moved(const std::string& transforms)
+{
+    const CaseDef def = run(transforms + R"(<drawpoint x="1" y="2" z="3" />)");
+    return std::get<PointsOp>(def.ops.back().what).points[0];
+}
+
+// -- mistakes
+// ---------------------------------------------------------------------------------------------
+
+struct Mistake
+{
+    const char* name;
+    std::function<void(CaseText&)> make;
+    const char* message;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out)
+{
+    *out << mistake.name;
+}
+
+Mistake in_mainlist(const char* name, const char* commands, const char* message)
+{
+    return {name, [commands](CaseText& text) { text.mainlist = commands; }, message};
+}
+
+class ReadCaseMistake : public testing::TestWithParam<Mistake>
+{
+};
+
+TEST_P(ReadCaseMistake, IsNamedWithFileLineAndElement)
+{
+    CaseText text = test::tank();
+    GetParam().make(text);
+    const std::string message = error_of(text);
+    EXPECT_EQ(message.rfind("Case_Def.xml:", 0), 0u) << message;
+    EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Commands, ReadCaseMistake,
+    testing::Values(
+        in_mainlist("MissingAttribute", "\n<setmkbound />",
+                    ":8: <setmkbound>: attribute 'mk' is missing"),
+        in_mainlist("BadNumber", R"(<drawpoint x="1.5m" y="0" z="0" />)",
+                    ":7: <drawpoint>: attribute x=\"1.5m\""),
+        in_mainlist("BadInteger", R"(<setmkbound mk="1.5" />)",
+                    "<setmkbound>: attribute mk=\"1.5\" is not a valid integer number"),
+        in_mainlist("Infinite", R"(<drawpoint x="inf" y="0" z="0" />)",
+                    "<drawpoint>: attribute x=\"inf\""),
+        in_mainlist("UnknownCommand", "<drawteapot />", ":7: <drawteapot>: is not a command"),
+        in_mainlist("MissingList", R"(<runlist name="Nobody" />)",
+                    "<runlist>: there is no list named 'Nobody'"),
+        in_mainlist("DivisionByZero", R"(<drawpoint x="#1/0" y="0" z="0" />)",
+                    ":7: <drawpoint>: attribute x=\"#1/0\""),
+        in_mainlist("UnknownVariable", R"(<drawpoint x="#Width" y="0" z="0" />)",
+                    "<drawpoint>: attribute x=\"#Width\""),
+        in_mainlist("MkboundOutOfRange", R"(<setmkbound mk="240" />)",
+                    "<setmkbound>: mk 240 is invalid, <mkconfig> leaves 0 to 239 for boundary"),
+        in_mainlist("MkfluidOutOfRange", R"(<setmkfluid mk="9" />)",
+                    "<setmkfluid>: mk 9 is invalid, <mkconfig> leaves 0 to 8 for fluid"),
+        in_mainlist("NegativeMk", R"(<setmkbound mk="-1" />)",
+                    "<setmkbound>: attribute mk=\"-1\" is out of range"),
+        in_mainlist(
+            "BadDrawMode", R"(<setdrawmode mode="filled" />)",
+            "<setdrawmode>: mode \"filled\" is invalid, expected wire, face, solid or full"),
+        in_mainlist("BadBoxLimitMode", R"(<setboxlimitmode mode="outer" />)",
+                    "<setboxlimitmode>: mode \"outer\" is invalid, expected inner or full"),
+        in_mainlist(
+            "WrongBoxfill",
+            R"(<drawbox><boxfill>sides</boxfill><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></drawbox>)",
+            "<drawbox>: boxfill \"sides\" is invalid, expected solid, all, bottom"),
+        in_mainlist("MissingBoxfill",
+                    R"(<drawbox><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></drawbox>)",
+                    "<drawbox>: the element <boxfill> is missing in it"),
+        in_mainlist("MissingSize",
+                    R"(<drawbox><boxfill>all</boxfill><point x="0" y="0" z="0" /></drawbox>)",
+                    "<drawbox>: the element <size> is missing in it"),
+        in_mainlist("MissingRadius", R"(<drawsphere><point x="0" y="0" z="0" /></drawsphere>)",
+                    "<drawsphere>: attribute 'radius' is missing"),
+        in_mainlist("TooFewPoints", R"(<drawtriangle><point x="0" y="0" z="0" /></drawtriangle>)",
+                    "<drawtriangle>: has 1 points, expected 3"),
+        in_mainlist(
+            "OddPrism",
+            R"(<drawprism><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /><point x="0" y="0" z="0" />
+<point x="0" y="0" z="0" /><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /></drawprism>)",
+            "<drawprism>: has 7 points, expected as many for the bottom as for the top"),
+        in_mainlist(
+            "BadMask",
+            R"(<drawprism mask="a"><point x="0" y="0" z="0" /><point x="1" y="0" z="0" /><point x="0" y="1" z="0" />
+<point x="0" y="0" z="1" /><point x="1" y="0" z="1" /><point x="0" y="1" z="1" /></drawprism>)",
+            "<drawprism>: mask=\"a\" is invalid"),
+        in_mainlist(
+            "BadLayers",
+            R"(<drawsphere radius="1"><point x="0" y="0" z="0" /><layers vdp="0,x" /></drawsphere>)",
+            "<layers>: vdp=\"0,x\" is invalid"),
+        in_mainlist("BadModefill",
+                    R"(<fillpoint x="0" y="0" z="0"><modefill>air</modefill></fillpoint>)",
+                    "<fillpoint>: modefill \"air\" is invalid"),
+        in_mainlist("BadNearType", R"(<redrawnear targettp="air" bordertp="bound" />)",
+                    "<redrawnear>: attribute targettp=\"air\" is invalid"),
+        in_mainlist("NoRotationAxis", R"(<rotate ang="10" x="0" y="0" z="0" />)",
+                    "<rotate>: the axis (x, y, z) is zero"),
+        in_mainlist("BadRotationAxes", R"(<rotateadv axes="XYQ" ang1="1" />)",
+                    "<rotateadv>: axes \"XYQ\" is invalid"),
+        in_mainlist(
+            "NoClipNormal",
+            R"(<clipplane><point x="0" y="0" z="0" /><vector x="0" y="0" z="0" /></clipplane>)",
+            "<clipplane>: the plane has no direction"),
+        in_mainlist("Abort", R"(<abort text="[1+1] faults" />)",
+                    "<abort>: the case stops itself: 2 faults"),
+        in_mainlist("BadCondition", R"(<drawpoint if="#1 +" x="0" y="0" z="0" />)",
+                    "<drawpoint>: attribute if=\"#1 +\""),
+        in_mainlist("BadFlag", R"(<setactive drawpoints="maybe" />)",
+                    "<setactive>: attribute drawpoints=\"maybe\" is not a valid boolean"),
+        in_mainlist("PlannedCommand", R"(<drawbeach />)", "<drawbeach>: not supported yet"),
+        Mistake{"EndlessLists",
+                [](CaseText& text)
+                {
+                    text.lists = R"(<list name="A"><runlist name="A" /></list>)";
+                    text.mainlist = R"(<runlist name="A" />)";
+                },
+                "lists call one another more than"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Definition, ReadCaseMistake,
+    testing::Values(
+        Mistake{"ZeroDp", [](CaseText& text) { text.dp = "0"; },
+                ":5: <definition>: dp is 0, expected a particle distance above 0"},
+        Mistake{"NegativeDp", [](CaseText& text) { text.dp = "-0.1"; }, "<definition>: dp is -0.1"},
+        Mistake{"PointminAbovePointmax",
+                [](CaseText& text) { text.pointmin = R"(<pointmin x="9" y="0" z="0" />)"; },
+                "<pointmin>: the lower limit 9 of x is above the upper limit 1.5 in <pointmax>"},
+        Mistake{"MissingPointmax", [](CaseText& text) { text.pointmax = ""; },
+                "<definition>: the element <pointmax> is missing in it"},
+        Mistake{"TooManyNodes", [](CaseText& text) { text.dp = "1e-10"; },
+                "<definition>: the domain has"},
+        Mistake{"UnknownInCommands", [](CaseText& text) { text.lists = "<drawpoint />"; },
+                "<drawpoint>: is not known in <commands>, expected list or mainlist"},
+        Mistake{"ListWithoutName", [](CaseText& text) { text.lists = "<list />"; },
+                "<list>: attribute 'name' is missing"},
+        Mistake{"MissingGravity", [](CaseText& text) { text.gravity = ""; },
+                ":3: <constantsdef>: the element <gravity> is missing in it"},
+        Mistake{"MissingCflnumber",
+                [](CaseText& text) { text.constants.resize(t.constants.find("<cflnumber")); },
+                "<constantsdef>: the element <cflnumber> is missing in it"},
+        Mistake{"CoefhAndHdp", [](CaseText& text) { text.constants += R"(<hdp value="2" />)"; },
+                "<hdp>: only one constant must be defined, coefh or hdp"},
+        Mistake{"BadRhopgradient",
+                [](CaseText& text) { text.rhopgradient = R"(<rhopgradient value="4" />)"; },
+                "<rhopgradient>: attribute value=\"4\" is out of range, expected 1 to 3"},
+        Mistake{
+            "BadMkorient",
+            [](CaseText& text)
+            {
+                text.mkconfig =
+                    R"(<mkconfig boundcount="9" fluidcount="9"><mkorientbound mk="0" orient="xxz" /></mkconfig>)";
+            },
+            "<mkorientbound>: orient=\"xxz\" is invalid"},
+        Mistake{"MissingMkconfig", [](CaseText& text) { text.mkconfig = ""; },
+                "<casedef>: the element <mkconfig> is missing in it"},
+        Mistake{"MissingParameters", [](CaseText& text) { text.execution = ""; },
+                "<case>: the element <execution><parameters> is missing in it"},
+        Mistake{"FloatingWithoutMass",
+                [](CaseText& text)
+                { text.after_geometry = R"(<floatings><floating mkbound="0" /></floatings>)"; },
+                "<floating>: one value must be defined, massbody, relativeweight or rhopbody"},
+        Mistake{
+            "FloatingWithTwoMasses",
+            [](CaseText& text)
+            {
+                text.after_geometry =
+                    R"(<floatings><floating mkbound="0" massbody="1" rhopbody="2" /></floatings>)";
+            },
+            "<floating>: only one value must be defined"},
+        Mistake{"BadFloatingList",
+                [](CaseText& text) {
+                    text.after_geometry =
+                        R"(<floatings><floating mkbound="2-1" rhopbody="2" /></floatings>)";
+                },
+                "<floating>: attribute mkbound=\"2-1\" is not a list of whole numbers"},
+        Mistake{"UnknownMotion",
+                [](CaseText& text) {
+                    text.after_geometry =
+                        R"(<motion><objreal ref="0"><mvjump id="1" /></objreal></motion>)";
+                },
+                "<mvjump>: is not known in <motion>"}));
+
+TEST(ReadCase, RefusesAMissingMainlistAndAForeignRoot)
+{
+    const std::string text = CaseText().text();
+    const std::size_t begin = text.find("<mainlist>");
+    const std::size_t end = text.find("</mainlist>") + 11;
+    EXPECT_THROW(read(text.substr(0, begin) + text.substr(end)), CaseError);
+    try
+    {
+        read(std::string("<?xml version=\"1.0\"?>\n\n<model/>"));
+        FAIL();
+    }
+    catch (const CaseError& error)
+    {
+        EXPECT_NE(
+            std::string(error.what()).find("Case_Def.xml:3: <model>: the root must be <case>"),
+            std::string::npos)
+            << error.what();
+    }
+}
+
+TEST(ReadCase, RefusesACaseForANewerGenCase)
+{
+    std::string text = CaseText().text();
+    text.replace(text.find("<casedef>"), 9, R"(<casedef requiredversion="v9.0.1">)");
+    EXPECT_THROW(read(text), CaseError);
+    text.replace(text.find("v9.0.1"), 6, "v5.0.1");
+    EXPECT_NO_THROW(read(text));
+}
+
+// -- what is ignored
+// --------------------------------------------------------------------------------------
+
+TEST(ReadCase, IgnoresUnknownAttributesBlocksAndUnderscoredElements)
+{
+    CaseText text = test::tank();
+    text.mainlist +=
+        R"(<_drawteapot /><drawpoint x="0" y="0" z="0" colour="red" /><!-- a comment -->)";
+    text.after_geometry = R"(<fppg><anything /></fppg><someblock a="1" />)";
+    text.lists = R"(<_list /><list name="Unused"><_x /></list>)";
+    EXPECT_EQ(read(text).ops.size(), test::tank().mainlist.empty() ? 0u : 3u);
+}
+
+TEST(ReadCase, SkipsCommandsThatAnIfSwitchesOff)
+{
+    const CaseDef def = run(R"(<newvar a="2" /><drawpoint if="#a>3" x="0" y="0" z="0" />
+<drawpoint if="#a==2" x="1" y="0" z="0" /><drawbeach if="#0" />)");
+    ASSERT_EQ(def.ops.size(), 1u);
+    EXPECT_EQ(std::get<PointsOp>(def.ops[0].what).points[0].x, 1);
+}
+
+TEST(CommandSupport, KnowsEveryCommandOfTheLanguage)
+{
+    // The element names that stand in the lists of GenCase v5.4's case template.
+    for (const char* name : {"abort",
+                             "cellsout",
+                             "clipbox",
+                             "clipdomain",
+                             "clipplane",
+                             "clipreset",
+                             "debugout",
+                             "delvar",
+                             "dpctesload",
+                             "dpctesreset",
+                             "dpctessave",
+                             "drawbathymetry",
+                             "drawbeach",
+                             "drawbox",
+                             "drawcylinder",
+                             "drawellipsoid",
+                             "drawextrude",
+                             "drawfigure",
+                             "drawfilecsv",
+                             "drawfileply",
+                             "drawfilestl",
+                             "drawfilevtk",
+                             "drawfilevtm",
+                             "drawline",
+                             "drawlines",
+                             "drawlineto",
+                             "drawpoint",
+                             "drawpoints",
+                             "drawpolygon",
+                             "drawprism",
+                             "drawpyramid",
+                             "drawquadri",
+                             "drawsphere",
+                             "drawtriangle",
+                             "drawtriangles",
+                             "drawtrianglesfan",
+                             "drawtrianglesstrip",
+                             "drawwave",
+                             "exportvar",
+                             "fillbox",
+                             "fillfigure",
+                             "fillpoint",
+                             "fillprism",
+                             "fillvoidpoint",
+                             "matrixload",
+                             "matrixreset",
+                             "matrixsave",
+                             "mkload",
+                             "mksave",
+                             "move",
+                             "newvar",
+                             "newvarcte",
+                             "newvarstr",
+                             "newvarstrcte",
+                             "pointsmkout",
+                             "printf",
+                             "redraw",
+                             "redrawbox",
+                             "redrawnear",
+                             "redrawnearbox",
+                             "resetdraw",
+                             "rotate",
+                             "rotateadv",
+                             "rotateline",
+                             "runlist",
+                             "scale",
+                             "setactive",
+                             "setboxlimitmode",
+                             "setdpctes",
+                             "setdrawmode",
+                             "setfrdrawmode",
+                             "setlinebegin",
+                             "setmkbackbound",
+                             "setmkbackclear",
+                             "setmkbackfluid",
+                             "setmkbackvoid",
+                             "setmkbound",
+                             "setmkfluid",
+                             "setmknextauto",
+                             "setmknextbound",
+                             "setmknextfluid",
+                             "setmkvoid",
+                             "setnormalinvert",
+                             "setpattern",
+                             "setshapemode",
+                             "setvar",
+                             "setvarstr",
+                             "shapeout",
+                             "stateload",
+                             "statesave",
+                             "varsload",
+                             "varssave"})
+        EXPECT_NE(command_support(name), CommandSupport::Unknown) << name;
+    EXPECT_EQ(command_support("drawteapot"), CommandSupport::Unknown);
+}
+
+TEST(ReadCase, SaysOfPlannedCommandsThatTheyAreNotSupportedYet)
+{
+    int planned = 0;
+    for (const char* name :
+         {"cellsout", "clipdomain", "drawbathymetry", "drawbeach", "drawfilecsv", "drawfileply",
+          "drawfilevtk", "drawfilevtm", "drawwave", "pointsmkout", "setmkbackbound",
+          "setmkbackclear", "setmkbackfluid", "setmkbackvoid", "setpattern"})
+    {
+        if (command_support(name) != CommandSupport::Planned) continue;
+        ++planned;
+        EXPECT_NE(error_of(std::string("<") + name + " />")
+                      .find(std::string("<") + name + ">: not supported yet"),
+                  std::string::npos)
+            << name;
+    }
+    RecordProperty("planned", planned);
+}
+
+// -- state
+// ------------------------------------------------------------------------------------------------
+
+TEST(State, OfADrawIsWhatTheCommandsBeforeItSet)
+{
+    const CaseDef def =
+        run(R"(<setmkbound mk="3" /><setdrawmode mode="face" /><setboxlimitmode mode="full" />
+<setdpctes cteline="0.9" /><drawpoint x="0" y="0" z="0" /><setmkvoid /><drawpoint x="0" y="0" z="0" />)");
+    const DrawState& first = *def.ops.at(0).state;
+    EXPECT_EQ(first.mk, (MkValue{MkKind::Bound, 13, 3}));
+    EXPECT_EQ(first.mode, DrawMode::Face);
+    EXPECT_TRUE(first.box_limit_full);
+    EXPECT_EQ(first.constants.line, 0.9);
+    EXPECT_EQ(def.ops.at(1).state->mk.kind, MkKind::Void);
+    EXPECT_EQ(def.ops.at(0).source.line, 8);
+    EXPECT_EQ(def.ops.at(0).source.command, "drawpoint");
+}
+
+TEST(State, ComesBackFromItsStackWithoutTheClips)
+{
+    const CaseDef def = run(
+        R"(<setmkbound mk="1" /><setdrawmode mode="wire" /><move x="1" y="0" z="0" /><statesave />
+<setmkfluid mk="0" /><setdrawmode mode="full" /><move x="1" y="0" z="0" />
+<clipplane><point x="0" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane>
+<stateload /><drawpoint x="0" y="0" z="0" /><stateload /><drawpoint x="0" y="0" z="0" />)");
+    for (const DrawOp& op : def.ops)
+    {
+        EXPECT_EQ(op.state->mk.mk_type, 1);
+        EXPECT_EQ(op.state->mode, DrawMode::Wire);
+        EXPECT_EQ(op.state->clips.size(), 1u);
+        expect_near(std::get<PointsOp>(op.what).points[0], {1, 0, 0});
+    }
+}
+
+TEST(State, HasStacksOfMksAndDrawConstants)
+{
+    const CaseDef def =
+        run(R"(<setmkbound mk="1" /><mksave /><setmkbound mk="2" /><mksave /><setmkfluid mk="0" />
+<mkload /><drawpoint x="0" y="0" z="0" /><mkload /><drawpoint x="0" y="0" z="0" />
+<setdpctes ctesphere="2" /><dpctessave /><dpctesreset /><drawpoint x="0" y="0" z="0" /><dpctesload />
+<drawpoint x="0" y="0" z="0" />)");
+    EXPECT_EQ(def.ops.at(0).state->mk.mk_type, 2);
+    EXPECT_EQ(def.ops.at(1).state->mk.mk_type, 1);
+    EXPECT_EQ(def.ops.at(2).state->constants.sphere, 0.6);
+    EXPECT_EQ(def.ops.at(3).state->constants.sphere, 2);
+}
+
+TEST(State, IsForgottenByResetdraw)
+{
+    const CaseDef def =
+        run(R"(<setmkbound mk="1" /><move x="1" y="0" z="0" /><setdrawmode mode="face" />
+<clipplane><point x="0" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane><resetdraw />
+<drawpoint x="0" y="0" z="0" />)");
+    EXPECT_TRUE(std::holds_alternative<ResetOp>(def.ops.at(0).what));
+    const DrawState& state = *def.ops.at(1).state;
+    EXPECT_EQ(state.mk.kind, MkKind::Void);
+    EXPECT_EQ(state.mode, DrawMode::Solid);
+    EXPECT_TRUE(state.clips.empty());
+    expect_near(std::get<PointsOp>(def.ops.at(1).what).points[0], {0, 0, 0});
+}
+
+TEST(State, CountsMksOnWithSetmknext)
+{
+    const CaseDef def = run(R"(<setmknextbound /><drawpoint x="0" y="0" z="0" /><setmknextbound />
+<drawpoint x="0" y="0" z="0" /><setmknextbound next="false" /><drawpoint x="0" y="0" z="0" />
+<setmknextfluid /><drawpoint x="0" y="0" z="0" />)");
+    EXPECT_EQ(def.ops.at(0).state->mk, (MkValue{MkKind::Bound, 10, 0}));
+    EXPECT_EQ(def.ops.at(1).state->mk, (MkValue{MkKind::Bound, 11, 1}));
+    EXPECT_EQ(def.ops.at(2).state->mk, (MkValue{MkKind::Bound, 10, 0}));
+    EXPECT_EQ(def.ops.at(3).state->mk, (MkValue{MkKind::Fluid, 1, 0}));
+}
+
+TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
+{
+    const std::string points =
+        R"(<point x="0" y="0" z="0" /><point x="1" y="0" z="0" /><point x="0" y="1" z="0" />
+<point x="0" y="0" z="1" /><point x="1" y="0" z="1" /><point x="0" y="1" z="1" /></drawprism>)";
+    const auto visible = [&](const std::string& mask)
+    {
+        const CaseDef def = run("<drawprism mask=\"" + mask + "\">" + points);
+        std::string out;
+        for (const FigureFace& face : std::get<FigureOp>(def.ops.at(0).what).faces)
+            out += face.is_visible ? '1' : '0';
+        return out;
+    };
+    EXPECT_EQ(visible("5"), "01011");
+    EXPECT_EQ(visible("1 | 3"), "01011");
+    EXPECT_EQ(visible("0"), "11111");
+}
+
+// -- transforms
+// -------------------------------------------------------------------------------------------
+
+TEST(Transforms, ActInReverseOrderOfWriting)
+{
+    expect_near(moved(R"(<move x="10" y="0" z="0" /><scale x="2" y="2" z="2" />)"), {12, 4, 6});
+    expect_near(moved(R"(<scale x="2" y="2" z="2" /><move x="10" y="0" z="0" />)"), {22, 4, 6});
+}
+
+TEST(Transforms, RotateClockwiseSeenFromTheTipOfTheAxis)
+{
+    expect_near(moved(R"(<rotate ang="90" x="0" y="0" z="1" />)"), {2, -1, 3});
+    expect_near(
+        moved(
+            R"(<rotateline ang="90"><point x="1" y="0" z="0" /><point x="1" y="0" z="5" /></rotateline>)"),
+        {3, 0, 3});
+}
+
+TEST(Transforms, RotateadvTurnsAboutItsCentreInTheOrderOfItsAxes)
+{
+    expect_near(
+        moved(
+            R"(<rotateadv ang1="90" ang2="0" ang3="0" axes="XYZ"><center x="1" y="2" z="0" /></rotateadv>)"),
+        {1, -1, 0});
+    const Vec3 intrinsic =
+        moved(R"(<rotateadv ang1="90" ang2="90" axes="XYZ" intrinsic="true" />)");
+    const Vec3 extrinsic =
+        moved(R"(<rotateadv ang1="90" ang2="90" axes="XYZ" intrinsic="false" />)");
+    expect_near(intrinsic, {3, 1, 2});
+    expect_near(extrinsic, {2, -3, -1});
+}
+
+TEST(Transforms, HaveAStackAndAReset)
+{
+    expect_near(
+        moved(
+            R"(<move x="1" y="0" z="0" /><matrixsave /><move x="1" y="0" z="0" /><matrixload />)"),
+        {2, 2, 3});
+    expect_near(moved(R"(<move x="1" y="0" z="0" /><matrixreset />)"), {1, 2, 3});
+    expect_near(moved(R"(<matrixload />)"), {1, 2, 3});
+}
+
+TEST(Transforms, TurnClipsToo)
+{
+    const CaseDef def = run(R"(<rotate ang="90" x="0" y="0" z="1" />
+<clipplane><point x="1" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane><drawpoint x="0" y="0" z="0" />)");
+    const ClipPlane& clip = def.ops.at(0).state->clips.at(0);
+    expect_near(clip.point, {0, -1, 0});
+    expect_near(clip.normal, {0, -1, 0});
+}
+
+// -- variables and flow
+// -----------------------------------------------------------------------------------
+
+TEST(Expressions, StandInAnyNumber)
+{
+    const CaseDef def = run(
+        R"(<newvar a="1/4" /><drawsphere radius="#a*Dp"><point x="#a" y="#-a" z="#PosMax_x" /></drawsphere>)");
+    const auto& sphere = std::get<SphereOp>(def.ops.at(0).what);
+    EXPECT_DOUBLE_EQ(sphere.radius, 0.025);
+    expect_near(sphere.center, {0.25, -0.25, 1.5});
+}
+
+TEST(Evars, ReplaceTheValuesOfTheDefinitionAndShowInItsCopy)
+{
+    CaseText text;
+    text.predefinition = R"(<predefinition><newvarcte Width="1" /></predefinition>)";
+    text.mainlist = R"(<drawpoint x="#Width" y="0" z="0" />)";
+    CaseOptions options;
+    options.evars = {{"Width", "0.5"}};
+    const CaseDef def = read(text, options);
+    EXPECT_EQ(std::get<PointsOp>(def.ops.at(0).what).points[0].x, 0.5);
+    const Element* geometry = def.casedef.find_child("geometry");
+    ASSERT_NE(geometry, nullptr);
+    EXPECT_EQ(
+        *geometry->find_child("predefinition")->find_child("newvarcte")->find_attribute("Width"),
+        "0.5");
+}
+
+TEST(Evars, MustBeVariablesOfTheCase)
+{
+    CaseOptions options;
+    options.evars = {{"Nowhere", "1"}};
+    EXPECT_THROW(read(CaseText(), options), UsageError);
+}
+
+TEST(Runlist, RunsAListAsOftenAsItSays)
+{
+    CaseText text;
+    text.lists = R"(<list name="Dots"><drawpoint x="#k" y="0" z="0" /><setvar k="k+1" /></list>)";
+    text.mainlist =
+        R"(<newvar k="0" /><runlist name="Dots" times="3" /><runlist name="Dots" times="0" />)";
+    const CaseDef def = read(text);
+    ASSERT_EQ(def.ops.size(), 3u);
+    EXPECT_EQ(std::get<PointsOp>(def.ops[2].what).points[0].x, 2);
+}
+
+TEST(Runlist, StopsAtSomeNumberOfCallsEvenOfAnEmptyList)
+{
+    CaseText text;
+    text.lists =
+        R"(<list name="A"><runlist name="B" times="1000000000" /></list><list name="B" printcall="false" />)";
+    text.mainlist = R"(<runlist name="A" times="1000000000" />)";
+    EXPECT_NE(error_of(text).find("commands were run"), std::string::npos);
+}
+
+TEST(Printf, FillsInVariables)
+{
+    const CaseDef def = run(R"(<newvar a="3" /><printf text="a is [a], its double [2*a]" />)");
+    EXPECT_NE(std::find(def.list_log.begin(), def.list_log.end(), "a is 3, its double 6"),
+              def.list_log.end());
+}
+
+// -- the lattice
+// ------------------------------------------------------------------------------------------
+
+TEST(Definition, GoesThroughPointref)
+{
+    CaseText text;
+    text.pointmin = R"(<pointref x="0" y="0" z="0" /><pointmin x="-0.37" y="0.05" z="0.1" />)";
+    const LatticeGrid grid = read(text).grid;
+    expect_near(grid.origin, {-0.4, 0, 0.1});
+}
+
+TEST(Definition, TakesDpFromTheCommandLine)
+{
+    CaseOptions options;
+    options.dp = 0.25;
+    EXPECT_EQ(read(CaseText(), options).grid.dp, 0.25);
+}
+
+TEST(Definition, IsFlatWhereTheLimitsOfYAreEqual)
+{
+    CaseText text;
+    text.pointmin = R"(<pointmin x="0" y="0.3" z="0" />)";
+    text.pointmax = R"(<pointmax x="1" y="0.3" z="1" />)";
+    const CaseDef def = read(text);
+    EXPECT_TRUE(def.grid.is_2d);
+    EXPECT_EQ(def.grid.n[1], 1u);
+    EXPECT_EQ(def.grid.origin.y, 0.3);
+    EXPECT_DOUBLE_EQ(def.mass_fluid, 1000 * 0.1 * 0.1);
+    EXPECT_DOUBLE_EQ(def.h, std::sqrt(2.0) * 0.1);
+}
+
+} // namespace
+} // namespace fppg
