@@ -1,17 +1,15 @@
 #include "lattice/spans.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace fppg
 {
 namespace
 {
 
-bool starts_before(const Span& a, const Span& b)
-{
-    return std::tie(a.y, a.z_begin) < std::tie(b.y, b.z_begin);
-}
+/// An object, not a function, so that sorting does not call it by pointer.
+constexpr auto starts_before = [](const Span& a, const Span& b)
+{ return a.y != b.y ? a.y < b.y : a.z_begin < b.z_begin; };
 
 /// Appends a span that does not start before the last one, joining what overlaps or touches.
 void append_joined(Spans& out, const Span& s)
@@ -24,7 +22,8 @@ void append_joined(Spans& out, const Span& s)
 
 void append_run(std::vector<Run>& out, const Run& r)
 {
-    if (!out.empty() && out.back().y == r.y && out.back().z_end == r.z_begin && out.back().mk == r.mk)
+    if (!out.empty() && out.back().y == r.y && out.back().z_end == r.z_begin &&
+        out.back().mk == r.mk)
         out.back().z_end = r.z_end;
     else
         out.push_back(r);
@@ -126,7 +125,8 @@ Spans clip_to_box(const Spans& spans, const NodeBox& box)
         const std::int64_t begin = std::max<std::int64_t>(s.z_begin, box.begin[2]);
         const std::int64_t end = std::min<std::int64_t>(s.z_end, box.end[2]);
         if (begin < end)
-            out.push_back({s.y, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+            out.push_back(
+                {s.y, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
     }
     return out;
 }
