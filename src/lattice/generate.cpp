@@ -176,7 +176,7 @@ private:
         const auto known = meshes_.find(file);
         if (known != meshes_.end()) return known->second;
         const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path);
+        MeshFile read = read_stl(path, threads_);
         report_.mesh_files.push_back(path);
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
