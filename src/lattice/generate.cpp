@@ -199,7 +199,7 @@ private:
         const auto known = meshes_.find(file);
         if (known != meshes_.end()) return known->second;
         const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path);
+        MeshFile read = read_stl(path, threads_);
         report_.mesh_files.push_back({file, path, op_->source.line});
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
@@ -208,20 +208,26 @@ private:
 
     void draw(const MeshFileOp& op)
     {
-        const MeshFile& source = mesh(op.file);
-        TriangleSoup moved;
-        moved.vertices.reserve(source.soup.vertices.size());
-        for (const Vec3& v : source.soup.vertices) moved.vertices.push_back(op.transform(v));
-        std::vector<SnappedTriangle> triangles(moved.size());
+        const TriangleSoup& source = mesh(op.file).soup;
+        std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
-            moved.size(), threads_,
+            source.size(), threads_,
             [&](std::size_t t)
             {
-                triangles[t] = {snap(moved.vertices[3 * t], grid()),
-                                snap(moved.vertices[3 * t + 1], grid()),
-                                snap(moved.vertices[3 * t + 2], grid())};
+                const auto corner = [&](std::size_t i)
+                { return snap(op.transform(source.vertices[3 * t + i]), grid()); };
+                triangles[t] = {corner(0), corner(1), corner(2)};
             },
             4096);
+        // The corners themselves are needed for the inside only.
+        TriangleSoup moved;
+        if (op.advanced || op.fill_inside || op.autofill)
+        {
+            moved.vertices.resize(source.vertices.size());
+            parallel_for(
+                moved.vertices.size(), threads_,
+                [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
+        }
         if (op.advanced)
         {
             paint_region(depth_region(moved, op.depth_min, op.depth_max, grid(), threads_));

@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MissingGravity", [](CaseText& text) { text.gravity = ""; },
                 ":3: <constantsdef>: the element <gravity> is missing in it"},
         Mistake{"MissingCflnumber",
-                [](CaseText& text) { text.constants.resize(t.constants.find("<cflnumber")); },
+                [](CaseText& text) { text.constants.resize(text.constants.find("<cflnumber")); },
                 "<constantsdef>: the element <cflnumber> is missing in it"},
         Mistake{"CoefhAndHdp", [](CaseText& text) { text.constants += R"(<hdp value="2" />)"; },
                 "<hdp>: only one constant must be defined, coefh or hdp"},
