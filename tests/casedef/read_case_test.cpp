@@ -5,6 +5,7 @@
 #include "casedef/known_commands.h"
 #include "helpers/case_text.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -211,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MissingGravity", [](CaseText& text) { text.gravity = ""; },
                 ":3: <constantsdef>: the element <gravity> is missing in it"},
         Mistake{"MissingCflnumber",
-                [](CaseText& text) { text.constants.resize(t.constants.find("<cflnumber")); },
+                [](CaseText& text) { text.constants.resize(text.constants.find("<cflnumber")); },
                 "<constantsdef>: the element <cflnumber> is missing in it"},
         Mistake{"CoefhAndHdp", [](CaseText& text) { text.constants += R"(<hdp value="2" />)"; },
                 "<hdp>: only one constant must be defined, coefh or hdp"},
@@ -414,8 +415,8 @@ TEST(ReadCase, SaysOfPlannedCommandsThatTheyAreNotSupportedYet)
     {
         if (command_support(name) != CommandSupport::Planned) continue;
         ++planned;
-        EXPECT_NE(error_of(std::string("<") + name + " />")
-                      .find(std::string("<") + name + ">: not supported yet"),
+        EXPECT_NE(error_of(fmt::format("<{} />", name))
+                      .find(fmt::format("<{}>: not supported yet", name)),
                   std::string::npos)
             << name;
     }
