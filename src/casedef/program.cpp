@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr int max_list_depth = 100;
-constexpr std::size_t max_commands = 50'000'000;
+constexpr std::size_t max_commands = 10'000'000;
 
 } // namespace
 
@@ -50,15 +50,20 @@ void ProgramRunner::run_list(const Element& list, const std::string& name)
     --depth_;
 }
 
+void ProgramRunner::count_command(const Element& e)
+{
+    if (++commands_run_ > max_commands)
+        read_.fail(e, fmt::format("more than {} commands were run, the lists seem to be endless",
+                                  max_commands));
+}
+
 void ProgramRunner::run_command(const Element& e)
 {
     const CommandSupport support = command_support(e.name);
     if (support == CommandSupport::Unknown)
         read_.fail(e, "is not a command, see the templates for what can stand in a list");
     if (!read_.is_active(e)) return;
-    if (++commands_run_ > max_commands)
-        read_.fail(e, fmt::format("more than {} commands were run, the lists seem to be endless",
-                                  max_commands));
+    count_command(e);
     if (support == CommandSupport::Planned) read_.fail_unsupported(e);
     if (!run_state_command(e) && !run_transform(e) && !run_clip(e) &&
         !variables_.run(e, def_.list_log) && !run_flow_command(e) && !run_draw(e) &&
@@ -80,6 +85,8 @@ bool ProgramRunner::run_flow_command(const Element& e)
         const bool is_printed = read_.flag_or(*found->second, "printcall", true);
         for (int i = 0; i < times; ++i)
         {
+            // An empty list counts too: each call leaves a line in the log.
+            count_command(e);
             if (is_printed) def_.list_log.push_back("> " + list);
             run_list(*found->second, list);
         }

@@ -33,6 +33,7 @@ public:
 private:
     void run_list(const Element& list, const std::string& name);
     void run_command(const Element& e);
+    void count_command(const Element& e);
     bool run_state_command(const Element& e);
     bool run_transform(const Element& e);
     bool run_clip(const Element& e);

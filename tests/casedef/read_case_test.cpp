@@ -5,6 +5,7 @@
 #include "casedef/known_commands.h"
 #include "helpers/case_text.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -414,8 +415,8 @@ TEST(ReadCase, SaysOfPlannedCommandsThatTheyAreNotSupportedYet)
     {
         if (command_support(name) != CommandSupport::Planned) continue;
         ++planned;
-        EXPECT_NE(error_of(std::string("<") + name + " />")
-                      .find(std::string("<") + name + ">: not supported yet"),
+        EXPECT_NE(error_of(fmt::format("<{} />", name))
+                      .find(fmt::format("<{}>: not supported yet", name)),
                   std::string::npos)
             << name;
     }
