@@ -262,9 +262,21 @@ private:
         Box3 bounds;
         for (const Vec3& v : soup.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
-        const Node low = snap(bounds.min, grid());
-        const Node high = snap(bounds.max, grid());
-        const NodeBox box{{low.x, low.y, low.z}, {high.x + 1, high.y + 1, high.z + 1}};
+        NodeBox box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
+            // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
+            const auto dp = static_cast<float>(grid().dp);
+            const float low = static_cast<float>(bounds.min[axis]) - dp;
+            const float high = static_cast<float>(bounds.max[axis]) + dp;
+            const float size = high - low;
+            const auto k = static_cast<std::size_t>(axis);
+            const double origin = grid().origin[axis];
+            box.begin[k] = snap(low, origin, grid().dp) + 1;
+            box.end[k] =
+                snap(static_cast<double>(low) + static_cast<double>(size), origin, grid().dp);
+        }
         const Node seed = snap((bounds.min + bounds.max) * 0.5, grid());
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
