@@ -164,9 +164,10 @@ struct MeshFileOp
     Transform transform; ///< scale, rotation and move of the command, then the current matrix
     bool autofill = false;
     bool advanced =
-        false;            ///< nodes by their depth below the surface instead of its shell (rule X3)
-    double depth_min = 0; ///< metres
-    double depth_max = 0; ///< metres; may be infinite
+        false; ///< nodes by their depth below the surface instead of its shell (rule X3)
+    bool reverse = false;
+    double depth_min = 0;     ///< metres
+    double depth_max = 0;     ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
 };
 

@@ -169,7 +169,7 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     {
         op.depth_min = 0;
         op.depth_max = 2 * def_.grid.dp;
-        if (read_.flag_or(e, "reverse", false)) read_.fail_unsupported(e, "reverse=\"true\"");
+        op.reverse = read_.flag_or(e, "reverse", false);
         if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
         if (const Element* depth = e.find_child("depth"))
         {

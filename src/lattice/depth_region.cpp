@@ -1,51 +1,234 @@
 #include "lattice/depth_region.h"
 
-#include "fppg/shapes.h"
-
-#include "shapes/mesh_query.h"
+#include "core/parallel.h"
+#include "lattice/snap.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace fppg
 {
-
-SlabRegion depth_region(const TriangleSoup& soup, double depth_min, double depth_max,
-                        const LatticeGrid& grid, int threads)
+namespace
 {
-    const auto query = std::make_shared<const MeshQuery>(soup, threads);
-    const auto inside = std::make_shared<const SpanSet>(inside_spans(soup, grid, threads));
-    SlabRegion region;
-    region.x_begin = inside->x_begin;
-    region.x_end = inside->x_begin + static_cast<std::uint32_t>(inside->slabs.size());
-    region.emit = [=](std::uint32_t slab, Spans& out)
+
+struct Facet
+{
+    std::array<Vec3, 3> corners;
+    Vec3 normal; ///< not of unit length
+    NodeBox reach;
+};
+
+/// Distance from a point to a triangle, by the region of the plane that the point projects into.
+double distance_to(const Vec3& p, const std::array<Vec3, 3>& t)
+{
+    const auto& [a, b, c] = t;
+    const Vec3 ab = b - a;
+    const Vec3 ac = c - a;
+    const Vec3 ap = p - a;
+    const double d1 = dot(ab, ap);
+    const double d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return norm(p - a);
+    const Vec3 bp = p - b;
+    const double d3 = dot(ab, bp);
+    const double d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return norm(p - b);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return norm(p - (a + ab * (d1 / (d1 - d3))));
+    const Vec3 cp = p - c;
+    const double d5 = dot(ab, cp);
+    const double d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return norm(p - c);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return norm(p - (a + ac * (d2 / (d2 - d6))));
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return norm(p - (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))));
+    const Vec3 n = cross(ab, ac);
+    return std::fabs(dot(n, ap)) / norm(n);
+}
+
+/// Through memory, because g++ 12 drops the rounding of a vector of three at -O2.
+double rounded_to_float(double value)
+{
+    const volatile float f = static_cast<float>(value);
+    return f;
+}
+
+/// Where a row along x passes a facet.
+struct RowCrossing
+{
+    std::uint32_t y = 0;
+    std::uint32_t z = 0;
+    double x = 0;
+    bool is_entry = false;
+};
+
+class DepthFinder
+{
+public:
+    DepthFinder(const TriangleSoup& soup, const MeshFileOp& op, const LatticeGrid& grid)
+        : grid_(grid),
+          depth_min_(op.depth_min),
+          depth_max_(op.depth_max),
+          starts_inside_(op.reverse)
     {
-        const double x = grid.origin.x + slab * grid.dp;
-        for (const Span& s : inside->slabs[slab - inside->x_begin])
-        {
-            const double y = grid.origin.y + s.y * grid.dp;
-            for (std::uint32_t z = s.z_begin; z < s.z_end;)
+        // Beyond this distance a facet decides nothing.
+        reach_ = std::isfinite(depth_max_) ? depth_max_ : depth_min_;
+        box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
+        for (std::size_t t = 0; t < soup.size(); ++t) add_facet(soup, t);
+        box_ = intersect(box_, whole_lattice(grid_));
+    }
+
+    const NodeBox& box() const { return box_; }
+
+    /// The nodes that count, per slab of the box.
+    std::vector<Spans> counted() const
+    {
+        std::vector<RowCrossing> crossings;
+        for (const Facet& f : facets_) add_crossings(f, crossings);
+        std::sort(
+            crossings.begin(), crossings.end(),
+            [](const RowCrossing& a, const RowCrossing& b)
+            { return std::tie(a.y, a.z, a.x, a.is_entry) < std::tie(b.y, b.z, b.x, b.is_entry); });
+        std::vector<Spans> slabs(static_cast<std::size_t>(box_.end[0] - box_.begin[0]));
+        auto next = crossings.begin();
+        for (auto y = static_cast<std::uint32_t>(box_.begin[1]); y < box_.end[1]; ++y)
+            for (auto z = static_cast<std::uint32_t>(box_.begin[2]); z < box_.end[2]; ++z)
             {
-                const double depth =
-                    query->closest_point({x, y, grid.origin.z + z * grid.dp}).distance;
-                const bool is_taken = depth >= depth_min && depth <= depth_max;
-                // A node k steps on is at most k dp nearer or farther: those that cannot have
-                // another answer are not asked.
-                double sure = 0;
-                if (is_taken)
-                    sure = std::min(depth - depth_min, depth_max - depth);
-                else
-                    sure = depth < depth_min ? depth_min - depth : depth - depth_max;
-                const double steps = std::min(std::ceil(sure / grid.dp * (1 - 1e-9)), 1e9);
-                const std::uint32_t end =
-                    std::min(s.z_end, z + std::max<std::uint32_t>(
-                                              1, static_cast<std::uint32_t>(std::max(0.0, steps))));
-                if (is_taken) out.push_back({s.y, z, end});
-                z = end;
+                const auto first = next;
+                while (next != crossings.end() && next->y == y && next->z == z) ++next;
+                if (first == next && !starts_inside_) continue;
+                bool counts = starts_inside_;
+                auto crossing = first;
+                for (std::size_t i = 0; i < slabs.size(); ++i)
+                {
+                    const double x =
+                        grid_.origin.x +
+                        static_cast<double>(box_.begin[0] + static_cast<std::int64_t>(i)) *
+                            grid_.dp;
+                    const double node = rounded_to_float(x);
+                    while (crossing != next &&
+                           (crossing->is_entry ? crossing->x <= node : crossing->x < node))
+                        counts = (crossing++)->is_entry;
+                    if (counts) slabs[i].push_back({y, z, z + 1});
+                }
             }
+        for (Spans& s : slabs) sort_and_join(s);
+        return slabs;
+    }
+
+    /// The nodes of `counted` whose depth is wanted, in slab x.
+    void take(std::uint32_t slab, const Spans& counted, Spans& out) const
+    {
+        const auto rows = static_cast<std::size_t>(box_.end[1] - box_.begin[1]);
+        const auto height = static_cast<std::size_t>(box_.end[2] - box_.begin[2]);
+        constexpr double far = std::numeric_limits<double>::infinity();
+        std::vector<double> depth(rows * height, far);
+        const double x = grid_.origin.x + slab * grid_.dp;
+        for (const Facet& f : facets_)
+        {
+            if (slab < f.reach.begin[0] || slab >= f.reach.end[0]) continue;
+            for (std::int64_t y = f.reach.begin[1]; y < f.reach.end[1]; ++y)
+                for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
+                {
+                    const Vec3 p{x, grid_.origin.y + static_cast<double>(y) * grid_.dp,
+                                 grid_.origin.z + static_cast<double>(z) * grid_.dp};
+                    if (!(dot(f.normal, p - f.corners[0]) < 0)) continue;
+                    double& d = depth[static_cast<std::size_t>(y - box_.begin[1]) * height +
+                                      static_cast<std::size_t>(z - box_.begin[2])];
+                    d = std::min(d, distance_to(p, f.corners));
+                }
         }
-    };
+        // Limits are met to rounding: nodes stand on the lattice, faces often too.
+        const double slack = 1e-9 * grid_.dp;
+        for (const Span& s : counted)
+            for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
+            {
+                const double d = depth[static_cast<std::size_t>(s.y - box_.begin[1]) * height +
+                                       static_cast<std::size_t>(z - box_.begin[2])];
+                if (d >= depth_min_ - slack && d <= depth_max_ + slack)
+                    out.push_back({s.y, z, z + 1});
+            }
+    }
+
+private:
+    void add_facet(const TriangleSoup& soup, std::size_t t)
+    {
+        Facet f;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Vec3& v = soup.vertices[3 * t + i];
+            f.corners[i] = {rounded_to_float(v.x), rounded_to_float(v.y), rounded_to_float(v.z)};
+        }
+        f.normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
+        if (!(norm(f.normal) > 0)) return;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            const double low =
+                std::min({f.corners[0][axis], f.corners[1][axis], f.corners[2][axis]});
+            const double high =
+                std::max({f.corners[0][axis], f.corners[1][axis], f.corners[2][axis]});
+            f.reach.begin[k] = snap(low - reach_, grid_.origin[axis], grid_.dp) - 1;
+            f.reach.end[k] = snap(high + reach_, grid_.origin[axis], grid_.dp) + 2;
+            box_.begin[k] = std::min(box_.begin[k], f.reach.begin[k]);
+            box_.end[k] = std::max(box_.end[k], f.reach.end[k]);
+        }
+        f.reach = intersect(f.reach, whole_lattice(grid_));
+        facets_.push_back(f);
+    }
+
+    void add_crossings(const Facet& f, std::vector<RowCrossing>& out) const
+    {
+        if (f.normal.x == 0) return;
+        for (std::int64_t y = f.reach.begin[1]; y < f.reach.end[1]; ++y)
+            for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
+            {
+                const double py = grid_.origin.y + static_cast<double>(y) * grid_.dp;
+                const double pz = grid_.origin.z + static_cast<double>(z) * grid_.dp;
+                const auto side = [&](const Vec3& u, const Vec3& v)
+                { return (v.y - u.y) * (pz - u.z) - (v.z - u.z) * (py - u.y); };
+                const double s0 = side(f.corners[0], f.corners[1]);
+                const double s1 = side(f.corners[1], f.corners[2]);
+                const double s2 = side(f.corners[2], f.corners[0]);
+                if (!((s0 > 0 && s1 > 0 && s2 > 0) || (s0 < 0 && s1 < 0 && s2 < 0))) continue;
+                const double x = f.corners[0].x - (f.normal.y * (py - f.corners[0].y) +
+                                                   f.normal.z * (pz - f.corners[0].z)) /
+                                                      f.normal.x;
+                out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), x,
+                               f.normal.x < 0});
+            }
+    }
+
+    LatticeGrid grid_;
+    double depth_min_;
+    double depth_max_;
+    bool starts_inside_;
+    double reach_ = 0;
+    NodeBox box_;
+    std::vector<Facet> facets_;
+};
+
+} // namespace
+
+SlabRegion depth_region(const TriangleSoup& soup, const MeshFileOp& op, const LatticeGrid& grid,
+                        int threads)
+{
+    const DepthFinder finder(soup, op, grid);
+    SlabRegion region;
+    if (finder.box().is_empty()) return region;
+    const auto counted = finder.counted();
+    auto taken = std::make_shared<std::vector<Spans>>(counted.size());
+    const auto x_begin = static_cast<std::uint32_t>(finder.box().begin[0]);
+    parallel_for(counted.size(), threads,
+                 [&](std::size_t i) {
+                     finder.take(x_begin + static_cast<std::uint32_t>(i), counted[i], (*taken)[i]);
+                 });
+    region.x_begin = x_begin;
+    region.x_end = x_begin + static_cast<std::uint32_t>(taken->size());
+    region.emit = [taken, x_begin](std::uint32_t x, Spans& out) { out = (*taken)[x - x_begin]; };
     return region;
 }
 

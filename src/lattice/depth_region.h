@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/mesh.h"
 
 #include "lattice/spans.h"
@@ -7,13 +8,19 @@
 namespace fppg
 {
 
-/// The nodes inside a closed mesh whose distance to its surface is within [depth_min, depth_max]
-/// (rule X3, verified on a cube, an L and an icosphere with GenCase v5.4.354); nothing is snapped.
+/// The nodes that `advanced="true"` takes of a mesh (rule X3, found with GenCase v5.4.354 on an L
+/// with nodes on its faces: stl_lshape_adv equal; of the 796 nodes of stl_lshape_adv_rev all but
+/// the 22 that lie in the plane of a face, at x = 1):
+/// - corners are rounded to float after the transform
+/// - the depth of a node is its distance to the nearest facet that it lies strictly behind
+/// - along each row in x, from low to high, nodes count from where the row enters the mesh to where
+/// it
+///   leaves it; with `reverse` they count from the start until it first leaves, and again from the
+///   next entry on. A row through an edge of a facet does not cross it
+/// - nodes that count and whose depth is within [depth_min, depth_max] are taken
 ///
-/// depth_min, depth_max  metres; depth_max may be infinite
-/// cost                  O(nodes near the two depths), distances being skipped where the surface is
-/// far
-SlabRegion depth_region(const TriangleSoup& soup, double depth_min, double depth_max,
-                        const LatticeGrid& grid, int threads);
+/// cost  O(nodes inside + facets * nodes within reach of a facet)
+SlabRegion depth_region(const TriangleSoup& soup, const MeshFileOp& op, const LatticeGrid& grid,
+                        int threads);
 
 } // namespace fppg

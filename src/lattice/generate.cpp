@@ -230,7 +230,7 @@ private:
         }
         if (op.advanced)
         {
-            paint_region(depth_region(moved, op.depth_min, op.depth_max, grid(), threads_));
+            paint_region(depth_region(moved, op, grid(), threads_));
             return;
         }
         if (op.fill_inside)
