@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Definition, ReadCaseMistake,
     testing::Values(
-        Mistake{"ZeroDp", [](CaseText& text) { text.dp = "0"; },
+        Mistake{"ZeroDp", [](CaseText& text) { text.dp = "0.0"; },
                 ":5: <definition>: dp is 0, expected a particle distance above 0"},
         Mistake{"NegativeDp", [](CaseText& text) { text.dp = "-0.1"; }, "<definition>: dp is -0.1"},
         Mistake{"PointminAbovePointmax",
