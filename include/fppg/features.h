@@ -32,7 +32,7 @@ struct Features
     std::vector<char> is_feature_edge;   ///< per edge
     std::vector<std::uint32_t> singular; ///< vertices where one or more than two feature edges end,
                                          ///< or a chain turns sharply; ascending
-    std::vector<FeatureLine> lines; ///< between singular vertices, then closed loops
+    std::vector<FeatureLine> lines;      ///< between singular vertices, then closed loops
 };
 
 /// Feature edges by dihedral angle, open and non-manifold edges; singular vertices; lines by a

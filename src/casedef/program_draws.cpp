@@ -267,8 +267,18 @@ bool ProgramRunner::run_draw(const Element& e)
     }
     else if (name == "drawsphere")
     {
-        if (state_.mode == DrawMode::Wire) read_.fail_unsupported(e, "draw mode wire");
-        add(e, SphereOp{transformed_points(e, 1, 1)[0], read_.number(e, "radius"), layers_of(e)});
+        const Vec3 center = transformed_points(e, 1, 1)[0];
+        const double radius = read_.number(e, "radius");
+        if (state_.mode == DrawMode::Wire)
+        {
+            // The wire of a sphere is that of the solid box around it (24 of 24 spheres in GenCase
+            // v5.4).
+            const Vec3 reach{radius, radius, radius};
+            add(e, make_box(center - reach, 2 * reach, {true, true, true, true, true, true}, true,
+                            {}, def_.grid.dp)[0]);
+        }
+        else
+            add(e, SphereOp{center, radius, layers_of(e)});
     }
     else if (name == "drawcylinder")
     {

@@ -8,6 +8,21 @@
 namespace fppg
 {
 
+/// A loop cut into chunks. run(body, begin, end) works through the indices [begin, end) and does
+/// not throw.
+struct ChunkedLoop
+{
+    std::size_t n = 0;
+    std::size_t chunk = 1;
+    void* body = nullptr;
+    void (*run)(void* body, std::size_t begin, std::size_t end) = nullptr;
+};
+
+/// Runs all chunks of a loop on the calling thread and up to `threads` - 1 helpers, which are kept
+/// for the next loop. Returns when all chunks are done. A loop inside a loop, and one that another
+/// thread starts at the same time, runs on its caller alone.
+void run_chunks(const ChunkedLoop& loop, int threads);
+
 /// Calls body(i) for i in [0, n), spread over `threads` threads in chunks of `chunk`, handed out as
 /// threads become free. The body must not depend on the order. The exception of the lowest i that
 /// failed is thrown afterwards.
@@ -20,29 +35,40 @@ void parallel_for(std::size_t n, int threads, const Body& body, std::size_t chun
         for (std::size_t i = 0; i < n; ++i) body(i);
         return;
     }
-    std::exception_ptr first_error;
-    std::size_t first_index = SIZE_MAX;
-    std::mutex guard;
-    const auto count = static_cast<std::int64_t>(n);
-    const auto step = static_cast<std::int64_t>(chunk);
-#pragma omp parallel for schedule(dynamic, step) num_threads(threads)
-    for (std::int64_t i = 0; i < count; ++i)
+    struct Guarded
     {
-        try
+        const Body& body;
+        std::mutex guard;
+        std::size_t first_index = SIZE_MAX;
+        std::exception_ptr first_error;
+
+        void call(std::size_t i)
         {
-            body(static_cast<std::size_t>(i));
-        }
-        catch (...)
-        {
-            const std::lock_guard lock(guard);
-            if (static_cast<std::size_t>(i) < first_index)
+            try
             {
-                first_index = static_cast<std::size_t>(i);
+                body(i);
+            }
+            catch (...)
+            {
+                const std::lock_guard lock(guard);
+                if (i >= first_index) return;
+                first_index = i;
                 first_error = std::current_exception();
             }
         }
-    }
-    if (first_error) std::rethrow_exception(first_error);
+    };
+    Guarded guarded{body, {}, SIZE_MAX, {}};
+    ChunkedLoop loop;
+    loop.n = n;
+    loop.chunk = chunk;
+    loop.body = &guarded;
+    loop.run = [](void* at, std::size_t begin, std::size_t end)
+    {
+        auto& all = *static_cast<Guarded*>(at);
+        for (std::size_t i = begin; i < end; ++i) all.call(i);
+    };
+    run_chunks(loop, threads);
+    if (guarded.first_error) std::rethrow_exception(guarded.first_error);
 }
 
 } // namespace fppg

@@ -162,27 +162,42 @@ std::vector<Strip> strips_across_y(const std::vector<Run>& slab)
 }
 
 /// Faces across z of one slab, strips along y. Runs that touch carry different mk, so each end of a
-/// run is a face.
+/// run is a face. The faces of a row come sorted by plane and side, one each, so strips grow from
+/// row to row as rectangles do; there are far fewer of them to be sorted than faces.
 std::vector<Strip> strips_across_z(const std::vector<Run>& slab)
 {
-    std::vector<Strip> faces;
-    faces.reserve(2 * slab.size());
-    for (const Run& run : slab)
-    {
-        faces.push_back({run.z_begin, run.y, run.y + 1, run.mk, true});
-        faces.push_back({run.z_end, run.y, run.y + 1, run.mk, false});
-    }
-    std::sort(faces.begin(), faces.end());
     std::vector<Strip> strips;
-    for (const Strip& face : faces)
+    std::vector<Strip> active;
+    std::vector<Strip> growing;
+    const auto side = [](const Strip& s) { return std::tie(s.plane, s.is_low_face); };
+    for (std::size_t i = 0; i < slab.size();)
     {
-        Strip* last = strips.empty() ? nullptr : &strips.back();
-        if (last && last->plane == face.plane && last->is_low_face == face.is_low_face &&
-            last->mk == face.mk && last->high == face.low)
-            last->high = face.high;
-        else
-            strips.push_back(face);
+        const std::uint32_t y = slab[i].y;
+        growing.clear();
+        auto old = active.begin();
+        const auto add = [&](std::uint32_t plane, bool is_low_face, std::uint16_t mk)
+        {
+            Strip face{plane, y, y + 1, mk, is_low_face};
+            while (old != active.end() && side(*old) < side(face)) strips.push_back(*old++);
+            if (old != active.end() && side(*old) == side(face))
+            {
+                if (old->mk == mk && old->high == y)
+                    face.low = old->low;
+                else
+                    strips.push_back(*old);
+                ++old;
+            }
+            growing.push_back(face);
+        };
+        for (; i < slab.size() && slab[i].y == y; ++i)
+        {
+            add(slab[i].z_begin, true, slab[i].mk);
+            add(slab[i].z_end, false, slab[i].mk);
+        }
+        strips.insert(strips.end(), old, active.end());
+        active.swap(growing);
     }
+    strips.insert(strips.end(), active.begin(), active.end());
     return strips;
 }
 
@@ -209,7 +224,9 @@ std::vector<Rectangle> merge_slabs(const RunField& field, int threads, const Mak
                      [&](std::size_t i)
                      {
                          strips[i] = make(field.slabs[first + i]);
-                         std::sort(strips[i].begin(), strips[i].end());
+                         // Those across y come sorted.
+                         if (!std::is_sorted(strips[i].begin(), strips[i].end()))
+                             std::sort(strips[i].begin(), strips[i].end());
                      });
         for (std::size_t i = 0; i < count; ++i)
             merger.add_row(static_cast<std::uint32_t>(first + i), strips[i]);

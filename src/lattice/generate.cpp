@@ -199,7 +199,7 @@ private:
         const auto known = meshes_.find(file);
         if (known != meshes_.end()) return known->second;
         const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path);
+        MeshFile read = read_stl(path, threads_);
         report_.mesh_files.push_back({file, path, op_->source.line});
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
@@ -208,20 +208,26 @@ private:
 
     void draw(const MeshFileOp& op)
     {
-        const MeshFile& source = mesh(op.file);
-        TriangleSoup moved;
-        moved.vertices.reserve(source.soup.vertices.size());
-        for (const Vec3& v : source.soup.vertices) moved.vertices.push_back(op.transform(v));
-        std::vector<SnappedTriangle> triangles(moved.size());
+        const TriangleSoup& source = mesh(op.file).soup;
+        std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
-            moved.size(), threads_,
+            source.size(), threads_,
             [&](std::size_t t)
             {
-                triangles[t] = {snap(moved.vertices[3 * t], grid()),
-                                snap(moved.vertices[3 * t + 1], grid()),
-                                snap(moved.vertices[3 * t + 2], grid())};
+                const auto corner = [&](std::size_t i)
+                { return snap(op.transform(source.vertices[3 * t + i]), grid()); };
+                triangles[t] = {corner(0), corner(1), corner(2)};
             },
             4096);
+        // The corners themselves are needed for the inside only.
+        TriangleSoup moved;
+        if (op.advanced || op.fill_inside || op.autofill)
+        {
+            moved.vertices.resize(source.vertices.size());
+            parallel_for(
+                moved.vertices.size(), threads_,
+                [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
+        }
         if (op.advanced)
         {
             paint_region(depth_region(moved, op.depth_min, op.depth_max, grid(), threads_));
@@ -256,9 +262,21 @@ private:
         Box3 bounds;
         for (const Vec3& v : soup.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
-        const Node low = snap(bounds.min, grid());
-        const Node high = snap(bounds.max, grid());
-        const NodeBox box{{low.x, low.y, low.z}, {high.x + 1, high.y + 1, high.z + 1}};
+        NodeBox box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
+            // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
+            const auto dp = static_cast<float>(grid().dp);
+            const float low = static_cast<float>(bounds.min[axis]) - dp;
+            const float high = static_cast<float>(bounds.max[axis]) + dp;
+            const float size = high - low;
+            const auto k = static_cast<std::size_t>(axis);
+            const double origin = grid().origin[axis];
+            box.begin[k] = snap(low, origin, grid().dp) + 1;
+            box.end[k] =
+                snap(static_cast<double>(low) + static_cast<double>(size), origin, grid().dp);
+        }
         const Node seed = snap((bounds.min + bounds.max) * 0.5, grid());
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;

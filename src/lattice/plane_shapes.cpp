@@ -20,6 +20,7 @@ public:
     template <typename Range>
     SlabIndex(std::size_t items, std::int64_t n_x, const Range& range_of)
     {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges(items);
         std::int64_t first = n_x;
         std::int64_t last = 0;
         for (std::size_t i = 0; i < items; ++i)
@@ -28,26 +29,22 @@ public:
             if (begin >= end) continue;
             first = std::min(first, begin);
             last = std::max(last, end);
+            ranges[i] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
         }
         if (first >= last) return;
         x_begin_ = first;
         x_end_ = last;
+        const auto slab_of = [this](std::uint32_t x)
+        { return static_cast<std::size_t>(x - x_begin()); };
         starts_.assign(static_cast<std::size_t>(last - first) + 1, 0);
-        for (std::size_t i = 0; i < items; ++i)
-        {
-            const auto [begin, end] = range_of(i);
-            for (std::int64_t x = begin; x < end; ++x)
-                ++starts_[static_cast<std::size_t>(x - first) + 1];
-        }
+        for (const auto& [begin, end] : ranges)
+            for (std::uint32_t x = begin; x < end; ++x) ++starts_[slab_of(x) + 1];
         for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
         items_.resize(starts_.back());
         std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
         for (std::size_t i = 0; i < items; ++i)
-        {
-            const auto [begin, end] = range_of(i);
-            for (std::int64_t x = begin; x < end; ++x)
-                items_[next[static_cast<std::size_t>(x - first)]++] = static_cast<std::uint32_t>(i);
-        }
+            for (std::uint32_t x = ranges[i].first; x < ranges[i].second; ++x)
+                items_[next[slab_of(x)]++] = static_cast<std::uint32_t>(i);
     }
 
     std::uint32_t x_begin() const { return static_cast<std::uint32_t>(x_begin_); }

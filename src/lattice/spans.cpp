@@ -1,17 +1,15 @@
 #include "lattice/spans.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace fppg
 {
 namespace
 {
 
-bool starts_before(const Span& a, const Span& b)
-{
-    return std::tie(a.y, a.z_begin) < std::tie(b.y, b.z_begin);
-}
+/// An object, not a function, so that sorting does not call it by pointer.
+constexpr auto starts_before = [](const Span& a, const Span& b)
+{ return a.y != b.y ? a.y < b.y : a.z_begin < b.z_begin; };
 
 /// Appends a span that does not start before the last one, joining what overlaps or touches.
 void append_joined(Spans& out, const Span& s)

@@ -1,0 +1,392 @@
+#!/usr/bin/python3
+"""Times the whole program on a ladder of sizes and writes a JSON file and a Markdown table.
+
+    run_bench.py --fppg build/release/fppg --quick          about a minute
+    run_bench.py --fppg build/release/fppg                  0.1 to 20 million particles
+    run_bench.py --fppg FPPG --case My_Def.xml --dp 0.01,0.005 --gencase GenCase_linux64
+
+Every repetition runs all variants of a rung one after the other (threads, GenCase, copying the
+output), so that noise of the machine meets all of them; reported are medians, and medians of the
+ratios within one repetition. See README.md for the columns. Needs Python 3.9 and Linux only.
+"""
+
+import argparse
+import json
+import math
+import os
+import platform
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+REPOSITORY = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+OWN_CASES = {"dambreak": "cases/dambreak/CaseDambreak_Def.xml",
+             "tank": "cases/tank/CaseTank_Def.xml",
+             "ford": "cases/ford/CaseFord_Def.xml"}
+LADDER = [0.1, 1, 5, 20]
+DOMAINS = [405, 805, 1205]
+DOMAIN_DP = 0.01
+
+LARGE_DOMAIN = """<?xml version="1.0" encoding="UTF-8" ?>
+<!-- A tank of 0.4 x 0.3 x 0.2 m in the middle of a domain of {n} nodes along each axis -->
+<case>
+    <casedef>
+        <constantsdef>
+            <gravity x="0" y="0" z="-9.81" />
+            <rhop0 value="1000" />
+            <rhopgradient value="2" />
+            <hswl value="0" auto="true" />
+            <gamma value="7" />
+            <speedsystem value="0" auto="true" />
+            <coefsound value="20" />
+            <speedsound value="0" auto="true" />
+            <coefh value="1" />
+            <cflnumber value="0.2" />
+        </constantsdef>
+        <mkconfig boundcount="240" fluidcount="9" />
+        <geometry>
+            <definition dp="{dp}">
+                <pointmin x="0" y="0" z="0" />
+                <pointmax x="{max}" y="{max}" z="{max}" />
+            </definition>
+            <commands>
+                <mainlist>
+                    <setdrawmode mode="full" />
+                    <setmkfluid mk="0" />
+                    <drawbox>
+                        <boxfill>solid</boxfill>
+                        <point x="{x}" y="{y}" z="{z}" />
+                        <size x="0.4" y="0.3" z="0.12" />
+                    </drawbox>
+                    <setmkbound mk="0" />
+                    <drawbox>
+                        <boxfill>bottom | left | right | front | back</boxfill>
+                        <point x="{x}" y="{y}" z="{z}" />
+                        <size x="0.4" y="0.3" z="0.2" />
+                    </drawbox>
+                </mainlist>
+            </commands>
+        </geometry>
+    </casedef>
+    <execution>
+        <parameters>
+            <parameter key="TimeMax" value="1" />
+        </parameters>
+    </execution>
+</case>
+"""
+
+
+class Failed(Exception):
+    """A program stopped with an error; its last lines say why."""
+
+
+def run_timed(command, folder):
+    """Runs a program to its end. Times in seconds, memory in bytes.
+
+    The kernel carries the peak memory of a process over exec, so nothing smaller than this
+    script's own memory at its start can be seen (about 12 MB).
+    """
+    with tempfile.TemporaryFile() as output:
+        start = time.monotonic()
+        process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+        wall = time.monotonic() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        text = output.read().decode("utf-8", "replace")
+    if process.returncode != 0:
+        tail = "\n".join(text.strip().splitlines()[-5:])
+        raise Failed(f"{' '.join(command)}: exit code {process.returncode}\n{tail}")
+    return {"wall_s": wall, "cpu_s": usage.ru_utime + usage.ru_stime, "user_s": usage.ru_utime,
+            "sys_s": usage.ru_stime, "peak_rss": usage.ru_maxrss * 1024, "text": text}
+
+
+def stage_times(text):
+    """Seconds a stage, and a file: lines [Name-End  time:0.123s] and NAME  (time:0.123s)."""
+    times = {}
+    for name, seconds in re.findall(r"^\[(\w+)-End\s+time:([\d.]+)s?\]", text, re.MULTILINE):
+        times[name] = float(seconds)
+    for path, seconds in re.findall(r"^(\S.*?)(?:<\w+>)?\s+\(time:([\d.]+)s\)", text,
+                                    re.MULTILINE):
+        name = os.path.basename(path)
+        times["write " + name.split("_", 1)[1] if "_" in name else "write " + name] = \
+            float(seconds)
+    return times
+
+
+def particle_count(text):
+    found = re.search(r"Total particles:\s*([\d,]+)", text)
+    return int(found.group(1).replace(",", "")) if found else None
+
+
+def files_of(folder):
+    return sorted(os.path.join(folder, name) for name in os.listdir(folder))
+
+
+class Variant:
+    """One way to run a rung: a program with its arguments."""
+
+    def __init__(self, name, program, threads, arguments):
+        self.name, self.program, self.threads = name, program, threads
+        self.arguments = arguments
+        self.samples = []
+
+    def sample(self, rung, work):
+        """Runs the program, then copies what it wrote."""
+        out = os.path.join(work, "out")
+        copy = os.path.join(work, "copy")
+        for folder in (out, copy):
+            shutil.rmtree(folder, ignore_errors=True)
+            os.mkdir(folder)
+        definition = os.path.splitext(os.path.basename(rung["definition"]))[0]
+        command = [self.program, definition, os.path.join(out, "Case"), *self.arguments]
+        if rung["dp"] is not None:
+            command.append(f"-dp:{rung['dp']:.9g}")
+        result = run_timed(command, os.path.dirname(rung["definition"]))
+        files = files_of(out)
+        result["bytes"] = sum(os.path.getsize(f) for f in files)
+        result["cp_s"] = run_timed(["cp", *files, copy], work)["wall_s"]
+        text = result.pop("text")
+        result["particles"] = particle_count(text)
+        result["stages_s"] = stage_times(text)
+        for folder in (out, copy):
+            shutil.rmtree(folder)
+        self.samples.append(result)
+
+    def summary(self):
+        def median(key):
+            return statistics.median(s[key] for s in self.samples)
+
+        stages = {}
+        for name in self.samples[0]["stages_s"]:
+            stages[name] = statistics.median(s["stages_s"].get(name, 0) for s in self.samples)
+        particles = self.samples[0]["particles"]
+        wall = median("wall_s")
+        return {"threads": self.threads, "particles": particles,
+                **{key: median(key) for key in ("wall_s", "cpu_s", "user_s", "sys_s", "peak_rss",
+                                                "bytes", "cp_s")},
+                "wall_min_s": min(s["wall_s"] for s in self.samples),
+                "wall_max_s": max(s["wall_s"] for s in self.samples),
+                "particles_per_s": particles / wall if particles else None,
+                "ratio_to_cp": statistics.median(s["wall_s"] / s["cp_s"] for s in self.samples),
+                "stages_s": stages, "samples": self.samples}
+
+
+def median_ratio(ours, theirs, key):
+    return statistics.median(a[key] / b[key] for a, b in zip(ours.samples, theirs.samples))
+
+
+def count_at(fppg, definition, dp, work):
+    command = [fppg, os.path.splitext(os.path.basename(definition))[0],
+               os.path.join(work, "count"), "-save:-all"]
+    if dp is not None:
+        command.append(f"-dp:{dp:.9g}")
+    text = run_timed(command, os.path.dirname(definition))["text"]
+    spacing = float(re.search(r"Distance between points \(Dp\): ([-+\d.eE]+)", text).group(1))
+    return particle_count(text), spacing
+
+
+def dp_for(fppg, definition, wanted, work):
+    """The particle distance that gives about `wanted` particles (within 5 %)."""
+    count, dp = count_at(fppg, definition, None, work)
+    exponent = 3.0
+    for _ in range(5):
+        if abs(count / wanted - 1) < 0.05:
+            break
+        new_dp = float(f"{dp * (count / wanted) ** (1 / exponent):.6g}")
+        new_count, _ = count_at(fppg, definition, new_dp, work)
+        if new_dp != dp and new_count != count:
+            # Walls grow with dp^-2, water with dp^-3.
+            exponent = min(3.5, max(1.5, math.log(new_count / count) / math.log(dp / new_dp)))
+        count, dp = new_count, new_dp
+    return dp
+
+
+def large_domain(n, work):
+    path = os.path.join(work, f"CaseDomain{n}_Def.xml")
+    middle = n // 2 * DOMAIN_DP
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(LARGE_DOMAIN.format(n=n, dp=DOMAIN_DP, max=f"{(n - 0.5) * DOMAIN_DP:.6g}",
+                                       x=f"{middle - 0.2:.6g}", y=f"{middle - 0.15:.6g}",
+                                       z=f"{middle - 0.1:.6g}"))
+    return path
+
+
+def make_rungs(options, work):
+    rungs = []
+    if options.case:
+        for definition in options.case:
+            for dp in options.dp or [None]:
+                name = os.path.basename(definition).replace("_Def.xml", "")
+                rungs.append({"case": name, "definition": os.path.abspath(definition), "dp": dp})
+        return rungs
+    for case in options.only or [*OWN_CASES, "domain"]:
+        if case == "domain":
+            rungs += [{"case": f"domain {n}^3", "definition": large_domain(n, work), "dp": None}
+                      for n in options.domains]
+            continue
+        definition = os.path.join(REPOSITORY, OWN_CASES[case])
+        for million in options.millions:
+            print(f"looking for the dp of {case} at {million:g} million particles",
+                  file=sys.stderr)
+            rungs.append({"case": case, "definition": definition,
+                          "dp": dp_for(options.fppg, definition, million * 1e6, work)})
+    return rungs
+
+
+def measure(rung, options, work):
+    save = [f"-save:{options.save}"] if options.save else []
+    variants = []
+    for threads in options.threads:
+        variants.append(Variant(f"fppg, {threads} threads", options.fppg, threads,
+                                [*save, f"-threads:{threads}"]))
+        if options.gencase:
+            variants.append(Variant(f"GenCase, {threads} threads", options.gencase, threads,
+                                    [*save, f"{options.gencase_threads}:{threads}"]))
+    failed = {}
+    for repetition in range(options.repeat):
+        # Another one starts each time, so that none always follows the same neighbour.
+        turn = repetition % len(variants)
+        for variant in variants[turn:] + variants[:turn]:
+            if variant.name in failed:
+                continue
+            try:
+                variant.sample(rung, work)
+            except Failed as error:
+                if variant.program == options.fppg:
+                    raise
+                failed[variant.name] = str(error)
+    result = {"case": rung["case"], "dp": rung["dp"], "variants": {}}
+    for variant in variants:
+        if variant.name in failed:
+            result["variants"][variant.name] = {"threads": variant.threads,
+                                                "failed": failed[variant.name]}
+        else:
+            result["variants"][variant.name] = variant.summary()
+    if options.gencase:
+        for ours, theirs in zip(variants[0::2], variants[1::2]):
+            if theirs.name in failed:
+                continue
+            summary = result["variants"][ours.name]
+            summary["wall_to_gencase"] = median_ratio(ours, theirs, "wall_s")
+            summary["rss_to_gencase"] = median_ratio(ours, theirs, "peak_rss")
+    return result
+
+
+def table(results):
+    lines = ["| case | dp | variant | particles | wall s | min to max s | user+sys s | "
+             "peak RSS MB | million particles/s | written MB | wall / cp | wall / GenCase | "
+             "RSS / GenCase |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for rung in results:
+        for name, v in rung["variants"].items():
+            dp = f"{rung['dp']:g}" if rung["dp"] is not None else ""
+            if "failed" in v:
+                lines.append(f"| {rung['case']} | {dp} | {name} | failed | | | | | | | | | |")
+                continue
+            speed = f"{v['particles_per_s'] / 1e6:.2f}" if v["particles_per_s"] else ""
+            pair = [f"{v[key]:.3f}" if key in v else ""
+                    for key in ("wall_to_gencase", "rss_to_gencase")]
+            lines.append(
+                f"| {rung['case']} | {dp} | {name} | {v['particles'] or ''} | {v['wall_s']:.3f} | "
+                f"{v['wall_min_s']:.3f} to {v['wall_max_s']:.3f} | {v['cpu_s']:.3f} | "
+                f"{v['peak_rss'] / 1e6:.0f} | {speed} | {v['bytes'] / 1e6:.1f} | "
+                f"{v['ratio_to_cp']:.2f} | {pair[0]} | {pair[1]} |")
+    return "\n".join(lines)
+
+
+def stage_table(results):
+    rows = [(rung, name, v["stages_s"]) for rung in results
+            for name, v in rung["variants"].items() if name.startswith("fppg")]
+    stages = []
+    for _, _, times in rows:
+        stages += [s for s in times if s not in stages]
+    lines = ["| case | dp | variant | " + " | ".join(stages) + " |",
+             "| --- " * (3 + len(stages)) + "|"]
+    for rung, name, times in rows:
+        dp = f"{rung['dp']:g}" if rung["dp"] is not None else ""
+        cells = [f"{times[s]:.3f}" if s in times else "" for s in stages]
+        lines.append(f"| {rung['case']} | {dp} | {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def numbers(text):
+    return [float(word) for word in text.split(",")]
+
+
+def parse_options():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--fppg", required=True, help="the program")
+    parser.add_argument("--gencase", help="a GenCase program, run in pairs with fppg")
+    parser.add_argument("--gencase-threads", default="-threads",
+                        help="its option for threads (default %(default)s)")
+    parser.add_argument("--case", action="append", metavar="DEF.xml",
+                        help="this case instead of the repository's own; may be repeated")
+    parser.add_argument("--dp", type=numbers, metavar="LIST", help="particle distances for --case")
+    parser.add_argument("--only", action="append", choices=[*OWN_CASES, "domain"],
+                        help="of the repository's own cases only this one; may be repeated")
+    parser.add_argument("--millions", type=numbers, default=LADDER, metavar="LIST",
+                        help="million particles of the rungs (default 0.1,1,5,20)")
+    parser.add_argument("--larger", action="store_true",
+                        help="rungs of 50 and 100 million particles too")
+    parser.add_argument("--threads", type=lambda t: [int(n) for n in t.split(",")],
+                        default=[1, 2], metavar="LIST", help="threads (default 1,2)")
+    parser.add_argument("--repeat", type=int, default=5, metavar="N",
+                        help="repetitions (default 5)")
+    parser.add_argument("--save", metavar="LIST", help="files to write, as in the program's "
+                        "-save (default: the program's own, bi4 and cells)")
+    parser.add_argument("--quick", action="store_true",
+                        help="three repetitions of 0.1 and 1 million particles, two domains")
+    parser.add_argument("--work", metavar="FOLDER", help="where outputs go for the time of a run "
+                        "(default: a temporary folder)")
+    parser.add_argument("--out", default="bench", metavar="NAME",
+                        help="NAME.json and NAME.md are written (default %(default)s)")
+    options = parser.parse_args()
+    if options.repeat < 1 or min(options.threads) < 1 or min(options.millions) <= 0:
+        parser.error("repetitions, threads and sizes must be above zero")
+    if options.dp and not options.case:
+        parser.error("--dp goes with --case")
+    options.domains = DOMAINS
+    if options.quick:
+        options.repeat, options.millions, options.domains = 3, [0.1, 1], [405, 1205]
+    if options.larger:
+        options.millions = options.millions + [50, 100]
+    options.fppg = os.path.abspath(options.fppg)
+    if options.gencase:
+        options.gencase = os.path.abspath(options.gencase)
+    return options
+
+
+def main():
+    options = parse_options()
+    with tempfile.TemporaryDirectory(prefix="fppg-bench-", dir=options.work) as work:
+        results = []
+        for rung in make_rungs(options, work):
+            print(f"measuring {rung['case']}, dp {rung['dp']}", file=sys.stderr)
+            results.append(measure(rung, options, work))
+    machine = {"system": platform.platform(), "cpus": len(os.sched_getaffinity(0)),
+               "load": os.getloadavg(), "date": time.strftime("%Y-%m-%d %H:%M:%S"),
+               "repetitions": options.repeat}
+    with open(options.out + ".json", "w", encoding="utf-8") as file:
+        json.dump({"machine": machine, "results": results}, file, indent=1)
+        file.write("\n")
+    text = (f"{machine['date']}, {machine['system']}, {machine['cpus']} CPUs, medians of "
+            f"{options.repeat} repetitions\n\n{table(results)}\n\nSeconds a stage:\n\n"
+            f"{stage_table(results)}\n")
+    with open(options.out + ".md", "w", encoding="utf-8") as file:
+        file.write(text)
+    print(text)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Failed as error:
+        sys.exit(str(error))
