@@ -9,6 +9,7 @@
 
 #include "app/case_template.h"
 #include "app/run_log.h"
+#include "app/stop_signals.h"
 #include "app/threads.h"
 
 #include <fmt/chrono.h>
@@ -17,12 +18,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
-#include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <string_view>
 
 namespace fppg
 {
@@ -38,6 +41,26 @@ std::string thousands(std::uint64_t n)
     for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
         text.insert(static_cast<std::size_t>(at), 1, ',');
     return text;
+}
+
+/// The date that goes into the files: now, in local time, or SOURCE_DATE_EPOCH (seconds since 1970,
+/// UTC; reproducible-builds.org), so that two runs of a case give the same bytes.
+std::string date_of_run()
+{
+    constexpr const char* form = "{:%d-%m-%Y %H:%M:%S}";
+    const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
+    if (fixed == nullptr) return fmt::format(form, fmt::localtime(std::time(nullptr)));
+    const std::string_view text(fixed);
+    std::int64_t seconds = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    // The year 9999 is the last that has four digits.
+    if (error != std::errc() || end != text.data() + text.size() || seconds < 0 ||
+        seconds > 253402300799)
+        throw UsageError(
+            fmt::format("the environment's SOURCE_DATE_EPOCH=\"{}\" is invalid, expected seconds "
+                        "since 1970",
+                        text));
+    return fmt::format(form, fmt::gmtime(static_cast<std::time_t>(seconds)));
 }
 
 class Stopwatch
@@ -267,10 +290,7 @@ private:
               [this]
               {
                   files_.reserve(1024);
-                  const FileOrigin origin{
-                      full_name(),
-                      fmt::format("{:%d-%m-%Y %H:%M:%S}", fmt::localtime(std::time(nullptr))),
-                      def_.case_name};
+                  const FileOrigin origin{full_name(), date_of_run(), def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
                   copy_meshes();
                   save_shapes(vtk_out);
@@ -436,20 +456,13 @@ private:
     void commit()
     {
         std::vector<std::string> pictures;
-        // A signal between two renames would leave a mixture of old and new.
-        sigset_t signals;
-        sigset_t before;
-        sigemptyset(&signals);
-        sigaddset(&signals, SIGINT);
-        sigaddset(&signals, SIGTERM);
-        pthread_sigmask(SIG_BLOCK, &signals, &before);
+        const StopSignalsIgnored ignored;
         for (OutputFile& file : files_)
         {
             file.commit();
             if (file.path().ends_with(".vtk")) pictures.push_back(file.path());
         }
         files_.clear();
-        pthread_sigmask(SIG_SETMASK, &before, nullptr);
         if (!options_.save_three_vtk) return;
         for (const std::string& path : pictures)
             for (const char* copy : {"_r00", "_r01", "_r02"})

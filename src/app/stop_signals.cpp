@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 
 namespace fppg
@@ -11,8 +12,12 @@ namespace fppg
 namespace
 {
 
+std::atomic<bool> is_ignored{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait for a lock");
+
 extern "C" void stop(int)
 {
+    if (is_ignored.load()) return;
     remove_temporary_files();
     constexpr char text[] = "\n*** Stopped by the user; no output file was changed.\n";
     const auto written = write(STDERR_FILENO, text, sizeof text - 1);
@@ -27,6 +32,15 @@ void catch_stop_signals()
     std::signal(SIGINT, stop);
     std::signal(SIGTERM, stop);
     std::signal(SIGXFSZ, SIG_IGN);
+}
+
+StopSignalsIgnored::StopSignalsIgnored()
+{
+    is_ignored.store(true);
+}
+StopSignalsIgnored::~StopSignalsIgnored()
+{
+    is_ignored.store(false);
 }
 
 } // namespace fppg

@@ -7,4 +7,16 @@ namespace fppg
 /// go, the outputs of before stay. A file size limit is left to the write that meets it.
 void catch_stop_signals();
 
+/// While one exists, Ctrl-C and SIGTERM are ignored: the renames at the end of a run take no time,
+/// and stopping between two of them would leave a mixture of old and new files. Blocking the
+/// signals in one thread would not do, another thread of the pool would take them.
+class StopSignalsIgnored
+{
+public:
+    StopSignalsIgnored();
+    ~StopSignalsIgnored();
+    StopSignalsIgnored(const StopSignalsIgnored&) = delete;
+    StopSignalsIgnored& operator=(const StopSignalsIgnored&) = delete;
+};
+
 } // namespace fppg

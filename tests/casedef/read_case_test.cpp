@@ -94,6 +94,11 @@ Mistake in_mainlist(const char* name, const char* commands, const char* message)
     return {name, [commands](CaseText& text) { text.mainlist = commands; }, message};
 }
 
+std::string name_of(const testing::TestParamInfo<Mistake>& info)
+{
+    return info.param.name;
+}
+
 class ReadCaseMistake : public testing::TestWithParam<Mistake>
 {
 };
@@ -190,12 +195,13 @@ INSTANTIATE_TEST_SUITE_P(
                     text.lists = R"(<list name="A"><runlist name="A" /></list>)";
                     text.mainlist = R"(<runlist name="A" />)";
                 },
-                "lists call one another more than"}));
+                "lists call one another more than"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Definition, ReadCaseMistake,
     testing::Values(
-        Mistake{"ZeroDp", [](CaseText& text) { text.dp = "0"; },
+        Mistake{"ZeroDp", [](CaseText& text) { text.dp = "0.0"; },
                 ":5: <definition>: dp is 0, expected a particle distance above 0"},
         Mistake{"NegativeDp", [](CaseText& text) { text.dp = "-0.1"; }, "<definition>: dp is -0.1"},
         Mistake{"PointminAbovePointmax",
@@ -254,7 +260,8 @@ INSTANTIATE_TEST_SUITE_P(
                     text.after_geometry =
                         R"(<motion><objreal ref="0"><mvjump id="1" /></objreal></motion>)";
                 },
-                "<mvjump>: is not known in <motion>"}));
+                "<mvjump>: is not known in <motion>"}),
+    name_of);
 
 TEST(ReadCase, RefusesAMissingMainlistAndAForeignRoot)
 {

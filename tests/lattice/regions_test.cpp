@@ -157,6 +157,32 @@ TEST(TrianglesRegion, FindsLongTrianglesInATallLattice)
     }
 }
 
+TEST(TrianglesRegion, AsksEveryNodeOfAColumnThatIsExactlyAtTheLimit)
+{
+    // Upright triangles along (4, -3): columns stand 0.6 dp from the plane but for rounding.
+    Dice dice(10);
+    for (int i = 0; i < cases; ++i)
+    {
+        LatticeGrid grid = any_grid(dice);
+        grid.n = {12, 12, 30};
+        const Node a = any_node(dice, grid, 0);
+        const std::int64_t k = dice.whole(1, 3);
+        const SnappedTriangle t{a,
+                                {a.x + 4 * k, a.y - 3 * k, a.z + dice.whole(-9, 9)},
+                                {a.x + (dice.coin() ? 4 : 0), a.y, a.z + dice.whole(5, 30)}};
+        SnappedTriangle upright = t;
+        upright.c = {a.x, a.y, t.c.z};
+        for (const SnappedTriangle& triangle : {t, upright})
+        {
+            const DenseSet expected = where(
+                grid, [&](const Node& n) { return triangle_has(triangle, grid, 0.6, 0.6, n); });
+            ASSERT_EQ(
+                difference(dense(grid, triangles_region({triangle}, grid, 0.6, 0.6)), expected), "")
+                << "case " << i;
+        }
+    }
+}
+
 struct Part
 {
     std::vector<Plane> planes;

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fcntl.h>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "helpers/case_text.h"
+
+namespace fppg::test
+{
+
+/// What a program printed, and its exit code; 128 + n after signal n.
+struct RunResult
+{
+    int code = 0;
+    std::string output;
+};
+
+/// A program that runs in a folder, its output going to a file there.
+class Process
+{
+public:
+    Process(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& folder, const std::map<std::string, std::string>& environment = {})
+    {
+        static int count = 0;
+        output_ = (std::filesystem::temp_directory_path() /
+                   ("fppg-output-" + std::to_string(::getpid()) + "-" + std::to_string(++count)))
+                      .string();
+        id_ = ::fork();
+        if (id_ != 0) return;
+        const int file = ::open(output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        ::dup2(file, 1);
+        ::dup2(file, 2);
+        if (::chdir(folder.c_str()) != 0) ::_exit(127);
+        for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+        std::vector<char*> words{const_cast<char*>(program.c_str())};
+        for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
+        words.push_back(nullptr);
+        ::execv(program.c_str(), words.data());
+        ::_exit(127);
+    }
+
+    void send(int signal) const { ::kill(id_, signal); }
+
+    RunResult wait()
+    {
+        int status = 0;
+        ::waitpid(id_, &status, 0);
+        RunResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+                         read_text(output_)};
+        std::filesystem::remove(output_);
+        return result;
+    }
+
+private:
+    std::string output_;
+    pid_t id_ = -1;
+};
+
+/// The bytes of every file of a folder, by path inside it.
+inline std::map<std::string, std::string> contents(const std::filesystem::path& folder)
+{
+    std::map<std::string, std::string> out;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.is_regular_file())
+            out[std::filesystem::relative(entry.path(), folder).string()] =
+                read_text(entry.path().string());
+    return out;
+}
+
+} // namespace fppg::test
