@@ -113,7 +113,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
                    "mk (default) or kind (corner, edge, surface, volume)");
     app.add_option("--mk", mks, "only these, such as 1,11-13");
     app.add_option("--cut", cuts, "keeps what is on one side: y>0.3 or z<1; may be repeated")
-        ->expected(1)
+        ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option("--zoom", options.zoom, "magnification (default 1)");
     app.add_option("--center", center, "X,Y,Z in the middle of the picture");

@@ -310,8 +310,8 @@ void trace(const Panel& panel, RTCScene scene, const Vec3f (&from)[8], PixelSum 
         // Light from all around: less where the sphere turns away from the camera, which is where
         // its neighbours stand.
         const float around =
-            0.34f + 0.16f * dot(normal, panel.towards) + 0.1f * dot(normal, panel.up);
-        const float light = around + 0.52f * key + 0.16f * fill;
+            0.40f + 0.16f * dot(normal, panel.towards) + 0.1f * dot(normal, panel.up);
+        const float light = around + 0.48f * key + 0.20f * fill;
         const Rgb& colour = panel.colours[rays.hit.primID[k]];
         const auto shade = [&](std::uint8_t part)
         { return std::min(light * static_cast<float>(part), 255.0f); };
