@@ -22,6 +22,7 @@ struct RenderCall
     std::string output;
     RenderOptions options;
     bool has_view = false;
+    bool has_palette = false;
     int threads = 0;
 };
 
@@ -120,6 +121,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_option("--size", size, "in pixels (default 1600x1200)");
     app.add_option("--radius", options.radius_dp, "of the spheres, in dp (default 0.5)");
     app.add_option("--samples", options.samples, "rays a pixel along each axis (default 2)");
+    app.add_flag("--palette", call.has_palette, "256 colours, for a smaller file");
     app.add_option("--threads", call.threads,
                    "default 0: what the machine or its scheduler allows");
     try
@@ -159,24 +161,26 @@ bool is_in_plane(const ParticleCloud& cloud)
                        [&](const Vec3& p) { return p.y == cloud.positions.front().y; });
 }
 
+/// Prints what the colours stand for.
 void print_colours(const std::vector<ParticleCloud>& clouds, const RenderOptions& options)
 {
     static constexpr const char* kinds[] = {"corner", "edge", "surface", "volume"};
-    std::vector<std::size_t> counts(65536);
-    const bool has_mk = options.colour == RenderColour::Mk;
+    std::vector<bool> is_wanted(65536, options.mks.empty());
+    for (const std::uint16_t mk : options.mks) is_wanted[mk] = true;
+    const bool is_by_mk = options.colour == RenderColour::Mk;
+    std::vector<bool> is_there(65536, false);
     for (const ParticleCloud& cloud : clouds)
-        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
-            ++counts[has_mk ? cloud.mk[i] : cloud.kind[i]];
-    for (std::size_t value = 0; value < counts.size(); ++value)
+        for (std::size_t i = 0; i < cloud.mk.size(); ++i)
+            if (is_wanted[cloud.mk[i]]) is_there[is_by_mk ? cloud.mk[i] : cloud.kind[i]] = true;
+    for (std::size_t value = 0; value < is_there.size(); ++value)
     {
-        if (counts[value] == 0) continue;
-        const Rgb colour = has_mk ? colour_of_mk(static_cast<std::uint16_t>(value))
-                                  : colour_of_kind(static_cast<std::uint8_t>(value));
-        const std::string name = has_mk                     ? fmt::format("mk {}", value)
+        if (!is_there[value]) continue;
+        const Rgb colour = is_by_mk ? colour_of_mk(static_cast<std::uint16_t>(value))
+                                    : colour_of_kind(static_cast<std::uint8_t>(value));
+        const std::string name = is_by_mk                   ? fmt::format("mk {}", value)
                                  : value < std::size(kinds) ? std::string(kinds[value])
                                                             : fmt::format("kind {}", value);
-        fmt::print("  #{:02x}{:02x}{:02x}  {} ({} particles)\n", colour[0], colour[1], colour[2],
-                   name, counts[value]);
+        fmt::print("  #{:02x}{:02x}{:02x}  {}\n", colour[0], colour[1], colour[2], name);
     }
 }
 
@@ -195,7 +199,7 @@ int run_render(const std::vector<std::string>& arguments)
     if (!call.has_view && std::all_of(clouds.begin(), clouds.end(), is_in_plane))
         call.options.view = parse_view("front");
     const Image image = render_particles(clouds, call.options, call.threads);
-    write_png(file, image);
+    write_png(file, image, call.has_palette);
     file.commit();
     print_colours(clouds, call.options);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -87,6 +87,19 @@ std::size_t ink(const Image& image)
                                                   [](const Rgb& pixel) { return pixel != white; }));
 }
 
+std::vector<Rgb> png_pixels(const std::string& bytes)
+{
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0)
+        throw std::runtime_error(png.message);
+    png.format = PNG_FORMAT_RGB;
+    std::vector<Rgb> pixels(std::size_t{png.width} * png.height);
+    if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0)
+        throw std::runtime_error(png.message);
+    return pixels;
+}
+
 } // namespace
 
 TEST(RenderParticles, ShowsTwoSpheresWhereTheyAreInTheirColours)
@@ -293,16 +306,38 @@ TEST(ParseCut, ReadsAnAxisASideAndAPlace)
 TEST(WritePng, IsReadBackAsTheSameImage)
 {
     const Image image = render_particles({block()}, small_front(), 1);
-    const std::string bytes = written([&](OutputFile& file) { write_png(file, image); });
-    png_image png = {};
-    png.version = PNG_IMAGE_VERSION;
-    ASSERT_NE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()), 0);
-    png.format = PNG_FORMAT_RGB;
-    ASSERT_EQ(png.width, 200u);
-    ASSERT_EQ(png.height, 100u);
-    std::vector<Rgb> pixels(image.pixels.size());
-    ASSERT_NE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr), 0);
-    EXPECT_EQ(pixels, image.pixels);
+    EXPECT_EQ(png_pixels(written([&](OutputFile& file) { write_png(file, image); })), image.pixels);
+}
+
+TEST(WritePng, KeepsColoursNearlyWithAPalette)
+{
+    const Image image = render_particles({block()}, small_front(), 1);
+    const std::vector<Rgb> pixels =
+        png_pixels(written([&](OutputFile& file) { write_png(file, image, true); }));
+    ASSERT_EQ(pixels.size(), image.pixels.size());
+    double squares = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+    {
+        EXPECT_EQ(pixels[i] == white, image.pixels[i] == white);
+        for (std::size_t c = 0; c < 3; ++c)
+            squares += std::pow(double(pixels[i][c]) - double(image.pixels[i][c]), 2);
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(3 * pixels.size())), 3);
+}
+
+TEST(WritePng, KeepsFewColoursExactlyWithAPalette)
+{
+    Image image;
+    image.width = 16;
+    image.height = 8;
+    for (int i = 0; i < 128; ++i)
+        image.pixels.push_back({static_cast<std::uint8_t>(4 * (i % 64)), 7,
+                                static_cast<std::uint8_t>(200 + 8 * (i / 64))});
+    EXPECT_EQ(png_pixels(written([&](OutputFile& file) { write_png(file, image, true); })),
+              image.pixels);
+    image.pixels.assign(128, white);
+    EXPECT_EQ(png_pixels(written([&](OutputFile& file) { write_png(file, image, true); })),
+              image.pixels);
 }
 
 } // namespace fppg
