@@ -206,8 +206,8 @@ struct Panel
     float room = 0;  ///< that a shadow ray keeps from its sphere
 
     Panel(const ParticleCloud& cloud, const std::vector<std::uint32_t>& chosen,
-          const Camera& camera_, const RenderOptions& options)
-        : camera(camera_),
+          const Camera& seen_by, const RenderOptions& options)
+        : camera(seen_by),
           right(to_float(camera.axes.right)),
           up(to_float(camera.axes.up)),
           towards(to_float(camera.axes.towards)),
@@ -326,7 +326,7 @@ void draw_tile(const Panel& panel, RTCScene scene, const RenderOptions& options,
     const int s = options.samples;
     const int width = std::min(tile_size, panel_width - tile_x);
     const int height = std::min(tile_size, options.height - tile_y);
-    std::vector<PixelSum> sums(static_cast<std::size_t>(width * height));
+    std::vector<PixelSum> sums(std::size_t{tile_size} * tile_size);
     const auto step = static_cast<float>(panel.camera.pixel / s);
     // Packets of 4 x 2 samples.
     for (int y = 0; y < height * s; y += 2)
@@ -352,18 +352,21 @@ void draw_tile(const Panel& panel, RTCScene scene, const RenderOptions& options,
                 const int px = (x + k % 4) / s;
                 const int py = (y + k / 4) / s;
                 if (px >= width || py >= height) continue;
-                PixelSum& sum = sums[static_cast<std::size_t>(py * width + px)];
+                PixelSum& sum =
+                    sums[static_cast<std::size_t>(py) * tile_size + static_cast<std::size_t>(px)];
                 sum.red += colours[k].red;
                 sum.green += colours[k].green;
                 sum.blue += colours[k].blue;
             }
         }
     const float share = 1.0f / static_cast<float>(s * s);
-    const auto level = [&](float sum) { return static_cast<std::uint8_t>(sum * share + 0.5f); };
+    const auto level = [&](float sum)
+    { return static_cast<std::uint8_t>(std::lround(sum * share)); };
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
         {
-            const PixelSum& sum = sums[static_cast<std::size_t>(y * width + x)];
+            const PixelSum& sum =
+                sums[static_cast<std::size_t>(y) * tile_size + static_cast<std::size_t>(x)];
             image.pixels[static_cast<std::size_t>(tile_y + y) *
                              static_cast<std::size_t>(image.width) +
                          static_cast<std::size_t>(panel_x + tile_x + x)] = {
@@ -404,7 +407,7 @@ Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOpt
         const SphereScene scene(panel.spheres, threads);
         const int tiles_x = (panel_width + tile_size - 1) / tile_size;
         const int tiles_y = (options.height + tile_size - 1) / tile_size;
-        parallel_for(static_cast<std::size_t>(tiles_x * tiles_y), threads,
+        parallel_for(static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y), threads,
                      [&](std::size_t tile)
                      {
                          const int t = static_cast<int>(tile);
