@@ -144,7 +144,6 @@ TEST(RenderParticles, ThrowsAShadowOnWhatIsBehind)
     // In front of the wall and out of the picture, towards the light.
     wall.positions.push_back({-0.45 * 4, -0.75 * 4, 0.75 * 4});
     wall.mk.push_back(1);
-    options.cuts.clear();
     const Image shaded = render_particles({wall}, options, 1);
     const auto light = [](const Image& image)
     {
@@ -169,7 +168,7 @@ TEST(RenderParticles, GivesTheSameImageForAnyNumberOfThreads)
 
 TEST(RenderParticles, SeesEachSideFromItsPreset)
 {
-    // Each face of a large sphere's cage has its own mk.
+    // One particle on each side of the origin.
     const ParticleCloud faces =
         cloud_of({{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, -1}},
                  {1, 11, 12, 13, 14, 15});
