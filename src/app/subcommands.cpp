@@ -1,0 +1,30 @@
+#include "app/subcommands.h"
+
+#include "app/render_command.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+struct Entry
+{
+    const char* name;
+    Subcommand run;
+};
+
+constexpr Entry entries[] = {
+    {"render", run_render},
+};
+
+} // namespace
+
+Subcommand find_subcommand(const std::string& name)
+{
+    for (const Entry& entry : entries)
+        if (name == entry.name) return entry.run;
+    return nullptr;
+}
+
+} // namespace fppg

@@ -1,0 +1,88 @@
+#include "fppg/error.h"
+#include "fppg/render.h"
+
+#include <fmt/format.h>
+#include <charconv>
+#include <cmath>
+
+namespace fppg
+{
+
+namespace
+{
+
+std::optional<double> number(std::string_view text)
+{
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return {};
+    return value;
+}
+
+} // namespace
+
+ViewDirection parse_view(const std::string& text)
+{
+    struct Preset
+    {
+        const char* name;
+        ViewDirection view;
+    };
+    static constexpr Preset presets[] = {
+        {"iso", {30, 25}},  {"front", {0, 0}}, {"back", {180, 0}},   {"left", {270, 0}},
+        {"right", {90, 0}}, {"top", {0, 90}},  {"bottom", {0, -90}},
+    };
+    for (const Preset& preset : presets)
+        if (text == preset.name) return preset.view;
+    if (const std::size_t comma = text.find(','); comma != std::string::npos)
+    {
+        const std::optional<double> azimuth = number(std::string_view(text).substr(0, comma));
+        const std::optional<double> elevation = number(std::string_view(text).substr(comma + 1));
+        if (azimuth && elevation && std::abs(*elevation) <= 90) return {*azimuth, *elevation};
+    }
+    throw UsageError(fmt::format(
+        "the view \"{}\" is unknown, expected iso, front, back, left, right, top, bottom, or "
+        "azimuth,elevation in degrees such as 30,25",
+        text));
+}
+
+CutPlane parse_cut(const std::string& text)
+{
+    CutPlane cut;
+    const std::size_t axis = text.empty() ? std::string::npos : std::string("xyz").find(text[0]);
+    const bool has_sign = text.size() > 2 && (text[1] == '<' || text[1] == '>');
+    const std::optional<double> at =
+        has_sign ? number(std::string_view(text).substr(2)) : std::optional<double>();
+    if (axis == std::string::npos || !at)
+        throw UsageError(
+            fmt::format("the cut \"{}\" is unknown, expected for example y>0.3 or z<1", text));
+    cut.axis = static_cast<int>(axis);
+    cut.keep_above = text[1] == '>';
+    cut.at = *at;
+    return cut;
+}
+
+Rgb colour_of_mk(std::uint16_t mk)
+{
+    // Fluids have mk 1 to 10 in GenCase's numbering (0 is never given), boundaries follow.
+    static constexpr Rgb fluids[] = {{62, 137, 202}, {92, 186, 190}, {115, 130, 205}};
+    static constexpr Rgb boundaries[] = {{176, 172, 166}, {222, 148, 66},  {196, 78, 74},
+                                         {112, 160, 84},  {150, 108, 176}, {214, 186, 74},
+                                         {120, 92, 72},   {205, 120, 160}, {80, 130, 130}};
+    if (mk < 10) return fluids[(mk + 2U) % std::size(fluids)];
+    return boundaries[(mk - 10U) % std::size(boundaries)];
+}
+
+Rgb colour_of_kind(std::uint8_t kind)
+{
+    static constexpr Rgb colours[] = {
+        {206, 52, 52},   // corner
+        {232, 160, 44},  // edge
+        {104, 152, 196}, // surface
+        {200, 198, 194}, // volume
+    };
+    return kind < std::size(colours) ? colours[kind] : Rgb{130, 130, 130};
+}
+
+} // namespace fppg
