@@ -194,6 +194,36 @@ void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t sla
     }
 }
 
+/// Shortens a span to its nodes strictly on the inner side of a plane. The plane's values are
+/// monotone along a column, in double too, so that one end stays and the other is found by
+/// bisection.
+void keep_inner(const Plane& limit, double x, const LatticeGrid& grid, Span& s)
+{
+    if (s.z_begin >= s.z_end) return;
+    const auto is_inner = [&](std::uint32_t z) {
+        return limit.value({x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp}) > 0;
+    };
+    const bool low = is_inner(s.z_begin);
+    const bool high = is_inner(s.z_end - 1);
+    if (low && high) return;
+    if (!low && !high)
+    {
+        s.z_end = s.z_begin;
+        return;
+    }
+    std::uint32_t inside = low ? s.z_begin : s.z_end - 1;
+    std::uint32_t outside = low ? s.z_end - 1 : s.z_begin;
+    while (std::max(inside, outside) - std::min(inside, outside) > 1)
+    {
+        const std::uint32_t middle = std::midpoint(inside, outside);
+        is_inner(middle) ? inside = middle : outside = middle;
+    }
+    if (low)
+        s.z_end = inside + 1;
+    else
+        s.z_begin = inside;
+}
+
 } // namespace
 
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
@@ -231,14 +261,11 @@ SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double 
             if (slab < b.face.x_begin || slab >= b.face.x_end) continue;
             Spans nodes;
             b.face.emit(slab, nodes);
-            for (const Span& s : nodes)
-                for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
-                {
-                    const Vec3 p{x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp};
-                    if (std::all_of(b.limits.begin(), b.limits.end(),
-                                    [&](const Plane& limit) { return limit.value(p) > 0; }))
-                        out.push_back({s.y, z, z + 1});
-                }
+            for (Span s : nodes)
+            {
+                for (const Plane& limit : b.limits) keep_inner(limit, x, grid, s);
+                if (s.z_begin < s.z_end) out.push_back(s);
+            }
         }
     };
     return region;
