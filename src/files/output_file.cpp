@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -82,10 +83,35 @@ void remove_temporary_files() noexcept
     errno = saved_errno;
 }
 
+namespace
+{
+
+/// Keeps signals from this thread while it lives; the program's other threads never take any.
+class SignalsBlocked
+{
+public:
+    SignalsBlocked()
+    {
+        sigset_t all;
+        sigfillset(&all);
+        pthread_sigmask(SIG_BLOCK, &all, &before_);
+    }
+    ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    SignalsBlocked(const SignalsBlocked&) = delete;
+    SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+private:
+    sigset_t before_;
+};
+
+} // namespace
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path))
 {
     struct stat status = {};
     if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) fail(path_, EISDIR);
+    // A stop signal between the making of the file and its entry in the registry would leave it.
+    const SignalsBlocked blocked;
     // A process of the same id may have been killed here before, and two cases of one process may
     // write the same name: another number is tried then.
     for (int attempt = 0; attempt < 100; ++attempt)

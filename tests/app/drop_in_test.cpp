@@ -546,11 +546,11 @@ TEST(FppgClean, WritesOnlyATidyDefinitionThatRunsTheSame)
 /// Runs the tank with many particles and sends `signal` as soon as is_time says so.
 RunResult stopped(const TemporaryFolder& folder, int signal, const std::function<bool()>& is_time)
 {
-    Process process(FPPG_PROGRAM, {"Case_Def", "out/Case", "-save:all", "-dp:0.005"},
+    Process process(FPPG_PROGRAM, {"Case_Def", "out/Case", "-save:all", "-dp:0.003"},
                     folder.path().string());
     const auto begin = std::chrono::steady_clock::now();
     while (!is_time() && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60))
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
     process.send(signal);
     return process.wait();
 }
