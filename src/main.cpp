@@ -3,6 +3,7 @@
 #include "app/command_line.h"
 #include "app/drop_in.h"
 #include "app/stop_signals.h"
+#include "app/subcommands.h"
 
 #include <cstdio>
 #include <new>
@@ -26,8 +27,9 @@ int main(int argc, char** argv)
     fppg::catch_stop_signals();
     try
     {
-        return fppg::run_drop_in(
-            fppg::parse_command_line(std::vector<std::string>(argv + 1, argv + argc)));
+        const std::vector<std::string> arguments(argv + 1, argv + argc);
+        if (fppg::is_subcommand(arguments)) return fppg::run_subcommand(arguments);
+        return fppg::run_drop_in(fppg::parse_command_line(arguments));
     }
     catch (const fppg::Error& error)
     {

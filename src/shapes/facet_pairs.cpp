@@ -14,7 +14,7 @@ namespace
 
 using Corners = std::array<Vec3, 3>;
 
-/// Whether a side of `a` has its ends on both sides of `b`'s plane and meets the facet.
+/// Whether a side of `a` has its ends on both sides of `b`'s plane and passes inside the facet.
 bool pierces(const Corners& a, const Corners& b)
 {
     std::array<int, 3> side{};
@@ -23,14 +23,9 @@ bool pierces(const Corners& a, const Corners& b)
     {
         const std::size_t j = (i + 1) % 3;
         if (side[i] * side[j] >= 0) continue;
-        int low = 0, high = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const int turn = orient3d(a[i], a[j], b[k], b[(k + 1) % 3]);
-            low = std::min(low, turn);
-            high = std::max(high, turn);
-        }
-        if (low == 0 || high == 0) return true;
+        int turns = 0;
+        for (std::size_t k = 0; k < 3; ++k) turns += orient3d(a[i], a[j], b[k], b[(k + 1) % 3]);
+        if (turns == 3 || turns == -3) return true;
     }
     return false;
 }

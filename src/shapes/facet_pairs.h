@@ -15,8 +15,8 @@ struct FacetPairs
     std::array<std::uint32_t, 2> first{no_index, no_index}; ///< smallest first facet, then second
 };
 
-/// Counts the pairs of facets without a common vertex where a side of one passes through the plane
-/// of the other inside it or through its border. Exact; facets that only touch, and facets that
+/// Counts the pairs of facets without a common vertex where a side of one passes through the inside
+/// of the other. Exact; facets that only touch, as where a fin stands on a wall, and facets that
 /// overlap in one plane, do not count.
 ///
 /// threads  number of threads; the result does not depend on it

@@ -211,10 +211,17 @@ private:
         double count = static_cast<double>(features_.singular.size());
         for (const FeatureLine& line : features_.lines) count += line.length / dp_ + 1;
         if (!(count < 0xFFFFFFFE))
+        {
+            const auto longest =
+                std::max_element(features_.lines.begin(), features_.lines.end(),
+                                 [](const auto& a, const auto& b) { return a.length < b.length; });
+            const Vec3& at = mesh_.vertices[longest->vertices.front()];
             throw GeometryError(fmt::format(
                 "the feature lines need {:.3g} particles at a particle distance of {} m, expected "
-                "fewer than 4e9; is the mesh in millimetres?",
-                count, dp_));
+                "fewer than 4e9; the longest begins at ({:.6g}, {:.6g}, {:.6g}) and is {:.6g} m "
+                "long: is a coordinate wrong, or the mesh in millimetres?",
+                count, dp_, at.x, at.y, at.z, longest->length));
+        }
         return static_cast<std::size_t>(count);
     }
 

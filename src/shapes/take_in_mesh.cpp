@@ -204,6 +204,14 @@ std::vector<std::vector<std::uint32_t>> find_copies(const std::vector<Facet>& fa
     return groups;
 }
 
+void erase_facets(const std::vector<char>& is_dropped, SurfaceMesh& mesh)
+{
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        if (is_dropped[f] == 0) mesh.facets[kept++] = mesh.facets[f];
+    mesh.facets.resize(kept);
+}
+
 void drop_copies(SurfaceMesh& mesh, int threads, MeshReport& report)
 {
     std::vector<char> is_dropped(mesh.facets.size(), 0);
@@ -213,10 +221,7 @@ void drop_copies(SurfaceMesh& mesh, int threads, MeshReport& report)
             is_dropped[group[i]] = 1;
             ++report.duplicate_facets;
         }
-    std::size_t kept = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        if (is_dropped[f] == 0) mesh.facets[kept++] = mesh.facets[f];
-    mesh.facets.resize(kept);
+    erase_facets(is_dropped, mesh);
 }
 
 void build_edges(SurfaceMesh& mesh, int threads)
@@ -274,6 +279,33 @@ bool is_open(const SurfaceMesh& mesh, std::size_t edge)
     return mesh.edge_facets[edge][1] == no_index;
 }
 
+/// Drops facets that are no higher than the rounding of their corners and have a side that is open
+/// or belongs to more than two facets: slivers that stand on an edge. What they leave are
+/// T-junctions. Slivers that fit between their neighbours stay.
+void drop_loose_slivers(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    std::vector<char> is_dropped(mesh.facets.size(), 0);
+    std::size_t dropped = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        const Facet& corners = mesh.facets[f];
+        if (std::none_of(mesh.neighbours[f].begin(), mesh.neighbours[f].end(),
+                         [](std::uint32_t other) { return other == no_index; }))
+            continue;
+        const Measures m = measure(mesh, corners);
+        const auto s = static_cast<std::size_t>(m.longest);
+        const Vec3 &a = mesh.vertices[corners[s]], &b = mesh.vertices[corners[(s + 1) % 3]];
+        const double size = std::max(largest_coordinate(a), largest_coordinate(b));
+        if (m.height > std::min(float_step * size, 1e-3 * norm(b - a))) continue;
+        is_dropped[f] = 1;
+        ++dropped;
+    }
+    if (dropped == 0 || dropped == mesh.facets.size()) return;
+    erase_facets(is_dropped, mesh);
+    report.degenerate_facets += dropped;
+    build_edges(mesh, threads);
+}
+
 /// A vertex inside an open edge, at a share of the way from the edge's first vertex.
 struct Junction
 {
@@ -319,7 +351,8 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, int threads)
                 [&](std::uint32_t k)
                 {
                     const auto [from, to] = mesh.edges[open[k]];
-                    if (from == ends[i] || to == ends[i]) return;
+                    const Facet& own = mesh.facets[mesh.edge_facets[open[k]][0]];
+                    if (std::find(own.begin(), own.end(), ends[i]) != own.end()) return;
                     const Vec3 along = mesh.vertices[to] - mesh.vertices[from];
                     const Vec3 away = p - mesh.vertices[from];
                     const double share = dot(away, along) / dot(along, along);
@@ -683,6 +716,7 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         throw GeometryError(
             fmt::format("no facet is left of {}: all lack area or are copies", report.facets_read));
     build_edges(mesh, threads);
+    drop_loose_slivers(mesh, threads, report);
     const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
     Vec3 junction_at;
     if (!junctions.empty())
@@ -690,9 +724,9 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         junction_at = mesh.vertices[junctions.front().vertex];
         report.t_junctions = junctions.size();
         split_at(junctions, mesh);
-        std::size_t no_report = report.duplicate_facets;
+        const std::size_t copies = report.duplicate_facets;
         drop_copies(mesh, threads, report);
-        report.duplicate_facets = no_report;
+        report.duplicate_facets = copies; // these are pieces of facets, not of the file
         build_edges(mesh, threads);
     }
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
@@ -713,7 +747,7 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
 
     if (report.degenerate_facets > 0)
         report.warnings.push_back(
-            fmt::format("{} without area, left out.",
+            fmt::format("{} without area but for rounding, left out.",
                         counted(report.degenerate_facets, "facet is", "facets are")));
     if (report.duplicate_facets > 0)
         report.warnings.push_back(

@@ -181,6 +181,16 @@ TEST(TakeInMesh, ReplacesAFacetWithoutAreaByASplit)
     EXPECT_TRUE(report.is_watertight);
 }
 
+TEST(TakeInMesh, DropsASliverThatStandsOnAnEdge)
+{
+    TriangleSoup soup = box({0, 0, 0}, {1, 1, 1});
+    add_facet(soup, {0, 0, 0}, {1, 0, 0}, {0.4, 0, 1e-8});
+    MeshReport report;
+    taken_in(soup, report);
+    EXPECT_EQ(report.degenerate_facets, 1u);
+    EXPECT_TRUE(report.is_watertight);
+}
+
 TEST(TakeInMesh, CountsTheEdgeWhereTwoCubesTouch)
 {
     MeshReport report;
@@ -215,6 +225,12 @@ TEST(TakeInMesh, CountsFacetsThatCross)
     EXPECT_EQ(report.self_intersections, 0u);
     taken_in(joined(cube, moved(cube, {.offset = {1.1, 1.2, 1.3}})), report);
     EXPECT_GT(report.self_intersections, 5u);
+    // A fin that stands on the cube touches it only.
+    TriangleSoup fin = cube;
+    add_quad(fin, {2, 0.5, 1}, {3, 0.5, 1}, {3, 1.5, 1}, {2, 1.5, 1});
+    MeshReport fin_report;
+    taken_in(fin, fin_report);
+    EXPECT_EQ(fin_report.self_intersections, 0u);
     EXPECT_TRUE(report.is_watertight);
 }
 
