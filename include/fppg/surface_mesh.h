@@ -70,7 +70,10 @@ struct MeshIntakeOptions
 
 /// Welds, cleans and orients the facets of a file.
 ///
-/// Vertices keep the order in which the file names them first, facets their order in the file.
+/// Vertices keep the order in which the file names them first, facets their order in the file;
+/// vertices of dropped facets stay. Of facets with the same corners one stays, and none of two that
+/// are a wall between two touching bodies (each face goes on in facets that lie behind it); slivers
+/// within the rounding of float32 that stand on an edge are dropped.
 /// A vertex inside an open edge (a T-junction) splits the facet of that edge, so that no false hole
 /// is left. Facets are turned to agree across edges within a shell, the fewer to the more. A closed
 /// shell whose volume is negative and that no other shell holds is turned as a whole, together with

@@ -180,7 +180,7 @@ public:
         : mesh_(mesh),
           features_(features),
           dp_(dp),
-          grid_(0.75 * dp, expected_count()),
+          grid_(dp, expected_count()),
           has_particle_(mesh.vertices.size(), 0),
           on_line_(features.lines.size())
     {

@@ -169,6 +169,13 @@ void drop_degenerate(SurfaceMesh& mesh, MeshReport& report)
     report.degenerate_facets += before - mesh.facets.size();
 }
 
+/// Which of the two ways around its corners a facet runs.
+bool parity(const Facet& f)
+{
+    const auto least = static_cast<std::size_t>(std::min_element(f.begin(), f.end()) - f.begin());
+    return f[(least + 1) % 3] < f[(least + 2) % 3];
+}
+
 Facet sorted(Facet f)
 {
     std::sort(f.begin(), f.end());
@@ -210,18 +217,6 @@ void erase_facets(const std::vector<char>& is_dropped, SurfaceMesh& mesh)
     for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         if (is_dropped[f] == 0) mesh.facets[kept++] = mesh.facets[f];
     mesh.facets.resize(kept);
-}
-
-void drop_copies(SurfaceMesh& mesh, int threads, MeshReport& report)
-{
-    std::vector<char> is_dropped(mesh.facets.size(), 0);
-    for (const std::vector<std::uint32_t>& group : find_copies(mesh.facets, threads))
-        for (std::size_t i = 1; i < group.size(); ++i)
-        {
-            is_dropped[group[i]] = 1;
-            ++report.duplicate_facets;
-        }
-    erase_facets(is_dropped, mesh);
 }
 
 void build_edges(SurfaceMesh& mesh, int threads)
@@ -277,6 +272,114 @@ void build_edges(SurfaceMesh& mesh, int threads)
 bool is_open(const SurfaceMesh& mesh, std::size_t edge)
 {
     return mesh.edge_facets[edge][1] == no_index;
+}
+
+/// Whether the facet's side s runs from the smaller vertex to the larger one.
+bool runs_upwards(const SurfaceMesh& mesh, std::size_t f, std::size_t s)
+{
+    return mesh.facets[f][s] < mesh.facets[f][(s + 1) % 3];
+}
+
+/// Whether facets with the same corners are possible: they make an edge of more than two facets,
+/// or are each other's only neighbours.
+bool may_have_copies(const SurfaceMesh& mesh)
+{
+    if (std::find(mesh.is_manifold.begin(), mesh.is_manifold.end(), 0) != mesh.is_manifold.end())
+        return true;
+    return std::any_of(mesh.neighbours.begin(), mesh.neighbours.end(),
+                       [](const Facet& n)
+                       { return n[0] != no_index && n[0] == n[1] && n[1] == n[2]; });
+}
+
+/// Drops from `is_twin`, the facets that stand for two with opposite faces, those that are no wall
+/// between two bodies: a wall has two more facets at each edge of its rim, and each of its faces
+/// goes on in the one that lies behind it.
+void keep_inner_walls(const SurfaceMesh& mesh, std::vector<char>& is_twin)
+{
+    std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> sides_at; // 3 * facet + side
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        if (is_twin[f] != 0)
+            for (const std::uint32_t e : mesh.facet_edges[f]) sides_at[e];
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        for (std::size_t s = 0; s < 3; ++s)
+            if (const auto at = sides_at.find(mesh.facet_edges[f][s]); at != sides_at.end())
+                at->second.push_back(static_cast<std::uint32_t>(3 * f + s));
+
+    const auto ends_well = [&](std::uint32_t f, std::size_t s)
+    {
+        const std::vector<std::uint32_t>& sides = sides_at.at(mesh.facet_edges[f][s]);
+        if (sides.size() != 3) return false;
+        const Vec3 normal = measure(mesh, mesh.facets[f]).normal;
+        int way = 0;
+        for (const std::uint32_t side : sides)
+        {
+            const std::uint32_t other = side / 3;
+            if (other == f) continue;
+            if (is_twin[other] != 0) return false;
+            const bool goes_on = runs_upwards(mesh, other, side % 3) != runs_upwards(mesh, f, s);
+            const Vec3 away = mesh.vertices[mesh.facets[other][(side % 3 + 2) % 3]] -
+                              mesh.vertices[mesh.facets[f][s]];
+            const double ahead = dot(normal, away);
+            if (goes_on ? !(ahead < 0) : !(ahead > 0)) return false;
+            way += goes_on ? 1 : -1;
+        }
+        return way == 0;
+    };
+    std::vector<char> is_seen(mesh.facets.size(), 0);
+    std::vector<std::uint32_t> patch;
+    for (std::size_t seed = 0; seed < mesh.facets.size(); ++seed)
+    {
+        if (is_twin[seed] == 0 || is_seen[seed] != 0) continue;
+        patch.assign(1, static_cast<std::uint32_t>(seed));
+        is_seen[seed] = 1;
+        bool is_wall = true, has_rim = false;
+        for (std::size_t next = 0; next < patch.size(); ++next)
+            for (std::size_t s = 0; s < 3; ++s)
+            {
+                const std::uint32_t f = patch[next], other = mesh.neighbours[f][s];
+                if (other == no_index || is_twin[other] == 0)
+                {
+                    has_rim = true;
+                    is_wall = is_wall && ends_well(f, s);
+                    continue;
+                }
+                if (is_seen[other] == 0) patch.push_back(other);
+                is_seen[other] = 1;
+            }
+        if (is_wall && has_rim) continue;
+        for (const std::uint32_t f : patch) is_twin[f] = 0;
+    }
+}
+
+/// Keeps one of all facets with the same corners, and none of two with opposite faces that are a
+/// wall between two bodies.
+void drop_copies(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    if (!may_have_copies(mesh)) return;
+    const std::vector<std::vector<std::uint32_t>> groups = find_copies(mesh.facets, threads);
+    if (groups.empty()) return;
+    std::vector<char> is_dropped(mesh.facets.size(), 0);
+    std::vector<char> is_twin(mesh.facets.size(), 0);
+    for (const std::vector<std::uint32_t>& group : groups)
+    {
+        for (std::size_t i = 1; i < group.size(); ++i) is_dropped[group[i]] = 1;
+        report.duplicate_facets += group.size() - 1;
+        is_twin[group[0]] = static_cast<char>(
+            group.size() == 2 && parity(mesh.facets[group[0]]) != parity(mesh.facets[group[1]]));
+    }
+    erase_facets(is_dropped, mesh);
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < is_dropped.size(); ++f)
+        if (is_dropped[f] == 0) is_twin[kept++] = is_twin[f];
+    is_twin.resize(kept);
+    build_edges(mesh, threads);
+    keep_inner_walls(mesh, is_twin);
+    const auto walls = static_cast<std::size_t>(std::count(is_twin.begin(), is_twin.end(), 1));
+    if (walls == 0) return;
+    report.duplicate_facets -= walls;
+    report.inner_wall_facets += 2 * walls;
+    erase_facets(is_twin, mesh);
+    build_edges(mesh, threads);
 }
 
 /// Drops facets that are no higher than the rounding of their corners and have a side that is open
@@ -436,12 +539,6 @@ void flip(SurfaceMesh& mesh, std::size_t f)
     std::swap(mesh.facets[f][1], mesh.facets[f][2]);
     std::swap(mesh.facet_edges[f][0], mesh.facet_edges[f][2]);
     std::swap(mesh.neighbours[f][0], mesh.neighbours[f][2]);
-}
-
-/// Whether the facet's side s runs from the smaller vertex to the larger one.
-bool runs_upwards(const SurfaceMesh& mesh, std::size_t f, std::size_t s)
-{
-    return mesh.facets[f][s] < mesh.facets[f][(s + 1) % 3];
 }
 
 /// Numbers the shells and turns facets to agree within each; returns which facets were turned.
@@ -711,11 +808,12 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
     weld_equal(soup, threads, mesh);
     if (options.weld_distance > 0) weld_near(options.weld_distance, mesh);
     drop_degenerate(mesh, report);
-    drop_copies(mesh, threads, report);
     if (mesh.facets.empty())
         throw GeometryError(
-            fmt::format("no facet is left of {}: all lack area or are copies", report.facets_read));
+            fmt::format("no facet is left of {}: all lack area", report.facets_read));
     build_edges(mesh, threads);
+    drop_copies(mesh, threads, report);
+    if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);
     const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
     Vec3 junction_at;
@@ -725,15 +823,16 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         report.t_junctions = junctions.size();
         split_at(junctions, mesh);
         const std::size_t copies = report.duplicate_facets;
+        build_edges(mesh, threads);
         drop_copies(mesh, threads, report);
         report.duplicate_facets = copies; // these are pieces of facets, not of the file
-        build_edges(mesh, threads);
     }
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
     turn_outwards(mesh, report.shells, threads, is_turned);
     measure_facets(mesh, threads);
 
-    for (const Vec3& v : mesh.vertices) report.bounds.add(v);
+    for (const Facet& facet : mesh.facets)
+        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
     const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
     std::size_t first_turned = 0;
     for (std::size_t f = mesh.facets.size(); f-- > 0;)
@@ -753,6 +852,10 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         report.warnings.push_back(
             fmt::format("{} of another, left out.",
                         counted(report.duplicate_facets, "facet is a copy", "facets are copies")));
+    if (report.inner_wall_facets > 0)
+        report.warnings.push_back(
+            fmt::format("{} facets are walls between two bodies that touch, left out.",
+                        report.inner_wall_facets));
     if (report.t_junctions > 0)
         report.warnings.push_back(fmt::format(
             "{} inside an edge of another facet, the first {}; these facets are split there.",

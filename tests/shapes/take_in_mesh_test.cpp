@@ -203,6 +203,35 @@ TEST(TakeInMesh, CountsTheEdgeWhereTwoCubesTouch)
     EXPECT_EQ(std::count(mesh.is_manifold.begin(), mesh.is_manifold.end(), 0), 1);
 }
 
+TEST(TakeInMesh, OpensTheWallBetweenTwoCubesThatShareAFace)
+{
+    TriangleSoup soup = box({0, 0, 0}, {1, 1, 1});
+    const TriangleSoup other = moved(box({0, 0, 0}, {1, 1, 1}),
+                                     {{Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, {2, 0, 0}});
+    MeshReport report;
+    const SurfaceMesh mesh = taken_in(joined(soup, inverted(other)), report); // mirrored
+    EXPECT_EQ(report.inner_wall_facets, 4u);
+    EXPECT_EQ(report.duplicate_facets, 0u);
+    EXPECT_EQ(report.shells, 1u);
+    EXPECT_TRUE(report.is_watertight);
+    EXPECT_EQ(mesh.facets.size(), 20u);
+    EXPECT_DOUBLE_EQ(report.volume, 2);
+    // Seen from inside, the same facets are a baffle in a channel: one sheet of it stays.
+    taken_in(inverted(joined(soup, inverted(other))), report);
+    EXPECT_EQ(report.inner_wall_facets, 0u);
+    EXPECT_EQ(report.duplicate_facets, 2u);
+}
+
+TEST(TakeInMesh, KeepsOneSheetOfTwoThatFaceOppositeWays)
+{
+    TriangleSoup soup;
+    add_quad(soup, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    MeshReport report;
+    const SurfaceMesh mesh = taken_in(joined(soup, inverted(soup)), report);
+    EXPECT_EQ(mesh.facets.size(), 2u);
+    EXPECT_EQ(report.open_edges, 4u);
+}
+
 TEST(TakeInMesh, WeldsCracksWithinADistance)
 {
     TriangleSoup soup = sphere(3);
