@@ -1,5 +1,6 @@
 #include "app/subcommands.h"
 
+#include "app/inspect_command.h"
 #include "app/render_command.h"
 
 namespace fppg
@@ -15,6 +16,7 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
+    {"inspect", run_inspect},
     {"render", run_render},
 };
 

@@ -1,0 +1,310 @@
+#include "app/inspect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/parallel.h"
+#include "fppg/error.h"
+#include "fppg/features.h"
+#include "fppg/shapes.h"
+#include "shapes/mesh_query.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::size_t open_edges_shown = 5;
+/// Beyond this, particles on lines are not placed but estimated.
+constexpr double most_line_particles = 1e7;
+constexpr std::size_t thickness_samples = 20000;
+
+struct UnitGuess
+{
+    std::string unit;
+    std::string reason;
+};
+
+/// STL has no unit; what a designer draws in millimetres is hundreds of units long.
+UnitGuess guess_unit(const Box3& bounds, double dp)
+{
+    const Vec3 extent = bounds.max - bounds.min;
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    if (largest > 200)
+        return {"mm", fmt::format("In metres it would be {:.4g} m long, in millimetres {:.4g} m.",
+                                  largest, largest / 1000)};
+    if (dp > 0 && largest > 5000 * dp)
+        return {"mm", fmt::format("It is {:.3g} dp long; with a dp in metres that is more than a "
+                                  "case can hold.",
+                                  largest / dp)};
+    if (largest < 5)
+        return {"m", fmt::format("In millimetres it would be only {:.4g} mm long.", largest)};
+    return {largest > 20 ? "mm" : "m",
+            fmt::format("Not sure: it is {:.4g} m or {:.4g} mm long, and both are sizes of parts.",
+                        largest, largest)};
+}
+
+void describe_features(const SurfaceMesh& mesh, Inspection& found)
+{
+    const FeatureOptions options{.angle_deg = found.options.angle_deg, .dp = found.options.dp};
+    const Features features = find_features(mesh, options);
+    found.lines = features.lines.size();
+    found.singular_points = features.singular.size();
+    for (const FeatureLine& line : features.lines)
+    {
+        found.closed_lines += static_cast<std::size_t>(line.is_closed);
+        found.line_length += line.length;
+        found.longest_line = std::max(found.longest_line, line.length);
+        found.shortest_line =
+            found.shortest_line > 0 ? std::min(found.shortest_line, line.length) : line.length;
+        found.short_lines += static_cast<std::size_t>(line.length < options.dp);
+    }
+    if (!(options.dp > 0)) return;
+    if (found.line_length > most_line_particles * options.dp)
+    {
+        found.corner_particles = static_cast<double>(found.singular_points);
+        found.line_particles = found.line_length / options.dp;
+        return;
+    }
+    for (const FeatureParticle& particle : place_feature_particles(mesh, features, options))
+        ++(particle.is_corner ? found.corner_particles : found.line_particles);
+}
+
+struct Thickness
+{
+    Vec3 at;
+    double value = std::numeric_limits<double>::infinity();
+};
+
+/// How thick the body is behind a point of a facet: along the axis nearest to the normal to the
+/// next facet that looks the other way, times the cosine between both, which is exact for plates.
+/// Infinity where nothing is found within `reach`.
+double thickness_behind(const SurfaceMesh& mesh, const MeshQuery& query, std::uint32_t facet,
+                        const Vec3& p, double reach)
+{
+    const Vec3& n = mesh.normals[facet];
+    int axis = 0;
+    for (const int other : {1, 2})
+        if (std::abs(n[other]) > std::abs(n[axis])) axis = other;
+    const double slant = std::abs(n[axis]);
+    const bool is_upwards = n[axis] < 0;
+    Vec3 origin = p;
+    if (!is_upwards) origin[axis] -= reach / slant;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Crossing& crossing : query.crossings(origin, axis))
+    {
+        if (!is_upwards && crossing.position > p[axis]) break;
+        if (crossing.facet == facet || dot(mesh.normals[crossing.facet], n) > -0.5) continue;
+        const double distance = std::abs(crossing.position - p[axis]) * slant;
+        nearest = std::min(nearest, distance);
+    }
+    return nearest <= reach ? nearest : std::numeric_limits<double>::infinity();
+}
+
+/// Looks for thin places at points spread evenly over the area.
+void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
+{
+    TriangleSoup soup;
+    for (const auto& facet : mesh.facets)
+        for (const std::uint32_t v : facet) soup.vertices.push_back(mesh.vertices[v]);
+    const MeshQuery query(std::move(soup), found.options.threads);
+
+    std::vector<double> up_to(mesh.facets.size());
+    double area = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
+    std::vector<Thickness> samples(thickness_samples);
+    parallel_for(
+        samples.size(), found.options.threads,
+        [&](std::size_t i)
+        {
+            const double share = (static_cast<double>(i) + 0.5) / thickness_samples;
+            const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, share * area);
+            const auto f = static_cast<std::uint32_t>(at - up_to.begin());
+            // The additive sequence of the plastic number fills a square evenly.
+            double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
+            double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const auto& c = mesh.facets[f];
+            const Vec3& a = mesh.vertices[c[0]];
+            const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
+            samples[i] = {p, thickness_behind(mesh, query, f, p, found.options.dp)};
+        },
+        64);
+    std::size_t thin = 0;
+    Thickness least;
+    for (const Thickness& sample : samples)
+    {
+        if (!(sample.value < found.options.dp)) continue;
+        ++thin;
+        if (sample.value < least.value) least = sample;
+    }
+    found.thin_share = static_cast<double>(thin) / thickness_samples;
+    if (thin == 0) return;
+    found.thinnest = least.value;
+    found.thinnest_at = least.at;
+}
+
+/// A number of particles, whole as long as a reader can take it in.
+std::string whole(double count)
+{
+    return count < 1e15 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
+
+std::string place(const Vec3& p)
+{
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+}
+
+nlohmann::ordered_json as_json(const Vec3& p)
+{
+    return {p.x, p.y, p.z};
+}
+
+} // namespace
+
+Inspection inspect_mesh(const InspectOptions& options)
+{
+    Inspection found;
+    found.options = options;
+    const MeshFile file = read_stl(options.path, options.threads);
+    found.file_warnings = file.warnings;
+    try
+    {
+        const SurfaceMesh mesh = take_in_mesh(
+            file.soup, {.weld_distance = options.weld_distance, .count_self_intersections = true},
+            options.threads, found.report);
+        found.facets = mesh.facets.size();
+        found.vertices = mesh.vertices.size();
+        for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+            if (mesh.edge_facets[e][1] == no_index && found.open_edges.size() < open_edges_shown)
+                found.open_edges.push_back(
+                    {mesh.vertices[mesh.edges[e][0]], mesh.vertices[mesh.edges[e][1]]});
+        const UnitGuess guess = guess_unit(found.report.bounds, options.dp);
+        found.unit = guess.unit;
+        found.unit_reason = guess.reason;
+        describe_features(mesh, found);
+        if (options.dp > 0)
+        {
+            found.surface_particles = found.report.area / (options.dp * options.dp);
+            found.volume_particles =
+                std::abs(found.report.volume) / (options.dp * options.dp * options.dp);
+            find_thin_places(mesh, found);
+        }
+    }
+    catch (const GeometryError& error)
+    {
+        throw GeometryError(fmt::format("{}: {}", options.path, error.what()));
+    }
+    return found;
+}
+
+std::string to_text(const Inspection& found)
+{
+    const MeshReport& report = found.report;
+    const Vec3 extent = report.bounds.max - report.bounds.min;
+    std::string text;
+    const auto line = [&text](const char* name, const std::string& value)
+    { text += fmt::format("{:<18}{}\n", name, value); };
+    line("File", found.options.path);
+    line("Facets", found.facets == report.facets_read
+                       ? fmt::format("{}", found.facets)
+                       : fmt::format("{} of {} read", found.facets, report.facets_read));
+    line("Vertices", fmt::format("{}", found.vertices));
+    line("Shells", fmt::format("{}", report.shells));
+    line("Watertight", report.is_watertight ? "yes" : "no");
+    for (const auto& [a, b] : found.open_edges)
+        line("  open edge", fmt::format("{} to {}", place(a), place(b)));
+    if (report.open_edges > found.open_edges.size())
+        line("", fmt::format("and {} more", report.open_edges - found.open_edges.size()));
+    line("Bounding box",
+         fmt::format("{} to {}", place(report.bounds.min), place(report.bounds.max)));
+    line("Size", fmt::format("{:.6g} x {:.6g} x {:.6g}", extent.x, extent.y, extent.z));
+    line("Unit", fmt::format("probably {}. {}", found.unit, found.unit_reason));
+    line("Volume", fmt::format("{:.6g}{}", report.volume,
+                               report.is_watertight ? "" : " (not watertight: a guess)"));
+    line("Area", fmt::format("{:.6g}", report.area));
+    line("Crossing facets", fmt::format("{} pairs", report.self_intersections));
+    line("Feature lines",
+         fmt::format("{} ({} closed), {:.6g} long, at {:g} degrees", found.lines,
+                     found.closed_lines, found.line_length, found.options.angle_deg));
+    if (found.lines > 0)
+        line("", fmt::format("shortest {:.4g}, longest {:.4g}", found.shortest_line,
+                             found.longest_line));
+    line("Singular points", fmt::format("{}", found.singular_points));
+    if (found.options.dp > 0)
+    {
+        text += fmt::format("With dp {:g}, in the unit of the file:\n", found.options.dp);
+        line("  on the surface",
+             fmt::format("{} particles (area / dp^2)", whole(found.surface_particles)));
+        line("  on lines", fmt::format("{} particles, and {} on corners",
+                                       whole(found.line_particles), whole(found.corner_particles)));
+        line("  in the volume",
+             fmt::format("{} particles (volume / dp^3)", whole(found.volume_particles)));
+        line("  short lines", fmt::format("{} shorter than dp", found.short_lines));
+        line("  thin places",
+             found.thinnest > 0 || found.thin_share > 0
+                 ? fmt::format("{:.2g} % of the area is thinner than dp, the least {:.4g} near {}",
+                               100 * found.thin_share, found.thinnest, place(found.thinnest_at))
+                 : "none found");
+    }
+    for (const std::string& warning : found.file_warnings) line("Warning", warning);
+    for (const std::string& warning : report.warnings) line("Warning", warning);
+    return text;
+}
+
+std::string to_json(const Inspection& found)
+{
+    const MeshReport& report = found.report;
+    nlohmann::ordered_json json;
+    json["file"] = found.options.path;
+    json["facets_read"] = report.facets_read;
+    json["facets"] = found.facets;
+    json["vertices"] = found.vertices;
+    json["shells"] = report.shells;
+    json["is_watertight"] = report.is_watertight;
+    json["open_edges"] = report.open_edges;
+    json["first_open_edges"] = nlohmann::ordered_json::array();
+    for (const auto& [a, b] : found.open_edges)
+        json["first_open_edges"].push_back({as_json(a), as_json(b)});
+    json["non_manifold_edges"] = report.non_manifold_edges;
+    json["clashing_edges"] = report.clashing_edges;
+    json["t_junctions"] = report.t_junctions;
+    json["duplicate_facets"] = report.duplicate_facets;
+    json["inner_wall_facets"] = report.inner_wall_facets;
+    json["degenerate_facets"] = report.degenerate_facets;
+    json["flipped_facets"] = report.flipped_facets;
+    json["self_intersections"] = report.self_intersections;
+    json["bounds"] = {{"min", as_json(report.bounds.min)}, {"max", as_json(report.bounds.max)}};
+    json["unit_guess"] = found.unit;
+    json["unit_reason"] = found.unit_reason;
+    json["volume"] = report.volume;
+    json["area"] = report.area;
+    json["features"] = {{"angle_deg", found.options.angle_deg},    {"lines", found.lines},
+                        {"closed_lines", found.closed_lines},      {"length", found.line_length},
+                        {"shortest", found.shortest_line},         {"longest", found.longest_line},
+                        {"singular_points", found.singular_points}};
+    if (found.options.dp > 0)
+    {
+        json["dp"] = found.options.dp;
+        json["expected_particles"] = {{"surface", found.surface_particles},
+                                      {"lines", found.line_particles},
+                                      {"corners", found.corner_particles},
+                                      {"volume", found.volume_particles}};
+        json["lines_shorter_than_dp"] = found.short_lines;
+        json["thin"] = {{"share_of_area", found.thin_share}, {"least", found.thinnest}};
+        if (found.thin_share > 0) json["thin"]["at"] = as_json(found.thinnest_at);
+    }
+    json["warnings"] = found.file_warnings;
+    for (const std::string& warning : report.warnings) json["warnings"].push_back(warning);
+    return json.dump(2) + "\n";
+}
+
+} // namespace fppg

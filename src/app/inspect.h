@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fppg/surface_mesh.h"
+
+namespace fppg
+{
+
+/// What `fppg inspect` is asked. Lengths are in the unit of the file, which STL does not say.
+struct InspectOptions
+{
+    std::string path;
+    double dp = 0; ///< 0: nothing is said about particles and thin places
+    double angle_deg = 30;
+    double weld_distance = 0; ///< 0: corners with equal coordinates only
+    int threads = 1;
+};
+
+/// A mesh file as `fppg inspect` describes it.
+struct Inspection
+{
+    InspectOptions options;
+    MeshReport report;
+    std::vector<std::string> file_warnings;
+    std::size_t facets = 0;
+    std::size_t vertices = 0;
+    std::vector<std::array<Vec3, 2>> open_edges; ///< the first few, by vertices
+    std::string unit;                            ///< a guess: "m" or "mm"
+    std::string unit_reason;                     ///< a whole sentence
+
+    std::size_t lines = 0;
+    std::size_t closed_lines = 0;
+    double line_length = 0; ///< of all lines
+    double longest_line = 0;
+    double shortest_line = 0;
+    std::size_t singular_points = 0;
+
+    // With a dp only.
+    std::size_t short_lines = 0;  ///< shorter than dp
+    double surface_particles = 0; ///< area / dp^2
+    double volume_particles = 0;  ///< volume / dp^3
+    double corner_particles = 0;  ///< as placed; an estimate where there are very many
+    double line_particles = 0;    ///< likewise
+    double thin_share = 0;        ///< of the area, where the opposite side is nearer than dp
+    double thinnest = 0;          ///< the least distance found there; 0 if no place is thin
+    Vec3 thinnest_at;
+};
+
+/// Reads, takes in and measures a mesh file.
+///
+/// throws  IoError, GeometryError as read_stl() and take_in_mesh(); the text names the file
+Inspection inspect_mesh(const InspectOptions& options);
+
+/// For people, about twenty lines.
+std::string to_text(const Inspection& inspection);
+
+/// For programs: one JSON object, its numbers with all digits.
+std::string to_json(const Inspection& inspection);
+
+} // namespace fppg

@@ -1,0 +1,49 @@
+#include "app/inspect_command.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/inspect.h"
+#include "app/threads.h"
+#include "fppg/error.h"
+
+namespace fppg
+{
+
+int run_inspect(const std::vector<std::string>& arguments)
+{
+    CLI::App app(
+        "Says what a mesh file holds, what is wrong with it, and how many particles it needs",
+        "fppg inspect");
+    InspectOptions inspect;
+    bool as_json = false;
+    app.add_option("mesh", inspect.path, "STL file, binary or ASCII")->required();
+    app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--angle", inspect.angle_deg, "feature angle, degrees")
+        ->check(CLI::Range(0.0, 179.999))
+        ->capture_default_str();
+    app.add_option("--weld", inspect.weld_distance,
+                   "weld vertices nearer than this, in the unit of the file");
+    app.add_option("--threads", inspect.threads, "threads (0: what the machine allows)");
+    app.add_flag("--json", as_json, "print JSON");
+    try
+    {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    }
+    catch (const CLI::CallForHelp&)
+    {
+        fmt::print("{}", app.help());
+        return 0;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        throw UsageError(fmt::format("{}; fppg inspect --help shows the form", error.what()));
+    }
+    if (inspect.threads <= 0) inspect.threads = default_threads();
+    const Inspection inspection = inspect_mesh(inspect);
+    fmt::print("{}", as_json ? to_json(inspection) : to_text(inspection));
+    return 0;
+}
+
+} // namespace fppg

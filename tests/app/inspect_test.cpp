@@ -1,0 +1,151 @@
+#include "app/inspect.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "app/inspect_command.h"
+#include "app/subcommands.h"
+#include "fppg/error.h"
+#include "shapes/stl_files.h"
+#include "shapes/test_shapes.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+using test::box;
+using test::TemporaryFile;
+
+TemporaryFile file_of(const TriangleSoup& soup)
+{
+    std::vector<test::Corners> facets(soup.size());
+    for (std::size_t i = 0; i < soup.vertices.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            facets[i / 3][3 * (i % 3) + static_cast<std::size_t>(axis)] =
+                static_cast<float>(soup.vertices[i][axis]);
+    return TemporaryFile(test::binary_stl(facets));
+}
+
+bool has(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(Inspect, MeasuresACube)
+{
+    const TemporaryFile file = file_of(box({0, 0, 0}, {1, 1, 1}));
+    const Inspection found = inspect_mesh({.path = file.path(), .dp = 0.125});
+    EXPECT_TRUE(found.report.is_watertight);
+    EXPECT_DOUBLE_EQ(found.report.volume, 1);
+    EXPECT_EQ(found.unit, "m");
+    EXPECT_EQ(found.lines, 12u);
+    EXPECT_EQ(found.singular_points, 8u);
+    EXPECT_DOUBLE_EQ(found.surface_particles, 6 * 64);
+    EXPECT_DOUBLE_EQ(found.volume_particles, 512);
+    EXPECT_EQ(found.line_particles, 12 * 7);
+    EXPECT_EQ(found.corner_particles, 8);
+    EXPECT_EQ(found.thin_share, 0);
+}
+
+TEST(Inspect, FindsHowThinAPlateIs)
+{
+    // Turned, so that no side looks along an axis.
+    const double s = std::sqrt(0.5);
+    const Transform turn{{Vec3{s, -s, 0}, Vec3{0.5, 0.5, -s}, Vec3{0.5, 0.5, s}}, {}};
+    const TemporaryFile file = file_of(test::moved(box({0, 0, 0}, {1, 1, 0.03}), turn));
+    const Inspection found = inspect_mesh({.path = file.path(), .dp = 0.05});
+    EXPECT_NEAR(found.thinnest, 0.03, 1e-6);
+    // Rays along an axis leave a slanted plate through its rim near it.
+    EXPECT_NEAR(found.thin_share, 2 / 2.12, 0.05);
+    EXPECT_EQ(inspect_mesh({.path = file.path(), .dp = 0.029}).thin_share, 0);
+}
+
+TEST(Inspect, GuessesMillimetresFromTheSizeAndFromDp)
+{
+    const TemporaryFile large = file_of(box({0, 0, 0}, {300, 1, 1}));
+    EXPECT_EQ(inspect_mesh({.path = large.path()}).unit, "mm");
+    const TemporaryFile small = file_of(box({0, 0, 0}, {4, 1, 1}));
+    EXPECT_EQ(inspect_mesh({.path = small.path()}).unit, "m");
+    EXPECT_EQ(inspect_mesh({.path = small.path(), .dp = 0.0005}).unit, "mm");
+}
+
+TEST(Inspect, NamesTheFirstOpenEdges)
+{
+    TriangleSoup soup = box({0, 0, 0}, {1, 1, 1});
+    soup.vertices.resize(soup.vertices.size() - 6);
+    const TemporaryFile file = file_of(soup);
+    const Inspection found = inspect_mesh({.path = file.path()});
+    EXPECT_EQ(found.open_edges.size(), 4u);
+    const std::string text = to_text(found);
+    EXPECT_TRUE(has(text, "Watertight        no"));
+    EXPECT_TRUE(has(text, "(0, 1, 0)"));
+    EXPECT_TRUE(has(to_json(found), "\"open_edges\": 4"));
+    EXPECT_FALSE(has(to_json(found), "\"dp\""));
+}
+
+TEST(Inspect, NamesTheFileInItsErrors)
+{
+    TriangleSoup soup;
+    test::add_facet(soup, {0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    const TemporaryFile file = file_of(soup);
+    try
+    {
+        inspect_mesh({.path = file.path()});
+        FAIL() << "a facet without area is no mesh";
+    }
+    catch (const GeometryError& error)
+    {
+        EXPECT_TRUE(has(error.what(), file.path()));
+    }
+    EXPECT_THROW(inspect_mesh({.path = "no such file.stl"}), IoError);
+}
+
+TEST(Subcommands, LeaveGenCasesFormAlone)
+{
+    EXPECT_EQ(find_subcommand("inspect"), &run_inspect);
+    EXPECT_EQ(find_subcommand("CaseDambreak_Def"), nullptr);
+    EXPECT_EQ(find_subcommand("-dp:0.1"), nullptr);
+}
+
+TEST(Subcommands, RefuseWhatIsNotKnown)
+{
+    EXPECT_THROW(run_inspect({}), UsageError);
+    EXPECT_THROW(run_inspect({"a.stl", "--dq", "1"}), UsageError);
+    EXPECT_THROW(run_inspect({"a.stl", "--dp", "-1"}), UsageError);
+}
+
+TEST(Inspect, ReportsOrRefusesEveryDirtyFile)
+{
+    const char* shared = std::getenv("FPPG_SHARED");
+    if (shared == nullptr) GTEST_SKIP() << "FPPG_SHARED, the folder with models/, is not set";
+    std::size_t files = 0, refused = 0, watertight = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(shared) / "models" / "dirty"))
+    {
+        const std::string path = entry.path().string();
+        ++files;
+        try
+        {
+            const Inspection found = inspect_mesh({.path = path, .dp = 0.1});
+            watertight += static_cast<std::size_t>(found.report.is_watertight);
+            EXPECT_TRUE(found.report.is_watertight || !found.report.warnings.empty()) << path;
+            EXPECT_TRUE(!found.report.is_watertight || found.report.volume > 0) << path;
+        }
+        catch (const Error& error)
+        {
+            ++refused;
+            EXPECT_TRUE(has(error.what(), path)) << error.what();
+        }
+    }
+    EXPECT_EQ(files, 54u);
+    RecordProperty("refused", static_cast<int>(refused));
+    RecordProperty("watertight", static_cast<int>(watertight));
+}
+
+} // namespace fppg
