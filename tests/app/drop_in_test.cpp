@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #endif
 
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -369,6 +370,19 @@ TEST_P(FppgSave, WritesTheFilesThatAreAskedFor)
     EXPECT_EQ(endings(folder), GetParam().files);
 }
 
+std::string name_of_saved(const testing::TestParamInfo<Saved>& tested)
+{
+    std::string name;
+    for (const char c : std::string_view(tested.param.option))
+        if (c == '+')
+            name += "Plus";
+        else if (c == '-')
+            name += "Minus";
+        else if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            name += c;
+    return name.empty() ? "NoOption" : name;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Options, FppgSave,
     testing::Values(
@@ -379,7 +393,8 @@ INSTANTIATE_TEST_SUITE_P(
               {".xml", ".out", ".bi4", "_MkCells.vtk", "_All.vtk", "_Bound.vtk", "_Fluid.vtk"}},
         Saved{"-save:-vtkcells", {".xml", ".out", ".bi4"}},
         Saved{"-save:-all,+vtkfluid", {".xml", ".out", "_Fluid.vtk"}},
-        Saved{"-save:+vtkbound", {".xml", ".out", ".bi4", "_MkCells.vtk", "_Bound.vtk"}}));
+        Saved{"-save:+vtkbound", {".xml", ".out", ".bi4", "_MkCells.vtk", "_Bound.vtk"}}),
+    name_of_saved);
 
 TEST(FppgFiles, CopyPicturesThriceWithSave3vtk)
 {
