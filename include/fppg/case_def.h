@@ -75,7 +75,7 @@ struct DrawState
     bool draw_points = true;     ///< setactive drawpoints
     bool draw_shapes = true;     ///< setactive drawshapes
     bool normal_invert = false;  ///< setnormalinvert
-    bool mk_next_auto = false;   ///< setmknextauto
+    bool mk_next_auto = false;   ///< setmknextauto: every part drawn takes the next mk
 };
 
 /// Where a draw stands in the definition, for messages.
@@ -129,6 +129,12 @@ struct FigureOp
     std::vector<FigureFace> faces;
     SolidKind solid = SolidKind::None;
     std::vector<std::uint32_t> solid_vertices; ///< indices into `vertices`
+
+    /// setmknextauto draws a figure part by part, each with its own mk: the one to draw, and how
+    /// many there are. Parts are, in this order, those of the inside, then the triangles or quads
+    /// of the faces.
+    std::uint32_t part = 0;
+    std::uint32_t part_count = 0; ///< 0: all at once
 };
 
 /// `drawsphere`

@@ -64,7 +64,8 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
         Face{corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1)},
         Face{corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)},
         Face{corner(1, 1, 0), corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1)}};
-    for (std::size_t side = 0; side < 6; ++side)
+    // GenCase's order of drawing.
+    for (const std::size_t side : {BoxBottom, BoxTop, BoxFront, BoxBack, BoxRight, BoxLeft})
         box.faces.push_back({quads[side], sides[side], {}, 0, {}});
     return box;
 }
@@ -119,7 +120,7 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
     Face base;
     for (std::uint32_t i = 0; i < n; ++i) base.push_back(n - i);
-    pyramid.faces.push_back({base, true, Face(base.rbegin(), base.rend()), 0, {}});
+    pyramid.faces.push_back({base, true, base, 0, {}});
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
@@ -167,6 +168,26 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
         out.faces.push_back({{i, j, n + j, n + i}, true, {}, 0, {}});
     }
     return out;
+}
+
+std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
+{
+    const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
+    std::uint32_t count = 0;
+    if (fills && figure.solid == SolidKind::Box)
+        count = 4;
+    else if (fills)
+        count = 1;
+    if (fills && mode == DrawMode::Solid) return count;
+    for (const FigureFace& f : figure.faces)
+    {
+        if (!f.is_visible) continue;
+        if (!f.triangles.empty())
+            count += static_cast<std::uint32_t>(f.triangles.size());
+        else
+            count += f.cut.empty() ? 1 : static_cast<std::uint32_t>(f.cut.size()) - 2;
+    }
+    return count;
 }
 
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)

@@ -46,6 +46,11 @@ FigureOp make_polygon(const std::vector<Vec3>& points);
 /// Quads that a polyline sweeps along `extrude`.
 FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed);
 
+/// The parts that setmknextauto tells apart in a draw mode other than wire: those of the inside (a
+/// box has four: two prisms and the faces between them), then triangles, and quads as one (found by
+/// experiment with GenCase v5.4.354 on boxes, prisms, pyramids, quads, strips and polygons).
+std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
+
 /// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers);
 

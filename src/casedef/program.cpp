@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "casedef/figures.h"
 #include "casedef/known_commands.h"
 
 #include <fmt/format.h>
@@ -108,8 +109,60 @@ bool ProgramRunner::run_flow_command(const Element& e)
 
 void ProgramRunner::add(const Element& e, DrawVariant what)
 {
+    if (state_.mk_next_auto)
+        add_in_parts(e, std::move(what));
+    else
+        add_whole(e, std::move(what));
+}
+
+void ProgramRunner::add_whole(const Element& e, DrawVariant what)
+{
     if (!shared_state_) shared_state_ = std::make_shared<const DrawState>(state_);
     def_.ops.push_back({{e.line, e.name}, shared_state_, std::move(what)});
+}
+
+void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
+{
+    const auto add_part = [&](DrawVariant part)
+    {
+        const int count = state_.mk.kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
+        if (state_.mk.kind != MkKind::Void && state_.mk.mk_type >= count)
+            read_.fail(e, fmt::format("setmknextauto needs mk {}, <mkconfig> leaves 0 to {}",
+                                      state_.mk.mk_type, count - 1));
+        add_whole(e, std::move(part));
+        if (state_.mk.kind != MkKind::Void)
+        {
+            ++state_.mk.mk;
+            ++state_.mk.mk_type;
+        }
+        shared_state_.reset();
+    };
+    const bool is_drawn =
+        std::holds_alternative<FigureOp>(what) || std::holds_alternative<LinesOp>(what) ||
+        std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
+        std::holds_alternative<EllipsoidOp>(what);
+    if (std::holds_alternative<MeshFileOp>(what))
+        read_.fail_unsupported(e, "setmknextauto for mesh files");
+    if (!is_drawn)
+        add_whole(e, std::move(what)); // points and fills do not count
+    else if (const auto* lines = std::get_if<LinesOp>(&what))
+        for (const auto& segment : lines->segments) add_part(LinesOp{{segment}});
+    else if (auto* figure = std::get_if<FigureOp>(&what))
+    {
+        if (state_.mode == DrawMode::Wire)
+            read_.fail_unsupported(e, "setmknextauto in draw mode wire");
+        if (figure->solid == SolidKind::Prism && figure->solid_vertices.size() > 6 &&
+            state_.mode != DrawMode::Face)
+            read_.fail_unsupported(e, "setmknextauto for a solid prism of more than three corners");
+        figure->part_count = count_parts(*figure, state_.mode);
+        for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
+    }
+    else
+    {
+        if (e.find_child("layers") != nullptr)
+            read_.fail_unsupported(e, "setmknextauto with layers");
+        add_part(std::move(what));
+    }
 }
 
 void ProgramRunner::shape_out(const Element& e)

@@ -43,6 +43,9 @@ private:
 
     void set_mk(const Element& e, MkKind kind, int mk_type);
     void add(const Element& e, DrawVariant what);
+    void add_whole(const Element& e, DrawVariant what);
+    /// Under setmknextauto: every part is drawn with the mk after that of the part before.
+    void add_in_parts(const Element& e, DrawVariant what);
     void add_figure(const Element& e, FigureOp figure);
     std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,
                                          std::size_t at_most) const;

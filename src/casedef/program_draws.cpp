@@ -141,6 +141,13 @@ void ProgramRunner::draw_box(const Element& e)
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
     for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers_of(e), def_.grid.dp))
         add_figure(e, std::move(figure));
+    // GenCase leaves one mk out after every box.
+    if (state_.mk_next_auto && state_.mk.kind != MkKind::Void)
+    {
+        ++state_.mk.mk;
+        ++state_.mk.mk_type;
+        shared_state_.reset();
+    }
 }
 
 void ProgramRunner::draw_mesh_file(const Element& e)

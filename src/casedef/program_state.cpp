@@ -53,9 +53,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "setmknextbound")
         next_mk(MkKind::Bound);
     else if (name == "setmknextauto")
-    {
-        if (read_.flag_or(e, "auto", false)) read_.fail_unsupported(e, "auto=\"true\"");
-    }
+        state_.mk_next_auto = read_.flag_or(e, "auto", true);
     else if (name == "setdrawmode")
     {
         const std::string& mode = read_.text(e, "mode");

@@ -178,10 +178,46 @@ private:
             paint_region(lines_region(segments, grid(), state().constants.line));
             return;
         }
+        if (op.part_count > 0)
+        {
+            draw_part(op);
+            return;
+        }
         const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
         if (state().mode == DrawMode::Full || !fills)
             draw_triangles(snapped_triangles(op, grid(), true));
         if (fills) paint_region(solid_of(op));
+    }
+
+    /// One part of a figure, for setmknextauto.
+    void draw_part(const FigureOp& op)
+    {
+        const DrawConstants& c = state().constants;
+        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
+        std::vector<SlabRegion> parts;
+        if (fills) parts = solid_parts(op, grid(), c.triangle_weight, c.triangle_limits);
+        FigureOp face = op;
+        const auto add = [&](std::vector<SnappedTriangle> triangles)
+        {
+            parts.push_back(triangles_region(std::move(triangles), grid(), c.triangle_weight,
+                                             c.triangle_limits));
+        };
+        for (const FigureFace& f : op.faces)
+        {
+            if (!f.is_visible || (fills && state().mode == DrawMode::Solid)) continue;
+            face.faces = {f};
+            const std::vector<SnappedTriangle> triangles = snapped_triangles(face, grid(), true);
+            if (f.triangles.empty() && f.cut.empty())
+                add(triangles);
+            else
+                for (const SnappedTriangle& t : triangles) add({t});
+        }
+        if (parts.size() != op.part_count)
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: setmknextauto with a base that is not flat on the "
+                                        "lattice is not supported yet",
+                                        op_->source.command));
+        paint_region(parts[op.part]);
     }
 
     SlabRegion solid_of(const FigureOp& op) const

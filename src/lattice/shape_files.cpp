@@ -41,7 +41,7 @@ public:
                 drawn_.clear();
             else if (const auto* out = std::get_if<ShapeOutOp>(&op.what))
                 write(*out);
-            else if (op.state->draw_shapes && is_shape(op.what))
+            else if (op.state->draw_shapes && is_shape(op.what) && !is_later_part(op.what))
                 drawn_.push_back(&op);
         }
         return std::move(files_);
@@ -53,6 +53,13 @@ private:
         return std::holds_alternative<LinesOp>(what) || std::holds_alternative<FigureOp>(what) ||
                std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
                std::holds_alternative<MeshFileOp>(what);
+    }
+
+    /// Of a figure drawn part by part the first stands for the whole.
+    static bool is_later_part(const DrawVariant& what)
+    {
+        const auto* figure = std::get_if<FigureOp>(&what);
+        return figure != nullptr && figure->part > 0;
     }
 
     void write(const ShapeOutOp& out)

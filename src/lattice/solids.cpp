@@ -27,6 +27,7 @@ struct InnerFace
 {
     std::vector<SnappedTriangle> triangles;
     std::vector<Plane> limits;
+    std::size_t owner = 0; ///< the part that it belongs to
 };
 
 class SolidCutter
@@ -64,10 +65,10 @@ private:
                 part.box.end[k] = std::max(part.box.end[k], n[axis] + 1);
             }
         part.box = intersect(part.box, whole_lattice(grid_));
-        if (!part.box.is_empty()) parts.push_back(std::move(part));
+        parts.push_back(std::move(part));
     }
 
-    /// Calls body(i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
+    /// Calls body(t, i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
     template <typename Body>
     static void for_each_shared_side(const Triangles& cut, const Body& body)
     {
@@ -81,7 +82,7 @@ private:
                     const auto& other = cut[u];
                     if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
                         std::find(other.begin(), other.end(), j) != other.end())
-                        body(i, j, u);
+                        body(t, i, j, u);
                 }
             }
     }
@@ -113,13 +114,13 @@ private:
         }
         for_each_shared_side(
             cut,
-            [&](std::size_t i, std::size_t j, std::size_t neighbour)
+            [&](std::size_t t, std::size_t i, std::size_t j, std::size_t neighbour)
             {
                 const Node& a = nodes_[i];
                 const Node& b = nodes_[j];
                 const Node& b_top = nodes_[n + j];
                 const Node& a_top = nodes_[n + i];
-                inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour]});
+                inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour], t});
             });
     }
 
@@ -137,7 +138,9 @@ private:
             add_part(std::move(planes), nodes_);
             return;
         }
-        const Triangles cut = cut_polygon(nodes_, base, grid_);
+        // The base is cut as it is seen from outside.
+        Triangles cut = cut_polygon(nodes_, {base.rbegin(), base.rend()}, grid_);
+        for (auto& t : cut) std::swap(t[0], t[2]);
         for (const auto& t : cut)
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
@@ -145,14 +148,15 @@ private:
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
             add_part(std::move(planes), {apex, b[0], b[1], b[2]});
         }
-        for_each_shared_side(
-            cut,
-            [&](std::size_t i, std::size_t j, std::size_t neighbour)
-            {
-                const auto& t = cut[neighbour];
-                inner_faces.push_back({{{apex, nodes_[i], nodes_[j]}},
-                                       {plane(nodes_[t[0]], nodes_[t[1]], nodes_[t[2]])}});
-            });
+        for_each_shared_side(cut,
+                             [&](std::size_t t, std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const auto& other = cut[neighbour];
+                                 inner_faces.push_back(
+                                     {{{apex, nodes_[i], nodes_[j]}},
+                                      {plane(nodes_[other[0]], nodes_[other[1]], nodes_[other[2]])},
+                                      t});
+                             });
     }
 
     void take_faces(const FigureOp& figure)
@@ -226,47 +230,61 @@ void keep_inner(const Plane& limit, double x, const LatticeGrid& grid, Span& s)
 
 } // namespace
 
+std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
+                                    double weight_dp, double limits_dp)
+{
+    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    std::vector<SlabRegion> regions;
+    for (std::size_t p = 0; p < cutter->parts.size(); ++p)
+    {
+        const NodeBox& box = cutter->parts[p].box;
+        SlabRegion inside;
+        inside.x_begin = static_cast<std::uint32_t>(box.begin[0]);
+        inside.x_end = static_cast<std::uint32_t>(box.end[0]);
+        inside.emit = [cutter, p, grid](std::uint32_t slab, Spans& out)
+        { emit_part(cutter->parts[p], grid, slab, out); };
+        regions.push_back(box.is_empty() ? SlabRegion{} : inside);
+        for (std::size_t f = 0; f < cutter->inner_faces.size(); ++f)
+        {
+            if (cutter->inner_faces[f].owner != p) continue;
+            SlabRegion face =
+                triangles_region(cutter->inner_faces[f].triangles, grid, weight_dp, limits_dp);
+            face.emit = [cutter, f, grid, all = face.emit](std::uint32_t slab, Spans& out)
+            {
+                const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+                Spans nodes;
+                all(slab, nodes);
+                for (Span s : nodes)
+                {
+                    for (const Plane& limit : cutter->inner_faces[f].limits)
+                        keep_inner(limit, x, grid, s);
+                    if (s.z_begin < s.z_end) out.push_back(s);
+                }
+            };
+            regions.push_back(std::move(face));
+        }
+    }
+    return regions;
+}
+
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp)
 {
-    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    const auto parts = std::make_shared<const std::vector<SlabRegion>>(
+        solid_parts(figure, grid, weight_dp, limits_dp));
     SlabRegion region;
-    if (cutter->parts.empty()) return region;
-    std::int64_t begin = INT64_MAX;
-    std::int64_t end = 0;
-    for (const SolidPart& part : cutter->parts)
+    region.x_begin = UINT32_MAX;
+    for (const SlabRegion& part : *parts)
     {
-        begin = std::min(begin, part.box.begin[0]);
-        end = std::max(end, part.box.end[0]);
+        if (part.x_end <= part.x_begin) continue;
+        region.x_begin = std::min(region.x_begin, part.x_begin);
+        region.x_end = std::max(region.x_end, part.x_end);
     }
-    region.x_begin = static_cast<std::uint32_t>(begin);
-    region.x_end = static_cast<std::uint32_t>(end);
-    struct Between
+    if (region.x_end <= region.x_begin) return {};
+    region.emit = [parts](std::uint32_t slab, Spans& out)
     {
-        SlabRegion face;
-        std::vector<Plane> limits;
-    };
-    auto between = std::make_shared<std::vector<Between>>();
-    for (const InnerFace& face : cutter->inner_faces)
-        between->push_back(
-            {triangles_region(face.triangles, grid, weight_dp, limits_dp), face.limits});
-    region.emit = [cutter, between, grid](std::uint32_t slab, Spans& out)
-    {
-        for (const SolidPart& part : cutter->parts)
-            if (slab >= part.box.begin[0] && slab < part.box.end[0])
-                emit_part(part, grid, slab, out);
-        const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-        for (const Between& b : *between)
-        {
-            if (slab < b.face.x_begin || slab >= b.face.x_end) continue;
-            Spans nodes;
-            b.face.emit(slab, nodes);
-            for (Span s : nodes)
-            {
-                for (const Plane& limit : b.limits) keep_inner(limit, x, grid, s);
-                if (s.z_begin < s.z_end) out.push_back(s);
-            }
-        }
+        for (const SlabRegion& part : *parts)
+            if (slab >= part.x_begin && slab < part.x_end) part.emit(slab, out);
     };
     return region;
 }

@@ -19,4 +19,9 @@ namespace fppg
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
+/// The same inside, part by part in GenCase's order of drawing: a convex part, then the faces that
+/// it turns to its neighbours.
+std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
+                                    double weight_dp, double limits_dp);
+
 } // namespace fppg
