@@ -103,8 +103,7 @@ struct ChartFiller::Work
     std::uint32_t chart = 0;
     ChartParticles* own = nullptr;
     NeighbourGrid grid;
-    std::vector<Vec3> positions; ///< of all in the grid
-    std::vector<Vec3> normals;
+    std::vector<Vec3> normals; ///< of all in the grid
     std::vector<Neighbour> near;
     std::vector<PlanePoint> polygon, spare;
     std::priority_queue<Hole> holes;
@@ -114,8 +113,7 @@ struct ChartFiller::Work
     {
         chart = which;
         own = &state.particles[which];
-        grid.start(reach * dp);
-        positions.clear();
+        grid.start(reach * dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
         normals.clear();
         for (const std::uint32_t f : own->features)
             note(state.features[f].position, state.features[f].normal);
@@ -123,8 +121,7 @@ struct ChartFiller::Work
 
     void note(const Vec3& position, const Vec3& normal)
     {
-        grid.add(position, static_cast<std::uint32_t>(positions.size()));
-        positions.push_back(position);
+        grid.add(position);
         normals.push_back(normal);
     }
 
@@ -136,10 +133,10 @@ struct ChartFiller::Work
                     note(site.position, mesh.facets[site.facet].normal);
     }
 
-    void find_near(const Vec3& p)
+    void find_near(const Vec3& p, double radius)
     {
         near.clear();
-        grid.for_each_near(p, reach * dp,
+        grid.for_each_near(p, radius * dp,
                            [&](std::uint32_t index, const Vec3& offset, double squared) {
                                near.push_back({offset, squared, index});
                            });
@@ -180,7 +177,7 @@ struct ChartFiller::Work
     void try_to_begin(const SurfaceRay& ray)
     {
         if (ray.facet == no_index || state.charts.of_facet(ray.facet) != chart) return;
-        find_near(ray.position);
+        find_near(ray.position, least_distance);
         const double least = least_distance * dp;
         if (nearest_squared({}, mesh.facets[ray.facet].normal, least * least) < least * least)
             return;
@@ -194,7 +191,7 @@ struct ChartFiller::Work
         Vec3 direction{site.direction[0], site.direction[1], site.direction[2]};
         direction = direction - normal * dot(direction, normal);
         direction = direction / norm(direction);
-        find_near(site.position);
+        find_near(site.position, front_spacing + least_distance);
         bool is_irregular = false;
         for (int k = 0; k < 6; ++k)
             is_irregular |= !advance_to({site.position, site.facet, turned(direction, normal, k)});
@@ -220,7 +217,7 @@ struct ChartFiller::Work
             own->leaving.push_back(to);
             return false;
         }
-        near.push_back({shift, dot(shift, shift), static_cast<std::uint32_t>(positions.size())});
+        near.push_back({shift, dot(shift, shift), grid.size()});
         place(to, false, is_seam(to.position));
         return true;
     }
@@ -234,25 +231,27 @@ struct ChartFiller::Work
         const Vec3& normal = mesh.facets[facet].normal;
         const Vec3 x_axis = any_direction(mesh.facets[facet]);
         const Vec3 y_axis = cross(normal, x_axis);
-        find_near(position);
-        std::sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {
-            return a.squared != b.squared ? a.squared < b.squared : a.index < b.index;
-        });
+        find_near(position, reach);
         const double box = 1.3 * dp;
         const double limit = hole_radius * hole_radius * dp * dp;
         polygon.assign({{-box, -box}, {box, -box}, {box, box}, {-box, box}});
         const auto is_far = [&](const PlanePoint& p) { return p.x * p.x + p.y * p.y > limit; };
-        for (const Neighbour& n : near)
+        // The nearest first, after which there is mostly nothing left to cut.
+        for (const bool is_close : {true, false})
         {
-            if (is_other_sheet(normal, normals[n.index], n.offset, n.squared)) continue;
-            PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
-            const double flat = q.x * q.x + q.y * q.y;
-            if (flat < 0.04 * n.squared || n.squared < 1e-12 * dp * dp) continue;
-            const double stretch = std::sqrt(n.squared / flat);
-            clip(polygon, {q.x * stretch, q.y * stretch}, spare);
+            for (const Neighbour& n : near)
+            {
+                if ((n.squared < 1.7 * dp * dp) != is_close || n.squared < 1e-12 * dp * dp ||
+                    is_other_sheet(normal, normals[n.index], n.offset, n.squared))
+                    continue;
+                const PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
+                const double flat = q.x * q.x + q.y * q.y;
+                if (flat < 0.04 * n.squared) continue;
+                const double stretch = std::sqrt(n.squared / flat);
+                clip(polygon, {q.x * stretch, q.y * stretch}, spare);
+            }
             if (std::none_of(polygon.begin(), polygon.end(), is_far)) return;
         }
-        // walk() and propose() reuse the polygon's neighbours, not the polygon.
         for (const PlanePoint& p : polygon)
         {
             if (!is_far(p)) continue;
@@ -305,9 +304,18 @@ struct ChartFiller::Work
                 }
                 const auto& c = mesh.facets[f].corners;
                 const Vec3 point = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
-                climb({point, f, any_direction(mesh.facets[f])});
+                if (is_alone(point)) climb({point, f, any_direction(mesh.facets[f])});
             }
         }
+    }
+
+    /// Whether no particle is so near that there is no hole to climb to from here.
+    bool is_alone(const Vec3& point) const
+    {
+        bool result = true;
+        grid.for_each_near(point, 0.7 * dp,
+                           [&](std::uint32_t, const Vec3&, double) { result = false; });
+        return result;
     }
 
     /// Walks away from the nearest particle, then proposes the place.
@@ -326,9 +334,7 @@ struct ChartFiller::Work
                                    best = squared;
                                    towards = offset;
                                });
-            // Next to a particle of the front there is no hole to climb to.
-            if (best < 0.49 * dp * dp || best > hole_radius * hole_radius * dp * dp || step == 6)
-                break;
+            if (best > hole_radius * hole_radius * dp * dp || step == 6) break;
             const Vec3 away = normal * dot(towards, normal) - towards;
             const double length = norm(away);
             if (length < 1e-6 * dp) break;

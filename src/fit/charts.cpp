@@ -15,7 +15,8 @@ constexpr double cell_clearance = 2;  ///< dp around facets that counts as near
 
 std::int64_t floor_of(double x)
 {
-    return static_cast<std::int64_t>(std::floor(x));
+    // Truncation after a shift that makes all numbers positive: faster than floor().
+    return static_cast<std::int64_t>(x + 1048576.0) - 1048576;
 }
 
 } // namespace

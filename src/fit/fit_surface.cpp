@@ -161,15 +161,14 @@ void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int 
     const double near = same_point * options.dp;
     NeighbourGrid grid;
     grid.start(near);
-    std::uint32_t count = 0;
-    for (const Vec3& p : result.positions) grid.add(p, count++);
+    for (const Vec3& p : result.positions) grid.add(p);
     for (const ClosestPoint& c : closest)
     {
         bool is_there = false;
         grid.for_each_near(c.point, near,
                            [&](std::uint32_t, const Vec3&, double) { is_there = true; });
         if (is_there) continue;
-        grid.add(c.point, count++);
+        grid.add(c.point);
         result.positions.push_back(c.point);
         result.facets.push_back(c.facet);
     }

@@ -2,8 +2,10 @@
 
 #include "fppg/vec.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -26,6 +28,7 @@ public:
     void clear()
     {
         slots_.assign(64, {0, none});
+        shift_ = 58;
         count_ = 0;
     }
     std::uint32_t size() const { return count_; }
@@ -56,13 +59,14 @@ private:
 
     std::size_t first_slot(std::uint64_t key) const
     {
-        return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 32) & (slots_.size() - 1);
+        return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> shift_);
     }
 
     void grow()
     {
         std::vector<Slot> old(2 * slots_.size(), {0, none});
         old.swap(slots_);
+        --shift_;
         for (const Slot& slot : old)
         {
             if (slot.value == none) continue;
@@ -73,6 +77,7 @@ private:
     }
 
     std::vector<Slot> slots_ = std::vector<Slot>(64, {0, none});
+    int shift_ = 58; ///< 64 less the binary logarithm of the number of slots
     std::uint32_t count_ = 0;
 };
 
@@ -80,17 +85,24 @@ private:
 class NeighbourGrid
 {
 public:
-    /// reach  metres: the largest radius that is asked for
-    void start(double reach)
+    /// reach   metres: the largest radius that is asked for
+    /// origin  a point amid the points to come
+    void start(double reach, const Vec3& origin = {})
     {
         scale_ = 0.5 / reach;
+        origin_ = origin;
+        points_.clear();
         table_.clear();
         heads_.clear();
         blocks_.clear();
     }
 
-    void add(const Vec3& p, std::uint32_t index)
+    std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
+
+    /// Points are numbered from 0 as they come.
+    void add(const Vec3& point)
     {
+        const Vec3 p = (point - origin_) * scale_;
         const std::uint32_t cell =
             table_.find_or_add(cell_key(cell_of(p.x), cell_of(p.y), cell_of(p.z)));
         if (cell == heads_.size()) heads_.push_back(KeyTable::none);
@@ -101,21 +113,24 @@ public:
             heads_[cell] = static_cast<std::uint32_t>(blocks_.size() - 1);
         }
         Block& block = blocks_[heads_[cell]];
-        block.x[block.count] = p.x;
-        block.y[block.count] = p.y;
-        block.z[block.count] = p.z;
-        block.index[block.count++] = index;
+        block.x[block.count] = static_cast<float>(p.x);
+        block.y[block.count] = static_cast<float>(p.y);
+        block.z[block.count] = static_cast<float>(p.z);
+        block.index[block.count++] = size();
+        points_.push_back(point);
     }
 
     /// Calls body(index, offset from p, distance squared) for every point nearer than `radius`, at
     /// most the reach, to p; in an order that depends only on the points and the order of adding.
     template <typename Body>
-    void for_each_near(const Vec3& p, double radius, const Body& body) const
+    void for_each_near(const Vec3& point, double radius, const Body& body) const
     {
         const double limit = radius * radius;
-        const auto range = [&](double x) {
-            return std::pair{cell_of(x - radius), cell_of(x + radius)};
-        };
+        const Vec3 p = (point - origin_) * scale_;
+        const double r = radius * scale_;
+        // Blocks hold floats, which choose with some room; the offset handed on is exact.
+        const auto room = static_cast<float>(1.001 * r * r);
+        const auto range = [&](double x) { return std::pair{cell_of(x - r), cell_of(x + r)}; };
         const auto [x0, x1] = range(p.x);
         const auto [y0, y1] = range(p.y);
         const auto [z0, z1] = range(p.z);
@@ -126,38 +141,51 @@ public:
                     const std::uint32_t cell = table_.find(cell_key(i, j, k));
                     if (cell == KeyTable::none) continue;
                     for (std::uint32_t b = heads_[cell]; b != KeyTable::none; b = blocks_[b].next)
-                        scan(blocks_[b], p, limit, body);
+                        scan(blocks_[b], p, room, [&](std::uint32_t index) {
+                            const Vec3 d = points_[index] - point;
+                            const double squared = dot(d, d);
+                            if (squared < limit) body(index, d, squared);
+                        });
                 }
     }
 
 private:
     struct Block
     {
-        static constexpr std::uint32_t capacity = 14;
-        double x[capacity], y[capacity], z[capacity];
-        std::uint32_t index[capacity];
+        static constexpr std::uint32_t capacity = 16;
+        std::array<float, capacity> x{}, y{}, z{}; ///< in cells from the origin
+        std::array<std::uint32_t, capacity> index{};
         std::uint32_t count = 0;
         std::uint32_t next = 0;
     };
 
     template <typename Body>
-    static void scan(const Block& block, const Vec3& p, double limit, const Body& body)
+    static void scan(const Block& block, const Vec3& p, float room, const Body& body)
     {
-        for (std::uint32_t n = 0; n < block.count; ++n)
+        const auto px = static_cast<float>(p.x);
+        const auto py = static_cast<float>(p.y);
+        const auto pz = static_cast<float>(p.z);
+        std::array<float, Block::capacity> squared;
+        for (std::size_t n = 0; n < Block::capacity; ++n)
         {
-            const Vec3 d{block.x[n] - p.x, block.y[n] - p.y, block.z[n] - p.z};
-            const double squared = dot(d, d);
-            if (squared < limit) body(block.index[n], d, squared);
+            const float dx = block.x[n] - px;
+            const float dy = block.y[n] - py;
+            const float dz = block.z[n] - pz;
+            squared[n] = dx * dx + dy * dy + dz * dz;
         }
+        for (std::uint32_t n = 0; n < block.count; ++n)
+            if (squared[n] < room) body(block.index[n]);
     }
 
-    std::int64_t cell_of(double x) const
+    static std::int64_t cell_of(double x)
     {
         // Truncation after a shift that makes all coordinates positive: faster than floor().
-        return static_cast<std::int64_t>(x * scale_ + 1048576.0);
+        return static_cast<std::int64_t>(x + 1048576.0);
     }
 
     double scale_ = 1;
+    Vec3 origin_;
+    std::vector<Vec3> points_;
     KeyTable table_;
     std::vector<std::uint32_t> heads_;
     std::vector<Block> blocks_;

@@ -146,7 +146,7 @@ inline std::vector<FeatureParticle> plain_feature_particles(const SurfaceMesh& m
         return result;
     };
     const auto add = [&](const FeatureParticle& particle) {
-        grid.add(particle.position, static_cast<std::uint32_t>(particles.size()));
+        grid.add(particle.position);
         particles.push_back(particle);
     };
     for (const std::uint32_t v : features.singular)

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -64,15 +65,17 @@ int main(int argc, char** argv)
     options.dp = dp;
     if (argc > 5 && std::strcmp(argv[5], "cell") == 0) options.density = fppg::FitDensity::Cell;
     const auto start = clock::now();
+    const std::clock_t cpu_start = std::clock();
     const auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
     const double seconds = seconds_since(start);
+    const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     double area = 0;
     for (const double a : mesh.areas) area += a;
     const auto n = static_cast<double>(particles.positions.size());
-    std::printf("%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s, "
-                "%.2f us each\n",
+    std::printf("%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
+                "(%.3f s of processor, %.2f us a particle)\n",
                 mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp,
-                seconds, 1e6 * seconds / n);
+                seconds, cpu_seconds, 1e6 * cpu_seconds / n);
     if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], particles);
     return 0;
 }
