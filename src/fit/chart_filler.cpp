@@ -44,14 +44,11 @@ struct Hole
     }
 };
 
-/// The two sides of a thin plate do not count as neighbours: normals oppose, and the connection
-/// runs mostly along them.
-bool is_other_sheet(const Vec3& normal, const Vec3& other_normal, const Vec3& offset,
-                    double squared)
+/// The two sides of a thin plate do not count as neighbours, however thin it is and wherever on the
+/// other side a particle is: each side is covered by its own.
+bool is_other_sheet(const Vec3& normal, const Vec3& other_normal)
 {
-    if (dot(normal, other_normal) >= -0.5) return false;
-    const double along = dot(offset, normal);
-    return along * along > 0.36 * squared;
+    return dot(normal, other_normal) < -0.5;
 }
 
 Vec3 any_direction(const WorkFacet& facet)
@@ -151,8 +148,7 @@ struct ChartFiller::Work
         {
             const Vec3 d = n.offset - shift;
             const double squared = dot(d, d);
-            if (squared < best && !is_other_sheet(normal, normals[n.index], d, squared))
-                best = squared;
+            if (squared < best && !is_other_sheet(normal, normals[n.index])) best = squared;
         }
         return best;
     }
@@ -160,12 +156,12 @@ struct ChartFiller::Work
     void place(const SurfaceRay& ray, bool is_irregular, bool is_at_seam)
     {
         const Vec3& d = ray.direction;
-        own->sites.push_back({ray.position,
-                              ray.facet,
-                              {static_cast<float>(d.x), static_cast<float>(d.y),
-                               static_cast<float>(d.z)},
-                              is_irregular,
-                              is_at_seam});
+        own->sites.push_back(
+            {ray.position,
+             ray.facet,
+             {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
+             is_irregular,
+             is_at_seam});
         note(ray.position, mesh.facets[ray.facet].normal);
     }
 
@@ -242,7 +238,7 @@ struct ChartFiller::Work
             for (const Neighbour& n : near)
             {
                 if ((n.squared < 1.7 * dp * dp) != is_close || n.squared < 1e-12 * dp * dp ||
-                    is_other_sheet(normal, normals[n.index], n.offset, n.squared))
+                    is_other_sheet(normal, normals[n.index]))
                     continue;
                 const PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
                 const double flat = q.x * q.x + q.y * q.y;
@@ -274,9 +270,9 @@ struct ChartFiller::Work
         const Vec3& normal = mesh.facets[at.facet].normal;
         double best = reach * reach * dp * dp;
         grid.for_each_near(at.position, reach * dp,
-                           [&](std::uint32_t index, const Vec3& offset, double squared) {
-                               if (squared < best &&
-                                   !is_other_sheet(normal, normals[index], offset, squared))
+                           [&](std::uint32_t index, const Vec3& offset, double squared)
+                           {
+                               if (squared < best && !is_other_sheet(normal, normals[index]))
                                    best = squared;
                            });
         return std::sqrt(best);
@@ -304,17 +300,19 @@ struct ChartFiller::Work
                 }
                 const auto& c = mesh.facets[f].corners;
                 const Vec3 point = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
-                if (is_alone(point)) climb({point, f, any_direction(mesh.facets[f])});
+                if (is_alone(point, mesh.facets[f].normal))
+                    climb({point, f, any_direction(mesh.facets[f])});
             }
         }
     }
 
     /// Whether no particle is so near that there is no hole to climb to from here.
-    bool is_alone(const Vec3& point) const
+    bool is_alone(const Vec3& point, const Vec3& normal) const
     {
         bool result = true;
         grid.for_each_near(point, 0.7 * dp,
-                           [&](std::uint32_t, const Vec3&, double) { result = false; });
+                           [&](std::uint32_t index, const Vec3&, double)
+                           { result = result && is_other_sheet(normal, normals[index]); });
         return result;
     }
 
@@ -327,9 +325,9 @@ struct ChartFiller::Work
             double best = reach * reach * dp * dp;
             Vec3 towards{};
             grid.for_each_near(at.position, reach * dp,
-                               [&](std::uint32_t index, const Vec3& offset, double squared) {
-                                   if (squared >= best ||
-                                       is_other_sheet(normal, normals[index], offset, squared))
+                               [&](std::uint32_t index, const Vec3& offset, double squared)
+                               {
+                                   if (squared >= best || is_other_sheet(normal, normals[index]))
                                        return;
                                    best = squared;
                                    towards = offset;
@@ -338,8 +336,7 @@ struct ChartFiller::Work
             const Vec3 away = normal * dot(towards, normal) - towards;
             const double length = norm(away);
             if (length < 1e-6 * dp) break;
-            const SurfaceRay next =
-                walk(mesh, {at.position, at.facet, away / length}, 0.2 * dp);
+            const SurfaceRay next = walk(mesh, {at.position, at.facet, away / length}, 0.2 * dp);
             if (next.facet == no_index) break;
             at = next;
         }
@@ -383,9 +380,7 @@ struct ChartFiller::Work
     }
 };
 
-ChartFiller::ChartFiller(FillState& state) : work_(std::make_unique<Work>(state))
-{
-}
+ChartFiller::ChartFiller(FillState& state) : work_(std::make_unique<Work>(state)) {}
 ChartFiller::~ChartFiller() = default;
 ChartFiller::ChartFiller(ChartFiller&&) noexcept = default;
 ChartFiller& ChartFiller::operator=(ChartFiller&&) noexcept = default;

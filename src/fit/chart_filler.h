@@ -31,8 +31,8 @@ struct ChartParticles
 {
     std::vector<SurfaceSite> sites;
     std::vector<SurfaceRay> leaving;
-    std::vector<SurfaceRay> rows;                 ///< first rows along features, to begin with
-    std::vector<std::uint32_t> features;          ///< sites of features that are near
+    std::vector<SurfaceRay> rows;        ///< first rows along features, to begin with
+    std::vector<std::uint32_t> features; ///< sites of features that are near
 };
 
 /// What all charts share while they are filled.

@@ -8,10 +8,10 @@ namespace fppg
 namespace
 {
 
-constexpr double chart_area = 8192;   ///< dp squared, at which a chart is closed
-constexpr double scrap_area = 1024;   ///< dp squared, below which a rest joins its neighbour
-constexpr double cell_width = 6;      ///< dp
-constexpr double cell_clearance = 2;  ///< dp around facets that counts as near
+constexpr double chart_area = 8192;  ///< dp squared, at which a chart is closed
+constexpr double scrap_area = 1024;  ///< dp squared, below which a rest joins its neighbour
+constexpr double cell_width = 6;     ///< dp
+constexpr double cell_clearance = 2; ///< dp around facets that counts as near
 
 std::int64_t floor_of(double x)
 {
@@ -105,9 +105,9 @@ void Charts::mark_cells(const WorkMesh& mesh, double dp)
                 range[at] = floor_of((low - clearance) / cell_);
                 range[at + 1] = floor_of((high + clearance) / cell_);
             }
-            const bool is_small = (range[1] - range[0] + 1) * (range[3] - range[2] + 1) *
-                                      (range[5] - range[4] + 1) <=
-                                  8;
+            const bool is_small =
+                (range[1] - range[0] + 1) * (range[3] - range[2] + 1) * (range[5] - range[4] + 1) <=
+                8;
             // Facets smaller than a cell come in rows with the same range.
             if (is_small && !is_first && range == last) continue;
             is_first = false;
@@ -148,8 +148,8 @@ void Charts::make_waves()
         is_taken.assign(waves_.size() + 1, 0);
         for (const std::uint32_t other : near)
             if (wave_of[other] != no_index) is_taken[wave_of[other]] = 1;
-        const auto wave = static_cast<std::size_t>(
-            std::find(is_taken.begin(), is_taken.end(), 0) - is_taken.begin());
+        const auto wave = static_cast<std::size_t>(std::find(is_taken.begin(), is_taken.end(), 0) -
+                                                   is_taken.begin());
         if (wave == waves_.size()) waves_.emplace_back();
         waves_[wave].push_back(chart);
         wave_of[chart] = static_cast<std::uint32_t>(wave);

@@ -95,22 +95,25 @@ std::vector<Cell> find_crossed_cells(const SurfaceMesh& mesh, const Vec3& origin
     for (const Vec3& vertex : mesh.vertices)
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs((vertex[axis] - origin[axis]) / dp) > 1073741824.0)
-                throw GeometryError("a mesh vertex is more than 2^30 dp from the lattice's origin: "
-                                    "enlarge dp, or check the mesh's scale");
+                throw GeometryError(
+                    "a mesh vertex is more than 2^30 dp from the lattice's origin: "
+                    "enlarge dp, or check the mesh's scale");
     constexpr std::size_t block = 512;
     const std::size_t n = (mesh.facets.size() + block - 1) / block;
     std::vector<std::vector<Cell>> parts(n);
-    parallel_for(n, threads, [&](std::size_t part) {
-        const std::size_t end = std::min(mesh.facets.size(), (part + 1) * block);
-        for (std::size_t f = part * block; f < end; ++f)
-        {
-            std::array<Vec3, 3> corners;
-            for (std::size_t k = 0; k < 3; ++k)
-                corners[k] = (mesh.vertices[mesh.facets[f][k]] - origin) / dp;
-            add_cells(corners, mesh.normals[f], parts[part]);
-        }
-        sort_unique(parts[part]);
-    });
+    parallel_for(n, threads,
+                 [&](std::size_t part)
+                 {
+                     const std::size_t end = std::min(mesh.facets.size(), (part + 1) * block);
+                     for (std::size_t f = part * block; f < end; ++f)
+                     {
+                         std::array<Vec3, 3> corners;
+                         for (std::size_t k = 0; k < 3; ++k)
+                             corners[k] = (mesh.vertices[mesh.facets[f][k]] - origin) / dp;
+                         add_cells(corners, mesh.normals[f], parts[part]);
+                     }
+                     sort_unique(parts[part]);
+                 });
     std::vector<Cell> cells;
     for (auto& part : parts)
     {

@@ -36,8 +36,7 @@ Course course_of(const SurfaceMesh& mesh, const FeatureLine& line)
         const std::uint32_t b = line.vertices[i + 1 == n ? 0 : i + 1];
         course.edges.push_back(edge_between(mesh, a, b));
         course.starts.push_back(a);
-        course.lengths.push_back(course.lengths.back() +
-                                 norm(mesh.vertices[b] - mesh.vertices[a]));
+        course.lengths.push_back(course.lengths.back() + norm(mesh.vertices[b] - mesh.vertices[a]));
     }
     return course;
 }
@@ -111,8 +110,10 @@ std::vector<SurfaceRay> lay_first_rows(const SurfaceMesh& mesh, const WorkMesh& 
     std::vector<std::vector<std::uint32_t>> on_line(features.lines.size());
     for (std::uint32_t p = 0; p < particles.size(); ++p)
     {
-        if (particles[p].vertex != no_index) has_corner[particles[p].vertex] = 1;
-        else if (particles[p].line != no_index) on_line[particles[p].line].push_back(p);
+        if (particles[p].vertex != no_index)
+            has_corner[particles[p].vertex] = 1;
+        else if (particles[p].line != no_index)
+            on_line[particles[p].line].push_back(p);
     }
     RowLayer layer(mesh, work, dp);
     std::vector<std::uint32_t> slot(mesh.edges.size(), no_index);

@@ -62,7 +62,8 @@ std::vector<FeatureSite> make_sites(const SurfaceMesh& mesh, const WorkMesh& wor
     for (std::uint32_t p = 0; p < particles.size(); ++p)
     {
         sites[p].position = particles[p].position;
-        if (particles[p].vertex != no_index) site_of_vertex[particles[p].vertex] = p;
+        if (particles[p].vertex != no_index)
+            site_of_vertex[particles[p].vertex] = p;
         else
             for (const std::uint32_t facet : mesh.edge_facets[particles[p].edge])
                 if (facet != no_index)
@@ -74,8 +75,7 @@ std::vector<FeatureSite> make_sites(const SurfaceMesh& mesh, const WorkMesh& wor
                 sites[site_of_vertex[v]].facets.push_back(f);
     for (FeatureSite& site : sites)
     {
-        for (const std::uint32_t f : site.facets)
-            site.normal = site.normal + work.facets[f].normal;
+        for (const std::uint32_t f : site.facets) site.normal = site.normal + work.facets[f].normal;
         if (!site.facets.empty())
             site.normal = site.normal / static_cast<double>(site.facets.size());
     }
@@ -89,21 +89,23 @@ void for_each_chart(FillState& state, int threads, const Step& step)
     std::vector<std::unique_ptr<ChartFiller>> idle;
     std::mutex guard;
     for (const auto& wave : state.charts.waves())
-        parallel_for(wave.size(), threads, [&](std::size_t i) {
-            std::unique_ptr<ChartFiller> filler;
-            {
-                const std::lock_guard lock(guard);
-                if (!idle.empty())
-                {
-                    filler = std::move(idle.back());
-                    idle.pop_back();
-                }
-            }
-            if (!filler) filler = std::make_unique<ChartFiller>(state);
-            step(*filler, wave[i]);
-            const std::lock_guard lock(guard);
-            idle.push_back(std::move(filler));
-        });
+        parallel_for(wave.size(), threads,
+                     [&](std::size_t i)
+                     {
+                         std::unique_ptr<ChartFiller> filler;
+                         {
+                             const std::lock_guard lock(guard);
+                             if (!idle.empty())
+                             {
+                                 filler = std::move(idle.back());
+                                 idle.pop_back();
+                             }
+                         }
+                         if (!filler) filler = std::make_unique<ChartFiller>(state);
+                         step(*filler, wave[i]);
+                         const std::lock_guard lock(guard);
+                         idle.push_back(std::move(filler));
+                     });
 }
 
 void add_area_particles(const SurfaceMesh& mesh, const Features& features,
@@ -152,7 +154,8 @@ void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int 
     std::vector<ClosestPoint> closest(cells.size());
     parallel_for(
         cells.size(), threads,
-        [&](std::size_t i) {
+        [&](std::size_t i)
+        {
             const Vec3 node{static_cast<double>(cells[i][0]), static_cast<double>(cells[i][1]),
                             static_cast<double>(cells[i][2])};
             closest[i] = query.closest_point(options.lattice_origin + node * options.dp);

@@ -141,11 +141,13 @@ public:
                     const std::uint32_t cell = table_.find(cell_key(i, j, k));
                     if (cell == KeyTable::none) continue;
                     for (std::uint32_t b = heads_[cell]; b != KeyTable::none; b = blocks_[b].next)
-                        scan(blocks_[b], p, room, [&](std::uint32_t index) {
-                            const Vec3 d = points_[index] - point;
-                            const double squared = dot(d, d);
-                            if (squared < limit) body(index, d, squared);
-                        });
+                        scan(blocks_[b], p, room,
+                             [&](std::uint32_t index)
+                             {
+                                 const Vec3 d = points_[index] - point;
+                                 const double squared = dot(d, d);
+                                 if (squared < limit) body(index, d, squared);
+                             });
                 }
     }
 

@@ -53,7 +53,8 @@ SurfaceRay walk(const WorkMesh& mesh, SurfaceRay ray, double length)
         if (next == no_index) break;
         length -= exit.length;
         const WorkFacet& other = mesh.facets[next];
-        const Vec3 side = facet.corners[exit.side == 2 ? 0 : exit.side + 1] - facet.corners[exit.side];
+        const Vec3 side =
+            facet.corners[exit.side == 2 ? 0 : exit.side + 1] - facet.corners[exit.side];
         const Vec3 along = side / norm(side);
         const double a = dot(ray.direction, along);
         const double b = dot(ray.direction, cross(along, facet.normal));

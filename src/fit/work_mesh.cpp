@@ -138,34 +138,38 @@ private:
     bool spread_marks()
     {
         bool is_changed = false;
-        for_each_edge([&](std::size_t begin, std::size_t end) {
-            bool is_marked = false;
-            for (std::size_t k = begin; k < end; ++k)
-                is_marked = is_marked || marked_[sides_[k].piece][sides_[k].side];
-            if (!is_marked) return;
-            for (std::size_t k = begin; k < end; ++k)
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
             {
-                auto& marks = marked_[sides_[k].piece];
-                const std::size_t longest = longest_side(pieces_[sides_[k].piece]);
-                is_changed = is_changed || !marks[sides_[k].side] || !marks[longest];
-                marks[sides_[k].side] = 1;
-                marks[longest] = 1;
-            }
-        });
+                bool is_marked = false;
+                for (std::size_t k = begin; k < end; ++k)
+                    is_marked = is_marked || marked_[sides_[k].piece][sides_[k].side];
+                if (!is_marked) return;
+                for (std::size_t k = begin; k < end; ++k)
+                {
+                    auto& marks = marked_[sides_[k].piece];
+                    const std::size_t longest = longest_side(pieces_[sides_[k].piece]);
+                    is_changed = is_changed || !marks[sides_[k].side] || !marks[longest];
+                    marks[sides_[k].side] = 1;
+                    marks[longest] = 1;
+                }
+            });
         return is_changed;
     }
 
     void name_midpoints()
     {
         midpoints_.assign(pieces_.size(), {no_index, no_index, no_index});
-        for_each_edge([&](std::size_t begin, std::size_t end) {
-            const Side& first = sides_[begin];
-            if (!marked_[first.piece][first.side]) return;
-            const auto name = static_cast<std::uint32_t>(vertices_.size());
-            vertices_.push_back(0.5 * (vertices_[first.low] + vertices_[first.high]));
-            for (std::size_t k = begin; k < end; ++k)
-                midpoints_[sides_[k].piece][sides_[k].side] = name;
-        });
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
+            {
+                const Side& first = sides_[begin];
+                if (!marked_[first.piece][first.side]) return;
+                const auto name = static_cast<std::uint32_t>(vertices_.size());
+                vertices_.push_back(0.5 * (vertices_[first.low] + vertices_[first.high]));
+                for (std::size_t k = begin; k < end; ++k)
+                    midpoints_[sides_[k].piece][sides_[k].side] = name;
+            });
     }
 
     void cut_marked()
@@ -214,16 +218,18 @@ private:
     void join_neighbours(WorkMesh& work)
     {
         sort_sides();
-        for_each_edge([&](std::size_t begin, std::size_t end) {
-            if (end - begin != 2) return;
-            const Side& a = sides_[begin];
-            const Side& b = sides_[begin + 1];
-            if (a.runs_up == b.runs_up || pieces_[a.piece].is_border[a.side] ||
-                pieces_[b.piece].is_border[b.side])
-                return;
-            work.facets[a.piece].neighbours[a.side] = b.piece;
-            work.facets[b.piece].neighbours[b.side] = a.piece;
-        });
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
+            {
+                if (end - begin != 2) return;
+                const Side& a = sides_[begin];
+                const Side& b = sides_[begin + 1];
+                if (a.runs_up == b.runs_up || pieces_[a.piece].is_border[a.side] ||
+                    pieces_[b.piece].is_border[b.side])
+                    return;
+                work.facets[a.piece].neighbours[a.side] = b.piece;
+                work.facets[b.piece].neighbours[b.side] = a.piece;
+            });
     }
 
     template <typename Body>

@@ -82,9 +82,8 @@ inline Features plain_features(const SurfaceMesh& mesh, double angle_deg = 30,
         features.edges.push_back(e);
         for (const std::uint32_t v : mesh.edges[e]) edges_at[v].push_back(e);
     }
-    const auto other_end = [&](std::uint32_t e, std::uint32_t v) {
-        return mesh.edges[e][0] == v ? mesh.edges[e][1] : mesh.edges[e][0];
-    };
+    const auto other_end = [&](std::uint32_t e, std::uint32_t v)
+    { return mesh.edges[e][0] == v ? mesh.edges[e][1] : mesh.edges[e][0]; };
     std::vector<char> is_singular(mesh.vertices.size(), 0);
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
     {
@@ -102,7 +101,8 @@ inline Features plain_features(const SurfaceMesh& mesh, double angle_deg = 30,
         features.singular.push_back(v);
     }
     std::vector<char> is_used(mesh.edges.size(), 0);
-    const auto follow = [&](std::uint32_t start, std::uint32_t edge) {
+    const auto follow = [&](std::uint32_t start, std::uint32_t edge)
+    {
         FeatureLine line;
         line.vertices.push_back(start);
         std::uint32_t v = start;
@@ -139,24 +139,27 @@ inline std::vector<FeatureParticle> plain_feature_particles(const SurfaceMesh& m
     std::vector<FeatureParticle> particles;
     NeighbourGrid grid;
     grid.start(dp);
-    const auto is_free = [&](const Vec3& p, double radius) {
+    const auto is_free = [&](const Vec3& p, double radius)
+    {
         bool result = true;
-        grid.for_each_near(p, radius,
-                           [&](std::uint32_t, const Vec3&, double) { result = false; });
+        grid.for_each_near(p, radius, [&](std::uint32_t, const Vec3&, double) { result = false; });
         return result;
     };
-    const auto add = [&](const FeatureParticle& particle) {
+    const auto add = [&](const FeatureParticle& particle)
+    {
         grid.add(particle.position);
         particles.push_back(particle);
     };
     for (const std::uint32_t v : features.singular)
-        if (is_free(mesh.vertices[v], 0.5 * dp)) add({mesh.vertices[v], true, no_index, v, no_index});
+        if (is_free(mesh.vertices[v], 0.5 * dp))
+            add({mesh.vertices[v], true, no_index, v, no_index});
     std::vector<std::uint32_t> order(features.lines.size());
     for (std::uint32_t l = 0; l < order.size(); ++l) order[l] = l;
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return features.lines[a].length > features.lines[b].length;
-    });
-    const auto at = [&](std::uint32_t l, double length) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b)
+                     { return features.lines[a].length > features.lines[b].length; });
+    const auto at = [&](std::uint32_t l, double length)
+    {
         const FeatureLine& line = features.lines[l];
         for (std::size_t i = 0;; ++i)
         {
@@ -172,8 +175,7 @@ inline std::vector<FeatureParticle> plain_feature_particles(const SurfaceMesh& m
             const std::array<std::uint32_t, 2> ends{std::min(a, b), std::max(a, b)};
             const auto edge = std::lower_bound(mesh.edges.begin(), mesh.edges.end(), ends);
             return FeatureParticle{mesh.vertices[a] + d * std::min(1.0, length / norm(d)), false, l,
-                                   no_index,
-                                   static_cast<std::uint32_t>(edge - mesh.edges.begin())};
+                                   no_index, static_cast<std::uint32_t>(edge - mesh.edges.begin())};
         }
     };
     for (const std::uint32_t l : order)

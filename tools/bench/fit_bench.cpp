@@ -72,10 +72,11 @@ int main(int argc, char** argv)
     double area = 0;
     for (const double a : mesh.areas) area += a;
     const auto n = static_cast<double>(particles.positions.size());
-    std::printf("%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
-                "(%.3f s of processor, %.2f us a particle)\n",
-                mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp,
-                seconds, cpu_seconds, 1e6 * cpu_seconds / n);
+    std::printf(
+        "%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
+        "(%.3f s of processor, %.2f us a particle)\n",
+        mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
+        cpu_seconds, 1e6 * cpu_seconds / n);
     if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], particles);
     return 0;
 }
