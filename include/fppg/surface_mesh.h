@@ -31,25 +31,31 @@ struct SurfaceMesh
     /// facets the first two, and is_manifold[e] is 0.
     std::vector<std::array<std::uint32_t, 2>> edge_facets;
     std::vector<char> is_manifold;
-    /// Per facet its outward unit normal, and its area (metres squared).
+    /// Per facet its outward unit normal, and its area (metres squared). A facet so thin that the
+    /// rounding of its corners to float32 may turn it has the normal of its neighbour across its
+    /// longest side.
     std::vector<Vec3> normals;
     std::vector<double> areas;
+    /// Per facet the shell that it belongs to, numbered by their first facets.
+    std::vector<std::uint32_t> shells;
 };
 
-/// What the intake found and mended.
+/// What the intake found and mended. Counts of edges are those of the mesh after mending.
 struct MeshReport
 {
     std::size_t facets_read = 0;
-    std::size_t duplicate_facets = 0;  ///< dropped
+    std::size_t duplicate_facets = 0;  ///< dropped: same three corners as an earlier one
+    std::size_t inner_wall_facets = 0; ///< dropped: two that look at each other between two bodies
     std::size_t degenerate_facets = 0; ///< dropped: no area after welding
-    std::size_t flipped_facets = 0;    ///< turned to agree with their neighbours
+    std::size_t flipped_facets = 0; ///< turned to agree with their neighbours or to look outwards
     std::size_t open_edges = 0;
     std::size_t non_manifold_edges = 0;
-    std::size_t t_junctions = 0; ///< vertices that lie inside an open edge
+    std::size_t clashing_edges = 0; ///< two facets that run the same way: a one-sided surface
+    std::size_t t_junctions = 0; ///< vertices found inside an open edge; its facet is split there
     std::size_t self_intersections =
         0;                  ///< facet pairs without a common vertex that cross; counted on request
-    std::size_t shells = 0; ///< parts connected through edges
-    bool is_watertight = false; ///< every edge has two facets that run opposite ways
+    std::size_t shells = 0; ///< parts connected through edges with two facets
+    bool is_watertight = false; ///< every edge has as many facets that run one way as the other
     double volume = 0;          ///< signed sum, metres cubed
     double area = 0;
     Box3 bounds;
@@ -64,12 +70,19 @@ struct MeshIntakeOptions
 
 /// Welds, cleans and orients the facets of a file.
 ///
-/// Facets are turned to agree across edges within a shell; a closed shell whose volume is negative
-/// and that no other shell holds is turned as a whole, so that normals look outwards.
+/// Vertices keep the order in which the file names them first, facets their order in the file.
+/// A vertex inside an open edge (a T-junction) splits the facet of that edge, so that no false hole
+/// is left. Facets are turned to agree across edges within a shell, the fewer to the more. A closed
+/// shell whose volume is negative and that no other shell holds is turned as a whole, together with
+/// the shells that it holds, so that normals look outwards and cavities stay cavities; a shell with
+/// small holes counts as closed where its facets' areas, as vectors, sum to less than a tenth of
+/// its area.
 ///
+/// soup     at least one facet, coordinates finite and below 1e90 in size
 /// threads  number of threads; the result does not depend on it
-/// throws   GeometryError when no facet is left
+/// throws   GeometryError when no facet is left, or a coordinate is not finite
 /// cost     O(n log n)
+/// source   edge-face map of the FPPG paper, "Feature extraction and feature line particles"
 SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
                          MeshReport& report);
 

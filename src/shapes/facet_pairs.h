@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "fppg/surface_mesh.h"
+
+namespace fppg
+{
+
+/// Facets that cross each other.
+struct FacetPairs
+{
+    std::size_t count = 0;
+    std::array<std::uint32_t, 2> first{no_index, no_index}; ///< smallest first facet, then second
+};
+
+/// Counts the pairs of facets without a common vertex where a side of one passes through the plane
+/// of the other inside it or through its border. Exact; facets that only touch, and facets that
+/// overlap in one plane, do not count.
+///
+/// threads  number of threads; the result does not depend on it
+/// cost     O(n log n + pairs whose boxes overlap)
+FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads);
+
+} // namespace fppg
