@@ -253,7 +253,8 @@ struct ChartFiller::Work
             if (!is_far(p)) continue;
             const double length = std::sqrt(p.x * p.x + p.y * p.y);
             const Vec3 direction = (x_axis * p.x + y_axis * p.y) / length;
-            propose(walk(mesh, {position, facet, direction}, length));
+            // The plane only guesses where surface or neighbours bend away from it.
+            climb(walk(mesh, {position, facet, direction}, length));
         }
     }
 
@@ -270,7 +271,7 @@ struct ChartFiller::Work
         const Vec3& normal = mesh.facets[at.facet].normal;
         double best = reach * reach * dp * dp;
         grid.for_each_near(at.position, reach * dp,
-                           [&](std::uint32_t index, const Vec3& offset, double squared)
+                           [&](std::uint32_t index, const Vec3&, double squared)
                            {
                                if (squared < best && !is_other_sheet(normal, normals[index]))
                                    best = squared;
@@ -316,10 +317,11 @@ struct ChartFiller::Work
         return result;
     }
 
-    /// Walks away from the nearest particle, then proposes the place.
+    /// Walks away from the nearest particle, step by smaller step, until the place is a hole.
     void climb(SurfaceRay at)
     {
-        for (int step = 0;; ++step)
+        double step = 0.2 * dp;
+        for (int i = 0; i < 8 && at.facet != no_index; ++i, step *= 0.8)
         {
             const Vec3& normal = mesh.facets[at.facet].normal;
             double best = reach * reach * dp * dp;
@@ -332,15 +334,12 @@ struct ChartFiller::Work
                                    best = squared;
                                    towards = offset;
                                });
-            if (best > hole_radius * hole_radius * dp * dp || step == 6) break;
+            if (best > hole_radius * hole_radius * dp * dp) return propose(at);
             const Vec3 away = normal * dot(towards, normal) - towards;
             const double length = norm(away);
-            if (length < 1e-6 * dp) break;
-            const SurfaceRay next = walk(mesh, {at.position, at.facet, away / length}, 0.2 * dp);
-            if (next.facet == no_index) break;
-            at = next;
+            if (length < 1e-6 * dp) return;
+            at = walk(mesh, {at.position, at.facet, away / length}, step);
         }
-        propose(at);
     }
 
     void propose_all()

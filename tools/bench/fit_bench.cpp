@@ -3,7 +3,7 @@
 //
 //   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]
 
-#include "fit/plain_features.h"
+#include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
 
@@ -56,10 +56,13 @@ int main(int argc, char** argv)
     using clock = std::chrono::steady_clock;
     const double dp = std::atof(argv[2]);
     const int threads = argc > 4 ? std::atoi(argv[4]) : 1;
-    const auto mesh = fppg::plain_mesh(fppg::read_stl(argv[1]).soup);
-    const auto features = fppg::plain_features(mesh);
+    fppg::MeshReport report;
+    const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
     const auto start_lines = clock::now();
-    const auto on_features = fppg::plain_feature_particles(mesh, features, dp);
+    fppg::FeatureOptions feature_options;
+    feature_options.dp = dp;
+    const auto features = fppg::find_features(mesh, feature_options);
+    const auto on_features = fppg::place_feature_particles(mesh, features, feature_options);
     const double line_seconds = seconds_since(start_lines);
     fppg::FitOptions options;
     options.dp = dp;
