@@ -66,10 +66,12 @@ Vec3 turned(const Vec3& direction, const Vec3& normal, int sixths)
     return direction * cosines[at] + cross(normal, direction) * sines[at];
 }
 
-/// Keeps of a convex polygon what is nearer to the origin than to `other`.
-void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, std::vector<PlanePoint>& spare)
+/// Keeps of a convex polygon what is nearer to the origin than to a point over `other`, which is
+/// at a distance of the origin whose square is `squared`.
+void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, double squared,
+          std::vector<PlanePoint>& spare)
 {
-    const double limit = 0.5 * (other.x * other.x + other.y * other.y);
+    const double limit = 0.5 * squared;
     const auto excess = [&](const PlanePoint& p) { return p.x * other.x + p.y * other.y - limit; };
     spare.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i)
@@ -221,7 +223,7 @@ struct ChartFiller::Work
     // Holes ------------------------------------------------------------------------------------
 
     /// Proposes the corners of the Voronoi cell of a particle that are too far from it. The cell
-    /// is taken in the plane of a facet, with neighbours at their true distance.
+    /// is taken in the plane of a facet: exact where the surface is flat, too wide where it bends.
     void propose_around(const Vec3& position, std::uint32_t facet)
     {
         const Vec3& normal = mesh.facets[facet].normal;
@@ -241,10 +243,8 @@ struct ChartFiller::Work
                     is_other_sheet(normal, normals[n.index]))
                     continue;
                 const PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
-                const double flat = q.x * q.x + q.y * q.y;
-                if (flat < 0.04 * n.squared) continue;
-                const double stretch = std::sqrt(n.squared / flat);
-                clip(polygon, {q.x * stretch, q.y * stretch}, spare);
+                if (q.x * q.x + q.y * q.y < 0.04 * n.squared) continue;
+                clip(polygon, q, n.squared, spare);
             }
             if (std::none_of(polygon.begin(), polygon.end(), is_far)) return;
         }
