@@ -1,5 +1,5 @@
 // Fits particles to the surface of an STL file, says how long that takes, and writes them as a
-// legacy VTK file with their kind.
+// legacy VTK file with their kind as mk.
 //
 //   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]
 
@@ -39,7 +39,7 @@ void write_vtk(const std::string& path, const fppg::SurfaceParticles& particles)
         << " double\n";
     for (const fppg::Vec3& p : particles.positions)
         for (int axis = 0; axis < 3; ++axis) write_double(out, p[axis]);
-    out << "\nPOINT_DATA " << n << "\nSCALARS Kind unsigned_char 1\nLOOKUP_TABLE default\n";
+    out << "\nPOINT_DATA " << n << "\nSCALARS Mk unsigned_char 1\nLOOKUP_TABLE default\n";
     for (const fppg::FitKind kind : particles.kinds) out.put(static_cast<char>(kind));
     out << "\n";
 }
