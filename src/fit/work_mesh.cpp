@@ -198,11 +198,11 @@ private:
         const std::uint32_t m = midpoints[s];
         cut_half({b, c, m}, {piece.is_border[t], 0, piece.is_border[s]}, midpoints[t], piece.parent,
                  out);
-        cut_half({c, a, m}, {piece.is_border[u], 0, piece.is_border[s]}, midpoints[u], piece.parent,
+        cut_half({c, a, m}, {piece.is_border[u], piece.is_border[s], 0}, midpoints[u], piece.parent,
                  out);
     }
 
-    /// Only side 0 of the half may carry a midpoint.
+    /// Only side 0 of the half can carry a midpoint.
     static void cut_half(const std::array<std::uint32_t, 3>& v, const std::array<char, 3>& border,
                          std::uint32_t midpoint, std::uint32_t parent, std::vector<Piece>& out)
     {

@@ -40,7 +40,7 @@ std::vector<Named> shapes()
     return {{"sphere of small facets", sphere(5), 0.03},
             {"sphere of large facets", sphere(2), 0.01},
             {"cube", box({0, 0, 0}, {1, 1, 1}), 0.05},
-            {"cube of more than one chart", box({0, 0, 0}, {1, 1, 1}), 0.004},
+            {"cube of more than one chart", box({0, 0, 0}, {1, 1, 1}), 0.006},
             {"cube off the lattice", box({0.1, 0.2, 0.3}, {1.13, 1.17, 1.21}), 0.0371},
             {"gear", gear(14, 0.8, 1, 0.3), 0.02},
             {"coarse gear", gear(14, 0.8, 1, 0.3), 0.06},
