@@ -90,12 +90,19 @@ void Charts::mark_cells(const WorkMesh& mesh, double dp)
     const double clearance = cell_clearance * dp;
     const double slab = clearance + 0.8660254 * cell_;
     std::array<std::int64_t, 6> last{};
+    boxes_.resize(size());
     for (std::uint32_t chart = 0; chart < size(); ++chart)
     {
         bool is_first = true;
         for (const std::uint32_t f : facets(chart))
         {
             const WorkFacet& facet = mesh.facets[f];
+            const Vec3 margin{clearance, clearance, clearance};
+            for (const Vec3& corner : facet.corners)
+            {
+                boxes_[chart].add(corner - margin);
+                boxes_[chart].add(corner + margin);
+            }
             std::array<std::int64_t, 6> range{};
             for (int axis = 0; axis < 3; ++axis)
             {
@@ -165,6 +172,10 @@ std::span<const std::uint32_t> Charts::near_point(const Vec3& point) const
 
 bool Charts::is_near(std::uint32_t chart, const Vec3& point) const
 {
+    const Box3& box = boxes_[chart];
+    if (point.x < box.min.x || point.y < box.min.y || point.z < box.min.z || point.x > box.max.x ||
+        point.y > box.max.y || point.z > box.max.z)
+        return false;
     const auto charts = near_point(point);
     return std::binary_search(charts.begin(), charts.end(), chart);
 }

@@ -29,6 +29,7 @@ public:
     }
     /// Charts that come within 2 dp of a point, ascending; more may be listed.
     std::span<const std::uint32_t> near_point(const Vec3& point) const;
+    /// Whether a chart comes within 2 dp of a point, or seems to.
     bool is_near(std::uint32_t chart, const Vec3& point) const;
 
     /// Charts of one wave are not near one another; the waves follow one another.
@@ -43,6 +44,7 @@ private:
     std::vector<std::uint32_t> chart_of_facet_;
     std::vector<std::uint32_t> facets_;
     std::vector<std::size_t> first_facet_;
+    std::vector<Box3> boxes_; ///< with the clearance
     double cell_ = 1;
     KeyTable cells_;
     std::vector<std::vector<std::uint32_t>> charts_of_cell_;

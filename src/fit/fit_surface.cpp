@@ -118,7 +118,8 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
     FillState state{work, charts, sites, dp, std::vector<ChartParticles>(charts.size())};
     for (std::uint32_t s = 0; s < sites.size(); ++s)
         for (const std::uint32_t chart : charts.near_point(sites[s].position))
-            state.particles[chart].features.push_back(s);
+            if (charts.is_near(chart, sites[s].position))
+                state.particles[chart].features.push_back(s);
     for (const SurfaceRay& row : lay_first_rows(mesh, work, features, feature_particles, dp))
         state.particles[charts.of_facet(row.facet)].rows.push_back(row);
 
