@@ -3,6 +3,7 @@
 //
 //   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]
 
+#include "fit/neighbour_grid.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
@@ -44,6 +45,33 @@ void write_vtk(const std::string& path, const fppg::SurfaceParticles& particles)
     out << "\n";
 }
 
+/// Counts pairs closer than 0.3 dp, and those of them whose facets look apart: through a plate.
+void count_close_pairs(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticles& particles,
+                       double dp)
+{
+    fppg::NeighbourGrid grid;
+    grid.start(dp);
+    for (const fppg::Vec3& p : particles.positions) grid.add(p);
+    std::size_t on_features = 0;
+    std::size_t through_plates = 0;
+    std::size_t others = 0;
+    for (std::uint32_t i = 0; i < particles.positions.size(); ++i)
+        grid.for_each_near(particles.positions[i], 0.3 * dp,
+                           [&](std::uint32_t j, const fppg::Vec3&, double)
+                           {
+                               if (j >= i) return;
+                               if (particles.kinds[i] != fppg::FitKind::Surface)
+                                   ++on_features;
+                               else if (dot(mesh.normals[particles.facets[i]],
+                                            mesh.normals[particles.facets[j]]) < -0.5)
+                                   ++through_plates;
+                               else
+                                   ++others;
+                           });
+    std::printf("   closer than 0.3 dp: %zu pairs of features, %zu through plates, %zu others\n",
+                on_features, through_plates, others);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -80,6 +108,7 @@ int main(int argc, char** argv)
         "(%.3f s of processor, %.2f us a particle)\n",
         mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
         cpu_seconds, 1e6 * cpu_seconds / n);
+    count_close_pairs(mesh, particles, dp);
     if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], particles);
     return 0;
 }
