@@ -266,16 +266,19 @@ struct ChartFiller::Work
         if (distance > hole_radius * dp) holes.push({distance, order++, place_of});
     }
 
+    /// Crumbs have no sheets: one particle stands for all their sides.
     double own_sheet_distance(const SurfaceRay& at) const
     {
         const Vec3& normal = mesh.facets[at.facet].normal;
+        const bool has_sheets = !state.charts.is_crumbs(chart);
         double best = reach * reach * dp * dp;
-        grid.for_each_near(at.position, reach * dp,
-                           [&](std::uint32_t index, const Vec3&, double squared)
-                           {
-                               if (squared < best && !is_other_sheet(normal, normals[index]))
-                                   best = squared;
-                           });
+        grid.for_each_near(
+            at.position, reach * dp,
+            [&](std::uint32_t index, const Vec3&, double squared)
+            {
+                if (squared < best && !(has_sheets && is_other_sheet(normal, normals[index])))
+                    best = squared;
+            });
         return std::sqrt(best);
     }
 
@@ -287,6 +290,17 @@ struct ChartFiller::Work
         std::uint32_t count = 0;
         for (const std::uint32_t f : state.charts.facets(chart))
         {
+            // A crumb has a particle of its own if none is near.
+            if (state.charts.is_crumbs(chart))
+            {
+                const auto& c = mesh.facets[f].corners;
+                const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+                const Vec3 direction = any_direction(mesh.facets[f]);
+                propose({middle, f, direction});
+                for (const Vec3& corner : c)
+                    propose({middle + (corner - middle) * 0.98, f, direction});
+                continue;
+            }
             due += mesh.area(f) / (area_of_sample * dp * dp);
             for (; due >= 1 || count == 0; due -= 1)
             {
@@ -387,6 +401,7 @@ ChartFiller& ChartFiller::operator=(ChartFiller&&) noexcept = default;
 void ChartFiller::advance_front(std::uint32_t chart)
 {
     Work& w = *work_;
+    if (w.state.charts.is_crumbs(chart)) return; // too small for a front
     w.start(chart);
     w.note_neighbour_charts();
     for (const SurfaceRay& ray : w.own->rows) w.try_to_begin(ray);

@@ -10,6 +10,7 @@ namespace
 
 constexpr double chart_area = 8192;  ///< dp squared, at which a chart is closed
 constexpr double scrap_area = 1024;  ///< dp squared, below which a rest joins its neighbour
+constexpr double crumb_width = 0.5;  ///< dp, below which a whole part is a crumb
 constexpr double cell_width = 6;     ///< dp
 constexpr double cell_clearance = 2; ///< dp around facets that counts as near
 
@@ -33,6 +34,9 @@ void Charts::cut(const WorkMesh& mesh, double dp)
     const std::size_t n = mesh.facets.size();
     chart_of_facet_.assign(n, no_index);
     std::vector<std::uint32_t> chart_name; // where a chart that was joined to another ends up
+    std::vector<char> is_crumb;
+    KeyTable crumb_cells;
+    std::vector<std::uint32_t> crumbs_of_cell;
     std::vector<std::uint32_t> queue;
     for (std::uint32_t seed = 0; seed < n; ++seed)
     {
@@ -40,12 +44,14 @@ void Charts::cut(const WorkMesh& mesh, double dp)
         auto chart = static_cast<std::uint32_t>(chart_name.size());
         std::uint32_t neighbour = no_index;
         double area = 0;
+        Box3 box;
         queue.assign(1, seed);
         chart_of_facet_[seed] = chart;
         std::size_t taken = 0;
         for (; taken < queue.size() && area < chart_area * dp * dp; ++taken)
         {
             area += mesh.area(queue[taken]);
+            for (const Vec3& corner : mesh.facets[queue[taken]].corners) box.add(corner);
             for (const std::uint32_t next : mesh.facets[queue[taken]].neighbours)
             {
                 if (next == no_index) continue;
@@ -60,13 +66,26 @@ void Charts::cut(const WorkMesh& mesh, double dp)
         }
         for (std::size_t i = taken; i < queue.size(); ++i) chart_of_facet_[queue[i]] = no_index;
         const bool is_scrap = area < scrap_area * dp * dp && neighbour != no_index;
+        const Vec3 width = box.max - box.min;
+        is_crumb.push_back(neighbour == no_index &&
+                           std::max({width.x, width.y, width.z}) < crumb_width * dp);
+        if (is_crumb.back())
+        {
+            const std::uint32_t cell =
+                crumb_cells.find_or_add(key_of(mesh.facets[seed].corners[0]));
+            if (cell == crumbs_of_cell.size()) crumbs_of_cell.push_back(chart);
+            chart = crumbs_of_cell[cell];
+        }
         chart_name.push_back(is_scrap ? neighbour : chart);
     }
     // Joined charts leave gaps in the numbering, which are closed here.
     std::vector<std::uint32_t> number(chart_name.size(), 0);
     std::uint32_t count = 0;
     for (std::uint32_t c = 0; c < chart_name.size(); ++c)
+    {
+        if (chart_name[c] == c) is_crumbs_.push_back(is_crumb[c]);
         number[c] = chart_name[c] == c ? count++ : number[chart_name[c]];
+    }
     first_facet_.assign(count + std::size_t{1}, 0);
     for (std::uint32_t& chart : chart_of_facet_)
     {

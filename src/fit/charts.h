@@ -8,8 +8,9 @@
 namespace fppg
 {
 
-/// A mesh cut into charts: connected facets between borders, of no more than about one size. How it
-/// is cut depends on the mesh and dp alone, so charts that do not come near one another can be
+/// A mesh cut into charts: connected facets between borders, of no more than about one size; parts
+/// narrower than half a dp share charts of crumbs, so that a heap of them stays a few charts. How
+/// it is cut depends on the mesh and dp alone, so charts that do not come near one another can be
 /// filled in any order, on any number of threads, with the same result.
 class Charts
 {
@@ -22,6 +23,8 @@ public:
     {
         return {facets_.data() + first_facet_[chart], facets_.data() + first_facet_[chart + 1]};
     }
+    /// Whether a chart is made of parts narrower than half a dp that need not be connected.
+    bool is_crumbs(std::uint32_t chart) const { return is_crumbs_[chart]; }
     /// Charts that come within 4 dp of this one, ascending; more may be listed.
     const std::vector<std::uint32_t>& near_charts(std::uint32_t chart) const
     {
@@ -44,6 +47,7 @@ private:
     std::vector<std::uint32_t> chart_of_facet_;
     std::vector<std::uint32_t> facets_;
     std::vector<std::size_t> first_facet_;
+    std::vector<char> is_crumbs_;
     std::vector<Box3> boxes_; ///< with the clearance
     double cell_ = 1;
     KeyTable cells_;

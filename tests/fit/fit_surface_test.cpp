@@ -221,6 +221,37 @@ TEST(FitSurface, PutsAParticleOnABodySmallerThanDp)
     EXPECT_EQ(input.fit().positions.size(), 1u);
 }
 
+TEST(FitSurface, PutsAParticleOnEveryCrumbApartFromOthers)
+{
+    TriangleSoup crumbs;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+        {
+            Transform place;
+            for (int axis = 0; axis < 3; ++axis)
+                place.linear[static_cast<std::size_t>(axis)] =
+                    place.linear[static_cast<std::size_t>(axis)] * 0.1;
+            place.offset = {2.0 * i, 2.0 * j, 0};
+            crumbs = joined(crumbs, moved(sphere(2), place));
+        }
+    EXPECT_EQ(FitInput(crumbs, 1).fit().positions.size(), 16u);
+}
+
+TEST(FitSurface, TakesAHeapOfTinyLooseFacets)
+{
+    TriangleSoup heap;
+    for (int i = 0; i < 20000; ++i)
+    {
+        const Vec3 p{std::fmod(0.7548776662466927 * i, 1.0), std::fmod(0.5698402909980532 * i, 1.0),
+                     std::fmod(0.8191725133961645 * i, 1.0)};
+        add_facet(heap, p, p + Vec3{1e-3, 0, 0}, p + Vec3{0, 1e-3, 0});
+    }
+    const FitInput input(heap, 0.3);
+    const SurfaceParticles particles = input.fit();
+    EXPECT_GT(particles.positions.size(), 40u);
+    EXPECT_LE(farthest_point(input.mesh, particles, 0.3), 0.92);
+}
+
 TEST(FitSurface, CellDensityPutsOneParticleOnEveryCrossedCell)
 {
     FitInput input(sphere(4), 0.05);
