@@ -1,0 +1,432 @@
+#include "fit/chart_filler.h"
+
+#include <algorithm>
+#include <numbers>
+#include <queue>
+
+namespace fppg
+{
+
+namespace
+{
+
+// Lengths in dp. What the front keeps and aims at was found by trial: these leave the fewest holes
+// at one particle a dp squared.
+constexpr double front_spacing = 1.075;
+constexpr double least_distance = 0.86;
+constexpr double same_site = 0.25;     ///< a front meets a particle where it would put one
+constexpr double clearly_taken = 0.50; ///< the walk there can be saved
+constexpr double hole_radius = 0.90;
+constexpr double reach = 2.0; ///< of everything that looks for neighbours
+
+struct Neighbour
+{
+    Vec3 offset;
+    double squared;
+    std::uint32_t index;
+};
+
+struct PlanePoint
+{
+    double x, y;
+};
+
+/// A place where a particle may be missing.
+struct Hole
+{
+    double distance; ///< to the nearest particle, metres
+    std::uint32_t order;
+    SurfaceRay place;
+
+    bool operator<(const Hole& other) const
+    {
+        return distance != other.distance ? distance < other.distance : order > other.order;
+    }
+};
+
+/// The two sides of a thin plate do not count as neighbours, however thin it is and wherever on the
+/// other side a particle is: each side is covered by its own.
+bool is_other_sheet(const Vec3& normal, const Vec3& other_normal)
+{
+    return dot(normal, other_normal) < -0.5;
+}
+
+Vec3 any_direction(const WorkFacet& facet)
+{
+    const Vec3 side = facet.corners[1] - facet.corners[0];
+    return side / norm(side);
+}
+
+Vec3 turned(const Vec3& direction, const Vec3& normal, int sixths)
+{
+    constexpr double half_root = std::numbers::sqrt3 / 2;
+    constexpr std::array<double, 6> cosines{1, 0.5, -0.5, -1, -0.5, 0.5};
+    constexpr std::array<double, 6> sines{0, half_root, half_root, 0, -half_root, -half_root};
+    const auto at = static_cast<std::size_t>(sixths);
+    return direction * cosines[at] + cross(normal, direction) * sines[at];
+}
+
+/// Keeps of a convex polygon what is nearer to the origin than to a point over `other`, which is
+/// at a distance of the origin whose square is `squared`.
+void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, double squared,
+          std::vector<PlanePoint>& spare)
+{
+    const double limit = 0.5 * squared;
+    const auto excess = [&](const PlanePoint& p) { return p.x * other.x + p.y * other.y - limit; };
+    spare.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+    {
+        const PlanePoint& a = polygon[i];
+        const PlanePoint& b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const double ea = excess(a);
+        const double eb = excess(b);
+        if (ea <= 0) spare.push_back(a);
+        if ((ea < 0 && eb > 0) || (ea > 0 && eb < 0))
+        {
+            const double t = ea / (ea - eb);
+            spare.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+        }
+    }
+    polygon.swap(spare);
+}
+
+} // namespace
+
+struct ChartFiller::Work
+{
+    explicit Work(FillState& shared) : state(shared), mesh(shared.mesh), dp(shared.dp) {}
+
+    FillState& state;
+    const WorkMesh& mesh;
+    double dp;
+    std::uint32_t chart = 0;
+    ChartParticles* own = nullptr;
+    NeighbourGrid grid;
+    std::vector<Vec3> normals; ///< of all in the grid
+    std::vector<Neighbour> near;
+    std::vector<PlanePoint> polygon, spare;
+    std::priority_queue<Hole> holes;
+    std::uint32_t order = 0;
+
+    void start(std::uint32_t which)
+    {
+        chart = which;
+        own = &state.particles[which];
+        grid.start(reach * dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
+        normals.clear();
+        for (const std::uint32_t f : own->features)
+            note(state.features[f].position, state.features[f].normal);
+    }
+
+    void note(const Vec3& position, const Vec3& normal)
+    {
+        grid.add(position);
+        normals.push_back(normal);
+    }
+
+    void note_neighbour_charts()
+    {
+        for (const std::uint32_t other : state.charts.near_charts(chart))
+            for (const SurfaceSite& site : state.particles[other].sites)
+                if (site.is_at_seam && state.charts.is_near(chart, site.position))
+                    note(site.position, mesh.facets[site.facet].normal);
+    }
+
+    void find_near(const Vec3& p, double radius)
+    {
+        near.clear();
+        grid.for_each_near(p, radius * dp,
+                           [&](std::uint32_t index, const Vec3& offset, double squared) {
+                               near.push_back({offset, squared, index});
+                           });
+    }
+
+    /// Squared distance to the nearest particle of the same sheet among those found around a point
+    /// at -shift from here; no more than that of `start`.
+    double nearest_squared(const Vec3& shift, const Vec3& normal, double start) const
+    {
+        double best = start;
+        for (const Neighbour& n : near)
+        {
+            const Vec3 d = n.offset - shift;
+            const double squared = dot(d, d);
+            if (squared < best && !is_other_sheet(normal, normals[n.index])) best = squared;
+        }
+        return best;
+    }
+
+    void place(const SurfaceRay& ray, bool is_irregular, bool is_at_seam)
+    {
+        const Vec3& d = ray.direction;
+        own->sites.push_back(
+            {ray.position,
+             ray.facet,
+             {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
+             is_irregular,
+             is_at_seam});
+        note(ray.position, mesh.facets[ray.facet].normal);
+    }
+
+    bool is_seam(const Vec3& position) const
+    {
+        return state.charts.near_point(position).size() > 1;
+    }
+
+    void try_to_begin(const SurfaceRay& ray)
+    {
+        if (ray.facet == no_index || state.charts.of_facet(ray.facet) != chart) return;
+        find_near(ray.position, least_distance);
+        const double least = least_distance * dp;
+        if (nearest_squared({}, mesh.facets[ray.facet].normal, least * least) < least * least)
+            return;
+        place(ray, false, is_seam(ray.position));
+    }
+
+    void advance_from(std::size_t index)
+    {
+        const SurfaceSite site = own->sites[index];
+        const Vec3 normal = mesh.facets[site.facet].normal;
+        Vec3 direction{site.direction[0], site.direction[1], site.direction[2]};
+        direction = direction - normal * dot(direction, normal);
+        direction = direction / norm(direction);
+        find_near(site.position, front_spacing + least_distance);
+        bool is_irregular = false;
+        for (int k = 0; k < 6; ++k)
+            is_irregular |= !advance_to({site.position, site.facet, turned(direction, normal, k)});
+        own->sites[index].is_irregular = is_irregular;
+    }
+
+    /// Returns whether there is now a particle where the hexagon wants one.
+    bool advance_to(const SurfaceRay& from)
+    {
+        const double far = reach * reach * dp * dp;
+        const Vec3 step = from.direction * (front_spacing * dp);
+        const double guess = nearest_squared(step, mesh.facets[from.facet].normal, far);
+        if (guess < clearly_taken * clearly_taken * dp * dp)
+            return guess < same_site * same_site * dp * dp;
+        const SurfaceRay to = walk(mesh, from, front_spacing * dp);
+        if (to.facet == no_index) return false;
+        const Vec3 shift = to.position - from.position;
+        const double squared = nearest_squared(shift, mesh.facets[to.facet].normal, far);
+        if (squared < least_distance * least_distance * dp * dp)
+            return squared < same_site * same_site * dp * dp;
+        if (state.charts.of_facet(to.facet) != chart)
+        {
+            own->leaving.push_back(to);
+            return false;
+        }
+        near.push_back({shift, dot(shift, shift), grid.size()});
+        place(to, false, is_seam(to.position));
+        return true;
+    }
+
+    // Holes ------------------------------------------------------------------------------------
+
+    /// Proposes the corners of the Voronoi cell of a particle that are too far from it. The cell
+    /// is taken in the plane of a facet: exact where the surface is flat, too wide where it bends.
+    void propose_around(const Vec3& position, std::uint32_t facet)
+    {
+        const Vec3& normal = mesh.facets[facet].normal;
+        const Vec3 x_axis = any_direction(mesh.facets[facet]);
+        const Vec3 y_axis = cross(normal, x_axis);
+        find_near(position, reach);
+        const double box = 1.3 * dp;
+        const double limit = hole_radius * hole_radius * dp * dp;
+        polygon.assign({{-box, -box}, {box, -box}, {box, box}, {-box, box}});
+        const auto is_far = [&](const PlanePoint& p) { return p.x * p.x + p.y * p.y > limit; };
+        // The nearest first, after which there is mostly nothing left to cut.
+        for (const bool is_close : {true, false})
+        {
+            for (const Neighbour& n : near)
+            {
+                if ((n.squared < 1.7 * dp * dp) != is_close || n.squared < 1e-12 * dp * dp ||
+                    is_other_sheet(normal, normals[n.index]))
+                    continue;
+                const PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
+                if (q.x * q.x + q.y * q.y < 0.04 * n.squared) continue;
+                clip(polygon, q, n.squared, spare);
+            }
+            if (std::none_of(polygon.begin(), polygon.end(), is_far)) return;
+        }
+        for (const PlanePoint& p : polygon)
+        {
+            if (!is_far(p)) continue;
+            const double length = std::sqrt(p.x * p.x + p.y * p.y);
+            const Vec3 direction = (x_axis * p.x + y_axis * p.y) / length;
+            // The plane only guesses where surface or neighbours bend away from it.
+            climb(walk(mesh, {position, facet, direction}, length));
+        }
+    }
+
+    /// A point that may be a hole of this chart joins the queue if it is one.
+    void propose(const SurfaceRay& place_of)
+    {
+        if (place_of.facet == no_index || state.charts.of_facet(place_of.facet) != chart) return;
+        const double distance = own_sheet_distance(place_of);
+        if (distance > hole_radius * dp) holes.push({distance, order++, place_of});
+    }
+
+    /// Crumbs have no sheets: one particle stands for all their sides.
+    double own_sheet_distance(const SurfaceRay& at) const
+    {
+        const Vec3& normal = mesh.facets[at.facet].normal;
+        const bool has_sheets = !state.charts.is_crumbs(chart);
+        double best = reach * reach * dp * dp;
+        grid.for_each_near(
+            at.position, reach * dp,
+            [&](std::uint32_t index, const Vec3&, double squared)
+            {
+                if (squared < best && !(has_sheets && is_other_sheet(normal, normals[index])))
+                    best = squared;
+            });
+        return std::sqrt(best);
+    }
+
+    /// Samples one point in a few dp squared of the chart, for what no particle is next to.
+    void propose_samples()
+    {
+        constexpr double area_of_sample = 4; // dp squared
+        double due = 0;
+        std::uint32_t count = 0;
+        for (const std::uint32_t f : state.charts.facets(chart))
+        {
+            // A crumb has a particle of its own if none is near.
+            if (state.charts.is_crumbs(chart))
+            {
+                const auto& c = mesh.facets[f].corners;
+                const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+                const Vec3 direction = any_direction(mesh.facets[f]);
+                propose({middle, f, direction});
+                for (const Vec3& corner : c)
+                    propose({middle + (corner - middle) * 0.98, f, direction});
+                continue;
+            }
+            due += mesh.area(f) / (area_of_sample * dp * dp);
+            for (; due >= 1 || count == 0; due -= 1)
+            {
+                // The plastic number's sequence spreads points evenly for any count.
+                ++count;
+                double u = std::fmod(0.5 + 0.7548776662466927 * count, 1.0);
+                double v = std::fmod(0.5 + 0.5698402909980532 * count, 1.0);
+                if (u + v > 1)
+                {
+                    u = 1 - u;
+                    v = 1 - v;
+                }
+                const auto& c = mesh.facets[f].corners;
+                const Vec3 point = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
+                if (is_alone(point, mesh.facets[f].normal))
+                    climb({point, f, any_direction(mesh.facets[f])});
+            }
+        }
+    }
+
+    /// Whether no particle is so near that there is no hole to climb to from here.
+    bool is_alone(const Vec3& point, const Vec3& normal) const
+    {
+        bool result = true;
+        grid.for_each_near(point, 0.7 * dp,
+                           [&](std::uint32_t index, const Vec3&, double)
+                           { result = result && is_other_sheet(normal, normals[index]); });
+        return result;
+    }
+
+    /// Walks away from the nearest particle, step by smaller step, until the place is a hole.
+    void climb(SurfaceRay at)
+    {
+        double step = 0.2 * dp;
+        for (int i = 0; i < 8 && at.facet != no_index; ++i, step *= 0.8)
+        {
+            const Vec3& normal = mesh.facets[at.facet].normal;
+            double best = reach * reach * dp * dp;
+            Vec3 towards{};
+            grid.for_each_near(at.position, reach * dp,
+                               [&](std::uint32_t index, const Vec3& offset, double squared)
+                               {
+                                   if (squared >= best || is_other_sheet(normal, normals[index]))
+                                       return;
+                                   best = squared;
+                                   towards = offset;
+                               });
+            if (best > hole_radius * hole_radius * dp * dp) return propose(at);
+            const Vec3 away = normal * dot(towards, normal) - towards;
+            const double length = norm(away);
+            if (length < 1e-6 * dp) return;
+            at = walk(mesh, {at.position, at.facet, away / length}, step);
+        }
+    }
+
+    void propose_all()
+    {
+        for (const std::uint32_t f : own->features)
+            for (const std::uint32_t facet : state.features[f].facets)
+                if (state.charts.of_facet(facet) == chart)
+                    propose_around(state.features[f].position, facet);
+        for (const SurfaceSite& site : own->sites)
+            if (site.is_irregular) propose_around(site.position, site.facet);
+        for (const std::uint32_t other : state.charts.near_charts(chart))
+            for (const SurfaceSite& site : state.particles[other].sites)
+                if (site.is_at_seam && site.is_irregular &&
+                    state.charts.is_near(chart, site.position))
+                    propose_around(site.position, site.facet);
+        propose_samples();
+    }
+
+    void fill_queue()
+    {
+        std::vector<Neighbour> around;
+        while (!holes.empty())
+        {
+            Hole hole = holes.top();
+            holes.pop();
+            const double distance = own_sheet_distance(hole.place);
+            if (distance <= hole_radius * dp) continue;
+            if (distance < hole.distance)
+            {
+                hole.distance = distance;
+                holes.push(hole);
+                continue;
+            }
+            place(hole.place, true, is_seam(hole.place.position));
+            propose_around(hole.place.position, hole.place.facet);
+        }
+    }
+};
+
+ChartFiller::ChartFiller(FillState& state) : work_(std::make_unique<Work>(state)) {}
+ChartFiller::~ChartFiller() = default;
+ChartFiller::ChartFiller(ChartFiller&&) noexcept = default;
+ChartFiller& ChartFiller::operator=(ChartFiller&&) noexcept = default;
+
+void ChartFiller::advance_front(std::uint32_t chart)
+{
+    Work& w = *work_;
+    if (w.state.charts.is_crumbs(chart)) return; // too small for a front
+    w.start(chart);
+    w.note_neighbour_charts();
+    for (const SurfaceRay& ray : w.own->rows) w.try_to_begin(ray);
+    for (const std::uint32_t other : w.state.charts.near_charts(chart))
+        for (const SurfaceRay& ray : w.state.particles[other].leaving) w.try_to_begin(ray);
+    if (w.own->sites.empty())
+    {
+        const std::uint32_t facet = w.state.charts.facets(chart)[0];
+        const WorkFacet& f = w.mesh.facets[facet];
+        w.try_to_begin(
+            {(f.corners[0] + f.corners[1] + f.corners[2]) / 3.0, facet, any_direction(f)});
+    }
+    for (std::size_t i = 0; i < w.own->sites.size(); ++i) w.advance_from(i);
+}
+
+void ChartFiller::fill_holes(std::uint32_t chart)
+{
+    Work& w = *work_;
+    w.start(chart);
+    for (const SurfaceSite& site : w.own->sites)
+        w.note(site.position, w.mesh.facets[site.facet].normal);
+    w.note_neighbour_charts();
+    w.order = 0;
+    w.propose_all();
+    w.fill_queue();
+}
+
+} // namespace fppg

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "fit/charts.h"
+#include "fit/walk.h"
+
+#include <memory>
+
+namespace fppg
+{
+
+/// A particle on a corner or a feature line, as the filling of charts sees it.
+struct FeatureSite
+{
+    Vec3 position;
+    Vec3 normal;                       ///< mean of its facets' normals, not of unit length
+    std::vector<std::uint32_t> facets; ///< of the work mesh, that it lies on
+};
+
+/// What is known of a surface particle while its surroundings are still being filled.
+struct SurfaceSite
+{
+    Vec3 position;
+    std::uint32_t facet = no_index; ///< of the work mesh
+    std::array<float, 3> direction{};
+    bool is_irregular = false; ///< not amid six others in a hexagon: a hole may be near
+    bool is_at_seam = false;   ///< another chart is near
+};
+
+/// The particles of one chart, and the rays of its front that ended in others.
+struct ChartParticles
+{
+    std::vector<SurfaceSite> sites;
+    std::vector<SurfaceRay> leaving;
+    std::vector<SurfaceRay> rows;        ///< first rows along features, to begin with
+    std::vector<std::uint32_t> features; ///< sites of features that are near
+};
+
+/// What all charts share while they are filled.
+struct FillState
+{
+    const WorkMesh& mesh;
+    const Charts& charts;
+    const std::vector<FeatureSite>& features;
+    double dp;
+    std::vector<ChartParticles> particles; ///< per chart
+};
+
+/// Fills one chart after another; each thread has its own, for the memory that it keeps.
+class ChartFiller
+{
+public:
+    explicit ChartFiller(FillState& state);
+    ~ChartFiller();
+    ChartFiller(ChartFiller&&) noexcept;
+    ChartFiller& operator=(ChartFiller&&) noexcept;
+
+    /// Lays first rows, then walks a hexagonal front over the chart: particles 1.075 dp apart, none
+    /// nearer than 0.86 dp to another of its sheet.
+    void advance_front(std::uint32_t chart);
+
+    /// Puts particles into the holes, the farthest first, until no point of the chart is farther
+    /// than 0.90 dp from a particle. All charts must have had their front.
+    void fill_holes(std::uint32_t chart);
+
+private:
+    struct Work;
+    std::unique_ptr<Work> work_;
+};
+
+} // namespace fppg

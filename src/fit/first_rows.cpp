@@ -1,0 +1,146 @@
+#include "fit/first_rows.h"
+
+#include <algorithm>
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr double row_distance = 0.93; // dp
+
+/// The edges of one line in order, with the length of the line up to each.
+struct Course
+{
+    std::vector<std::uint32_t> edges;
+    std::vector<std::uint32_t> starts; ///< first vertex of each edge along the line
+    std::vector<double> lengths;       ///< up to the start of each edge, and in all
+};
+
+std::uint32_t edge_between(const SurfaceMesh& mesh, std::uint32_t a, std::uint32_t b)
+{
+    const std::array<std::uint32_t, 2> wanted{std::min(a, b), std::max(a, b)};
+    const auto at = std::lower_bound(mesh.edges.begin(), mesh.edges.end(), wanted);
+    return static_cast<std::uint32_t>(at - mesh.edges.begin());
+}
+
+Course course_of(const SurfaceMesh& mesh, const FeatureLine& line)
+{
+    Course course;
+    course.lengths.push_back(0);
+    const std::size_t n = line.vertices.size();
+    for (std::size_t i = 0; i + (line.is_closed ? 0 : 1) < n; ++i)
+    {
+        const std::uint32_t a = line.vertices[i];
+        const std::uint32_t b = line.vertices[i + 1 == n ? 0 : i + 1];
+        course.edges.push_back(edge_between(mesh, a, b));
+        course.starts.push_back(a);
+        course.lengths.push_back(course.lengths.back() + norm(mesh.vertices[b] - mesh.vertices[a]));
+    }
+    return course;
+}
+
+class RowLayer
+{
+public:
+    RowLayer(const SurfaceMesh& mesh, const WorkMesh& work, double dp)
+        : mesh_(mesh), work_(work), dp_(dp)
+    {
+    }
+
+    /// places  lengths along the course of the particles on it, ascending
+    void lay(const Course& course, const std::vector<double>& places, bool is_closed)
+    {
+        for (std::size_t i = 0; i + 1 < places.size(); ++i)
+            lay_beside(course, 0.5 * (places[i] + places[i + 1]));
+        if (!is_closed || places.empty()) return;
+        const double whole = course.lengths.back();
+        const double middle = 0.5 * (places.back() + places.front() + whole);
+        lay_beside(course, middle < whole ? middle : middle - whole);
+    }
+
+    std::vector<SurfaceRay> rows;
+
+private:
+    void lay_beside(const Course& course, double length)
+    {
+        const auto after =
+            std::upper_bound(course.lengths.begin(), course.lengths.end() - 1, length);
+        const auto i = static_cast<std::size_t>(
+            std::max<std::ptrdiff_t>(0, after - course.lengths.begin() - 1));
+        const std::uint32_t edge = course.edges[i];
+        const Vec3& a = mesh_.vertices[course.starts[i]];
+        const auto& ends = mesh_.edges[edge];
+        const Vec3& b = mesh_.vertices[ends[0] == course.starts[i] ? ends[1] : ends[0]];
+        const double whole = course.lengths[i + 1] - course.lengths[i];
+        const double t = whole > 0 ? (length - course.lengths[i]) / whole : 0.0;
+        const Vec3 point = a + (b - a) * t;
+        for (const std::uint32_t facet : mesh_.edge_facets[edge])
+            if (facet != no_index) lay_on(facet, edge, point);
+    }
+
+    void lay_on(std::uint32_t facet, std::uint32_t edge, const Vec3& point)
+    {
+        std::size_t s = 0;
+        while (s < 2 && mesh_.facet_edges[facet][s] != edge) ++s;
+        const Vec3 side = mesh_.vertices[mesh_.facets[facet][(s + 1) % 3]] -
+                          mesh_.vertices[mesh_.facets[facet][s]];
+        const Vec3 along = side / norm(side);
+        SurfaceRay ray{point, work_.locate(facet, point), cross(mesh_.normals[facet], along)};
+        ray = walk(work_, ray, row_distance * dp_);
+        if (ray.facet == no_index) return;
+        // The front goes on along the row and at sixty degrees to it.
+        ray.direction = cross(ray.direction, work_.facets[ray.facet].normal);
+        rows.push_back(ray);
+    }
+
+    const SurfaceMesh& mesh_;
+    const WorkMesh& work_;
+    double dp_;
+};
+
+} // namespace
+
+std::vector<SurfaceRay> lay_first_rows(const SurfaceMesh& mesh, const WorkMesh& work,
+                                       const Features& features,
+                                       const std::vector<FeatureParticle>& particles, double dp)
+{
+    std::vector<char> has_corner(mesh.vertices.size(), 0);
+    std::vector<std::vector<std::uint32_t>> on_line(features.lines.size());
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+    {
+        if (particles[p].vertex != no_index)
+            has_corner[particles[p].vertex] = 1;
+        else if (particles[p].line != no_index)
+            on_line[particles[p].line].push_back(p);
+    }
+    RowLayer layer(mesh, work, dp);
+    std::vector<std::uint32_t> slot(mesh.edges.size(), no_index);
+    std::vector<double> places;
+    for (std::size_t l = 0; l < features.lines.size(); ++l)
+    {
+        const FeatureLine& line = features.lines[l];
+        const Course course = course_of(mesh, line);
+        if (course.edges.empty()) continue;
+        places.clear();
+        for (std::size_t i = 0; i < course.edges.size(); ++i)
+        {
+            slot[course.edges[i]] = static_cast<std::uint32_t>(i);
+            if (has_corner[course.starts[i]]) places.push_back(course.lengths[i]);
+        }
+        if (!line.is_closed && has_corner[line.vertices.back()])
+            places.push_back(course.lengths.back());
+        for (const std::uint32_t p : on_line[l])
+        {
+            const std::uint32_t i = slot[particles[p].edge];
+            const Vec3& start = mesh.vertices[course.starts[i]];
+            places.push_back(course.lengths[i] + norm(particles[p].position - start));
+        }
+        std::sort(places.begin(), places.end());
+        layer.lay(course, places, line.is_closed);
+    }
+    return std::move(layer.rows);
+}
+
+} // namespace fppg

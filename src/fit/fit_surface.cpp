@@ -1,0 +1,196 @@
+#include "fppg/fit.h"
+
+#include "core/parallel.h"
+#include "fit/chart_filler.h"
+#include "fit/crossed_cells.h"
+#include "fit/first_rows.h"
+#include "fppg/error.h"
+#include "shapes/mesh_query.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace fppg
+{
+
+namespace
+{
+
+/// Sides of facets that are left whole, in dp.
+constexpr double longest_side = 48;
+/// Cells whose closest points are the same point give one particle; in dp.
+constexpr double same_point = 1e-3;
+
+std::uint32_t facet_of(const FeatureParticle& particle, const SurfaceMesh& mesh,
+                       const std::vector<std::uint32_t>& facet_of_vertex)
+{
+    if (particle.vertex != no_index) return facet_of_vertex[particle.vertex];
+    return mesh.edge_facets[particle.edge][0];
+}
+
+std::vector<std::uint32_t> find_a_facet_per_vertex(const SurfaceMesh& mesh)
+{
+    std::vector<std::uint32_t> facet(mesh.vertices.size(), no_index);
+    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+        for (const std::uint32_t v : mesh.facets[f])
+            if (facet[v] == no_index) facet[v] = f;
+    return facet;
+}
+
+/// Begins a result with the particles of corners, then those of lines.
+SurfaceParticles take_feature_particles(const SurfaceMesh& mesh,
+                                        const std::vector<FeatureParticle>& particles)
+{
+    const auto facet_of_vertex = find_a_facet_per_vertex(mesh);
+    SurfaceParticles result;
+    for (const bool is_corner : {true, false})
+        for (const FeatureParticle& particle : particles)
+        {
+            if (particle.is_corner != is_corner) continue;
+            result.positions.push_back(particle.position);
+            result.kinds.push_back(is_corner ? FitKind::Corner : FitKind::Edge);
+            result.facets.push_back(facet_of(particle, mesh, facet_of_vertex));
+        }
+    return result;
+}
+
+std::vector<FeatureSite> make_sites(const SurfaceMesh& mesh, const WorkMesh& work,
+                                    const std::vector<FeatureParticle>& particles)
+{
+    std::vector<std::uint32_t> site_of_vertex(mesh.vertices.size(), no_index);
+    std::vector<FeatureSite> sites(particles.size());
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+    {
+        sites[p].position = particles[p].position;
+        if (particles[p].vertex != no_index)
+            site_of_vertex[particles[p].vertex] = p;
+        else
+            for (const std::uint32_t facet : mesh.edge_facets[particles[p].edge])
+                if (facet != no_index)
+                    sites[p].facets.push_back(work.locate(facet, particles[p].position));
+    }
+    for (std::uint32_t f = 0; f < work.facets.size(); ++f)
+        for (const std::uint32_t v : work.facets[f].vertices)
+            if (v < mesh.vertices.size() && site_of_vertex[v] != no_index)
+                sites[site_of_vertex[v]].facets.push_back(f);
+    for (FeatureSite& site : sites)
+    {
+        for (const std::uint32_t f : site.facets) site.normal = site.normal + work.facets[f].normal;
+        if (!site.facets.empty())
+            site.normal = site.normal / static_cast<double>(site.facets.size());
+    }
+    return sites;
+}
+
+/// Runs a step on every chart, wave by wave; fillers keep their memory from chart to chart.
+template <typename Step>
+void for_each_chart(FillState& state, int threads, const Step& step)
+{
+    std::vector<std::unique_ptr<ChartFiller>> idle;
+    std::mutex guard;
+    for (const auto& wave : state.charts.waves())
+        parallel_for(wave.size(), threads,
+                     [&](std::size_t i)
+                     {
+                         std::unique_ptr<ChartFiller> filler;
+                         {
+                             const std::lock_guard lock(guard);
+                             if (!idle.empty())
+                             {
+                                 filler = std::move(idle.back());
+                                 idle.pop_back();
+                             }
+                         }
+                         if (!filler) filler = std::make_unique<ChartFiller>(state);
+                         step(*filler, wave[i]);
+                         const std::lock_guard lock(guard);
+                         idle.push_back(std::move(filler));
+                     });
+}
+
+void add_area_particles(const SurfaceMesh& mesh, const Features& features,
+                        const std::vector<FeatureParticle>& feature_particles, double dp,
+                        int threads, SurfaceParticles& result)
+{
+    const WorkMesh work = make_work_mesh(mesh, features, longest_side * dp);
+    const Charts charts(work, dp);
+    const std::vector<FeatureSite> sites = make_sites(mesh, work, feature_particles);
+    FillState state{work, charts, sites, dp, std::vector<ChartParticles>(charts.size())};
+    for (std::uint32_t s = 0; s < sites.size(); ++s)
+        for (const std::uint32_t chart : charts.near_point(sites[s].position))
+            if (charts.is_near(chart, sites[s].position))
+                state.particles[chart].features.push_back(s);
+    for (const SurfaceRay& row : lay_first_rows(mesh, work, features, feature_particles, dp))
+        state.particles[charts.of_facet(row.facet)].rows.push_back(row);
+
+    for_each_chart(state, threads,
+                   [](ChartFiller& filler, std::uint32_t c) { filler.advance_front(c); });
+    for_each_chart(state, threads,
+                   [](ChartFiller& filler, std::uint32_t c) { filler.fill_holes(c); });
+
+    std::size_t count = result.positions.size();
+    for (const ChartParticles& chart : state.particles) count += chart.sites.size();
+    result.positions.reserve(count);
+    result.facets.reserve(count);
+    for (ChartParticles& chart : state.particles)
+    {
+        for (const SurfaceSite& site : chart.sites)
+        {
+            result.positions.push_back(site.position);
+            result.facets.push_back(work.facets[site.facet].parent);
+        }
+        chart = {};
+    }
+}
+
+void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int threads,
+                        SurfaceParticles& result)
+{
+    TriangleSoup soup;
+    soup.vertices.reserve(3 * mesh.facets.size());
+    for (const auto& facet : mesh.facets)
+        for (const std::uint32_t v : facet) soup.vertices.push_back(mesh.vertices[v]);
+    const MeshQuery query(std::move(soup), threads);
+    const auto cells = find_crossed_cells(mesh, options.lattice_origin, options.dp, threads);
+    std::vector<ClosestPoint> closest(cells.size());
+    parallel_for(
+        cells.size(), threads,
+        [&](std::size_t i)
+        {
+            const Vec3 node{static_cast<double>(cells[i][0]), static_cast<double>(cells[i][1]),
+                            static_cast<double>(cells[i][2])};
+            closest[i] = query.closest_point(options.lattice_origin + node * options.dp);
+        },
+        1024);
+    const double near = same_point * options.dp;
+    NeighbourGrid grid;
+    grid.start(near);
+    for (const Vec3& p : result.positions) grid.add(p);
+    for (const ClosestPoint& c : closest)
+    {
+        bool is_there = false;
+        grid.for_each_near(c.point, near,
+                           [&](std::uint32_t, const Vec3&, double) { is_there = true; });
+        if (is_there) continue;
+        grid.add(c.point);
+        result.positions.push_back(c.point);
+        result.facets.push_back(c.facet);
+    }
+}
+
+} // namespace
+
+SurfaceParticles fit_surface(const SurfaceMesh& mesh, const Features& features,
+                             const std::vector<FeatureParticle>& feature_particles,
+                             const FitOptions& options, int threads)
+{
+    SurfaceParticles result = take_feature_particles(mesh, feature_particles);
+    if (options.density == FitDensity::Cell)
+        add_cell_particles(mesh, options, threads, result);
+    else
+        add_area_particles(mesh, features, feature_particles, options.dp, threads, result);
+    result.kinds.resize(result.positions.size(), FitKind::Surface);
+    return result;
+}
+
+} // namespace fppg

@@ -1,0 +1,297 @@
+#include "fit/work_mesh.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace fppg
+{
+
+namespace
+{
+
+/// A facet while it is being cut.
+struct Piece
+{
+    std::array<std::uint32_t, 3> vertices;
+    std::array<char, 3> is_border; ///< per side: walks end there
+    std::uint32_t parent;
+};
+
+/// One side of a piece, to be sorted so that the sides of one edge lie together.
+struct Side
+{
+    std::uint32_t low, high; ///< vertices
+    std::uint32_t piece;
+    std::uint32_t side;
+    bool runs_up; ///< from low to high
+
+    auto key() const { return std::tie(low, high, piece, side); }
+};
+
+Side side_of(const Piece& piece, std::uint32_t index, std::uint32_t s)
+{
+    const auto a = piece.vertices[s];
+    const auto b = piece.vertices[(s + 1) % 3];
+    return {std::min(a, b), std::max(a, b), index, s, a < b};
+}
+
+class Cutter
+{
+public:
+    Cutter(const SurfaceMesh& mesh, const Features& features, double longest)
+        : vertices_(mesh.vertices), longest_squared_(longest * longest)
+    {
+        pieces_.reserve(mesh.facets.size());
+        for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+        {
+            Piece piece{mesh.facets[f], {}, f};
+            for (int s = 0; s < 3; ++s)
+            {
+                const auto side = static_cast<std::size_t>(s);
+                const std::uint32_t edge = mesh.facet_edges[f][side];
+                piece.is_border[side] = mesh.neighbours[f][side] == no_index ||
+                                        features.is_feature_edge[edge] || !mesh.is_manifold[edge];
+            }
+            pieces_.push_back(piece);
+        }
+    }
+
+    /// Halves once every piece with too long a side, and what must follow to keep sides whole.
+    /// Returns whether there was anything to do.
+    bool halve()
+    {
+        marked_.assign(pieces_.size(), {0, 0, 0});
+        bool is_any = false;
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
+            if (length_squared(pieces_[i], longest_side(pieces_[i])) > longest_squared_)
+            {
+                marked_[i][longest_side(pieces_[i])] = 1;
+                is_any = true;
+            }
+        if (!is_any) return false;
+        sort_sides();
+        while (spread_marks())
+        {
+        }
+        name_midpoints();
+        cut_marked();
+        return true;
+    }
+
+    WorkMesh finish(const SurfaceMesh& mesh)
+    {
+        std::stable_sort(pieces_.begin(), pieces_.end(),
+                         [](const Piece& a, const Piece& b) { return a.parent < b.parent; });
+        WorkMesh work;
+        work.facets.reserve(pieces_.size());
+        work.first_piece.assign(mesh.facets.size() + 1, 0);
+        for (const Piece& piece : pieces_)
+        {
+            WorkFacet facet{};
+            for (std::size_t k = 0; k < 3; ++k) facet.corners[k] = vertices_[piece.vertices[k]];
+            facet.normal = mesh.normals[piece.parent];
+            facet.neighbours = {no_index, no_index, no_index};
+            facet.vertices = piece.vertices;
+            facet.parent = piece.parent;
+            work.facets.push_back(facet);
+            ++work.first_piece[piece.parent + 1];
+        }
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+            work.first_piece[f + 1] += work.first_piece[f];
+        join_neighbours(work);
+        return work;
+    }
+
+private:
+    double length_squared(const Piece& piece, std::size_t s) const
+    {
+        const Side side = side_of(piece, 0, static_cast<std::uint32_t>(s));
+        const Vec3 d = vertices_[side.high] - vertices_[side.low];
+        return dot(d, d);
+    }
+
+    /// Ties are broken by the vertices, so that both pieces at an edge judge it alike.
+    std::size_t longest_side(const Piece& piece) const
+    {
+        std::size_t best = 0;
+        for (std::size_t s = 1; s < 3; ++s)
+        {
+            const Side a = side_of(piece, 0, static_cast<std::uint32_t>(s));
+            const Side b = side_of(piece, 0, static_cast<std::uint32_t>(best));
+            if (std::make_tuple(length_squared(piece, s), a.low, a.high) >
+                std::make_tuple(length_squared(piece, best), b.low, b.high))
+                best = s;
+        }
+        return best;
+    }
+
+    void sort_sides()
+    {
+        sides_.clear();
+        for (std::uint32_t i = 0; i < pieces_.size(); ++i)
+            for (std::uint32_t s = 0; s < 3; ++s) sides_.push_back(side_of(pieces_[i], i, s));
+        std::sort(sides_.begin(), sides_.end(),
+                  [](const Side& a, const Side& b) { return a.key() < b.key(); });
+    }
+
+    /// A mark holds for all pieces at an edge; a piece with a mark is cut at its longest side too.
+    bool spread_marks()
+    {
+        bool is_changed = false;
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
+            {
+                bool is_marked = false;
+                for (std::size_t k = begin; k < end; ++k)
+                    is_marked = is_marked || marked_[sides_[k].piece][sides_[k].side];
+                if (!is_marked) return;
+                for (std::size_t k = begin; k < end; ++k)
+                {
+                    auto& marks = marked_[sides_[k].piece];
+                    const std::size_t longest = longest_side(pieces_[sides_[k].piece]);
+                    is_changed = is_changed || !marks[sides_[k].side] || !marks[longest];
+                    marks[sides_[k].side] = 1;
+                    marks[longest] = 1;
+                }
+            });
+        return is_changed;
+    }
+
+    void name_midpoints()
+    {
+        midpoints_.assign(pieces_.size(), {no_index, no_index, no_index});
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
+            {
+                const Side& first = sides_[begin];
+                if (!marked_[first.piece][first.side]) return;
+                const auto name = static_cast<std::uint32_t>(vertices_.size());
+                vertices_.push_back(0.5 * (vertices_[first.low] + vertices_[first.high]));
+                for (std::size_t k = begin; k < end; ++k)
+                    midpoints_[sides_[k].piece][sides_[k].side] = name;
+            });
+    }
+
+    void cut_marked()
+    {
+        std::vector<Piece> all;
+        all.reserve(pieces_.size() * 2);
+        for (std::size_t i = 0; i < pieces_.size(); ++i) cut(pieces_[i], midpoints_[i], all);
+        pieces_ = std::move(all);
+    }
+
+    /// Cuts at the longest side first, then each half at its other marked side.
+    void cut(const Piece& piece, const std::array<std::uint32_t, 3>& midpoints,
+             std::vector<Piece>& out) const
+    {
+        const std::size_t s = longest_side(piece);
+        if (midpoints[s] == no_index)
+        {
+            out.push_back(piece);
+            return;
+        }
+        const std::size_t t = (s + 1) % 3;
+        const std::size_t u = (s + 2) % 3;
+        const std::uint32_t a = piece.vertices[s];
+        const std::uint32_t b = piece.vertices[t];
+        const std::uint32_t c = piece.vertices[u];
+        const std::uint32_t m = midpoints[s];
+        cut_half({b, c, m}, {piece.is_border[t], 0, piece.is_border[s]}, midpoints[t], piece.parent,
+                 out);
+        cut_half({c, a, m}, {piece.is_border[u], piece.is_border[s], 0}, midpoints[u], piece.parent,
+                 out);
+    }
+
+    /// Only side 0 of the half can carry a midpoint.
+    static void cut_half(const std::array<std::uint32_t, 3>& v, const std::array<char, 3>& border,
+                         std::uint32_t midpoint, std::uint32_t parent, std::vector<Piece>& out)
+    {
+        if (midpoint == no_index)
+        {
+            out.push_back({v, border, parent});
+            return;
+        }
+        out.push_back({{v[0], midpoint, v[2]}, {border[0], 0, border[2]}, parent});
+        out.push_back({{midpoint, v[1], v[2]}, {border[0], border[1], 0}, parent});
+    }
+
+    void join_neighbours(WorkMesh& work)
+    {
+        sort_sides();
+        for_each_edge(
+            [&](std::size_t begin, std::size_t end)
+            {
+                if (end - begin != 2) return;
+                const Side& a = sides_[begin];
+                const Side& b = sides_[begin + 1];
+                if (a.runs_up == b.runs_up || pieces_[a.piece].is_border[a.side] ||
+                    pieces_[b.piece].is_border[b.side])
+                    return;
+                work.facets[a.piece].neighbours[a.side] = b.piece;
+                work.facets[b.piece].neighbours[b.side] = a.piece;
+            });
+    }
+
+    template <typename Body>
+    void for_each_edge(const Body& body) const
+    {
+        for (std::size_t begin = 0; begin < sides_.size();)
+        {
+            std::size_t end = begin + 1;
+            while (end < sides_.size() && sides_[end].low == sides_[begin].low &&
+                   sides_[end].high == sides_[begin].high)
+                ++end;
+            body(begin, end);
+            begin = end;
+        }
+    }
+
+    std::vector<Vec3> vertices_;
+    double longest_squared_;
+    std::vector<Piece> pieces_;
+    std::vector<Side> sides_;
+    std::vector<std::array<char, 3>> marked_;
+    std::vector<std::array<std::uint32_t, 3>> midpoints_;
+};
+
+} // namespace
+
+std::uint32_t WorkMesh::locate(std::uint32_t parent, const Vec3& point) const
+{
+    std::uint32_t best = first_piece[parent];
+    double best_depth = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = first_piece[parent]; i < first_piece[parent + 1]; ++i)
+    {
+        const WorkFacet& facet = facets[i];
+        double depth = std::numeric_limits<double>::infinity();
+        for (std::size_t s = 0; s < 3; ++s)
+        {
+            const Vec3 side = facet.corners[(s + 1) % 3] - facet.corners[s];
+            const Vec3 inward = cross(facet.normal, side);
+            depth = std::min(depth, dot(point - facet.corners[s], inward) / norm(side));
+        }
+        if (depth > best_depth)
+        {
+            best = i;
+            best_depth = depth;
+        }
+    }
+    return best;
+}
+
+double WorkMesh::area(std::uint32_t facet) const
+{
+    const auto& c = facets[facet].corners;
+    return 0.5 * norm(cross(c[1] - c[0], c[2] - c[0]));
+}
+
+WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest)
+{
+    Cutter cutter(mesh, features, longest);
+    while (cutter.halve())
+    {
+    }
+    return cutter.finish(mesh);
+}
+
+} // namespace fppg

@@ -1,0 +1,114 @@
+// Fits particles to the surface of an STL file, says how long that takes, and writes them as a
+// legacy VTK file with their kind as mk.
+//
+//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]
+
+#include "fit/neighbour_grid.h"
+#include "fppg/features.h"
+#include "fppg/fit.h"
+#include "fppg/shapes.h"
+
+#include <bit>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <string>
+
+namespace
+{
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void write_double(std::ofstream& out, double value)
+{
+    auto bits = std::bit_cast<std::uint64_t>(value);
+    if constexpr (std::endian::native == std::endian::little) bits = __builtin_bswap64(bits);
+    out.write(reinterpret_cast<const char*>(&bits), 8);
+}
+
+void write_vtk(const std::string& path, const fppg::SurfaceParticles& particles)
+{
+    std::ofstream out(path, std::ios::binary);
+    const std::size_t n = particles.positions.size();
+    out << "# vtk DataFile Version 3.0\nfitted\nBINARY\nDATASET POLYDATA\nPOINTS " << n
+        << " double\n";
+    for (const fppg::Vec3& p : particles.positions)
+        for (int axis = 0; axis < 3; ++axis) write_double(out, p[axis]);
+    out << "\nPOINT_DATA " << n << "\nSCALARS Mk unsigned_char 1\nLOOKUP_TABLE default\n";
+    for (const fppg::FitKind kind : particles.kinds) out.put(static_cast<char>(kind));
+    out << "\n";
+}
+
+/// Counts pairs closer than 0.3 dp, and those of them whose facets look apart: through a plate.
+void count_close_pairs(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticles& particles,
+                       double dp)
+{
+    fppg::NeighbourGrid grid;
+    grid.start(dp);
+    for (const fppg::Vec3& p : particles.positions) grid.add(p);
+    std::size_t on_features = 0;
+    std::size_t through_plates = 0;
+    std::size_t others = 0;
+    for (std::uint32_t i = 0; i < particles.positions.size(); ++i)
+        grid.for_each_near(particles.positions[i], 0.3 * dp,
+                           [&](std::uint32_t j, const fppg::Vec3&, double)
+                           {
+                               if (j >= i) return;
+                               if (particles.kinds[i] != fppg::FitKind::Surface)
+                                   ++on_features;
+                               else if (dot(mesh.normals[particles.facets[i]],
+                                            mesh.normals[particles.facets[j]]) < -0.5)
+                                   ++through_plates;
+                               else
+                                   ++others;
+                           });
+    std::printf("   closer than 0.3 dp: %zu pairs of features, %zu through plates, %zu others\n",
+                on_features, through_plates, others);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    if (argc < 3)
+    {
+        std::fprintf(stderr, "usage: fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]\n");
+        return 2;
+    }
+    using clock = std::chrono::steady_clock;
+    const double dp = std::atof(argv[2]);
+    const int threads = argc > 4 ? std::atoi(argv[4]) : 1;
+    fppg::MeshReport report;
+    const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
+    const auto start_lines = clock::now();
+    fppg::FeatureOptions feature_options;
+    feature_options.dp = dp;
+    const auto features = fppg::find_features(mesh, feature_options);
+    const auto on_features = fppg::place_feature_particles(mesh, features, feature_options);
+    const double line_seconds = seconds_since(start_lines);
+    fppg::FitOptions options;
+    options.dp = dp;
+    if (argc > 5 && std::strcmp(argv[5], "cell") == 0) options.density = fppg::FitDensity::Cell;
+    const auto start = clock::now();
+    const std::clock_t cpu_start = std::clock();
+    const auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
+    const double seconds = seconds_since(start);
+    const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+    double area = 0;
+    for (const double a : mesh.areas) area += a;
+    const auto n = static_cast<double>(particles.positions.size());
+    std::printf(
+        "%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
+        "(%.3f s of processor, %.2f us a particle)\n",
+        mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
+        cpu_seconds, 1e6 * cpu_seconds / n);
+    count_close_pairs(mesh, particles, dp);
+    if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], particles);
+    return 0;
+}
