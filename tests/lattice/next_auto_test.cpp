@@ -1,0 +1,67 @@
+#include "fppg/case_def.h"
+#include "fppg/lattice.h"
+
+#include "helpers/case_text.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace fppg
+{
+namespace
+{
+
+/// Nodes per mkbound of a case that draws `commands` from mkbound 2 on under setmknextauto.
+std::map<int, int> nodes_of_parts(const std::string& mode, const std::string& commands)
+{
+    const test::TemporaryFolder folder;
+    test::CaseText text;
+    text.mainlist = "<setdrawmode mode=\"" + mode + "\" /><setmkbound mk=\"2\" />";
+    text.mainlist += "<setmknextauto auto=\"true\" />" + commands;
+    test::write_text(folder / "Case_Def.xml", text.text());
+    const CaseDef def = read_case(folder / "Case_Def.xml", {});
+    LatticeReport report;
+    const RunField field = generate_lattice(def, 2, {}, report);
+    std::map<int, int> out;
+    for (const auto& slab : field.slabs)
+        for (const Run& run : slab)
+            out[run.mk - def.mk_bound_first] += static_cast<int>(run.z_end - run.z_begin);
+    return out;
+}
+
+const std::string solid_box =
+    R"(<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="0.4" y="0.4" z="0.4" /></drawbox>)";
+const std::string point = R"(<drawpoint x="1.2" y="1.2" z="1.2" />)";
+
+// The numbers are those of GenCase v5.4.354.
+TEST(MkNextAuto, NumbersTheTwelvePartsOfASolidBox)
+{
+    EXPECT_EQ(nodes_of_parts("full", solid_box), (std::map<int, int>{{2, 9},
+                                                                     {4, 9},
+                                                                     {5, 9},
+                                                                     {6, 3},
+                                                                     {7, 6},
+                                                                     {8, 3},
+                                                                     {9, 6},
+                                                                     {10, 15},
+                                                                     {11, 20},
+                                                                     {12, 20},
+                                                                     {13, 25}}));
+}
+
+TEST(MkNextAuto, LeavesOneMkOutAfterABox)
+{
+    EXPECT_EQ(nodes_of_parts("full", solid_box + point).rbegin()->first, 15);
+}
+
+TEST(MkNextAuto, CountsSegmentsOfLinesButNoPoints)
+{
+    const std::string lines =
+        R"(<drawlines><point x="0" y="0" z="0" /><point x="0.5" y="0" z="0" /><point x="0.5" y="0.5" z="0" /></drawlines>)";
+    EXPECT_EQ(nodes_of_parts("full", lines + point + point),
+              (std::map<int, int>{{2, 5}, {3, 6}, {4, 1}}));
+}
+
+} // namespace
+} // namespace fppg
