@@ -56,7 +56,6 @@ public:
     }
 
 private:
-    int mk_bound(std::uint16_t mk) const { return mk - def_.mk_bound_first; }
 
     void set_types()
     {
