@@ -56,7 +56,6 @@ public:
     }
 
 private:
-
     void set_types()
     {
         for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk)
