@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/element.h"
+#include "fppg/fit.h"
 #include "fppg/lattice.h"
 #include "fppg/vec.h"
 
@@ -300,6 +301,25 @@ struct FloatingDef
     std::vector<Element> extra; ///< translationDOF and the like, copied into Case.xml
 };
 
+/// How the particles of a boundary mk are placed on its true surface: `<fppg><bodyfitted>`, or
+/// -fit.
+struct FitSettings
+{
+    int line = 0;                  ///< of the element; 0: from the command line
+    double feature_angle_deg = 30; ///< [0, 180)
+    FitDensity density = FitDensity::Area;
+    std::optional<double> clearance_dp; ///< 0.5 to 1; empty: chosen per body from its volume
+    /// A plate thinner than dp gets one sheet of particles instead of one on each side.
+    bool one_sheet = false;
+};
+
+/// Which boundary mks are body-fitted.
+struct FitDef
+{
+    std::optional<FitSettings> all; ///< for every boundary mk that has none of its own
+    std::vector<std::pair<std::uint16_t, FitSettings>> of_mk; ///< absolute mk; the last one counts
+};
+
 /// A user variable, for `<uservars>`.
 struct UserVariable
 {
@@ -331,6 +351,7 @@ struct CaseDef
     std::vector<DrawOp> ops;           ///< in order of execution
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
+    FitDef fit; ///< empty: every particle stands on the lattice
     std::vector<FloatingDef> floatings;
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
     Element properties;             ///< `<properties>` of the definition, or empty name
@@ -343,13 +364,26 @@ struct CaseDef
     std::vector<std::string> warnings;
 };
 
+/// -fit: which walls are body-fitted.
+enum class FitChoice : std::uint8_t
+{
+    AsCase, ///< those that the case's `<fppg>` block names
+    On,     ///< every boundary mk; those that the block names with their settings
+    Raw,    ///< as On, without relaxation
+    Off,    ///< none, whatever the case says
+};
+
 /// Overrides of the command line.
 struct CaseOptions
 {
+    FitChoice fit = FitChoice::AsCase;
     std::optional<double> dp;                               ///< -dp:
     std::vector<std::pair<std::string, std::string>> evars; ///< -evars:
     std::string case_name;                                  ///< of the output
 };
+
+/// The settings of a boundary mk; null: its particles stand on the lattice.
+const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk);
 
 /// Reads and executes `<path>`.
 ///

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/fitted_walls.h"
 #include "fppg/vec.h"
 
 #include <array>
@@ -56,6 +57,8 @@ struct RunField
 {
     LatticeGrid grid;
     std::vector<std::vector<Run>> slabs; ///< size grid.n[0]
+    /// Walls off the lattice; without any, no run has the wall_zone_bit.
+    FittedWalls walls;
 };
 
 struct CaseDef;

@@ -19,9 +19,15 @@ enum class ParticleType : std::uint8_t
 };
 
 /// `count` lattice nodes of one column in id order, from node (x, y, z) on, upwards in z unless the
-/// block says otherwise.
+/// block says otherwise; or `count` consecutive particles off the lattice.
 struct ParticleRun
 {
+    /// As x: the run is of particles off the lattice, from index y + z * 2^32 of
+    /// CaseParticles::free on. They follow one another upwards whatever the block says.
+    static constexpr std::uint32_t off_lattice = 0xFFFFFFFF;
+    bool is_free() const { return x == off_lattice; }
+    std::uint64_t free_begin() const { return y | static_cast<std::uint64_t>(z) << 32U; }
+
     std::uint32_t x = 0;
     std::uint32_t y = 0;
     std::uint32_t z = 0;
@@ -42,6 +48,18 @@ struct ParticleBlock
     std::vector<ParticleRun> runs; ///< in id order; their counts add up to `count`
     std::string property;          ///< names joined with '+', or empty
     int ref_motion = -1;           ///< moving: index in the motion of Case.xml
+};
+
+/// Particles off the lattice, in id order, one entry each in all arrays.
+struct FreeParticles
+{
+    std::vector<Vec3> positions;
+    std::vector<FitKind> kinds;
+    std::vector<std::array<float, 3>> normals; ///< outward unit normal of the facet; zero: none
+    std::vector<float> distances; ///< metres to the surface it belongs to, negative inside
+    std::vector<float> rhop;      ///< boundary particles: rhop0
+
+    std::size_t size() const { return positions.size(); }
 };
 
 /// What the solver needs of a floating body. SI units.
@@ -77,12 +95,15 @@ struct CaseConstants
 };
 
 /// The particles of a case in id order: fixed, moving, floating, fluid; within a type by mk; within
-/// an mk by x, y, z (or by the order that mkorient asks for). Positions and densities are not
-/// stored: writers make them from the runs, node n at grid.origin + n * grid.dp.
+/// an mk by x, y, z (or by the order that mkorient asks for), those off the lattice among the
+/// nodes. Positions and densities of nodes are not stored: writers make them from the runs, node n
+/// at grid.origin + n * grid.dp.
 struct CaseParticles
 {
     LatticeGrid grid;
     std::vector<ParticleBlock> blocks;
+    FreeParticles free;
+    bool has_walls = false; ///< the case has fitted walls: pictures show kind, normal, distance
     std::uint64_t np = 0;
     std::uint64_t n_fixed = 0;
     std::uint64_t n_moving = 0;

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "fppg/features.h"
+#include "fppg/fit.h"
+#include "fppg/surface_mesh.h"
+#include "fppg/vec.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// A run whose mk has this bit lies in the zone of a fitted wall: its nodes carry no particle, the
+/// wall's own particles stand in for them. They count as nodes of the mk without the bit for
+/// filters and fills. Used only in a field that has walls.
+inline constexpr std::uint16_t wall_zone_bit = 0x8000;
+
+/// What a body is besides its triangles, so that its particles can be put on the exact surface.
+enum class RoundShape : std::uint8_t
+{
+    None,     ///< the triangles are the shape
+    Sphere,   ///< centre p0, radius
+    Cylinder, ///< axis p0 p1, radius; facets of the covers are plane and exact
+};
+
+/// A shape of the case as triangles, in the coordinates of the case.
+struct ShapeMesh
+{
+    TriangleSoup soup;     ///< counter-clockwise from outside
+    bool is_solid = false; ///< the draw fills the inside, not only the surface
+    RoundShape round = RoundShape::None;
+    Vec3 p0;
+    Vec3 p1;
+    double radius = 0;
+};
+
+/// One drawn object whose particles stand on its true surface.
+struct FittedBody
+{
+    int line = 0;         ///< of the draw, in the definition
+    std::string name;     ///< command, and file for a mesh
+    std::uint16_t mk = 0; ///< absolute, as drawn
+    bool is_solid = false;
+    RoundShape round = RoundShape::None;
+    Vec3 p0;
+    Vec3 p1;
+    double radius = 0;
+    SurfaceMesh mesh;
+    MeshReport report;
+    Features features;
+    double clearance_inside = 0;  ///< metres; lattice nodes nearer than this are left out
+    double clearance_outside = 0; ///< the same on the other side
+};
+
+/// Particles of the fitted walls, one entry each in all arrays, in the order of bodies and of
+/// fit_surface() within a body.
+struct WallParticles
+{
+    std::vector<Vec3> positions;
+    std::vector<FitKind> kinds;
+    std::vector<std::uint32_t> bodies; ///< index into FittedWalls::bodies
+    std::vector<std::uint32_t> facets; ///< of that body's mesh
+    std::vector<std::uint16_t> mk;     ///< absolute; a redraw may have changed it
+
+    std::size_t size() const { return positions.size(); }
+};
+
+/// All fitted walls of a case.
+struct FittedWalls
+{
+    std::vector<FittedBody> bodies;
+    WallParticles particles;
+};
+
+} // namespace fppg
