@@ -63,6 +63,7 @@ struct WallParticles
     std::vector<std::uint32_t> bodies; ///< index into FittedWalls::bodies
     std::vector<std::uint32_t> facets; ///< of that body's mesh
     std::vector<std::uint16_t> mk;     ///< absolute; a redraw may have changed it
+    std::vector<char> held;            ///< 1: relaxation leaves it where it is
 
     std::size_t size() const { return positions.size(); }
 };

@@ -11,53 +11,20 @@
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
+#include "lattice/shape_mesh.h"
 #include "lattice/solids.h"
+#include "lattice/wall_painter.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
 #include <map>
-#include <numeric>
 
 namespace fppg
 {
 namespace
 {
-
-/// Drops the nodes that a clip refuses. Along a column the test value is monotone in double too, so
-/// the limit is found by bisection on the test itself.
-void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
-{
-    Spans kept;
-    kept.reserve(spans.size());
-    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-    for (const Span& s : spans)
-    {
-        const double y = grid.origin.y + static_cast<double>(s.y) * grid.dp;
-        const auto keeps = [&](std::uint32_t k)
-        {
-            const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-            return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
-        };
-        const bool first = keeps(s.z_begin);
-        const bool last = keeps(s.z_end - 1);
-        if (first && last)
-            kept.push_back(s);
-        else if (first || last)
-        {
-            std::uint32_t in = first ? s.z_begin : s.z_end - 1;
-            std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
-            while (std::max(in, out) - std::min(in, out) > 1)
-            {
-                const std::uint32_t middle = std::midpoint(in, out);
-                keeps(middle) ? in = middle : out = middle;
-            }
-            kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
-        }
-    }
-    spans.swap(kept);
-}
 
 std::uint64_t node_count(const std::vector<Spans>& nodes)
 {
@@ -71,7 +38,7 @@ class Generator
 {
 public:
     Generator(const CaseDef& def, int threads, LatticeReport& report)
-        : def_(def), threads_(threads), report_(report)
+        : def_(def), threads_(threads), report_(report), walls_(field_, threads)
     {
         field_.grid = def.grid;
         field_.slabs.resize(def.grid.n[0]);
@@ -80,10 +47,14 @@ public:
     void run(const DrawOp& op)
     {
         op_ = &op;
-        std::visit([this](const auto& what) { draw(what); }, op.what);
+        if (!draw_fitted(op)) std::visit([this](const auto& what) { draw(what); }, op.what);
     }
 
-    RunField take() { return std::move(field_); }
+    RunField take()
+    {
+        walls_.finish();
+        return std::move(field_);
+    }
 
 private:
     const DrawState& state() const { return *op_->state; }
@@ -123,12 +94,23 @@ private:
         parallel_for(nodes.size(), threads_, [&](std::size_t x) { paint_slab(x, nodes[x]); });
     }
 
+    /// A redraw with a boundary mk: walls keep their place and take the new mk.
+    void repaint_nodes(const std::vector<Spans>& nodes)
+    {
+        if (!state().draw_points) return;
+        const bool keeps_walls = state().mk.kind == MkKind::Bound;
+        parallel_for(nodes.size(), threads_,
+                     [&](std::size_t x) { paint_slab(x, nodes[x], keeps_walls); });
+    }
+
     /// Stops with a message where the machine would start to swap or kill the process.
-    void paint_slab(std::size_t x, const Spans& spans)
+    void paint_slab(std::size_t x, const Spans& spans, bool keeps_walls = false)
     {
         std::vector<Run>& slab = field_.slabs[x];
         const std::size_t before = slab.size();
+        const Spans zone = walls_.paint_over(x, spans, state().mk.mk, keeps_walls);
         paint(slab, spans, state().mk.mk);
+        if (!zone.empty()) paint(slab, zone, state().mk.mk | wall_zone_bit);
         const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
         if (runs > run_limit_ && runs < UINT64_MAX / 2)
             throw CaseError(
@@ -137,6 +119,69 @@ private:
                     "<{}>: the drawn regions need more memory than this machine has left: {} runs "
                     "of nodes so far; a larger dp or a smaller domain needs less",
                     op_->source.command, runs));
+    }
+
+    /// Draws a shape of a body-fitted mk by its true surface.
+    ///
+    /// returns  false for what stays on the lattice: other mks, points, lines, wires, fills
+    bool draw_fitted(const DrawOp& op)
+    {
+        const FitSettings* settings =
+            state().mk.kind == MkKind::Bound ? fit_settings(def_.fit, state().mk.mk) : nullptr;
+        if (settings == nullptr || state().mode == DrawMode::Wire) return false;
+        const auto* file = std::get_if<MeshFileOp>(&op.what);
+        try
+        {
+            const std::vector<ShapeMesh> shapes =
+                shape_meshes(op, file != nullptr ? &mesh(file->file).soup : nullptr, grid().dp);
+            if (shapes.empty()) return false;
+            for (const ShapeMesh& shape : shapes)
+                if (state().draw_points) add_wall(fit(shape, op, *settings), file);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
+        return true;
+    }
+
+    FittedDraw fit(const ShapeMesh& shape, const DrawOp& op, const FitSettings& settings) const
+    {
+        FittedDraw draw = fit_shape(shape, settings, grid(), state().clips, threads_);
+        draw.body.line = op.source.line;
+        draw.body.name = op.source.command;
+        draw.body.mk = state().mk.mk;
+        return draw;
+    }
+
+    void add_wall(FittedDraw&& draw, const MeshFileOp* file)
+    {
+        report_.triangles += draw.body.report.facets_read;
+        if (file != nullptr)
+        {
+            draw.body.name += " " + file->file;
+            if (file->advanced) keep_depth(draw, *file);
+        }
+        for (const std::string& w : draw.warnings)
+            report_.warnings.push_back(file != nullptr
+                                           ? fmt::format("{}: {}: {}", place(), file->file, w)
+                                           : fmt::format("{}: {}", place(), w));
+        if (draw.particles.size() == 0)
+            report_.warnings.push_back(fmt::format(
+                "{}: no particle of the body-fitted wall lies inside the domain", place()));
+        walls_.add(std::move(draw));
+    }
+
+    /// `advanced`: of the inside, the nodes whose depth is asked for.
+    void keep_depth(FittedDraw& draw, const MeshFileOp& op)
+    {
+        const SlabRegion region = depth_region(moved_soup(op), op, grid(), threads_);
+        parallel_for(draw.volume.size(), threads_,
+                     [&](std::size_t x)
+                     {
+                         draw.volume[x] = intersect(
+                             draw.volume[x], listed(region, static_cast<std::uint32_t>(x), true));
+                     });
     }
 
     void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
@@ -242,6 +287,17 @@ private:
         return meshes_.emplace(file, std::move(read)).first->second;
     }
 
+    TriangleSoup moved_soup(const MeshFileOp& op)
+    {
+        const TriangleSoup& source = mesh(op.file).soup;
+        TriangleSoup moved;
+        moved.vertices.resize(source.vertices.size());
+        parallel_for(
+            moved.vertices.size(), threads_,
+            [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
+        return moved;
+    }
+
     void draw(const MeshFileOp& op)
     {
         const TriangleSoup& source = mesh(op.file).soup;
@@ -257,13 +313,7 @@ private:
             4096);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
-        if (op.advanced || op.fill_inside || op.autofill)
-        {
-            moved.vertices.resize(source.vertices.size());
-            parallel_for(
-                moved.vertices.size(), threads_,
-                [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
-        }
+        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(op);
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
@@ -317,7 +367,7 @@ private:
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
         const std::vector<Spans> filled =
-            flood(field_, seed, fillable_mks(filter, def_.mk_bound_first), box, nullptr, threads_);
+            flood(field_, seed, fillable(filter), box, nullptr, threads_);
 
         const SpanSet inside = inside_spans(soup, grid(), threads_);
         std::vector<Spans> wrong(filled.size());
@@ -376,6 +426,13 @@ private:
                     op_->source.command, columns));
     }
 
+    std::vector<char> fillable(const FillFilter& filter) const
+    {
+        std::vector<char> mks = fillable_mks(filter, def_.mk_bound_first);
+        if (walls_.has_walls()) count_wall_zones(mks);
+        return mks;
+    }
+
     void draw(const FillOp& op)
     {
         NodeBox box = whole_lattice(grid());
@@ -393,8 +450,8 @@ private:
         }
         check_columns(box);
         const Node seed = snap(op.seed, grid());
-        const std::vector<Spans> nodes = flood(
-            field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
+        const std::vector<Spans> nodes =
+            flood(field_, seed, fillable(op.filter), box, mask_used, threads_);
         if (state().draw_points && node_count(nodes) == 0)
             report_.warnings.push_back(
                 fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside "
@@ -407,7 +464,7 @@ private:
     void draw(const RedrawOp& op)
     {
         const NodeBox box = op.region ? node_box(*op.region, false) : whole_lattice(grid());
-        paint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
+        repaint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
     }
 
     void draw(const RedrawNearOp& op)
@@ -415,12 +472,13 @@ private:
         const NodeBox box =
             op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
         for (int i = 0; i < op.times; ++i)
-            paint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
+            repaint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
     }
 
     void draw(const ResetOp&)
     {
         for (auto& slab : field_.slabs) slab.clear();
+        walls_.reset();
     }
 
     void draw(const ShapeOutOp&) {}
@@ -429,6 +487,7 @@ private:
     int threads_;
     LatticeReport& report_;
     RunField field_;
+    WallPainter walls_;
     const DrawOp* op_ = nullptr;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();
