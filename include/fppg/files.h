@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 
 #include <cstdint>
@@ -109,6 +110,15 @@ struct ShapePolygons
 /// Writes shapes as legacy binary VTK: points of all objects in order, then VERTICES, LINES and
 /// POLYGONS (a part that is empty is left out), with CELL_DATA Mk and ObjId (int).
 void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// Writes the feature lines and singular points of all fitted bodies as legacy binary VTK
+/// (POLYDATA, big-endian, POINTS float: the mesh vertices that they use): VERTICES, one a singular
+/// point, then LINES, one polyline a feature line, a closed one ending at its first vertex. Bodies
+/// in their order in both. CELL_DATA Mk (int, absolute), Body (int, index in `walls`), Length
+/// (float, metres; 0 for points). Walls without features give a file without cells.
+///
+/// throws  IoError if the file cannot be written, or from 2,147,483,648 numbers on
+void write_features_vtk(OutputFile& file, const FittedWalls& walls);
 
 /// Numbers as a list of ranges, e.g. "10-11,20"; they are sorted first, repeated ones count once.
 std::string format_ranges(std::vector<int> numbers);

@@ -148,6 +148,7 @@ private:
               [this]
               {
                   CaseOptions case_options;
+                  case_options.fit = options_.fit;
                   case_options.dp = options_.dp;
                   case_options.evars = options_.evars;
                   case_options.case_name = fs::path(options_.output).filename().string();
@@ -297,6 +298,9 @@ private:
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
                             [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
+                  if (options_.save_features && !field_.walls.bodies.empty())
+                      timed("_Features.vtk", "",
+                            [&](OutputFile& f) { write_features_vtk(f, field_.walls); });
                   field_ = {};
                   if (options_.save_bi4)
                       timed(".bi4", "<double>",

@@ -2,6 +2,7 @@
 #include "fppg/error.h"
 
 #include "casedef/attributes.h"
+#include "casedef/fit_block.h"
 #include "casedef/motion.h"
 #include "casedef/program.h"
 #include "casedef/variable_commands.h"
@@ -66,6 +67,7 @@ public:
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
         if (const Element* e = casedef.find_child("vres"))
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+        read_fit(root, read_, options_.fit, def_);
         apply_overrides(def_.casedef);
         for (const Variable& v : variables_.exported())
         {

@@ -196,6 +196,7 @@ const std::vector<BadInput> bad_command_lines{
     arguments("InfiniteDp", {"-dp:inf"}, "-dp: \"inf\" is invalid"),
     arguments("BadDp", {"-dp:0.1m"}, "-dp: \"0.1m\" is invalid"),
     arguments("UnknownOption", {"-sav:all"}, "the option -sav:all is unknown"),
+    arguments("UnknownFit", {"-fit:cooked"}, "-fit: \"cooked\" is invalid, expected -fit, "),
     arguments("UnknownSaveWord", {"-save:all,pictures"}, "-save: \"pictures\" is unknown"),
     arguments("BadThreads", {"-threads:many"}, "-threads: \"many\" is invalid"),
     arguments("NegativeThreads", {"-threads:-1"}, "-threads: -1 is out of range"),

@@ -300,7 +300,7 @@ TEST(ReadCase, IgnoresUnknownAttributesBlocksAndUnderscoredElements)
     CaseText text = test::tank();
     text.mainlist +=
         R"(<_drawteapot /><drawpoint x="0" y="0" z="0" colour="red" /><!-- a comment -->)";
-    text.after_geometry = R"(<fppg><anything /></fppg><someblock a="1" />)";
+    text.after_geometry = R"(<someblock a="1" />)";
     text.lists = R"(<_list /><list name="Unused"><_x /></list>)";
     EXPECT_EQ(read(text).ops.size(), test::tank().mainlist.empty() ? 0u : 3u);
 }
