@@ -80,12 +80,17 @@ enum class VtkSelection
 /// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk. Streamed like write_bi4, with the bytes of
 /// GenCase v5.4.354. Mk is unsigned_char, unsigned_short where a selected mk is above 255.
 ///
+/// Of a case with fitted walls, All and Bound have behind these Kind (int, as FitKind; nodes are
+/// Volume), Normal (3 float; zero for Volume) and Distance (float, metres, negative inside;
+/// distance_of_nodes for nodes).
+///
 /// throws  IoError if the file cannot be written, or from 2,147,483,648 selected particles on
 void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
                          const CaseConstants& constants, VtkSelection selection, int threads);
 
 /// Writes `_MkCells.vtk`: the faces between cells (dp wide, centred on the nodes) of different mk,
-/// merged into rectangles, each drawn 0.001 dp inside its own cell; CELL_DATA Mk (unsigned_short)
+/// merged into rectangles, each drawn 0.001 dp inside its own cell (nodes in the zone of a fitted
+/// wall as those of its mk); CELL_DATA Mk (unsigned_short)
 /// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Between two cells that carry
 /// different mk both faces are drawn. Normals point outwards. A 2-D field is drawn as the areas of
 /// its cells instead, at 0.001 dp above its y. Made from runs: cost grows with the number of runs,

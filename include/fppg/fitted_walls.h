@@ -68,11 +68,24 @@ struct WallParticles
     std::size_t size() const { return positions.size(); }
 };
 
+/// Particles off the lattice near the walls that stand in for lattice nodes, one entry each in all
+/// arrays. The nodes carry the wall_zone_bit on their mk, so that a water column still counts them;
+/// where they were taken out of the field altogether, the column ends below them.
+struct VolumeParticles
+{
+    std::vector<Vec3> positions;
+    std::vector<std::uint16_t> mk; ///< absolute, bound or fluid
+    std::vector<float> distances;  ///< metres to the nearest wall, negative inside
+
+    std::size_t size() const { return positions.size(); }
+};
+
 /// All fitted walls of a case.
 struct FittedWalls
 {
     std::vector<FittedBody> bodies;
     WallParticles particles;
+    VolumeParticles volume;
 };
 
 } // namespace fppg

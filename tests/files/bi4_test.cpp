@@ -276,6 +276,24 @@ TEST(WriteBi4, GivesTheSameBytesForAnyNumberOfThreads)
     EXPECT_EQ(rhop[100 * 777 + 90 * 1001 - 1], 1000.0f);
 }
 
+TEST(WriteBi4, HasTheParticlesOffTheLatticeBetweenTheNodes)
+{
+    const CaseParticles particles = walled_particles();
+    const std::string one = bi4_of(particles, small_constants(), 1);
+    EXPECT_TRUE(one == bi4_of(particles, small_constants(), 8));
+    const Bi4Reader file(one);
+    EXPECT_EQ(file.root.number<std::uint64_t>("CaseNmoving"), 4U);
+    const auto pos = file.root.items[0].array<double>(1);
+    ASSERT_EQ(pos.size(), 84U);
+    EXPECT_EQ(pos[3 * 3 + 2], 0.3 + 1 * 0.1);
+    EXPECT_EQ(pos[3 * 4 + 2], 0.41);
+    EXPECT_EQ(pos[3 * 5 + 2], 1.0 / 3);
+    EXPECT_EQ(pos[3 * 6 + 2], 0.3 + 2 * 0.1);
+    const auto rhop = file.root.items[0].array<float>(3);
+    EXPECT_EQ(rhop[5], 999);
+    EXPECT_EQ(rhop[27], 1012);
+}
+
 TEST(WriteBi4, RefusesMoreParticlesThanIds)
 {
     CaseParticles particles;
