@@ -20,15 +20,16 @@ inline constexpr std::uint16_t wall_zone_bit = 0x8000;
 /// What a body is besides its triangles, so that its particles can be put on the exact surface.
 enum class RoundShape : std::uint8_t
 {
-    None,     ///< the triangles are the shape
-    Sphere,   ///< centre p0, radius
-    Cylinder, ///< axis p0 p1, radius; facets of the covers are plane and exact
+    None,      ///< the triangles are the shape
+    Sphere,    ///< centre p0, radius
+    Cylinder,  ///< axis p0 p1, radius; facets of the covers are plane and exact
+    Ellipsoid, ///< foci p0 and p1; `radius` is the sum of the distances to them
 };
 
 /// A shape of the case as triangles, in the coordinates of the case.
 struct ShapeMesh
 {
-    TriangleSoup soup;     ///< counter-clockwise from outside
+    TriangleSoup soup;     ///< counter-clockwise from outside; of a surface, as drawn
     bool is_solid = false; ///< the draw fills the inside, not only the surface
     RoundShape round = RoundShape::None;
     Vec3 p0;
