@@ -1,15 +1,13 @@
 #include "lattice/wall_painter.h"
 
-#include "fppg/error.h"
+#include "fppg/section.h"
 #include "fppg/wall_zone.h"
 
 #include "core/parallel.h"
-#include "lattice/shape_mesh.h"
+#include "lattice/round_mesh.h"
 #include "lattice/snap.h"
 #include "shapes/mesh_query.h"
 #include "shapes/point_grid.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
@@ -140,6 +138,30 @@ bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
     return votes >= 2;
 }
 
+SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& feature_options,
+                            const FitSettings& settings, const LatticeGrid& grid, int threads)
+{
+    FitOptions options;
+    options.dp = grid.dp;
+    options.lattice_origin = grid.origin;
+    options.density = settings.density;
+    return fit_surface(body.mesh, body.features,
+                       place_feature_particles(body.mesh, body.features, feature_options), options,
+                       threads);
+}
+
+/// In 2D the wall is where the surface meets the plane of the particles.
+SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid)
+{
+    SectionOptions options;
+    options.y = grid.origin.y;
+    options.dp = grid.dp;
+    options.feature_angle_deg = settings.feature_angle_deg;
+    SectionParticles section = section_particles(body.mesh, options);
+    return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
+}
+
 } // namespace
 
 FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
@@ -158,23 +180,21 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     feature_options.angle_deg = settings.feature_angle_deg;
     feature_options.dp = grid.dp;
     body.features = find_features(body.mesh, feature_options);
-    FitOptions fit_options;
-    fit_options.dp = grid.dp;
-    fit_options.lattice_origin = grid.origin;
-    fit_options.density = settings.density;
-    SurfaceParticles surface = fit_surface(
-        body.mesh, body.features,
-        place_feature_particles(body.mesh, body.features, feature_options), fit_options, threads);
+    SurfaceParticles surface = grid.is_2d
+                                   ? section_of(body, settings, grid)
+                                   : surface_of(body, feature_options, settings, grid, threads);
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,
-            [&](std::size_t i) { project_to_round(body, surface.positions[i], surface.facets[i]); },
+            [&](std::size_t i)
+            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
             4096);
 
     WallZoneOptions zone_options;
     zone_options.clearance_dp = settings.clearance_dp;
     zone_options.wall_particles = surface.positions.size();
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
+    out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (shape.is_solid && !zone.has_inside)
         out.warnings.push_back(
             "the shape has no inside that could be filled: only its surface has particles");
