@@ -47,7 +47,8 @@ struct SectionParticles
 /// length allows: every point of the section has one within 0.5 dp along it.
 ///
 /// mesh     as take_in_mesh() made it
-/// returns  chains in the order of their first facets; none where the plane misses the mesh
+/// returns  chains in the order of their first facets, those shorter than 1e-6 dp left out;
+///          none where the plane misses the mesh
 /// throws   GeometryError for a dp that is not positive or so small that more than 2^32 - 2
 ///          particles are needed, and for an angle out of range
 /// cost     O(facets + particles log particles)

@@ -286,14 +286,14 @@ bool is_cover(const FittedBody& body, std::uint32_t facet)
            std::fabs(dot(body.mesh.normals[facet], axis_of(body))) > 0.5;
 }
 
-/// Whether a point of a cover lies on a side of its facet that ends the cover.
+/// Whether a point lies on a side of its facet in which a cover or the tube ends.
 bool is_on_rim(const FittedBody& body, const Vec3& position, std::uint32_t facet)
 {
     const SurfaceMesh& mesh = body.mesh;
     for (std::size_t side = 0; side < 3; ++side)
     {
         const std::uint32_t beyond = mesh.neighbours[facet][side];
-        if (beyond != no_index && is_cover(body, beyond)) continue;
+        if (beyond != no_index && is_cover(body, beyond) == is_cover(body, facet)) continue;
         const Vec3& a = mesh.vertices[mesh.facets[facet][side]];
         const Vec3& b = mesh.vertices[mesh.facets[facet][(side + 1) % 3]];
         const double distance = norm(cross(b - a, position - a)) / norm(b - a);
@@ -364,16 +364,21 @@ ShapeMesh ellipsoid_mesh(const Vec3& focus0, const Vec3& focus1, double sum, dou
 void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t facet, bool is_2d)
 {
     if (body.round == RoundShape::None) return;
-    const bool on_cover = is_cover(body, facet);
-    if (on_cover && !is_on_rim(body, position, facet)) return;
+    const bool is_cylinder = body.round == RoundShape::Cylinder;
+    const bool on_rim = is_cylinder && is_on_rim(body, position, facet);
+    if (is_cover(body, facet) && !on_rim) return;
+    // In two dimensions a particle on a rim can move along one line only: in the plane and in that
+    // of the cover.
+    const Vec3 line = is_2d && on_rim ? unit(cross(axis_of(body), Vec3{0, 1, 0})) : Vec3{};
     // Newton's method: the start is nearer than the radius by orders of magnitude, so that a few
-    // steps reach rounding. A step along the axis would leave a cover.
+    // steps reach rounding.
     const double enough = 1e-15 * body.radius;
     for (int step = 0; step < 8; ++step)
     {
         const Level level = level_at(body, position);
         Vec3 way = level.gradient;
         if (is_2d) way.y = 0;
+        if (!(line == Vec3{})) way = line * dot(line, level.gradient);
         const double rate = dot(way, level.gradient);
         // In a plane that only touches the surface there is no way towards it.
         if (std::fabs(level.value) <= enough || !(rate > 1e-6)) return;

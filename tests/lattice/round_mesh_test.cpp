@@ -1,6 +1,7 @@
 #include "lattice/round_mesh.h"
 
 #include "fppg/error.h"
+#include "fppg/section.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +40,7 @@ void expect_closed(const FittedBody& body, double volume, double area)
     EXPECT_LT(r.volume, volume);
     EXPECT_GT(r.volume, volume - area * chord_error_dp * dp);
     EXPECT_LT(r.area, area);
-    EXPECT_NEAR(r.area, area, 0.011 * area);
+    EXPECT_NEAR(r.area, area, 0.015 * area);
 }
 
 /// The greatest depth of facets below the surface, found on a grid of points of every facet.
@@ -217,13 +218,34 @@ TEST(ProjectToRound, KeepsYInTwoDimensions)
     EXPECT_NEAR(norm(p - body.p0), 0.1, 1e-15);
 }
 
+TEST(ProjectToRound, KeepsTheCornersOfASlantedSectionOnTheirCovers)
+{
+    const FittedBody body = body_of(cylinder_mesh({0, -0.02, 0}, {0.2, 0.1, 0.3}, 0.1, all, dp));
+    const SectionParticles section = section_particles(body.mesh, {0.05, dp, 30});
+    const Vec3 u = (body.p1 - body.p0) / norm(body.p1 - body.p0);
+    int corners = 0;
+    for (std::size_t i = 0; i < section.positions.size(); ++i)
+    {
+        Vec3 p = section.positions[i];
+        project_to_round(body, p, section.facets[i], true);
+        EXPECT_EQ(p.y, 0.05);
+        if (section.kinds[i] != FitKind::Corner) continue;
+        ++corners;
+        EXPECT_NEAR(distance_to_axis(body, p), 0.1, 1e-14);
+        EXPECT_NEAR(dot(p - section.positions[i], u), 0, 1e-15);
+    }
+    EXPECT_EQ(corners, 4);
+}
+
 TEST(ExactNormal, IsThatOfTheTrueSurfaceOutward)
 {
     const FittedBody sphere = body_of(sphere_mesh({1, 2, 3}, 0.1, dp));
     const Vec3 way = Vec3{2, -1, 2} / 3;
     for (std::uint32_t f = 0; f < sphere.mesh.facets.size(); ++f)
-        if (dot(sphere.mesh.normals[f], way) > 0.99)
-            EXPECT_NEAR(norm(exact_normal(sphere, sphere.p0 + way * 0.1, f) - way), 0, 1e-13);
+    {
+        if (dot(sphere.mesh.normals[f], way) < 0.99) continue;
+        EXPECT_NEAR(norm(exact_normal(sphere, sphere.p0 + way * 0.1, f) - way), 0, 1e-13);
+    }
     const FittedBody pipe = body_of(cylinder_mesh({}, {0, 0, 0.25}, 0.1, all, dp));
     for (std::uint32_t f = 0; f < pipe.mesh.facets.size(); ++f)
     {
