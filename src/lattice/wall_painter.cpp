@@ -1,5 +1,6 @@
 #include "lattice/wall_painter.h"
 
+#include "fppg/one_sheet.h"
 #include "fppg/section.h"
 #include "fppg/wall_zone.h"
 
@@ -145,9 +146,11 @@ SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& featur
     options.dp = grid.dp;
     options.lattice_origin = grid.origin;
     options.density = settings.density;
-    return fit_surface(body.mesh, body.features,
-                       place_feature_particles(body.mesh, body.features, feature_options), options,
-                       threads);
+    SurfaceParticles particles = fit_surface(
+        body.mesh, body.features,
+        place_feature_particles(body.mesh, body.features, feature_options), options, threads);
+    if (settings.one_sheet) keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
+    return particles;
 }
 
 /// In 2D the wall is where the surface meets the plane of the particles.
