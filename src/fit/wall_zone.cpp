@@ -326,7 +326,8 @@ void trim(SpanSet& set)
     set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(begin);
 }
 
-void warn(const ClosedPart& part, const MeshReport& report, double area, WallZone& zone)
+void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
+          WallZone& zone)
 {
     if (!zone.has_inside)
         zone.warnings.push_back(fmt::format(
@@ -338,6 +339,10 @@ void warn(const ClosedPart& part, const MeshReport& report, double area, WallZon
             "{} of {} facets bound no volume; they are covered as sheets and are not part of the "
             "inside.",
             zone.sheet_facets, part.is_bounding.size()));
+    if (overlap > 1e-6 * zone.body_volume)
+        zone.warnings.push_back(
+            fmt::format("Parts of the mesh overlap; {:.3g} m3, {:.2g} % of the body, count once.",
+                        overlap, 100 * overlap / zone.body_volume));
     if (zone.has_inside && part.hole_area > 0)
         zone.warnings.push_back(
             fmt::format("Holes of {:.3g} m2, {:.2g} % of the surface, count as closed.",
@@ -370,6 +375,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     zone.body_volume = grid.is_2d ? wall.section_area * grid.dp : part.volume;
     zone.has_inside = part.volume > 0 && zone.body_volume > 0;
     SpanSet inside;
+    double overlap = 0;
     if (zone.has_inside)
     {
         InsideVote vote;
@@ -384,8 +390,9 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
         else
             vote = vote_inside(part.soup, wide.grid, threads);
         zone.disputed_nodes = vote.disputed;
-        zone.body_volume -= vote.overlap;
-        if (vote.overlap != 0 || zone.sheet_facets > 0)
+        overlap = vote.overlap;
+        zone.body_volume -= overlap;
+        if (overlap != 0 || zone.sheet_facets > 0)
             zone.wall_share_inside = share_inside(wall, part.soup, part.is_exact, grid.dp, threads);
         inside = std::move(vote.inside);
     }
@@ -465,7 +472,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     }
     double area = 0;
     for (const double a : mesh.areas) area += a;
-    warn(part, report, area, zone);
+    warn(part, report, area, overlap, zone);
     return zone;
 }
 
