@@ -94,7 +94,8 @@ inline TriangleSoup overlapping_spheres()
 
 inline TriangleSoup scaled(const TriangleSoup& soup, double factor)
 {
-    return moved(soup, {.linear = {Vec3{factor, 0, 0}, {0, factor, 0}, {0, 0, factor}}});
+    return moved(soup,
+                 {.linear = {Vec3{factor, 0, 0}, {0, factor, 0}, {0, 0, factor}}, .offset = {}});
 }
 
 inline TriangleSoup sphere_with_cavity()
