@@ -17,9 +17,9 @@ namespace fppg
 /// threads  number of threads; the result does not depend on it
 /// returns  facets in the order of the file; corners are the file's float32 values (ASCII digits
 ///          are rounded once, to float32). Facets with a coordinate that is not finite are left out
-///          with a warning that counts them. Warned of as well: bytes after the last facet, a solid
-///          without `endsolid`, coordinates beyond 1e10, facets without area, a mesh so far from
-///          the origin that float32 blurs it
+///          with a warning that counts them, and so are facets with one beyond 1e10 where others
+///          are without. Warned of as well: bytes after the last facet, a solid without `endsolid`,
+///          facets without area, a mesh so far from the origin that float32 blurs it
 /// throws   IoError if the file cannot be opened; GeometryError if it is no STL, is truncated, has
 ///          a count that does not fit its size, has a facet that is no triangle or a number that
 ///          cannot be read (names the line), or has no facet left

@@ -52,9 +52,11 @@ struct WallZone
 /// left out in the order of their distance (ties spread evenly over space) up to 1.0 dp, until
 ///   inside:  nodes + wall_particles * share = volume / dp^3, and
 ///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles * (1 - share)
-/// or the limits 0.5 and 1.0 dp are reached; the share is one half but for parts that run through
-/// one another and sheets that stand out (wall_share_inside). A mesh without an inside has the
-/// clearance 0.5 on both sides.
+/// or the limits 0.5 and 1.0 dp are reached. (No node is ever kept nearer than 0.5 dp: a plane wall
+/// whose nearest nodes inside stand at t < 0.5 dp lacks t dp of thickness, so the volume error of
+/// a body whose walls all lie so is down to -t dp area / volume.) The share is one half but for
+/// parts that run through one another and sheets that stand out (wall_share_inside). A mesh without
+/// an inside has the clearance 0.5 on both sides.
 ///
 /// Distances are exact to 1e-9 dp. A node at 0.5 dp belongs to the zone, unless it is inside and
 /// the volume asks for it: then its neighbour across the surface, which is no farther from it, is

@@ -23,7 +23,7 @@ namespace
 /// How far nodes are looked for, in dp; more than 1 by what rounding may take.
 constexpr double reach_dp = 1 + 1e-8;
 /// Facets whose box is smaller than this need no cutting to rows, in dp.
-constexpr double small_facet_dp = 1.5;
+constexpr double small_facet_dp = 2.5;
 
 /// Nodes [begin, end) along an axis.
 struct Range

@@ -179,6 +179,40 @@ double share_inside(const Wall& wall, const TriangleSoup& body, bool is_exact, d
     return static_cast<double>(sum) / (2 * samples);
 }
 
+/// What a signed volume of a body without holes counts more than once, less that counted below
+/// zero, metres cubed: along lines in z that are spread evenly over the body's box. The columns of
+/// the lattice would do this worse where facets are parallel to them.
+double measure_overlap(const TriangleSoup& body, int threads)
+{
+    constexpr std::size_t samples = 1 << 15;
+    const MeshQuery query(body, threads);
+    Box3 box;
+    for (const Vec3& p : body.vertices) box.add(p);
+    const Vec3 size = box.max - box.min;
+    std::vector<double> lengths(samples, 0);
+    parallel_for(
+        samples, threads,
+        [&](std::size_t i)
+        {
+            const auto n = static_cast<double>(i);
+            const Vec3 at{box.min.x + size.x * std::fmod(0.5 + 0.7548776662466927 * n, 1.0),
+                          box.min.y + size.y * std::fmod(0.5 + 0.5698402909980532 * n, 1.0),
+                          box.min.z - 0.01 * size.z};
+            int sum = 0;
+            double before = at.z;
+            for (const Crossing& crossing : query.crossings(at, 2))
+            {
+                lengths[i] += (sum - (sum > 0 ? 1 : 0)) * (crossing.position - before);
+                before = crossing.position;
+                sum += crossing.step;
+            }
+        },
+        256);
+    double total = 0;
+    for (const double length : lengths) total += length;
+    return total / samples * size.x * size.y;
+}
+
 /// A number for each node such that those below any bound are spread evenly over any plane of the
 /// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
 std::uint32_t spread(std::int64_t x, std::int64_t y, std::int64_t z)
@@ -326,7 +360,8 @@ void trim(SpanSet& set)
     set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(begin);
 }
 
-void warn(const ClosedPart& part, const MeshReport& report, double area, WallZone& zone)
+void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
+          WallZone& zone)
 {
     if (!zone.has_inside)
         zone.warnings.push_back(fmt::format(
@@ -338,6 +373,10 @@ void warn(const ClosedPart& part, const MeshReport& report, double area, WallZon
             "{} of {} facets bound no volume; they are covered as sheets and are not part of the "
             "inside.",
             zone.sheet_facets, part.is_bounding.size()));
+    if (overlap > 1e-6 * zone.body_volume)
+        zone.warnings.push_back(
+            fmt::format("Parts of the mesh overlap; {:.3g} m3, {:.2g} % of the body, count once.",
+                        overlap, 100 * overlap / zone.body_volume));
     if (zone.has_inside && part.hole_area > 0)
         zone.warnings.push_back(
             fmt::format("Holes of {:.3g} m2, {:.2g} % of the surface, count as closed.",
@@ -370,6 +409,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     zone.body_volume = grid.is_2d ? wall.section_area * grid.dp : part.volume;
     zone.has_inside = part.volume > 0 && zone.body_volume > 0;
     SpanSet inside;
+    double overlap = 0;
     if (zone.has_inside)
     {
         InsideVote vote;
@@ -384,8 +424,11 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
         else
             vote = vote_inside(part.soup, wide.grid, threads);
         zone.disputed_nodes = vote.disputed;
-        zone.body_volume -= vote.overlap;
-        if (vote.overlap != 0 || zone.sheet_facets > 0)
+        overlap = vote.overlap;
+        if (overlap != 0 && part.is_exact && !grid.is_2d)
+            overlap = measure_overlap(part.soup, threads);
+        zone.body_volume -= overlap;
+        if (overlap != 0 || zone.sheet_facets > 0)
             zone.wall_share_inside = share_inside(wall, part.soup, part.is_exact, grid.dp, threads);
         inside = std::move(vote.inside);
     }
@@ -465,7 +508,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     }
     double area = 0;
     for (const double a : mesh.areas) area += a;
-    warn(part, report, area, zone);
+    warn(part, report, area, overlap, zone);
     return zone;
 }
 

@@ -509,13 +509,16 @@ FacetCounts count_facets(const TriangleSoup& soup, int threads)
     return total;
 }
 
-void leave_out_not_finite(TriangleSoup& soup)
+/// Leaves out facets with a coordinate that is not finite, or larger than `limit`.
+void leave_out_beyond(double limit, TriangleSoup& soup)
 {
+    const auto is_good = [limit](const Vec3& p)
+    { return std::abs(p.x) <= limit && std::abs(p.y) <= limit && std::abs(p.z) <= limit; };
     std::size_t kept = 0;
     for (std::size_t i = 0; i < soup.size(); ++i)
     {
         const Vec3* const corners = &soup.vertices[3 * i];
-        if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2])) continue;
+        if (!std::all_of(corners, corners + 3, is_good)) continue;
         std::copy(corners, corners + 3, &soup.vertices[3 * kept]);
         ++kept;
     }
@@ -558,17 +561,24 @@ void check_facets(MeshFile& mesh, const std::string& path, int threads)
             "{}: each of its {} facets has a coordinate that is not finite", path, all));
     if (counts.not_finite > 0)
     {
-        leave_out_not_finite(mesh.soup);
+        leave_out_beyond(std::numeric_limits<double>::max(), mesh.soup);
         mesh.warnings.push_back(fmt::format(
             "{} a coordinate that is not finite and {} left out; the first is facet {}.",
             facets_have(counts.not_finite, all), counts.not_finite == 1 ? "is" : "are",
             counts.first_not_finite + 1));
     }
     if (counts.far > 0)
-        mesh.warnings.push_back(
-            fmt::format("{} a coordinate beyond {:.0e}, most likely a damaged number; the first is "
-                        "facet {}.",
-                        facets_have(counts.far, all), huge_coordinate, counts.first_far + 1));
+    {
+        const bool is_damage = counts.far + counts.not_finite < all;
+        if (is_damage) leave_out_beyond(huge_coordinate, mesh.soup);
+        mesh.warnings.push_back(fmt::format(
+            "{} a coordinate beyond {:.0e}, most likely a damaged number{}; the first is facet {}.",
+            facets_have(counts.far, all), huge_coordinate,
+            !is_damage        ? ""
+            : counts.far == 1 ? ", and is left out"
+                              : ", and are left out",
+            counts.first_far + 1));
+    }
     if (counts.without_area > 0)
         mesh.warnings.push_back(fmt::format("{} no area; the first is facet {}.",
                                             facets_have(counts.without_area, all),
