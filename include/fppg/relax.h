@@ -58,13 +58,16 @@ struct RelaxSurfaceReport
 /// Where points of the surface are farther than 0.74 dp from all particles, particles are put in;
 /// those nearer than 0.7 dp to another are taken out.
 ///
-/// A pair counts as on two sheets (the sides of a thin plate) where their normals oppose by more
-/// than 120 degrees and the line between them runs mostly along the normal.
+/// As in fit_surface(), normals more than 120 degrees apart are of two sheets (the sides of a thin
+/// plate), which do not push each other; an edge or corner particle has the mean normal of its
+/// facets.
 ///
 /// bodies     with mesh and features; the particles name them
 /// particles  by body; those of a body keep their order, and new ones follow at its end with the mk
 ///            of the particle nearest to them
-/// held       empty, or one a particle: not 0 holds it still. Kept in step with the particles
+/// held       empty, or one a particle: not 0 holds it still. Kept in step with the particles; a
+/// new
+///            one next to a held surface particle is held
 /// threads    number of threads; the result does not depend on it
 /// throws     GeometryError for a dp or h out of range; what on_progress throws
 /// source     FPPG paper, "Interparticle force": equation 15 with equal target pressures and

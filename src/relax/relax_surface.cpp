@@ -109,7 +109,7 @@ public:
             std::sort(own.begin(), own.end(), comes_before);
             for (const LayerParticle& p : own)
             {
-                const bool is_fixed = p.kind != FitKind::Surface || !p.is_moving;
+                const bool is_fixed = !p.is_moving && !p.is_new;
                 const bool has_source = p.source != no_index;
                 particles.positions.push_back(is_fixed ? given.positions[p.source]
                                                        : p.place.position);
@@ -118,7 +118,8 @@ public:
                 particles.facets.push_back(is_fixed ? given.facets[p.source]
                                                     : layers_[l].mesh_facet(p.place.facet));
                 particles.mk.push_back(has_source ? given.mk[p.source] : bodies_[body].mk);
-                if (!given_held.empty()) held.push_back(p.is_new ? 0 : given_held[p.source]);
+                if (!given_held.empty())
+                    held.push_back(p.is_new ? !p.is_moving : given_held[p.source]);
             }
         }
     }

@@ -19,10 +19,10 @@ constexpr double inside_border = 1e-10;
 /// Particles that one thread takes at a time.
 constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
 
-// Two particles are on the two sides of a thin plate where normals oppose this much and the line
-// between them runs this much along the normal.
+/// Particles whose normals oppose by more than 120 degrees are on two sheets, as in fitting: were
+/// only those right behind one another left out, the two sides of a thin plate would thin and fill
+/// each other without end.
 constexpr float opposing = -0.5f;
-constexpr float along_normal = 0.6f;
 
 Vec3 vector_at(const PointArrays& v, std::size_t i)
 {
@@ -161,12 +161,7 @@ void SurfaceLayer::build_list()
     {
         const float cosine =
             normals.x[i] * normals.x[j] + normals.y[i] * normals.y[j] + normals.z[i] * normals.z[j];
-        if (cosine >= opposing) return true;
-        const float dx = points_.x[j] - points_.x[i];
-        const float dy = points_.y[j] - points_.y[i];
-        const float dz = points_.z[j] - points_.z[i];
-        const float off = normals.x[i] * dx + normals.y[i] * dy + normals.z[i] * dz;
-        return off * off <= along_normal * along_normal * (dx * dx + dy * dy + dz * dz);
+        return cosine >= opposing;
     };
     list_.build(
         points_, threads_, [&](std::uint32_t i) { return particles_[i].is_moving; }, is_own_sheet);
@@ -400,7 +395,8 @@ std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec
     return count;
 }
 
-/// New particles take over the mk of the given particle that is nearest to them.
+/// New particles take after the given particle that is nearest to them: its mk, and whether it is
+/// held, or those that fill a gap in a held row would leave it.
 void SurfaceLayer::name_sources()
 {
     for (std::size_t row = 0; row < list_.rows(); ++row)
@@ -408,13 +404,17 @@ void SurfaceLayer::name_sources()
         const std::uint32_t i = list_.point(row);
         if (particles_[i].source != no_index) continue;
         double best = std::numeric_limits<double>::infinity();
+        std::uint32_t nearest = i;
         for (const std::uint32_t j : list_.neighbours(row))
         {
             const Vec3 d = vector_at(points_, j) - vector_at(points_, i);
             if (particles_[j].source == no_index || dot(d, d) >= best) continue;
             best = dot(d, d);
-            particles_[i].source = particles_[j].source;
+            nearest = j;
         }
+        particles_[i].source = particles_[nearest].source;
+        if (particles_[nearest].kind == FitKind::Surface)
+            particles_[i].is_moving = particles_[nearest].is_moving;
     }
 }
 
