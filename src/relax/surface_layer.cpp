@@ -19,6 +19,8 @@ constexpr double inside_border = 1e-10;
 /// Particles that one thread takes at a time.
 constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
 
+constexpr std::size_t prefetch_ahead = 8;
+
 /// Particles whose normals oppose by more than 120 degrees are on two sheets, as in fitting: were
 /// only those right behind one another left out, the two sides of a thin plate would thin and fill
 /// each other without end.
@@ -83,6 +85,65 @@ FeatureParticle feature_at(const FittedBody& body, FitKind kind, const SurfacePl
         particle.edge = mesh.facet_edges[place.facet][0];
     return particle;
 }
+
+/// The Voronoi cell of the origin in a plane, cut by one neighbour after another.
+class VoronoiCell
+{
+public:
+    explicit VoronoiCell(float half_side)
+        : x_{-half_side, half_side, half_side, -half_side},
+          y_{-half_side, -half_side, half_side, half_side}
+    {
+    }
+
+    bool is_within(float radius) const
+    {
+        float farthest = 0;
+        for (std::size_t k = 0; k < count_; ++k)
+            farthest = std::max(farthest, x_[k] * x_[k] + y_[k] * y_[k]);
+        return farthest <= radius * radius;
+    }
+
+    /// Keeps what is nearer to the origin than to a point over (x, y) whose distance has the square
+    /// `squared`.
+    void cut(float x, float y, float squared)
+    {
+        std::array<float, capacity> excess;
+        bool is_cut = false;
+        for (std::size_t k = 0; k < count_; ++k)
+        {
+            excess[k] = x_[k] * x + y_[k] * y - 0.5f * squared;
+            is_cut |= excess[k] > 0;
+        }
+        if (!is_cut || count_ + 2 > capacity) return;
+        std::array<float, capacity> xs;
+        std::array<float, capacity> ys;
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < count_; ++k)
+        {
+            const std::size_t next = k + 1 == count_ ? 0 : k + 1;
+            if (excess[k] <= 0)
+            {
+                xs[n] = x_[k];
+                ys[n++] = y_[k];
+            }
+            if ((excess[k] > 0) == (excess[next] > 0)) continue;
+            const float t = excess[k] / (excess[k] - excess[next]);
+            xs[n] = x_[k] + t * (x_[next] - x_[k]);
+            ys[n++] = y_[k] + t * (y_[next] - y_[k]);
+        }
+        x_ = xs;
+        y_ = ys;
+        count_ = n;
+    }
+
+private:
+    /// A convex polygon gains at most one corner a cut; a cell that has too many is left too wide.
+    static constexpr std::size_t capacity = 24;
+    std::array<float, capacity> x_;
+    std::array<float, capacity> y_;
+    std::size_t count_ = 4;
+};
 
 Vec3 middle_of(const SurfaceMesh& mesh)
 {
@@ -229,6 +290,14 @@ bool SurfaceLayer::move(std::size_t i, bool is_restart)
     return true;
 }
 
+/// Facets lie in the order of the file, which need not be one in space.
+void SurfaceLayer::prefetch_facet(std::size_t i) const
+{
+    const char* facet = reinterpret_cast<const char*>(&work_.facets[particles_[i].place.facet]);
+    __builtin_prefetch(facet);
+    __builtin_prefetch(facet + 64);
+}
+
 double SurfaceLayer::step(bool is_restart)
 {
     struct Outcome
@@ -243,6 +312,7 @@ double SurfaceLayer::step(bool is_restart)
                      const std::size_t end = std::min((c + 1) * chunk_size, particles_.size());
                      for (std::size_t i = c * chunk_size; i < end; ++i)
                      {
+                         if (i + prefetch_ahead < end) prefetch_facet(i + prefetch_ahead);
                          if (!particles_[i].is_moving) continue;
                          if (!move(i, is_restart))
                              outcomes[c].stuck.push_back(static_cast<std::uint32_t>(i));
@@ -354,12 +424,51 @@ std::size_t SurfaceLayer::thin(double least)
     return count;
 }
 
+/// Per particle whether its Voronoi cell reaches farther than a radius, in dp, or may do so.
+std::vector<char> SurfaceLayer::find_near_holes(float radius)
+{
+    if (!is_listed_ || list_.is_outdated(points_, threads_)) build_list();
+    // The cell is taken in the plane of the facet and in float: a little room for both.
+    const float limit = 0.99f * radius;
+    std::vector<char> is_near_hole(particles_.size(), 1);
+    parallel_for(
+        list_.rows(), threads_,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list_.point(row);
+            if (!particles_[i].is_moving) return;
+            const WorkFacet& facet = work_.facets[particles_[i].place.facet];
+            const Vec3 side = facet.corners[1] - facet.corners[0];
+            const Vec3 x_axis = side / norm(side);
+            const Vec3 y_axis = cross(facet.normal, x_axis);
+            VoronoiCell cell(1.3f);
+            // The nearest first, after which there is mostly nothing left to cut.
+            for (const bool is_close : {true, false})
+            {
+                for (const std::uint32_t j : list_.neighbours(row))
+                {
+                    const Vec3 d = vector_at(points_, j) - vector_at(points_, i);
+                    const auto squared = static_cast<float>(dot(d, d));
+                    if ((squared < 1.7f) != is_close) continue;
+                    cell.cut(static_cast<float>(dot(d, x_axis)), static_cast<float>(dot(d, y_axis)),
+                             squared);
+                }
+                if (!cell.is_within(limit)) continue;
+                is_near_hole[i] = 0;
+                return;
+            }
+        },
+        chunk_size);
+    return is_near_hole;
+}
+
 std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec3&)>& may_fill)
 {
     FillState state{work_, *charts_, sites_, dp_, std::vector<ChartParticles>(charts_->size())};
     state.hole_radius = radius;
     state.may_fill = may_fill;
     state.share_out_features();
+    const std::vector<char> is_near_hole = find_near_holes(static_cast<float>(radius));
     for (std::uint32_t i = 0; i < particles_.size(); ++i)
     {
         const LayerParticle& p = particles_[i];
@@ -367,7 +476,7 @@ std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec
         SurfaceSite site;
         site.position = p.place.position;
         site.facet = p.place.facet;
-        site.is_irregular = true;
+        site.is_irregular = is_near_hole[i];
         site.is_at_seam = charts_->near_point(site.position).size() > 1;
         state.particles[charts_->of_facet(site.facet)].sites.push_back(site);
     }

@@ -66,11 +66,13 @@ private:
     void sort();
     void build_list();
     bool move(std::size_t i, bool is_restart);
+    void prefetch_facet(std::size_t i) const;
     Vec3 intended_step(std::size_t i, bool is_restart) const;
     void project(std::size_t i, bool is_restart);
     void find_patches();
     Vec3 normal_of(const LayerParticle& particle) const;
     void accept(std::size_t i, const SurfacePlace& place);
+    std::vector<char> find_near_holes(float radius);
     void name_sources();
     Vec3 local(const Vec3& position) const { return (position - origin_) / dp_; }
 
