@@ -160,7 +160,7 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
       dp_(dp),
       threads_(threads),
       work_(make_work_mesh(body.mesh, body.features, longest_chart_side * dp)),
-      charts_(std::make_unique<Charts>(work_, dp)),
+      charts_(work_, dp),
       forces_of_(static_cast<float>(h)),
       step_over_force_(static_cast<float>(1 / stiffest_mode(h))),
       origin_(middle_of(body.mesh)),
@@ -217,7 +217,12 @@ void SurfaceLayer::build_list()
     normals.resize(particles_.size());
     parallel_for(
         particles_.size(), threads_,
-        [&](std::size_t i) { set_vector(normals, i, normal_of(particles_[i])); }, chunk_size);
+        [&](std::size_t i)
+        {
+            if (i + prefetch_ahead < particles_.size()) prefetch_facet(i + prefetch_ahead);
+            set_vector(normals, i, normal_of(particles_[i]));
+        },
+        chunk_size);
     const auto is_own_sheet = [&](std::uint32_t i, std::uint32_t j)
     {
         const float cosine =
@@ -464,11 +469,16 @@ std::vector<char> SurfaceLayer::find_near_holes(float radius)
 
 std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec3&)>& may_fill)
 {
-    FillState state{work_, *charts_, sites_, dp_, std::vector<ChartParticles>(charts_->size())};
+    FillState state{work_, charts_, sites_, dp_, std::vector<ChartParticles>(charts_.size())};
     state.hole_radius = radius;
     state.may_fill = may_fill;
     state.share_out_features();
     const std::vector<char> is_near_hole = find_near_holes(static_cast<float>(radius));
+    std::vector<std::size_t> given(charts_.size(), 0);
+    for (const LayerParticle& p : particles_)
+        if (p.kind == FitKind::Surface) ++given[charts_.of_facet(p.place.facet)];
+    for (std::size_t c = 0; c < given.size(); ++c)
+        state.particles[c].sites.reserve(given[c] + given[c] / 16);
     for (std::uint32_t i = 0; i < particles_.size(); ++i)
     {
         const LayerParticle& p = particles_[i];
@@ -477,11 +487,9 @@ std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec
         site.position = p.place.position;
         site.facet = p.place.facet;
         site.is_irregular = is_near_hole[i];
-        site.is_at_seam = charts_->near_point(site.position).size() > 1;
-        state.particles[charts_->of_facet(site.facet)].sites.push_back(site);
+        site.is_at_seam = charts_.near_point(site.position).size() > 1;
+        state.particles[charts_.of_facet(site.facet)].sites.push_back(site);
     }
-    std::vector<std::size_t> given(charts_->size());
-    for (std::size_t c = 0; c < given.size(); ++c) given[c] = state.particles[c].sites.size();
     for_each_chart(state, threads_,
                    [](ChartFiller& filler, std::uint32_t c) { filler.fill_holes(c); });
     std::size_t count = 0;

@@ -80,7 +80,7 @@ private:
     double dp_;
     int threads_;
     WorkMesh work_;
-    std::unique_ptr<Charts> charts_;
+    Charts charts_;
     std::vector<FeatureSite> sites_;
     SurfaceForces forces_of_;
     float step_over_force_;

@@ -406,6 +406,26 @@ TEST(RelaxSurface, TakesParticlesOfARoundShapeToTheFacets)
     for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
 }
 
+TEST(RelaxSurface, CrossesAnyNumberOfNarrowFacets)
+{
+    // A sheet of strips so narrow that a step leads over more facets than a walk may cross.
+    TriangleSoup sheet;
+    constexpr int strips = 6000;
+    for (int i = 0; i < strips; ++i)
+    {
+        const double a = static_cast<double>(i) / strips;
+        const double b = static_cast<double>(i + 1) / strips;
+        add_quad(sheet, {a, 0, 0}, {b, 0, 0}, {b, 1, 0}, {a, 1, 0});
+    }
+    Walls walls(sheet, 0.1);
+    const RelaxSurfaceReport report = walls.relax();
+    EXPECT_GT(report.projected, 0u);
+    EXPECT_EQ(report.returned, 0u);
+    EXPECT_LT(report.after.spacing_deviation, 0.06);
+    EXPECT_LE(farthest_point(walls), 0.75);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
+}
+
 TEST(RelaxSurface, RefusesLengthsOutOfRange)
 {
     Walls walls(sphere(2), 0.3);
