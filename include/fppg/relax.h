@@ -28,8 +28,9 @@ struct RelaxSurfaceOptions
     double h = 0.8;
     int iterations = 0;       ///< exactly so many; 0: until the spacing no longer improves
     int max_iterations = 100; ///< where the number is not fixed
-    /// It no longer improves when the deviation falls by less than this in 10 iterations.
-    double tolerance = 5e-4;
+    /// It no longer improves when its deviation falls by less than this in 30 iterations; not
+    /// judged before 60.
+    double tolerance = 1e-3;
     /// Called after every iteration. False ends the relaxation, and the state reached is kept;
     /// what it throws is passed on, and the particles stay as they were given.
     std::function<bool(const RelaxProgress&)> on_progress = {};

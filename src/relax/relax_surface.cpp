@@ -24,9 +24,12 @@ constexpr double last_hole_radius = 0.735;
 constexpr double least_distance = 0.70;
 constexpr double last_least_distance = 0.62;
 
-/// Iterations over which an improvement is judged, and before which none ends the relaxation.
-constexpr int judged_iterations = 10;
-constexpr int first_judged = 30;
+/// Iterations over which an improvement is judged: two renewals and what follows them.
+constexpr int judged_iterations = 30;
+/// Before this the first renewals, which fill most holes, hide what the rest improves.
+constexpr int first_judged = 60;
+/// Iterations in which the spacing recovers from a renewal.
+constexpr int recovery = 14;
 
 std::vector<std::vector<std::uint32_t>> split_by_body(const WallParticles& particles,
                                                       std::size_t bodies)
@@ -139,18 +142,16 @@ private:
         return key(a) < key(b);
     }
 
-    static bool is_renewal_near(int iteration)
-    {
-        return std::any_of(renewals.begin(), renewals.end(),
-                           [&](int r) { return iteration >= r && iteration < r + quiet_end; });
-    }
-
+    /// Judged when the last renewal is well past: each makes the spacing worse for a while.
     bool is_settled(const std::vector<double>& deviations) const
     {
         const auto now = static_cast<int>(deviations.size()) - 1;
-        if (now < first_judged || is_renewal_near(now)) return false;
+        if (now < first_judged) return false;
+        const bool is_recovering =
+            std::any_of(renewals.begin(), renewals.end(),
+                        [&](int r) { return now >= r && now < r + recovery; });
         const double before = deviations[deviations.size() - 1 - judged_iterations];
-        return before - deviations.back() < options_.tolerance;
+        return !is_recovering && before - deviations.back() < options_.tolerance;
     }
 
     LayerState look_around()

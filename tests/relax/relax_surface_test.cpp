@@ -313,6 +313,19 @@ TEST(RelaxSurface, KeepsAWholeStateWhenToldToStop)
     for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
 }
 
+TEST(RelaxSurface, EndsWhenTheSpacingNoLongerImproves)
+{
+    Walls until_settled(sphere(4), 0.05);
+    Walls not_long(sphere(4), 0.05);
+    Walls exact(sphere(4), 0.05);
+    until_settled.options.tolerance = 1; // no improvement is enough
+    not_long.options.max_iterations = 7;
+    exact.options.iterations = 13;
+    EXPECT_LT(until_settled.relax().after.iteration, 80);
+    EXPECT_EQ(not_long.relax().after.iteration, 7);
+    EXPECT_EQ(exact.relax().after.iteration, 13);
+}
+
 TEST(RelaxSurface, LeavesParticlesAsTheyWereWhenTheCallbackThrows)
 {
     Walls walls(sphere(3), 0.1);
