@@ -17,6 +17,9 @@ struct WallZoneOptions
     /// for each side so that nodes and half of the wall's particles make up its volume.
     std::optional<double> clearance_dp;
     std::uint64_t wall_particles = 0; ///< on this surface, one dp^2 each
+    /// The nodes of `volume` will be drawn: they stop fills themselves, and may stay from 0.4 dp on
+    /// where the volume asks for them.
+    bool is_solid = false;
 };
 
 /// The lattice nodes around a fitted wall.

@@ -213,6 +213,9 @@ double measure_overlap(const TriangleSoup& body, int threads)
     return total / samples * size.x * size.y;
 }
 
+/// No node of a solid is nearer to its surface than this, 0.4 dp.
+constexpr std::uint32_t least_distance = distance_units / 5 * 2;
+
 /// A number for each node such that those below any bound are spread evenly over any plane of the
 /// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
 std::uint32_t spread(std::int64_t x, std::int64_t y, std::int64_t z)
@@ -271,7 +274,8 @@ public:
     {
         const auto distance =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(below_ >> 32, distance_units));
-        return std::max(distance, half_dp) / static_cast<double>(distance_units);
+        return std::max(distance, std::min(always_below_, half_dp)) /
+               static_cast<double>(distance_units);
     }
 
 private:
@@ -446,7 +450,8 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
                       node.z + wide.offset[2]);
     };
 
-    Side within(half_dp), beyond(half_dp + 1);
+    // The nodes of a solid stop a fill themselves.
+    Side within(options.is_solid ? least_distance : half_dp), beyond(half_dp + 1);
     if (options.clearance_dp)
     {
         // Nodes at 0.5 dp inside are in the zone as well: no volume asks for them.

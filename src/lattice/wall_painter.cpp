@@ -196,6 +196,7 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     WallZoneOptions zone_options;
     zone_options.clearance_dp = settings.clearance_dp;
     zone_options.wall_particles = surface.positions.size();
+    zone_options.is_solid = shape.is_solid;
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (shape.is_solid && !zone.has_inside)
