@@ -87,6 +87,10 @@ struct FittedWalls
     std::vector<FittedBody> bodies;
     WallParticles particles;
     VolumeParticles volume;
+    /// Where particles of a body were cut, by a later draw, a clip, the domain or as a second
+    /// sheet, and their bodies: no particle may be put there again.
+    std::vector<Vec3> cut;
+    std::vector<std::uint32_t> cut_bodies;
 };
 
 } // namespace fppg

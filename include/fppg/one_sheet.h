@@ -4,7 +4,7 @@
 #include "fppg/fit.h"
 #include "fppg/surface_mesh.h"
 
-#include <cstdint>
+#include <vector>
 
 namespace fppg
 {
@@ -17,9 +17,9 @@ namespace fppg
 ///
 /// particles  as fit_surface() made them; those of the second sheet are taken out, the order stays
 /// dp         metres, above 0
-/// returns    how many were taken out
+/// returns    the places of those taken out
 /// cost       O(n)
-std::uint64_t keep_one_sheet(const SurfaceMesh& mesh, const Features& features, double dp,
-                             SurfaceParticles& particles, int threads);
+std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& features, double dp,
+                                 SurfaceParticles& particles, int threads);
 
 } // namespace fppg

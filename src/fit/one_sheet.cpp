@@ -57,8 +57,8 @@ SmoothParts smooth_parts(const SurfaceMesh& mesh, const Features& features)
 
 } // namespace
 
-std::uint64_t keep_one_sheet(const SurfaceMesh& mesh, const Features& features, double dp,
-                             SurfaceParticles& particles, int threads)
+std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& features, double dp,
+                                 SurfaceParticles& particles, int threads)
 {
     const std::size_t n = particles.positions.size();
     const SmoothParts parts = smooth_parts(mesh, features);
@@ -108,7 +108,7 @@ std::uint64_t keep_one_sheet(const SurfaceMesh& mesh, const Features& features, 
     for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         if (is_winner[parts.of_facet[f]])
             for (const std::uint32_t v : mesh.facets[f]) sheet.vertices.push_back(mesh.vertices[v]);
-    if (sheet.vertices.empty()) return 0;
+    if (sheet.vertices.empty()) return {};
     const MeshQuery query(std::move(sheet), threads);
     std::vector<char> is_rim(n, 0);
     parallel_for(
@@ -121,10 +121,15 @@ std::uint64_t keep_one_sheet(const SurfaceMesh& mesh, const Features& features, 
         },
         1024);
 
+    std::vector<Vec3> out;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i)
     {
-        if (is_taken[i] || is_rim[i]) continue;
+        if (is_taken[i] || is_rim[i])
+        {
+            out.push_back(particles.positions[i]);
+            continue;
+        }
         particles.positions[kept] = particles.positions[i];
         particles.kinds[kept] = particles.kinds[i];
         particles.facets[kept] = particles.facets[i];
@@ -133,7 +138,7 @@ std::uint64_t keep_one_sheet(const SurfaceMesh& mesh, const Features& features, 
     particles.positions.resize(kept);
     particles.kinds.resize(kept);
     particles.facets.resize(kept);
-    return n - kept;
+    return out;
 }
 
 } // namespace fppg

@@ -140,7 +140,8 @@ bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
 }
 
 SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& feature_options,
-                            const FitSettings& settings, const LatticeGrid& grid, int threads)
+                            const FitSettings& settings, const LatticeGrid& grid, int threads,
+                            std::vector<Vec3>& cut)
 {
     FitOptions options;
     options.dp = grid.dp;
@@ -149,7 +150,8 @@ SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& featur
     SurfaceParticles particles = fit_surface(
         body.mesh, body.features,
         place_feature_particles(body.mesh, body.features, feature_options), options, threads);
-    if (settings.one_sheet) keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
+    if (settings.one_sheet)
+        cut = keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
     return particles;
 }
 
@@ -183,9 +185,9 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     feature_options.angle_deg = settings.feature_angle_deg;
     feature_options.dp = grid.dp;
     body.features = find_features(body.mesh, feature_options);
-    SurfaceParticles surface = grid.is_2d
-                                   ? section_of(body, settings, grid)
-                                   : surface_of(body, feature_options, settings, grid, threads);
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid)
+                   : surface_of(body, feature_options, settings, grid, threads, out.cut);
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,
@@ -232,7 +234,11 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     particles.facets.reserve(kept);
     for (std::size_t i = 0; i < n; ++i)
     {
-        if (!is_kept[i]) continue;
+        if (!is_kept[i])
+        {
+            out.cut.push_back(surface.positions[i]);
+            continue;
+        }
         particles.positions.push_back(surface.positions[i]);
         particles.kinds.push_back(surface.kinds[i]);
         particles.facets.push_back(surface.facets[i]);
@@ -289,6 +295,8 @@ void WallPainter::add(FittedDraw&& draw)
         draw.particles.mk[i] = mk;
         append(walls.particles, draw.particles, i);
     }
+    walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
+    walls.cut_bodies.resize(walls.cut.size(), body);
     is_cut_.resize(walls.particles.size(), 0);
     anchor(first, draw.zone);
 }
@@ -397,37 +405,35 @@ void WallPainter::reset()
 
 void WallPainter::finish()
 {
-    if (std::none_of(is_cut_.begin(), is_cut_.end(), [](char c) { return c != 0; })) return;
-    WallParticles& all = field_->walls.particles;
-    const double reach = held_distance_dp * field_->grid.dp;
-    std::size_t cut_count = 0;
-    for (const char c : is_cut_) cut_count += c != 0;
-    PointGrid cut(reach, cut_count);
-    std::vector<std::uint32_t> body_of_cut;
+    FittedWalls& walls = field_->walls;
+    WallParticles& all = walls.particles;
     for (std::size_t i = 0; i < all.size(); ++i)
     {
         if (!is_cut_[i]) continue;
-        cut.add(all.positions[i]);
-        body_of_cut.push_back(all.bodies[i]);
+        walls.cut.push_back(all.positions[i]);
+        walls.cut_bodies.push_back(all.bodies[i]);
     }
-    parallel_for(
-        all.size(), threads_,
-        [&](std::size_t i)
-        {
-            if (is_cut_[i]) return;
-            cut.for_each_near(all.positions[i], reach,
-                              [&](std::uint32_t c, double)
-                              {
-                                  if (body_of_cut[c] == all.bodies[i]) all.held[i] = 1;
-                              });
-        },
-        1024);
     WallParticles left;
     for (std::size_t i = 0; i < all.size(); ++i)
         if (!is_cut_[i]) append(left, all, i);
     all = std::move(left);
-    is_cut_.assign(all.size(), 0);
+    is_cut_.clear();
     anchors_.clear();
+    if (walls.cut.empty()) return;
+    const double reach = held_distance_dp * field_->grid.dp;
+    PointGrid cut(reach, walls.cut.size());
+    for (const Vec3& p : walls.cut) cut.add(p);
+    parallel_for(
+        all.size(), threads_,
+        [&](std::size_t i)
+        {
+            cut.for_each_near(all.positions[i], reach,
+                              [&](std::uint32_t c, double)
+                              {
+                                  if (walls.cut_bodies[c] == all.bodies[i]) all.held[i] = 1;
+                              });
+        },
+        1024);
 }
 
 } // namespace fppg

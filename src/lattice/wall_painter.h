@@ -17,6 +17,7 @@ struct FittedDraw
 {
     FittedBody body;
     WallParticles particles;   ///< of this body only; `bodies` is 0
+    std::vector<Vec3> cut;     ///< places of particles that were left out
     std::vector<Spans> volume; ///< one entry a slab of the lattice
     std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
     std::vector<std::string> warnings; ///< without the place of the draw

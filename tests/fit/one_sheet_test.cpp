@@ -37,12 +37,12 @@ struct Fitted
         fit.dp = dp;
         particles =
             fit_surface(mesh, features, place_feature_particles(mesh, features, options), fit, 1);
-        taken = keep_one_sheet(mesh, features, dp, particles, threads);
+        taken = keep_one_sheet(mesh, features, dp, particles, threads).size();
     }
     SurfaceMesh mesh;
     Features features;
     SurfaceParticles particles;
-    std::uint64_t taken = 0;
+    std::size_t taken = 0;
 };
 
 TEST(OneSheet, OfAThinPlateIsAllThatStays)
