@@ -37,18 +37,4 @@ ShapeMesh cylinder_mesh(const Vec3& p0, const Vec3& p1, double radius,
 /// returns  no facet if `sum` is not above the distance of the foci: nothing lies inside
 ShapeMesh ellipsoid_mesh(const Vec3& focus0, const Vec3& focus1, double sum, double dp);
 
-/// Moves a particle from the triangles of a round body to its exact surface, by about the chord
-/// error. Covers of a cylinder stay plane; a particle on a rim comes to lie on the rim's circle.
-/// Does nothing for a body that is not round.
-///
-/// position  on the facet, to rounding
-/// facet     of body.mesh
-/// is_2d     y stays as it is; the particle moves within its plane y = constant
-void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t facet,
-                      bool is_2d = false);
-
-/// The unit normal of the exact surface at a particle, on the side to which its facet looks:
-/// outward for closed bodies. That of the facet where the body is not round, and on covers.
-Vec3 exact_normal(const FittedBody& body, const Vec3& position, std::uint32_t facet);
-
 } // namespace fppg

@@ -5,10 +5,10 @@
 #include "fppg/wall_zone.h"
 
 #include "core/parallel.h"
-#include "lattice/round_mesh.h"
 #include "lattice/snap.h"
 #include "shapes/mesh_query.h"
 #include "shapes/point_grid.h"
+#include "shapes/round_surface.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,45 +1,13 @@
 #include "particles/wall_surfaces.h"
 
+#include "shapes/round_surface.h"
+
 #include <cmath>
 
 namespace fppg
 {
 namespace
 {
-
-/// Outward normal and signed distance of the surface that the facet belongs to.
-struct Surface
-{
-    Vec3 normal;
-    double distance = 0;
-};
-
-Surface plane_of(const FittedBody& body, std::uint32_t facet, const Vec3& p)
-{
-    const Vec3& n = body.mesh.normals[facet];
-    return {n, dot(p - body.mesh.vertices[body.mesh.facets[facet][0]], n)};
-}
-
-/// A round surface at the offset `from_axis` of the particle from its centre or axis.
-Surface round_at(const Vec3& from_axis, double radius)
-{
-    const double r = norm(from_axis);
-    return {from_axis / r, r - radius};
-}
-
-Surface surface_at(const FittedBody& body, std::uint32_t facet, const Vec3& p)
-{
-    if (body.round == RoundShape::Sphere && norm(p - body.p0) > 0)
-        return round_at(p - body.p0, body.radius);
-    if (body.round == RoundShape::Cylinder && norm(body.p1 - body.p0) > 0)
-    {
-        const Vec3 axis = (body.p1 - body.p0) / norm(body.p1 - body.p0);
-        const Vec3 from_axis = (p - body.p0) - dot(p - body.p0, axis) * axis;
-        const bool is_cover = std::abs(dot(body.mesh.normals[facet], axis)) > 0.5;
-        if (!is_cover && norm(from_axis) > 0) return round_at(from_axis, body.radius);
-    }
-    return plane_of(body, facet, p);
-}
 
 double squared(const Vec3& v)
 {
@@ -136,8 +104,7 @@ SurfacePlace WallSurfaces::at(std::size_t particle) const
     const std::size_t b = particles.bodies[particle];
     const std::uint32_t facet = particles.facets[particle];
     const Vec3& p = particles.positions[particle];
-    const Surface surface = surface_at(walls_.bodies[b], facet, p);
-    Vec3 normal = surface.normal;
+    Vec3 normal = exact_normal(walls_.bodies[b], p, facet);
     const FitKind kind = particles.kinds[particle];
     if (kind == FitKind::Corner || kind == FitKind::Edge)
     {
@@ -146,7 +113,7 @@ SurfacePlace WallSurfaces::at(std::size_t particle) const
         // Below this length the direction is that of rounding errors.
         if (norm(mean) > 1e-6) normal = mean / norm(mean);
     }
-    return {as_floats(normal), static_cast<float>(surface.distance)};
+    return {as_floats(normal), static_cast<float>(exact_distance(walls_.bodies[b], p, facet))};
 }
 
 } // namespace fppg

@@ -1,4 +1,5 @@
 #include "lattice/round_mesh.h"
+#include "shapes/round_surface.h"
 
 #include "fppg/error.h"
 #include "fppg/section.h"

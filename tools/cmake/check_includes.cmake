@@ -8,9 +8,10 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(core_may_see)
-foreach(folder casedef shapes particles)
+foreach(folder casedef shapes)
   set(${folder}_may_see core)
 endforeach()
+set(particles_may_see shapes core)
 foreach(folder lattice fit boolean files)
   set(${folder}_may_see casedef shapes particles core)
 endforeach()
