@@ -1,0 +1,640 @@
+#include "fppg/relax_volume.h"
+
+#include "core/parallel.h"
+#include "fppg/error.h"
+#include "relax/continuum.h"
+#include "relax/kernel.h"
+#include "relax/neighbour_list.h"
+#include "relax/wall_planes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace fppg
+{
+
+namespace
+{
+
+// All lengths below are in dp, unless they are of Vec3.
+
+constexpr double behind_wall = 0.5; ///< where the continuum begins
+/// Lists hold the neighbours within 1.8 h and a skin of half a dp: farther ones have less than a
+/// hundredth of the force of one at h, and most of them are in the skin anyway.
+constexpr double list_reach = 1.8;
+constexpr float list_skin = 0.5f;
+constexpr float momentum = 0.9f;
+constexpr float longest_step = 0.1f;
+constexpr float push_reach = 0.8f;
+constexpr float push_strength = 4; ///< in units of the kernel's factor
+/// Walls are looked for again when a particle has moved so far: on a wall of curvature radius R
+/// the plane is off by 0.02 / R.
+constexpr float wall_renewal = 0.2f;
+constexpr int most_iterations = 100;
+constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::uint32_t no_slot = 0xFFFFFFFF;
+
+/// The walls near a particle, as of when they were last looked for.
+struct NearWalls
+{
+    struct Plane
+    {
+        float x, y, z; ///< normal, towards the wall
+        float distance;
+    };
+    std::array<Plane, 3> planes;
+    std::uint32_t count = 0;
+    std::uint32_t light_renewals = 0; ///< of the nearest only, since all were looked for
+};
+
+/// Particles as the loops need them: those that may move along a Morton curve, then the held ones,
+/// then the walls.
+struct Band
+{
+    Vec3 origin;
+    double dp = 0;
+    std::size_t moving = 0;
+    std::size_t volume_end = 0;       ///< where the walls begin
+    std::vector<std::uint32_t> order; ///< of the moving ones, the caller's index
+    PointArrays points;
+    PointArrays velocities;
+    PointArrays forces;
+    std::vector<char> is_held;
+
+    std::vector<float> wall_distances; ///< as of the last look
+    PointArrays moved;                 ///< since the last look
+    std::vector<std::uint32_t> slots;
+    std::vector<NearWalls> near_walls;
+
+    Vec3 place(std::size_t i) const
+    {
+        return origin + dp * Vec3{points.x[i], points.y[i], points.z[i]};
+    }
+    /// Where a step leads, rounded as the positions are.
+    Vec3 place_after(std::size_t i, const Vec3& step) const
+    {
+        return origin + dp * Vec3{points.x[i] + static_cast<float>(step.x),
+                                  points.y[i] + static_cast<float>(step.y),
+                                  points.z[i] + static_cast<float>(step.z)};
+    }
+    float moved_by(std::size_t i) const
+    {
+        return std::sqrt(moved.x[i] * moved.x[i] + moved.y[i] * moved.y[i] +
+                         moved.z[i] * moved.z[i]);
+    }
+};
+
+/// What one chunk of particles adds up to.
+struct ChunkSums
+{
+    double work = 0; ///< force times velocity
+    double shepard = 0;
+    double shepard_squared = 0;
+    std::size_t count = 0;
+    float largest_step = 0;
+    std::size_t pushed_back = 0;
+};
+
+void check(const RelaxVolumeOptions& o, std::span<const Vec3> positions,
+           const VolumeSurroundings& surroundings)
+{
+    const auto require = [](bool is_met, const char* name, double value, const char* range)
+    {
+        if (!is_met)
+            throw GeometryError(fmt::format("relaxation of volume particles: {} is {}, not {}",
+                                            name, value, range));
+    };
+    require(o.dp > 0 && std::isfinite(o.dp), "dp", o.dp, "above 0");
+    require(o.h_dp >= 0.6 && o.h_dp <= 2, "h_dp", o.h_dp, "from 0.6 to 2");
+    require(o.iterations >= 0, "iterations", o.iterations, "at least 0");
+    require(o.min_wall_distance_dp >= 0 && o.min_wall_distance_dp <= 1, "min_wall_distance_dp",
+            o.min_wall_distance_dp, "from 0 to 1");
+    require(o.clearance_dp >= 0 && o.clearance_dp <= 2, "clearance_dp", o.clearance_dp,
+            "from 0 to 2");
+    for (const auto& some : {positions, surroundings.held, surroundings.walls})
+        for (const Vec3& p : some)
+            if (!is_finite(p))
+                throw GeometryError(fmt::format(
+                    "relaxation of volume particles: ({}, {}, {}) is no position", p.x, p.y, p.z));
+}
+
+void append(PointArrays& points, std::span<const Vec3> positions, const Vec3& origin, double dp)
+{
+    for (const Vec3& position : positions)
+    {
+        const Vec3 p = (position - origin) / dp;
+        points.x.push_back(static_cast<float>(p.x));
+        points.y.push_back(static_cast<float>(p.y));
+        points.z.push_back(static_cast<float>(p.z));
+    }
+}
+
+/// Appends positions along a Morton curve; returns their order.
+std::vector<std::uint32_t> append_sorted(PointArrays& points, std::span<const Vec3> positions,
+                                         const Vec3& origin, double dp, int threads)
+{
+    PointArrays unsorted;
+    append(unsorted, positions, origin, dp);
+    std::vector<std::uint32_t> order = morton_order(unsorted, 1, threads);
+    for (const std::uint32_t i : order)
+    {
+        points.x.push_back(unsorted.x[i]);
+        points.y.push_back(unsorted.y[i]);
+        points.z.push_back(unsorted.z[i]);
+    }
+    return order;
+}
+
+Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surroundings,
+               const RelaxVolumeOptions& options, int threads)
+{
+    Band band;
+    band.dp = options.dp;
+    Box3 box;
+    for (const Vec3& p : positions) box.add(p);
+    band.origin = 0.5 * (box.min + box.max);
+    band.moving = positions.size();
+    band.order = append_sorted(band.points, positions, band.origin, band.dp, threads);
+    append_sorted(band.points, surroundings.held, band.origin, band.dp, threads);
+    band.volume_end = band.points.size();
+    append_sorted(band.points, surroundings.walls, band.origin, band.dp, threads);
+    // In the plane all particles are at one y, so that distances are those of the plane.
+    if (options.is_2d) std::fill(band.points.y.begin(), band.points.y.end(), 0.0f);
+    for (auto* arrays : {&band.velocities, &band.forces, &band.moved}) arrays->resize(band.moving);
+    band.is_held.assign(band.moving, 0);
+    band.wall_distances.assign(band.moving, std::numeric_limits<float>::infinity());
+    band.slots.assign(band.moving, no_slot);
+    return band;
+}
+
+void build_list(NeighbourList& list, const Band& band, int threads)
+{
+    list.build(
+        band.points, threads,
+        [&](std::uint32_t i) { return i < band.moving && band.is_held[i] == 0; },
+        [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+/// Which of the six neighbours along the axes a particle has, as bits.
+unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)
+{
+    unsigned found = 0;
+    for (const std::uint32_t j : near)
+    {
+        if (j >= band.volume_end) continue;
+        const std::array<float, 3> d{band.points.x[j] - band.points.x[i],
+                                     band.points.y[j] - band.points.y[i],
+                                     band.points.z[j] - band.points.z[i]};
+        for (unsigned axis = 0; axis < 3; ++axis)
+        {
+            const float across = std::abs(d[(axis + 1) % 3]) + std::abs(d[(axis + 2) % 3]);
+            const float along = std::abs(d[axis]);
+            if (across < 0.2f && std::abs(along - 1) < 0.1f)
+                found |= 1u << (2 * axis + (d[axis] > 0 ? 1 : 0));
+        }
+    }
+    return found;
+}
+
+/// Marks the particles at a free surface and those within 2 h of them as held.
+std::size_t hold_free_surface(Band& band, NeighbourList& list, const VolumeSurroundings& around,
+                              const RelaxVolumeOptions& options, int threads)
+{
+    std::vector<char> is_surface(band.moving, 0);
+    const auto is_explained = [&](std::size_t i, unsigned side)
+    {
+        if (!around.closest) return false;
+        Vec3 node = band.place(i);
+        node[static_cast<int>(side / 2)] += side % 2 == 1 ? band.dp : -band.dp;
+        return norm(around.closest(node) - node) <= (options.clearance_dp + 1e-4) * band.dp;
+    };
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving) return;
+            const unsigned found = axis_neighbours(band, i, list.neighbours(row));
+            for (unsigned side = 0; side < 6; ++side)
+            {
+                if (options.is_2d && side / 2 == 1) continue;
+                if ((found >> side & 1) == 0 && !is_explained(i, side)) is_surface[i] = 1;
+            }
+        },
+        chunk_size);
+    // A little less than 2 h, where the kernel has ended: rows at just that distance are free.
+    const auto reach = static_cast<float>(1.999 * options.h_dp);
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving) return;
+            band.is_held[i] = is_surface[i];
+            for (const std::uint32_t j : list.neighbours(row))
+            {
+                if (j >= band.moving || is_surface[j] == 0) continue;
+                const float x = band.points.x[j] - band.points.x[i];
+                const float y = band.points.y[j] - band.points.y[i];
+                const float z = band.points.z[j] - band.points.z[i];
+                if (x * x + y * y + z * z < reach * reach) band.is_held[i] = 1;
+            }
+        },
+        chunk_size);
+    return static_cast<std::size_t>(std::count(band.is_held.begin(), band.is_held.end(), 1));
+}
+
+/// Whether what is known of the walls near a particle may be too old for the force.
+bool has_old_walls(const Band& band, std::size_t i, float reach)
+{
+    const float moved = band.moved_by(i);
+    return moved > wall_renewal && band.wall_distances[i] - moved < reach;
+}
+
+/// Whether the wall particles around a particle lie in one plane: then no second wall is near.
+bool is_wall_plane(const Band& band, std::size_t i, std::span<const std::uint32_t> near,
+                   const WallPlane& plane)
+{
+    constexpr float flatness = 0.3f;
+    const auto x = static_cast<float>(plane.normal.x);
+    const auto y = static_cast<float>(plane.normal.y);
+    const auto z = static_cast<float>(plane.normal.z);
+    const auto distance = static_cast<float>(plane.distance / band.dp);
+    return std::all_of(near.begin(), near.end(),
+                       [&](std::uint32_t j)
+                       {
+                           if (j < band.volume_end) return true;
+                           const float off = (band.points.x[j] - band.points.x[i]) * x +
+                                             (band.points.y[j] - band.points.y[i]) * y +
+                                             (band.points.z[j] - band.points.z[i]) * z - distance;
+                           return std::abs(off) < flatness;
+                       });
+}
+
+void note_walls(NearWalls& near, const WallPlanes& found, double dp)
+{
+    near.count = 0;
+    near.light_renewals = 0;
+    for (const WallPlane& plane : found)
+        near.planes[near.count++] = {
+            static_cast<float>(plane.normal.x), static_cast<float>(plane.normal.y),
+            static_cast<float>(plane.normal.z), static_cast<float>(plane.distance / dp)};
+}
+
+/// Takes over the nearest wall where it is the one that was nearest; the others remain planes,
+/// which the particle has come nearer to or farther from. False where walls must be looked for
+/// again.
+bool renew_nearest_wall(Band& band, std::size_t i, const WallPlanes& found)
+{
+    constexpr float same_wall = 0.9f;
+    constexpr std::uint32_t most_light_renewals = 3;
+    if (band.slots[i] == no_slot || found.count == 0) return false;
+    NearWalls& near = band.near_walls[band.slots[i]];
+    if (near.count == 0 || near.light_renewals >= most_light_renewals) return false;
+    const auto x = static_cast<float>(found.planes[0].normal.x);
+    const auto y = static_cast<float>(found.planes[0].normal.y);
+    const auto z = static_cast<float>(found.planes[0].normal.z);
+    const NearWalls::Plane& old = near.planes[0];
+    if (x * old.x + y * old.y + z * old.z < same_wall) return false;
+    for (std::uint32_t w = 1; w < near.count; ++w)
+    {
+        NearWalls::Plane& plane = near.planes[w];
+        plane.distance -=
+            band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
+    }
+    ++near.light_renewals;
+    near.planes[0] = {x, y, z, static_cast<float>(found.distance / band.dp)};
+    return true;
+}
+
+void start_from_here(Band& band, std::size_t i, double distance)
+{
+    band.wall_distances[i] = static_cast<float>(distance / band.dp);
+    band.moved.x[i] = band.moved.y[i] = band.moved.z[i] = 0;
+}
+
+/// Looks for walls where needed. A particle gets a slot when it comes near to a wall.
+void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_first,
+                 const ClosestWallPoint& closest, int threads)
+{
+    if (!closest) return;
+    const std::size_t chunks = (list.rows() + chunk_size - 1) / chunk_size;
+    std::vector<std::vector<std::pair<std::uint32_t, NearWalls>>> come_near(chunks);
+    parallel_for(chunks, threads,
+                 [&](std::size_t chunk)
+                 {
+                     const std::size_t end = std::min(list.rows(), (chunk + 1) * chunk_size);
+                     for (std::size_t row = chunk * chunk_size; row < end; ++row)
+                     {
+                         const std::uint32_t i = list.point(row);
+                         if (i >= band.moving || band.is_held[i] != 0) continue;
+                         if (!is_first && !has_old_walls(band, i, static_cast<float>(reach)))
+                             continue;
+                         const Vec3 place = band.place(i);
+                         WallPlanes found = find_nearest_wall(place, reach * band.dp, closest);
+                         const bool is_known = renew_nearest_wall(band, i, found);
+                         start_from_here(band, i, found.distance);
+                         if (is_known) continue;
+                         if (found.count > 0 &&
+                             !is_wall_plane(band, i, list.neighbours(row), found.planes[0]))
+                             add_further_walls(found, place, reach * band.dp, closest);
+                         NearWalls walls;
+                         note_walls(walls, found, band.dp);
+                         if (band.slots[i] != no_slot)
+                             band.near_walls[band.slots[i]] = walls;
+                         else if (walls.count > 0)
+                             come_near[chunk].emplace_back(i, walls);
+                     }
+                 });
+    for (const auto& chunk : come_near)
+        for (const auto& [i, walls] : chunk)
+        {
+            band.slots[i] = static_cast<std::uint32_t>(band.near_walls.size());
+            band.near_walls.push_back(walls);
+        }
+}
+
+/// The forces of equation 15 and the Shepard sums, with what is the same for all particles.
+struct Forces
+{
+    Forces(double h, bool is_2d)
+        : beyond(h, is_2d), alpha(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h))
+    {
+        inverse_h = static_cast<float>(1 / h);
+        slope = static_cast<float>(5 * alpha / (h * h));
+        push = static_cast<float>(push_strength * alpha);
+    }
+
+    HalfSpace beyond;
+    double alpha;
+    float inverse_h;
+    float slope;
+    float push;
+
+    /// Offsets of neighbours, read one by one so that the sums can be vectorised.
+    struct Offsets
+    {
+        std::vector<float> x, y, z;
+    };
+
+    /// Sets the force on particle i; returns the Shepard sum.
+    double act(Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+               Offsets& offsets) const
+    {
+        const std::size_t n = near.size();
+        if (offsets.x.size() < n)
+            for (auto* v : {&offsets.x, &offsets.y, &offsets.z}) v->resize(2 * n);
+        float* const dx = offsets.x.data();
+        float* const dy = offsets.y.data();
+        float* const dz = offsets.z.data();
+        const PointArrays& points = band.points;
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            const std::uint32_t j = near[k];
+            dx[k] = points.x[i] - points.x[j];
+            dy[k] = points.y[i] - points.y[j];
+            dz[k] = points.z[i] - points.z[j];
+        }
+        float fx = 0, fy = 0, fz = 0, sum = 0;
+#pragma omp simd reduction(+ : fx, fy, fz, sum)
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            // Twins at one place get no force from one another and no infinity either.
+            const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k] + 1e-12f;
+            const float r = std::sqrt(squared);
+            const float q = r * inverse_h;
+            const float s = std::max(0.0f, 1 - 0.5f * q);
+            const float s3 = s * s * s;
+            const float closeness = std::max(0.0f, 1 - r * (1 / push_reach));
+            const float size = slope * s3 + push * closeness / r;
+            fx += size * dx[k];
+            fy += size * dy[k];
+            fz += size * dz[k];
+            sum += s3 * s * (2 * q + 1);
+        }
+        double shepard = alpha * (1 + static_cast<double>(sum));
+        if (band.slots[i] != no_slot)
+        {
+            const NearWalls& walls = band.near_walls[band.slots[i]];
+            for (std::uint32_t w = 0; w < walls.count; ++w)
+            {
+                const NearWalls::Plane& plane = walls.planes[w];
+                const float approach = band.moved.x[i] * plane.x + band.moved.y[i] * plane.y +
+                                       band.moved.z[i] * plane.z;
+                const double distance = std::max(0.0f, plane.distance - approach) + behind_wall;
+                const auto size = static_cast<float>(beyond.force(distance));
+                fx -= size * plane.x;
+                fy -= size * plane.y;
+                fz -= size * plane.z;
+                shepard += beyond.share(distance);
+            }
+        }
+        band.forces.x[i] = fx;
+        band.forces.y[i] = fy;
+        band.forces.z[i] = fz;
+        return shepard;
+    }
+};
+
+ChunkSums add_up(const std::vector<ChunkSums>& chunks)
+{
+    ChunkSums total;
+    for (const ChunkSums& c : chunks)
+    {
+        total.work += c.work;
+        total.shepard += c.shepard;
+        total.shepard_squared += c.shepard_squared;
+        total.count += c.count;
+        total.largest_step = std::max(total.largest_step, c.largest_step);
+        total.pushed_back += c.pushed_back;
+    }
+    return total;
+}
+
+template <typename Body>
+ChunkSums sum_over_chunks(std::size_t n, int threads, const Body& body)
+{
+    std::vector<ChunkSums> chunks((n + chunk_size - 1) / chunk_size);
+    parallel_for(chunks.size(), threads,
+                 [&](std::size_t c)
+                 {
+                     const std::size_t end = std::min(n, (c + 1) * chunk_size);
+                     for (std::size_t k = c * chunk_size; k < end; ++k) body(k, chunks[c]);
+                 });
+    return add_up(chunks);
+}
+
+ChunkSums compute_forces(Band& band, const NeighbourList& list, const Forces& forces, int threads)
+{
+    return sum_over_chunks(
+        list.rows(), threads,
+        [&](std::size_t row, ChunkSums& sums)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving || band.is_held[i] != 0) return;
+            thread_local Forces::Offsets offsets;
+            const double shepard = forces.act(band, i, list.neighbours(row), offsets);
+            sums.shepard += shepard;
+            sums.shepard_squared += (shepard - 1) * (shepard - 1);
+            ++sums.count;
+            sums.work += static_cast<double>(band.forces.x[i] * band.velocities.x[i] +
+                                             band.forces.y[i] * band.velocities.y[i] +
+                                             band.forces.z[i] * band.velocities.z[i]);
+        });
+}
+
+/// A step that may come too near to a wall: checked with the exact distance, taken back where it
+/// does, and given up where that does not help.
+class WallGuard
+{
+public:
+    WallGuard(const ClosestWallPoint& closest, const RelaxVolumeOptions& options)
+        : closest_(closest), limit_(options.min_wall_distance_dp), is_2d_(options.is_2d)
+    {
+    }
+
+    bool is_safe(const Band& band, std::size_t i, const Vec3& step) const
+    {
+        if (!closest_) return true;
+        const Vec3 moved = Vec3{band.moved.x[i], band.moved.y[i], band.moved.z[i]} + step;
+        return static_cast<double>(band.wall_distances[i]) - norm(moved) > limit_ + 1e-3;
+    }
+
+    /// Returns the step to make instead, in dp.
+    Vec3 allowed_step(Band& band, std::size_t i, Vec3 step) const
+    {
+        const Vec3 start = band.place(i);
+        const WallPlanes nearest = find_nearest_wall(start, (2 * limit_ + 1) * band.dp, closest_);
+        if (renew_nearest_wall(band, i, nearest)) start_from_here(band, i, nearest.distance);
+        const double distance = nearest.distance / band.dp;
+        const double limit = std::min(limit_, distance);
+        if (norm(step) > 0.9 * distance) step = step * (0.9 * distance / norm(step));
+        for (int attempt = 0; attempt < 3; ++attempt)
+        {
+            const Vec3 end = band.place_after(i, step);
+            const Vec3 to_wall = (closest_(end) - end) / band.dp;
+            const double left = norm(to_wall);
+            if (left >= limit && norm(step) < distance) return step;
+            if (!(left > 0)) break;
+            Vec3 back = to_wall * ((limit - left + 1e-3) / left);
+            if (is_2d_) back.y = 0;
+            step = step - back;
+        }
+        return {};
+    }
+
+private:
+    const ClosestWallPoint& closest_;
+    double limit_;
+    bool is_2d_;
+};
+
+ChunkSums move(Band& band, float step_length, float kept, const WallGuard& guard,
+               const RelaxVolumeOptions& options, int threads)
+{
+    return sum_over_chunks(
+        band.moving, threads,
+        [&](std::size_t i, ChunkSums& sums)
+        {
+            if (band.is_held[i] != 0) return;
+            Vec3 step{double{kept * band.velocities.x[i] + step_length * band.forces.x[i]},
+                      double{kept * band.velocities.y[i] + step_length * band.forces.y[i]},
+                      double{kept * band.velocities.z[i] + step_length * band.forces.z[i]}};
+            if (options.is_2d) step.y = 0;
+            const double length = norm(step);
+            if (length > double{longest_step}) step = step * (double{longest_step} / length);
+            if (!guard.is_safe(band, i, step))
+            {
+                const Vec3 allowed = guard.allowed_step(band, i, step);
+                if (!(allowed == step)) ++sums.pushed_back;
+                step = allowed;
+            }
+            const auto x = static_cast<float>(step.x);
+            const auto y = static_cast<float>(step.y);
+            const auto z = static_cast<float>(step.z);
+            band.velocities.x[i] = x;
+            band.velocities.y[i] = y;
+            band.velocities.z[i] = z;
+            band.points.x[i] += x;
+            band.points.y[i] += y;
+            band.points.z[i] += z;
+            band.moved.x[i] += x;
+            band.moved.y[i] += y;
+            band.moved.z[i] += z;
+            sums.largest_step = std::max(sums.largest_step, static_cast<float>(norm(step)));
+        });
+}
+
+/// An upper bound of the largest eigenvalue of the forces' derivative on square and cubic lattices.
+/// Source: computed over the Brillouin zone for h from 0.7 to 1.5, rounded up.
+double stiffness(double h, bool is_2d)
+{
+    return (is_2d ? 4.2 : 5.0) / (h * h * h);
+}
+
+/// Whether the spread has come down by less than 2 per cent over ten iterations.
+bool has_settled(const std::vector<double>& spreads)
+{
+    constexpr std::size_t apart = 10;
+    return spreads.size() > apart && spreads.back() > 0.98 * spreads[spreads.size() - 1 - apart];
+}
+
+} // namespace
+
+RelaxVolumeReport relax_volume(std::span<Vec3> positions, const VolumeSurroundings& surroundings,
+                               const RelaxVolumeOptions& options, int threads)
+{
+    check(options, positions, surroundings);
+    RelaxVolumeReport report;
+    if (positions.empty()) return report;
+    Band band = make_band(positions, surroundings, options, threads);
+    NeighbourList list(static_cast<float>(list_reach * options.h_dp), list_skin);
+    build_list(list, band, threads);
+    report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
+
+    const Forces forces(options.h_dp, options.is_2d);
+    const WallGuard guard(surroundings.closest, options);
+    const double wall_reach = 2 * options.h_dp - behind_wall;
+    const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
+    const int last = options.iterations > 0 ? options.iterations : most_iterations;
+    std::vector<double> spreads;
+    renew_walls(band, list, wall_reach, true, surroundings.closest, threads);
+    for (int iteration = 1; iteration <= last; ++iteration)
+    {
+        if (list.is_outdated(band.points, threads)) build_list(list, band, threads);
+        if (iteration > 1)
+            renew_walls(band, list, wall_reach, false, surroundings.closest, threads);
+        const ChunkSums sums = compute_forces(band, list, forces, threads);
+        if (sums.count == 0) break;
+        const float kept = sums.work < 0 ? 0 : momentum;
+        const ChunkSums steps = move(band, step_length, kept, guard, options, threads);
+        const auto n = static_cast<double>(sums.count);
+        const double mean = sums.shepard / n;
+        const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);
+        report.iterations = iteration;
+        report.pushed_back += steps.pushed_back;
+        report.shepard_mean = mean;
+        report.shepard_std = std::sqrt(std::max(0.0, variance)) / mean;
+        spreads.push_back(report.shepard_std);
+        if (options.on_iteration &&
+            !options.on_iteration({iteration, report.shepard_mean, report.shepard_std,
+                                   static_cast<double>(steps.largest_step)}))
+            break;
+        if (options.iterations == 0 && has_settled(spreads)) break;
+    }
+    for (std::size_t i = 0; i < band.moving; ++i)
+    {
+        if (band.is_held[i] != 0) continue;
+        Vec3& position = positions[band.order[i]];
+        const double y = position.y;
+        position = band.place(i);
+        if (options.is_2d) position.y = y;
+    }
+    return report;
+}
+
+} // namespace fppg
