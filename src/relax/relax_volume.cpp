@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,8 +60,9 @@ struct Band
     Vec3 origin;
     double dp = 0;
     std::size_t moving = 0;
-    std::size_t volume_end = 0;       ///< where the walls begin
-    std::vector<std::uint32_t> order; ///< of the moving ones, the caller's index
+    std::size_t volume_end = 0;         ///< where the walls begin
+    std::vector<std::uint32_t> sources; ///< of the moving ones, the caller's index
+    std::vector<char> is_inserted;
     PointArrays points;
     PointArrays velocities;
     PointArrays forces;
@@ -158,7 +161,7 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     for (const Vec3& p : positions) box.add(p);
     band.origin = 0.5 * (box.min + box.max);
     band.moving = positions.size();
-    band.order = append_sorted(band.points, positions, band.origin, band.dp, threads);
+    band.sources = append_sorted(band.points, positions, band.origin, band.dp, threads);
     append_sorted(band.points, surroundings.held, band.origin, band.dp, threads);
     band.volume_end = band.points.size();
     append_sorted(band.points, surroundings.walls, band.origin, band.dp, threads);
@@ -166,6 +169,7 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     if (options.is_2d) std::fill(band.points.y.begin(), band.points.y.end(), 0.0f);
     for (auto* arrays : {&band.velocities, &band.forces, &band.moved}) arrays->resize(band.moving);
     band.is_held.assign(band.moving, 0);
+    band.is_inserted.assign(band.moving, 0);
     band.wall_distances.assign(band.moving, std::numeric_limits<float>::infinity());
     band.slots.assign(band.moving, no_slot);
     return band;
@@ -358,6 +362,14 @@ void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_fi
         }
 }
 
+/// How far a particle is from a wall that was found before it came where it is.
+double distance_of(const Band& band, std::size_t i, const NearWalls::Plane& plane)
+{
+    const float approach =
+        band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
+    return std::max(0.0f, plane.distance - approach);
+}
+
 /// The forces of equation 15 and the Shepard sums, with what is the same for all particles.
 struct Forces
 {
@@ -423,9 +435,7 @@ struct Forces
             for (std::uint32_t w = 0; w < walls.count; ++w)
             {
                 const NearWalls::Plane& plane = walls.planes[w];
-                const float approach = band.moved.x[i] * plane.x + band.moved.y[i] * plane.y +
-                                       band.moved.z[i] * plane.z;
-                const double distance = std::max(0.0f, plane.distance - approach) + behind_wall;
+                const double distance = distance_of(band, i, plane) + behind_wall;
                 const auto size = static_cast<float>(beyond.force(distance));
                 fx -= size * plane.x;
                 fy -= size * plane.y;
@@ -569,6 +579,217 @@ ChunkSums move(Band& band, float step_length, float kept, const WallGuard& guard
         });
 }
 
+/// How far the Shepard sum of a particle is from 1, at h 1.3 times as large: there the sum over
+/// even particles is 1 to a few thousandths, however they are arranged. The lists reach far enough.
+/// Near to a free surface, where the sum tells nothing, it is 0.
+double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+                 const HalfSpace& beyond, double alpha, double h)
+{
+    double sum = 1;
+    for (const std::uint32_t j : near)
+    {
+        if (j < band.moving && band.is_held[j] != 0) return 0;
+        const float x = band.points.x[j] - band.points.x[i];
+        const float y = band.points.y[j] - band.points.y[i];
+        const float z = band.points.z[j] - band.points.z[i];
+        sum += wendland(static_cast<double>(std::sqrt(x * x + y * y + z * z)) / h);
+    }
+    sum *= alpha;
+    if (band.slots[i] != no_slot)
+    {
+        const NearWalls& walls = band.near_walls[band.slots[i]];
+        for (std::uint32_t w = 0; w < walls.count; ++w)
+            sum += beyond.share(distance_of(band, i, walls.planes[w]) + behind_wall);
+    }
+    return sum - 1;
+}
+
+/// Whether a straight way of a given length ends and stays off all walls.
+bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, double length,
+                 double limit, const ClosestWallPoint& closest)
+{
+    if (!closest) return true;
+    for (double way = 0;;)
+    {
+        const Vec3 at = from + (band.dp * way) * direction;
+        const double distance = norm(closest(at) - at) / band.dp;
+        if (distance < limit) return false;
+        if (way >= length) return true;
+        way = std::min(length, way + 0.9 * distance);
+    }
+}
+
+/// The place beside a particle that is farthest from others, among 26 directions (8 in 2D); the
+/// particle's own where all are too near to others or to a wall.
+Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+                const RelaxVolumeOptions& options, const ClosestWallPoint& closest)
+{
+    constexpr double length = 0.75;
+    constexpr double least_gap = 0.5;
+    double widest = least_gap;
+    Vec3 best = band.place(i);
+    for (int number = 0; number < 27; ++number)
+    {
+        Vec3 direction{static_cast<double>(number % 3 - 1), static_cast<double>(number / 3 % 3 - 1),
+                       static_cast<double>(number / 9 - 1)};
+        if (number == 13 || (options.is_2d && direction.y != 0)) continue;
+        direction = direction / norm(direction);
+        double gap = 2;
+        for (const std::uint32_t j : near)
+            gap = std::min(gap, norm(Vec3{double{band.points.x[j]} - double{band.points.x[i]},
+                                          double{band.points.y[j]} - double{band.points.y[i]},
+                                          double{band.points.z[j]} - double{band.points.z[i]}} -
+                                     length * direction));
+        // A gap must be wider by more than rounding, so that equal ones do not hang on it.
+        if (gap < widest + 1e-3) continue;
+        if (!is_way_free(band, band.place(i), direction, length,
+                         std::min(options.min_wall_distance_dp + 0.05,
+                                  static_cast<double>(band.wall_distances[i] - band.moved_by(i))),
+                         closest))
+            continue;
+        widest = gap;
+        best = band.place(i) + (band.dp * length) * direction;
+    }
+    return best;
+}
+
+/// Which particles go, and where some come.
+struct CountChange
+{
+    std::vector<char> is_removed;
+    struct Inserted
+    {
+        std::uint32_t beside;
+        Vec3 place;
+    };
+    std::vector<Inserted> inserted;
+    std::size_t removed = 0;
+};
+
+CountChange find_count_change(const Band& band, const NeighbourList& list,
+                              const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
+                              int threads)
+{
+    constexpr double wider = 1.3;
+    const double h = wider * options.h_dp;
+    const HalfSpace beyond(h, options.is_2d);
+    const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
+    std::vector<float> excess(list.rows(), 0.0f);
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving || band.is_held[i] != 0) return;
+            excess[row] =
+                static_cast<float>(excess_at(band, i, list.neighbours(row), beyond, alpha, h));
+        },
+        chunk_size);
+    CountChange change;
+    change.is_removed.assign(band.moving, 0);
+    double sum = 0;
+    std::size_t highest = 0;
+    std::size_t lowest = 0;
+    for (std::size_t row = 0; row < list.rows(); ++row)
+    {
+        sum += static_cast<double>(excess[row]);
+        if (excess[row] > excess[highest]) highest = row;
+        if (excess[row] < excess[lowest]) lowest = row;
+        if (std::abs(sum) < 0.5) continue;
+        if (sum > 0)
+        {
+            change.is_removed[list.point(highest)] = 1;
+            ++change.removed;
+            sum -= 1;
+        }
+        else
+        {
+            const std::uint32_t i = list.point(lowest);
+            const Vec3 place = gap_beside(band, i, list.neighbours(lowest), options, closest);
+            if (!(place == band.place(i))) change.inserted.push_back({i, place});
+            sum += 1;
+        }
+        highest = lowest = row + 1 < list.rows() ? row + 1 : row;
+    }
+    return change;
+}
+
+/// Carries a change out. Forces are not kept: they are computed anew.
+void change_count(Band& band, const CountChange& change)
+{
+    Band old = std::move(band);
+    band = {};
+    band.origin = old.origin;
+    band.dp = old.dp;
+    band.near_walls = std::move(old.near_walls);
+    const auto append_point = [](PointArrays& to, const PointArrays& from, std::size_t i)
+    {
+        to.x.push_back(from.x[i]);
+        to.y.push_back(from.y[i]);
+        to.z.push_back(from.z[i]);
+    };
+    const auto append_zero = [](PointArrays& to, float x)
+    {
+        to.x.push_back(x);
+        to.y.push_back(0);
+        to.z.push_back(0);
+    };
+    for (std::size_t i = 0; i < old.moving; ++i)
+    {
+        if (change.is_removed[i] != 0) continue;
+        append_point(band.points, old.points, i);
+        append_point(band.velocities, old.velocities, i);
+        append_point(band.moved, old.moved, i);
+        band.sources.push_back(old.sources[i]);
+        band.is_inserted.push_back(old.is_inserted[i]);
+        band.is_held.push_back(old.is_held[i]);
+        band.wall_distances.push_back(old.wall_distances[i]);
+        band.slots.push_back(old.slots[i]);
+    }
+    for (const CountChange::Inserted& one : change.inserted)
+    {
+        const Vec3 p = (one.place - band.origin) / band.dp;
+        band.points.x.push_back(static_cast<float>(p.x));
+        band.points.y.push_back(static_cast<float>(p.y));
+        band.points.z.push_back(static_cast<float>(p.z));
+        append_zero(band.velocities, 0);
+        // As if moved far from a wall that was near: walls are looked for before it moves.
+        append_zero(band.moved, 1);
+        band.sources.push_back(old.sources[one.beside]);
+        band.is_inserted.push_back(1);
+        band.is_held.push_back(0);
+        band.wall_distances.push_back(0);
+        band.slots.push_back(no_slot);
+    }
+    band.moving = band.sources.size();
+    band.volume_end = band.moving + old.volume_end - old.moving;
+    band.forces.resize(band.moving);
+    for (std::size_t i = old.moving; i < old.points.size(); ++i)
+        append_point(band.points, old.points, i);
+}
+
+/// Gives the positions back in the caller's order, inserted ones last.
+void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
+               RelaxVolumeReport& report)
+{
+    std::vector<std::uint32_t> order(band.moving);
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i)
+    { return std::tuple(band.is_inserted[i], band.sources[i], i); };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::vector<Vec3> result(band.moving);
+    for (std::size_t k = 0; k < order.size(); ++k)
+    {
+        const std::uint32_t i = order[k];
+        const Vec3& start = positions[band.sources[i]];
+        result[k] = band.is_held[i] != 0 ? start : band.place(i);
+        if (options.is_2d) result[k].y = start.y;
+        if (options.fit_count) report.sources.push_back(band.sources[i]);
+    }
+    positions = std::move(result);
+}
+
 /// An upper bound of the largest eigenvalue of the forces' derivative on square and cubic lattices.
 /// Source: computed over the Brillouin zone for h from 0.7 to 1.5, rounded up.
 double stiffness(double h, bool is_2d)
@@ -585,7 +806,7 @@ bool has_settled(const std::vector<double>& spreads)
 
 } // namespace
 
-RelaxVolumeReport relax_volume(std::span<Vec3> positions, const VolumeSurroundings& surroundings,
+RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroundings& surroundings,
                                const RelaxVolumeOptions& options, int threads)
 {
     check(options, positions, surroundings);
@@ -606,6 +827,15 @@ RelaxVolumeReport relax_volume(std::span<Vec3> positions, const VolumeSurroundin
     for (int iteration = 1; iteration <= last; ++iteration)
     {
         if (list.is_outdated(band.points, threads)) build_list(list, band, threads);
+        if (options.fit_count && (iteration == 5 || iteration == 10 || iteration == 15))
+        {
+            const CountChange change =
+                find_count_change(band, list, options, surroundings.closest, threads);
+            report.removed += change.removed;
+            report.inserted += change.inserted.size();
+            change_count(band, change);
+            build_list(list, band, threads);
+        }
         if (iteration > 1)
             renew_walls(band, list, wall_reach, false, surroundings.closest, threads);
         const ChunkSums sums = compute_forces(band, list, forces, threads);
@@ -626,14 +856,7 @@ RelaxVolumeReport relax_volume(std::span<Vec3> positions, const VolumeSurroundin
             break;
         if (options.iterations == 0 && has_settled(spreads)) break;
     }
-    for (std::size_t i = 0; i < band.moving; ++i)
-    {
-        if (band.is_held[i] != 0) continue;
-        Vec3& position = positions[band.order[i]];
-        const double y = position.y;
-        position = band.place(i);
-        if (options.is_2d) position.y = y;
-    }
+    give_back(band, options, positions, report);
     return report;
 }
 

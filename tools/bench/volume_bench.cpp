@@ -1,9 +1,10 @@
 // Relaxes the volume particles along the surface of an STL file and says how even they are before
 // and after, and how long that takes.
 //
-//   volume_bench mesh.stl DP [clearance_dp] [band_dp] [h_dp] [iterations] [threads] [quadrature]
+//   volume_bench mesh.stl DP [clearance_dp] [band_dp] [h_dp] [iterations] [threads]
+//                [inside|outside] [fit|keep] [quadrature]
 //
-// With a fourth word "quadrature" what lies beyond the wall is summed over a lattice of dp / 4 as
+// With the last word what lies beyond the wall is summed over a lattice of dp / 4 as
 // well, which knows corners and curvature.
 
 #include "fppg/features.h"
@@ -138,7 +139,7 @@ int main(int argc, char** argv)
     {
         std::fprintf(stderr,
                      "usage: volume_bench mesh.stl DP [clearance] [band] [h] [iterations] "
-                     "[threads] [inside|outside] [quadrature]\n");
+                     "[threads] [inside|outside] [fit|keep] [quadrature]\n");
         return 2;
     }
     const auto argument = [&](int i, double otherwise)
@@ -152,7 +153,8 @@ int main(int argc, char** argv)
     options.iterations = static_cast<int>(argument(6, 30));
     const int threads = static_cast<int>(argument(7, 1));
     const bool is_inside = argc < 9 || argv[8][0] != 'o';
-    const bool has_quadrature = argc > 9;
+    options.fit_count = argc > 9 && argv[9][0] == 'f';
+    const bool has_quadrature = argc > 10;
 
     fppg::MeshReport report;
     const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
@@ -284,8 +286,10 @@ int main(int argc, char** argv)
         1e6 * cpu_seconds / n / std::max(1, result.iterations), result.held_at_surface,
         result.pushed_back, more * 1024 * 1024 / n);
     double sum = 0;
-    for (std::size_t i = 0; i < moving.size(); ++i) sum += norm(moving[i] - before[i]) / dp;
+    for (std::size_t i = 0; i < moving.size(); ++i)
+        sum += norm(moving[i] - before[options.fit_count ? result.sources[i] : i]) / dp;
     say("after");
+    std::printf("        %zu removed, %zu inserted\n", result.removed, result.inserted);
     std::printf("        moved %.3f dp on average\n", sum / n);
     return 0;
 }
