@@ -25,10 +25,11 @@ namespace
 // All lengths below are in dp, unless they are of Vec3.
 
 constexpr double behind_wall = 0.5; ///< where the continuum begins
-/// Lists hold the neighbours within 1.8 h and a skin of half a dp: farther ones have less than a
-/// hundredth of the force of one at h, and most of them are in the skin anyway.
-constexpr double list_reach = 1.8;
-constexpr float list_skin = 0.5f;
+/// Lists hold the neighbours within 2.3 dp at h = dp and are made anew when a particle has moved by
+/// half of the skin. A pair that comes from beyond 2.3 to below 1.8 in between, which takes two of
+/// the fastest on course for one another, is missed; its force is a hundredth of that at h.
+constexpr double list_reach = 1.5;
+constexpr float list_skin = 0.8f;
 constexpr float momentum = 0.9f;
 constexpr float longest_step = 0.1f;
 constexpr float push_reach = 0.8f;
@@ -37,6 +38,12 @@ constexpr float push_strength = 4; ///< in units of the kernel's factor
 /// the plane is off by 0.02 / R.
 constexpr float wall_renewal = 0.2f;
 constexpr int most_iterations = 100;
+/// The count is fitted at these iterations: when forces have evened out what they can.
+constexpr int first_count_change = 5;
+constexpr int count_change_interval = 5;
+constexpr int last_count_change = 15;
+/// A stretch of so many particles that together make up for less than half of one is even enough.
+constexpr std::size_t even_stretch = 40;
 constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
 constexpr std::uint32_t no_slot = 0xFFFFFFFF;
 
@@ -690,13 +697,18 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
     double sum = 0;
     std::size_t highest = 0;
     std::size_t lowest = 0;
+    std::size_t length = 0;
     for (std::size_t row = 0; row < list.rows(); ++row)
     {
+        if (excess[row] == 0) continue;
+        ++length;
         sum += static_cast<double>(excess[row]);
         if (excess[row] > excess[highest]) highest = row;
         if (excess[row] < excess[lowest]) lowest = row;
         if (std::abs(sum) < 0.5) continue;
-        if (sum > 0)
+        if (length > even_stretch)
+            sum = 0;
+        else if (sum > 0)
         {
             change.is_removed[list.point(highest)] = 1;
             ++change.removed;
@@ -709,6 +721,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
             if (!(place == band.place(i))) change.inserted.push_back({i, place});
             sum += 1;
         }
+        length = 0;
         highest = lowest = row + 1 < list.rows() ? row + 1 : row;
     }
     return change;
@@ -797,11 +810,18 @@ double stiffness(double h, bool is_2d)
     return (is_2d ? 4.2 : 5.0) / (h * h * h);
 }
 
-/// Whether the spread has come down by less than 2 per cent over ten iterations.
+bool is_count_due(int iteration)
+{
+    return iteration >= first_count_change && iteration <= last_count_change &&
+           (iteration - first_count_change) % count_change_interval == 0;
+}
+
+/// Whether the spread has come down by less than 5 per cent over ten iterations.
 bool has_settled(const std::vector<double>& spreads)
 {
     constexpr std::size_t apart = 10;
-    return spreads.size() > apart && spreads.back() > 0.98 * spreads[spreads.size() - 1 - apart];
+    return spreads.size() > std::size_t{last_count_change} + apart &&
+           spreads.back() > 0.95 * spreads[spreads.size() - 1 - apart];
 }
 
 } // namespace
@@ -827,7 +847,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     for (int iteration = 1; iteration <= last; ++iteration)
     {
         if (list.is_outdated(band.points, threads)) build_list(list, band, threads);
-        if (options.fit_count && (iteration == 5 || iteration == 10 || iteration == 15))
+        if (options.fit_count && is_count_due(iteration))
         {
             const CountChange change =
                 find_count_change(band, list, options, surroundings.closest, threads);

@@ -175,17 +175,20 @@ int main(int argc, char** argv)
         nodes_of(query, report.bounds, dp, is_inside, is_inside ? 1e30 : 8 * dp, threads);
     std::vector<Vec3> moving;
     std::vector<Vec3> held;
+    std::size_t volume_particles = 0;
     for (std::size_t i = 0; i < nodes.positions.size(); ++i)
     {
         if (nodes.distances[i] < clearance * dp) continue;
-        (nodes.distances[i] < band * dp ? moving : held).push_back(nodes.positions[i]);
+        if (nodes.distances[i] < (band + 2.6) * dp)
+            (nodes.distances[i] < band * dp ? moving : held).push_back(nodes.positions[i]);
+        ++volume_particles;
     }
     fppg::VolumeSurroundings around;
     around.held = held;
     around.walls = walls.positions;
     around.closest = [&](const Vec3& p) { return query.closest_point(p).point; };
-    const double counted = static_cast<double>(moving.size() + held.size()) +
-                           0.5 * static_cast<double>(walls.positions.size());
+    const double counted =
+        static_cast<double>(volume_particles) + 0.5 * static_cast<double>(walls.positions.size());
     std::printf("%zu moving, %zu held, %zu walls; count dp3 / volume %.4f\n", moving.size(),
                 held.size(), walls.positions.size(), counted * dp * dp * dp / report.volume);
 
