@@ -33,7 +33,7 @@ constexpr float list_skin = 0.8f;
 constexpr float momentum = 0.9f;
 constexpr float longest_step = 0.1f;
 constexpr float push_reach = 0.8f;
-constexpr float push_strength = 4; ///< in units of the kernel's factor
+constexpr float push_strength = 5.6f; ///< in units of the kernel's factor, a dp
 /// Walls are looked for again when a particle has moved so far: on a wall of curvature radius R
 /// the plane is off by 0.02 / R.
 constexpr float wall_renewal = 0.2f;
@@ -422,14 +422,13 @@ struct Forces
 #pragma omp simd reduction(+ : fx, fy, fz, sum)
         for (std::size_t k = 0; k < n; ++k)
         {
-            // Twins at one place get no force from one another and no infinity either.
-            const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k] + 1e-12f;
+            const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
             const float r = std::sqrt(squared);
             const float q = r * inverse_h;
             const float s = std::max(0.0f, 1 - 0.5f * q);
             const float s3 = s * s * s;
             const float closeness = std::max(0.0f, 1 - r * (1 / push_reach));
-            const float size = slope * s3 + push * closeness / r;
+            const float size = slope * s3 + push * closeness;
             fx += size * dx[k];
             fy += size * dy[k];
             fz += size * dz[k];

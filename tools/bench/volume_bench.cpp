@@ -16,18 +16,23 @@
 #include "relax/neighbour_list.h"
 #include "shapes/mesh_query.h"
 
-#include <sys/resource.h>
+#include <malloc.h>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <new>
 
 namespace
 {
 
 using fppg::Vec3;
+
+std::atomic<std::size_t> allocated{0};
+std::atomic<std::size_t> allocated_at_peak{0};
 
 struct Spread
 {
@@ -124,14 +129,29 @@ std::vector<double> sums_from(const std::vector<Vec3>& at, const std::vector<Vec
     return sums;
 }
 
-double megabytes_at_peak()
+} // namespace
+
+void* operator new(std::size_t size)
 {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024;
+    void* const p = std::malloc(size);
+    if (p == nullptr) throw std::bad_alloc();
+    const std::size_t now = allocated += malloc_usable_size(p);
+    for (std::size_t peak = allocated_at_peak;
+         peak < now && !allocated_at_peak.compare_exchange_weak(peak, now);)
+        ;
+    return p;
 }
 
-} // namespace
+void operator delete(void* p) noexcept
+{
+    allocated -= malloc_usable_size(p);
+    std::free(p);
+}
+
+void operator delete(void* p, std::size_t) noexcept
+{
+    operator delete(p);
+}
 
 int main(int argc, char** argv)
 {
@@ -273,21 +293,22 @@ int main(int argc, char** argv)
         return true;
     };
     const auto before = moving;
-    const double memory = megabytes_at_peak();
+    const std::size_t memory = allocated;
+    allocated_at_peak = memory;
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t cpu_start = std::clock();
     const auto result = fppg::relax_volume(moving, around, options, threads);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double more = megabytes_at_peak() - memory;
+    const auto more = static_cast<double>(allocated_at_peak - memory);
     const auto n = static_cast<double>(moving.size());
     std::printf(
         "%d iterations, %.3f s (%.3f of processor), %.3f us a particle and iteration; %zu "
         "held at a surface, %zu steps shortened; peak %.0f bytes a particle more\n",
         result.iterations, seconds, cpu_seconds,
         1e6 * cpu_seconds / n / std::max(1, result.iterations), result.held_at_surface,
-        result.pushed_back, more * 1024 * 1024 / n);
+        result.pushed_back, more / n);
     double sum = 0;
     for (std::size_t i = 0; i < moving.size(); ++i)
         sum += norm(moving[i] - before[options.fit_count ? result.sources[i] : i]) / dp;
