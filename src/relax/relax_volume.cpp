@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -25,11 +26,11 @@ namespace
 // All lengths below are in dp, unless they are of Vec3.
 
 constexpr double behind_wall = 0.5; ///< where the continuum begins
-/// Lists hold the neighbours within 2.3 dp at h = dp and are made anew when a particle has moved by
-/// half of the skin. A pair that comes from beyond 2.3 to below 1.8 in between, which takes two of
-/// the fastest on course for one another, is missed; its force is a hundredth of that at h.
+/// Lists hold the neighbours within 2.1 dp at h = dp and are made anew when a particle has moved by
+/// half of the skin. A pair that comes from beyond 2.1 to below 1.7 in between, which takes two of
+/// the fastest on course for one another, is missed; its force is a fiftieth of that at h.
 constexpr double list_reach = 1.5;
-constexpr float list_skin = 0.8f;
+constexpr float list_skin = 0.6f;
 constexpr float momentum = 0.9f;
 constexpr float longest_step = 0.1f;
 constexpr float push_reach = 0.8f;
@@ -72,7 +73,6 @@ struct Band
     std::vector<char> is_inserted;
     PointArrays points;
     PointArrays velocities;
-    PointArrays forces;
     std::vector<char> is_held;
 
     std::vector<float> wall_distances; ///< as of the last look
@@ -174,7 +174,7 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     append_sorted(band.points, surroundings.walls, band.origin, band.dp, threads);
     // In the plane all particles are at one y, so that distances are those of the plane.
     if (options.is_2d) std::fill(band.points.y.begin(), band.points.y.end(), 0.0f);
-    for (auto* arrays : {&band.velocities, &band.forces, &band.moved}) arrays->resize(band.moving);
+    for (auto* arrays : {&band.velocities, &band.moved}) arrays->resize(band.moving);
     band.is_held.assign(band.moving, 0);
     band.is_inserted.assign(band.moving, 0);
     band.wall_distances.assign(band.moving, std::numeric_limits<float>::infinity());
@@ -182,8 +182,10 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     return band;
 }
 
-void build_list(NeighbourList& list, const Band& band, int threads)
+void build_list(NeighbourList& list, const Band& band, double h, int threads)
 {
+    // The old lists go first, so that both are never there together.
+    list = NeighbourList(static_cast<float>(list_reach * h), list_skin);
     list.build(
         band.points, threads,
         [&](std::uint32_t i) { return i < band.moving && band.is_held[i] == 0; },
@@ -400,9 +402,15 @@ struct Forces
         std::vector<float> x, y, z;
     };
 
-    /// Sets the force on particle i; returns the Shepard sum.
-    double act(Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-               Offsets& offsets) const
+    struct Result
+    {
+        float x, y, z;
+        double shepard;
+    };
+
+    /// The force on particle i and its Shepard sum.
+    Result on(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+              Offsets& offsets) const
     {
         const std::size_t n = near.size();
         if (offsets.x.size() < n)
@@ -449,10 +457,7 @@ struct Forces
                 shepard += beyond.share(distance);
             }
         }
-        band.forces.x[i] = fx;
-        band.forces.y[i] = fy;
-        band.forces.z[i] = fz;
-        return shepard;
+        return {fx, fy, fz, shepard};
     }
 };
 
@@ -484,23 +489,29 @@ ChunkSums sum_over_chunks(std::size_t n, int threads, const Body& body)
     return add_up(chunks);
 }
 
-ChunkSums compute_forces(Band& band, const NeighbourList& list, const Forces& forces, int threads)
+/// Adds the forces to the velocities, of which `kept` remains.
+ChunkSums accelerate(Band& band, const NeighbourList& list, const Forces& forces, float step_length,
+                     float kept, int threads)
 {
-    return sum_over_chunks(
-        list.rows(), threads,
-        [&](std::size_t row, ChunkSums& sums)
-        {
-            const std::uint32_t i = list.point(row);
-            if (i >= band.moving || band.is_held[i] != 0) return;
-            thread_local Forces::Offsets offsets;
-            const double shepard = forces.act(band, i, list.neighbours(row), offsets);
-            sums.shepard += shepard;
-            sums.shepard_squared += (shepard - 1) * (shepard - 1);
-            ++sums.count;
-            sums.work += static_cast<double>(band.forces.x[i] * band.velocities.x[i] +
-                                             band.forces.y[i] * band.velocities.y[i] +
-                                             band.forces.z[i] * band.velocities.z[i]);
-        });
+    return sum_over_chunks(list.rows(), threads,
+                           [&](std::size_t row, ChunkSums& sums)
+                           {
+                               const std::uint32_t i = list.point(row);
+                               if (i >= band.moving || band.is_held[i] != 0) return;
+                               thread_local Forces::Offsets offsets;
+                               const Forces::Result f =
+                                   forces.on(band, i, list.neighbours(row), offsets);
+                               sums.shepard += f.shepard;
+                               sums.shepard_squared += (f.shepard - 1) * (f.shepard - 1);
+                               ++sums.count;
+                               float& x = band.velocities.x[i];
+                               float& y = band.velocities.y[i];
+                               float& z = band.velocities.z[i];
+                               sums.work += static_cast<double>(f.x * x + f.y * y + f.z * z);
+                               x = kept * x + step_length * f.x;
+                               y = kept * y + step_length * f.y;
+                               z = kept * z + step_length * f.z;
+                           });
 }
 
 /// A step that may come too near to a wall: checked with the exact distance, taken back where it
@@ -549,17 +560,14 @@ private:
     bool is_2d_;
 };
 
-ChunkSums move(Band& band, float step_length, float kept, const WallGuard& guard,
-               const RelaxVolumeOptions& options, int threads)
+ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
 {
     return sum_over_chunks(
         band.moving, threads,
         [&](std::size_t i, ChunkSums& sums)
         {
             if (band.is_held[i] != 0) return;
-            Vec3 step{double{kept * band.velocities.x[i] + step_length * band.forces.x[i]},
-                      double{kept * band.velocities.y[i] + step_length * band.forces.y[i]},
-                      double{kept * band.velocities.z[i] + step_length * band.forces.z[i]}};
+            Vec3 step{band.velocities.x[i], band.velocities.y[i], band.velocities.z[i]};
             if (options.is_2d) step.y = 0;
             const double length = norm(step);
             if (length > double{longest_step}) step = step * (double{longest_step} / length);
@@ -585,11 +593,28 @@ ChunkSums move(Band& band, float step_length, float kept, const WallGuard& guard
         });
 }
 
+/// The share of the kernel's integral that is farther than a radius, by the rule of rectangles.
+double share_beyond(double radius, double h, bool is_2d)
+{
+    constexpr int steps = 200;
+    const double width = (2 * h - radius) / steps;
+    double sum = 0;
+    for (int n = 0; width > 0 && n < steps; ++n)
+    {
+        const double r = radius + (n + 0.5) * width;
+        const double w = wendland(r / h) * width;
+        sum += is_2d ? wendland_alpha_2d(h) * w * 2 * std::numbers::pi * r
+                     : wendland_alpha_3d(h) * w * 4 * std::numbers::pi * r * r;
+    }
+    return sum;
+}
+
 /// How far the Shepard sum of a particle is from 1, at h 1.3 times as large: there the sum over
-/// even particles is 1 to a few thousandths, however they are arranged. The lists reach far enough.
-/// Near to a free surface, where the sum tells nothing, it is 0.
+/// even particles is 1 to a few thousandths, however they are arranged. What lies beyond the reach
+/// of the lists, `cut_off`, is taken as even. Near to a free surface, where the sum tells nothing,
+/// it is 0.
 double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-                 const HalfSpace& beyond, double alpha, double h)
+                 const HalfSpace& beyond, double alpha, double h, double cut_off)
 {
     double sum = 1;
     for (const std::uint32_t j : near)
@@ -600,7 +625,7 @@ double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_
         const float z = band.points.z[j] - band.points.z[i];
         sum += wendland(static_cast<double>(std::sqrt(x * x + y * y + z * z)) / h);
     }
-    sum *= alpha;
+    sum = alpha * sum + cut_off;
     if (band.slots[i] != no_slot)
     {
         const NearWalls& walls = band.near_walls[band.slots[i]];
@@ -680,6 +705,8 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
     const double h = wider * options.h_dp;
     const HalfSpace beyond(h, options.is_2d);
     const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
+    const double cut_off =
+        share_beyond(list_reach * options.h_dp + double{list_skin}, h, options.is_2d);
     std::vector<float> excess(list.rows(), 0.0f);
     parallel_for(
         list.rows(), threads,
@@ -687,8 +714,8 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         {
             const std::uint32_t i = list.point(row);
             if (i >= band.moving || band.is_held[i] != 0) return;
-            excess[row] =
-                static_cast<float>(excess_at(band, i, list.neighbours(row), beyond, alpha, h));
+            excess[row] = static_cast<float>(
+                excess_at(band, i, list.neighbours(row), beyond, alpha, h, cut_off));
         },
         chunk_size);
     CountChange change;
@@ -726,58 +753,44 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
     return change;
 }
 
-/// Carries a change out. Forces are not kept: they are computed anew.
+/// Takes removed particles out of an array and puts inserted ones behind those that stay.
+template <typename T, typename Value>
+void change_array(std::vector<T>& array, const CountChange& change, const Value& inserted)
+{
+    const std::size_t moving = change.is_removed.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < moving; ++i)
+        if (change.is_removed[i] == 0) array[kept++] = array[i];
+    std::vector<T> come;
+    for (const CountChange::Inserted& one : change.inserted) come.push_back(inserted(one));
+    const auto end_of_kept = array.begin() + static_cast<std::ptrdiff_t>(kept);
+    array.erase(end_of_kept, array.begin() + static_cast<std::ptrdiff_t>(moving));
+    array.insert(array.begin() + static_cast<std::ptrdiff_t>(kept), come.begin(), come.end());
+}
+
 void change_count(Band& band, const CountChange& change)
 {
-    Band old = std::move(band);
-    band = {};
-    band.origin = old.origin;
-    band.dp = old.dp;
-    band.near_walls = std::move(old.near_walls);
-    const auto append_point = [](PointArrays& to, const PointArrays& from, std::size_t i)
-    {
-        to.x.push_back(from.x[i]);
-        to.y.push_back(from.y[i]);
-        to.z.push_back(from.z[i]);
-    };
-    const auto append_zero = [](PointArrays& to, float x)
-    {
-        to.x.push_back(x);
-        to.y.push_back(0);
-        to.z.push_back(0);
-    };
-    for (std::size_t i = 0; i < old.moving; ++i)
-    {
-        if (change.is_removed[i] != 0) continue;
-        append_point(band.points, old.points, i);
-        append_point(band.velocities, old.velocities, i);
-        append_point(band.moved, old.moved, i);
-        band.sources.push_back(old.sources[i]);
-        band.is_inserted.push_back(old.is_inserted[i]);
-        band.is_held.push_back(old.is_held[i]);
-        band.wall_distances.push_back(old.wall_distances[i]);
-        band.slots.push_back(old.slots[i]);
-    }
-    for (const CountChange::Inserted& one : change.inserted)
-    {
-        const Vec3 p = (one.place - band.origin) / band.dp;
-        band.points.x.push_back(static_cast<float>(p.x));
-        band.points.y.push_back(static_cast<float>(p.y));
-        band.points.z.push_back(static_cast<float>(p.z));
-        append_zero(band.velocities, 0);
-        // As if moved far from a wall that was near: walls are looked for before it moves.
-        append_zero(band.moved, 1);
-        band.sources.push_back(old.sources[one.beside]);
-        band.is_inserted.push_back(1);
-        band.is_held.push_back(0);
-        band.wall_distances.push_back(0);
-        band.slots.push_back(no_slot);
-    }
+    using Inserted = CountChange::Inserted;
+    const auto place = [&](const Inserted& one) { return (one.place - band.origin) / band.dp; };
+    const auto zero = [](const Inserted&) { return 0.0f; };
+    change_array(band.points.x, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).x); });
+    change_array(band.points.y, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).y); });
+    change_array(band.points.z, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).z); });
+    for (auto* array : {&band.velocities.x, &band.velocities.y, &band.velocities.z, &band.moved.y,
+                        &band.moved.z, &band.wall_distances})
+        change_array(*array, change, zero);
+    // As if moved far from a wall that was near: walls are looked for before it moves.
+    change_array(band.moved.x, change, [](const Inserted&) { return 1.0f; });
+    const std::vector<std::uint32_t> sources = band.sources;
+    change_array(band.sources, change, [&](const Inserted& one) { return sources[one.beside]; });
+    change_array(band.is_inserted, change, [](const Inserted&) { return char{1}; });
+    change_array(band.is_held, change, [](const Inserted&) { return char{0}; });
+    change_array(band.slots, change, [](const Inserted&) { return no_slot; });
+    band.volume_end += band.sources.size() - band.moving;
     band.moving = band.sources.size();
-    band.volume_end = band.moving + old.volume_end - old.moving;
-    band.forces.resize(band.moving);
-    for (std::size_t i = old.moving; i < old.points.size(); ++i)
-        append_point(band.points, old.points, i);
 }
 
 /// Gives the positions back in the caller's order, inserted ones last.
@@ -833,7 +846,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     if (positions.empty()) return report;
     Band band = make_band(positions, surroundings, options, threads);
     NeighbourList list(static_cast<float>(list_reach * options.h_dp), list_skin);
-    build_list(list, band, threads);
+    build_list(list, band, options.h_dp, threads);
     report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
 
     const Forces forces(options.h_dp, options.is_2d);
@@ -842,10 +855,11 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
     const int last = options.iterations > 0 ? options.iterations : most_iterations;
     std::vector<double> spreads;
+    float kept = momentum;
     renew_walls(band, list, wall_reach, true, surroundings.closest, threads);
     for (int iteration = 1; iteration <= last; ++iteration)
     {
-        if (list.is_outdated(band.points, threads)) build_list(list, band, threads);
+        if (list.is_outdated(band.points, threads)) build_list(list, band, options.h_dp, threads);
         if (options.fit_count && is_count_due(iteration))
         {
             const CountChange change =
@@ -853,14 +867,14 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
             report.removed += change.removed;
             report.inserted += change.inserted.size();
             change_count(band, change);
-            build_list(list, band, threads);
+            build_list(list, band, options.h_dp, threads);
         }
         if (iteration > 1)
             renew_walls(band, list, wall_reach, false, surroundings.closest, threads);
-        const ChunkSums sums = compute_forces(band, list, forces, threads);
+        const ChunkSums sums = accelerate(band, list, forces, step_length, kept, threads);
         if (sums.count == 0) break;
-        const float kept = sums.work < 0 ? 0 : momentum;
-        const ChunkSums steps = move(band, step_length, kept, guard, options, threads);
+        kept = sums.work < 0 ? 0 : momentum;
+        const ChunkSums steps = move(band, guard, options, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;
         const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);
