@@ -46,19 +46,20 @@ constexpr int last_count_change = 15;
 /// A stretch of so many particles that together make up for less than half of one is even enough.
 constexpr std::size_t even_stretch = 40;
 constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
-constexpr std::uint32_t no_slot = 0xFFFFFFFF;
+constexpr std::uint32_t no_meeting = 0xFFFFFFFF;
 
-/// The walls near a particle, as of when they were last looked for.
-struct NearWalls
+/// A wall as a plane.
+struct Plane
 {
-    struct Plane
-    {
-        float x, y, z; ///< normal, towards the wall
-        float distance;
-    };
-    std::array<Plane, 3> planes;
+    float x, y, z;  ///< normal, towards the wall
+    float distance; ///< from the particle, as of when walls were last looked for
+};
+
+/// The walls that meet the nearest one near a particle.
+struct MeetingWalls
+{
+    std::array<Plane, 2> planes;
     std::uint32_t count = 0;
-    std::uint32_t light_renewals = 0; ///< of the nearest only, since all were looked for
 };
 
 /// Particles as the loops need them: those that may move along a Morton curve, then the held ones,
@@ -75,10 +76,13 @@ struct Band
     PointArrays velocities;
     std::vector<char> is_held;
 
-    std::vector<float> wall_distances; ///< as of the last look
-    PointArrays moved;                 ///< since the last look
-    std::vector<std::uint32_t> slots;
-    std::vector<NearWalls> near_walls;
+    // Walls as of the last look, per particle that may move:
+    std::vector<float> wall_distances;   ///< to the nearest
+    PointArrays wall_normals;            ///< towards it; zero where it is out of reach
+    PointArrays moved;                   ///< since the last look
+    std::vector<char> light_looks;       ///< at the nearest wall only, since all were looked for
+    std::vector<std::uint32_t> meetings; ///< index of `meeting_walls`, or none
+    std::vector<MeetingWalls> meeting_walls;
 
     Vec3 place(std::size_t i) const
     {
@@ -174,11 +178,13 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     append_sorted(band.points, surroundings.walls, band.origin, band.dp, threads);
     // In the plane all particles are at one y, so that distances are those of the plane.
     if (options.is_2d) std::fill(band.points.y.begin(), band.points.y.end(), 0.0f);
-    for (auto* arrays : {&band.velocities, &band.moved}) arrays->resize(band.moving);
+    for (auto* arrays : {&band.velocities, &band.moved, &band.wall_normals})
+        arrays->resize(band.moving);
     band.is_held.assign(band.moving, 0);
     band.is_inserted.assign(band.moving, 0);
     band.wall_distances.assign(band.moving, std::numeric_limits<float>::infinity());
-    band.slots.assign(band.moving, no_slot);
+    band.light_looks.assign(band.moving, 0);
+    band.meetings.assign(band.moving, no_meeting);
     return band;
 }
 
@@ -268,9 +274,10 @@ bool has_old_walls(const Band& band, std::size_t i, float reach)
     return moved > wall_renewal && band.wall_distances[i] - moved < reach;
 }
 
-/// Whether the wall particles around a particle lie in one plane: then no second wall is near.
-bool is_wall_plane(const Band& band, std::size_t i, std::span<const std::uint32_t> near,
-                   const WallPlane& plane)
+/// Whether no wall particle around a particle is in front of the plane of the nearest wall: then no
+/// second wall meets it there.
+bool is_alone(const Band& band, std::size_t i, std::span<const std::uint32_t> near,
+              const WallPlane& plane)
 {
     constexpr float flatness = 0.3f;
     const auto x = static_cast<float>(plane.normal.x);
@@ -284,18 +291,43 @@ bool is_wall_plane(const Band& band, std::size_t i, std::span<const std::uint32_
                            const float off = (band.points.x[j] - band.points.x[i]) * x +
                                              (band.points.y[j] - band.points.y[i]) * y +
                                              (band.points.z[j] - band.points.z[i]) * z - distance;
-                           return std::abs(off) < flatness;
+                           return off > -flatness;
                        });
 }
 
-void note_walls(NearWalls& near, const WallPlanes& found, double dp)
+Plane as_plane(const WallPlane& plane, double dp)
 {
-    near.count = 0;
-    near.light_renewals = 0;
-    for (const WallPlane& plane : found)
-        near.planes[near.count++] = {
-            static_cast<float>(plane.normal.x), static_cast<float>(plane.normal.y),
+    return {static_cast<float>(plane.normal.x), static_cast<float>(plane.normal.y),
             static_cast<float>(plane.normal.z), static_cast<float>(plane.distance / dp)};
+}
+
+float approach_to(const Band& band, std::size_t i, const Plane& plane)
+{
+    return band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
+}
+
+/// Calls visit(plane, distance) for the walls near a particle, with the distance from where it is.
+template <typename Visit>
+void for_each_wall(const Band& band, std::size_t i, const Visit& visit)
+{
+    const auto visit_plane = [&](const Plane& plane)
+    { visit(plane, std::max(0.0f, plane.distance - approach_to(band, i, plane))); };
+    visit_plane({band.wall_normals.x[i], band.wall_normals.y[i], band.wall_normals.z[i],
+                 band.wall_distances[i]});
+    if (band.meetings[i] == no_meeting) return;
+    const MeetingWalls& meeting = band.meeting_walls[band.meetings[i]];
+    for (std::uint32_t w = 0; w < meeting.count; ++w) visit_plane(meeting.planes[w]);
+}
+
+/// Takes the nearest wall over: the distance counts from here.
+void set_nearest_wall(Band& band, std::size_t i, const WallPlanes& found)
+{
+    const Vec3 normal = found.count > 0 ? found.planes[0].normal : Vec3{};
+    band.wall_normals.x[i] = static_cast<float>(normal.x);
+    band.wall_normals.y[i] = static_cast<float>(normal.y);
+    band.wall_normals.z[i] = static_cast<float>(normal.z);
+    band.wall_distances[i] = static_cast<float>(found.distance / band.dp);
+    band.moved.x[i] = band.moved.y[i] = band.moved.z[i] = 0;
 }
 
 /// Takes over the nearest wall where it is the one that was nearest; the others remain planes,
@@ -303,80 +335,69 @@ void note_walls(NearWalls& near, const WallPlanes& found, double dp)
 /// again.
 bool renew_nearest_wall(Band& band, std::size_t i, const WallPlanes& found)
 {
-    constexpr float same_wall = 0.9f;
-    constexpr std::uint32_t most_light_renewals = 3;
-    if (band.slots[i] == no_slot || found.count == 0) return false;
-    NearWalls& near = band.near_walls[band.slots[i]];
-    if (near.count == 0 || near.light_renewals >= most_light_renewals) return false;
-    const auto x = static_cast<float>(found.planes[0].normal.x);
-    const auto y = static_cast<float>(found.planes[0].normal.y);
-    const auto z = static_cast<float>(found.planes[0].normal.z);
-    const NearWalls::Plane& old = near.planes[0];
-    if (x * old.x + y * old.y + z * old.z < same_wall) return false;
-    for (std::uint32_t w = 1; w < near.count; ++w)
-    {
-        NearWalls::Plane& plane = near.planes[w];
-        plane.distance -=
-            band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
-    }
-    ++near.light_renewals;
-    near.planes[0] = {x, y, z, static_cast<float>(found.distance / band.dp)};
+    constexpr double same_wall = 0.9;
+    constexpr char most_light_looks = 3;
+    if (found.count == 0 || band.light_looks[i] >= most_light_looks) return false;
+    const Vec3 old{band.wall_normals.x[i], band.wall_normals.y[i], band.wall_normals.z[i]};
+    if (dot(found.planes[0].normal, old) < same_wall) return false;
+    if (band.meetings[i] != no_meeting)
+        for (Plane& plane : band.meeting_walls[band.meetings[i]].planes)
+            plane.distance -= approach_to(band, i, plane);
+    ++band.light_looks[i];
+    set_nearest_wall(band, i, found);
     return true;
 }
 
-void start_from_here(Band& band, std::size_t i, double distance)
+/// Looks for all walls near a particle. Returns those that meet the nearest.
+MeetingWalls look_for_walls(Band& band, std::size_t i, std::span<const std::uint32_t> near,
+                            double reach, const ClosestWallPoint& closest)
 {
-    band.wall_distances[i] = static_cast<float>(distance / band.dp);
-    band.moved.x[i] = band.moved.y[i] = band.moved.z[i] = 0;
+    MeetingWalls meeting;
+    const Vec3 place = band.place(i);
+    WallPlanes found = find_nearest_wall(place, reach * band.dp, closest);
+    if (renew_nearest_wall(band, i, found))
+        return band.meetings[i] == no_meeting ? meeting : band.meeting_walls[band.meetings[i]];
+    if (found.count > 0 && !is_alone(band, i, near, found.planes[0]))
+        add_further_walls(found, place, reach * band.dp, closest);
+    set_nearest_wall(band, i, found);
+    band.light_looks[i] = 0;
+    for (int w = 1; w < found.count; ++w)
+        meeting.planes[meeting.count++] =
+            as_plane(found.planes[static_cast<std::size_t>(w)], band.dp);
+    return meeting;
 }
 
-/// Looks for walls where needed. A particle gets a slot when it comes near to a wall.
+/// Looks for walls where needed.
 void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_first,
                  const ClosestWallPoint& closest, int threads)
 {
     if (!closest) return;
     const std::size_t chunks = (list.rows() + chunk_size - 1) / chunk_size;
-    std::vector<std::vector<std::pair<std::uint32_t, NearWalls>>> come_near(chunks);
+    // Particles that come to where walls meet are given a place for them after the loop, in order.
+    std::vector<std::vector<std::pair<std::uint32_t, MeetingWalls>>> newly_met(chunks);
+    const auto look = [&](std::size_t row, std::size_t chunk)
+    {
+        const std::uint32_t i = list.point(row);
+        if (i >= band.moving || band.is_held[i] != 0) return;
+        if (!is_first && !has_old_walls(band, i, static_cast<float>(reach))) return;
+        const MeetingWalls meeting = look_for_walls(band, i, list.neighbours(row), reach, closest);
+        if (band.meetings[i] != no_meeting)
+            band.meeting_walls[band.meetings[i]] = meeting;
+        else if (meeting.count > 0)
+            newly_met[chunk].emplace_back(i, meeting);
+    };
     parallel_for(chunks, threads,
                  [&](std::size_t chunk)
                  {
                      const std::size_t end = std::min(list.rows(), (chunk + 1) * chunk_size);
-                     for (std::size_t row = chunk * chunk_size; row < end; ++row)
-                     {
-                         const std::uint32_t i = list.point(row);
-                         if (i >= band.moving || band.is_held[i] != 0) continue;
-                         if (!is_first && !has_old_walls(band, i, static_cast<float>(reach)))
-                             continue;
-                         const Vec3 place = band.place(i);
-                         WallPlanes found = find_nearest_wall(place, reach * band.dp, closest);
-                         const bool is_known = renew_nearest_wall(band, i, found);
-                         start_from_here(band, i, found.distance);
-                         if (is_known) continue;
-                         if (found.count > 0 &&
-                             !is_wall_plane(band, i, list.neighbours(row), found.planes[0]))
-                             add_further_walls(found, place, reach * band.dp, closest);
-                         NearWalls walls;
-                         note_walls(walls, found, band.dp);
-                         if (band.slots[i] != no_slot)
-                             band.near_walls[band.slots[i]] = walls;
-                         else if (walls.count > 0)
-                             come_near[chunk].emplace_back(i, walls);
-                     }
+                     for (std::size_t row = chunk * chunk_size; row < end; ++row) look(row, chunk);
                  });
-    for (const auto& chunk : come_near)
-        for (const auto& [i, walls] : chunk)
+    for (const auto& chunk : newly_met)
+        for (const auto& [i, meeting] : chunk)
         {
-            band.slots[i] = static_cast<std::uint32_t>(band.near_walls.size());
-            band.near_walls.push_back(walls);
+            band.meetings[i] = static_cast<std::uint32_t>(band.meeting_walls.size());
+            band.meeting_walls.push_back(meeting);
         }
-}
-
-/// How far a particle is from a wall that was found before it came where it is.
-double distance_of(const Band& band, std::size_t i, const NearWalls::Plane& plane)
-{
-    const float approach =
-        band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
-    return std::max(0.0f, plane.distance - approach);
 }
 
 /// The forces of equation 15 and the Shepard sums, with what is the same for all particles.
@@ -443,20 +464,17 @@ struct Forces
             sum += s3 * s * (2 * q + 1);
         }
         double shepard = alpha * (1 + static_cast<double>(sum));
-        if (band.slots[i] != no_slot)
-        {
-            const NearWalls& walls = band.near_walls[band.slots[i]];
-            for (std::uint32_t w = 0; w < walls.count; ++w)
-            {
-                const NearWalls::Plane& plane = walls.planes[w];
-                const double distance = distance_of(band, i, plane) + behind_wall;
-                const auto size = static_cast<float>(beyond.force(distance));
-                fx -= size * plane.x;
-                fy -= size * plane.y;
-                fz -= size * plane.z;
-                shepard += beyond.share(distance);
-            }
-        }
+        for_each_wall(band, i,
+                      [&](const Plane& plane, float distance)
+                      {
+                          const double way = double{distance} + behind_wall;
+                          if (way >= beyond.reach()) return;
+                          const auto size = static_cast<float>(beyond.force(way));
+                          fx -= size * plane.x;
+                          fy -= size * plane.y;
+                          fz -= size * plane.z;
+                          shepard += beyond.share(way);
+                      });
         return {fx, fy, fz, shepard};
     }
 };
@@ -536,7 +554,7 @@ public:
     {
         const Vec3 start = band.place(i);
         const WallPlanes nearest = find_nearest_wall(start, (2 * limit_ + 1) * band.dp, closest_);
-        if (renew_nearest_wall(band, i, nearest)) start_from_here(band, i, nearest.distance);
+        renew_nearest_wall(band, i, nearest);
         const double distance = nearest.distance / band.dp;
         const double limit = std::min(limit_, distance);
         if (norm(step) > 0.9 * distance) step = step * (0.9 * distance / norm(step));
@@ -626,12 +644,9 @@ double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_
         sum += wendland(static_cast<double>(std::sqrt(x * x + y * y + z * z)) / h);
     }
     sum = alpha * sum + cut_off;
-    if (band.slots[i] != no_slot)
-    {
-        const NearWalls& walls = band.near_walls[band.slots[i]];
-        for (std::uint32_t w = 0; w < walls.count; ++w)
-            sum += beyond.share(distance_of(band, i, walls.planes[w]) + behind_wall);
-    }
+    for_each_wall(band, i,
+                  [&](const Plane&, float distance)
+                  { sum += beyond.share(double{distance} + behind_wall); });
     return sum - 1;
 }
 
@@ -779,8 +794,9 @@ void change_count(Band& band, const CountChange& change)
                  [&](const Inserted& one) { return static_cast<float>(place(one).y); });
     change_array(band.points.z, change,
                  [&](const Inserted& one) { return static_cast<float>(place(one).z); });
-    for (auto* array : {&band.velocities.x, &band.velocities.y, &band.velocities.z, &band.moved.y,
-                        &band.moved.z, &band.wall_distances})
+    for (auto* array :
+         {&band.velocities.x, &band.velocities.y, &band.velocities.z, &band.moved.y, &band.moved.z,
+          &band.wall_distances, &band.wall_normals.x, &band.wall_normals.y, &band.wall_normals.z})
         change_array(*array, change, zero);
     // As if moved far from a wall that was near: walls are looked for before it moves.
     change_array(band.moved.x, change, [](const Inserted&) { return 1.0f; });
@@ -788,7 +804,8 @@ void change_count(Band& band, const CountChange& change)
     change_array(band.sources, change, [&](const Inserted& one) { return sources[one.beside]; });
     change_array(band.is_inserted, change, [](const Inserted&) { return char{1}; });
     change_array(band.is_held, change, [](const Inserted&) { return char{0}; });
-    change_array(band.slots, change, [](const Inserted&) { return no_slot; });
+    change_array(band.light_looks, change, [](const Inserted&) { return char{0}; });
+    change_array(band.meetings, change, [](const Inserted&) { return no_meeting; });
     band.volume_end += band.sources.size() - band.moving;
     band.moving = band.sources.size();
 }
