@@ -206,7 +206,12 @@ int main(int argc, char** argv)
     fppg::VolumeSurroundings around;
     around.held = held;
     around.walls = walls.positions;
-    around.closest = [&](const Vec3& p) { return query.closest_point(p).point; };
+    std::atomic<std::size_t> queries{0};
+    around.closest = [&](const Vec3& p)
+    {
+        queries.fetch_add(1, std::memory_order_relaxed);
+        return query.closest_point(p).point;
+    };
     const double counted =
         static_cast<double>(volume_particles) + 0.5 * static_cast<double>(walls.positions.size());
     std::printf("%zu moving, %zu held, %zu walls; count dp3 / volume %.4f\n", moving.size(),
@@ -294,6 +299,7 @@ int main(int argc, char** argv)
     };
     const auto before = moving;
     const std::size_t memory = allocated;
+    queries = 0;
     allocated_at_peak = memory;
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t cpu_start = std::clock();
@@ -302,13 +308,15 @@ int main(int argc, char** argv)
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto more = static_cast<double>(allocated_at_peak - memory);
+    const std::size_t made = queries;
     const auto n = static_cast<double>(moving.size());
     std::printf(
         "%d iterations, %.3f s (%.3f of processor), %.3f us a particle and iteration; %zu "
-        "held at a surface, %zu steps shortened; peak %.0f bytes a particle more\n",
+        "held at a surface, %zu steps shortened; peak %.0f bytes a particle more, %.2f wall "
+        "queries a particle\n",
         result.iterations, seconds, cpu_seconds,
         1e6 * cpu_seconds / n / std::max(1, result.iterations), result.held_at_surface,
-        result.pushed_back, more / n);
+        result.pushed_back, more / n, static_cast<double>(made) / n);
     double sum = 0;
     for (std::size_t i = 0; i < moving.size(); ++i)
         sum += norm(moving[i] - before[options.fit_count ? result.sources[i] : i]) / dp;
