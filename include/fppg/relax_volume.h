@@ -102,8 +102,12 @@ struct RelaxVolumeReport
 /// threads    number of threads; the result does not depend on it
 /// throws     GeometryError if a position is not finite or dp, h, a distance or the number of
 ///            iterations is out of its range (names the value)
-/// cost       about 0.3 microseconds a moving particle and iteration on one core, and 300 bytes a
-///            moving particle
+/// source     section 3.3 of the FPPG paper, equations 15 to 17; continuum, momentum, push, limits
+///            and constants by trial on spheres, boxes and gears: after 30 iterations, the Shepard
+///            sums at h = 1.3 dp deviate by 0.9 to 1.3 per cent with fit_count (before: 4 to 11)
+/// cost       about 0.4 microseconds a moving particle and iteration on one core, walls of a mesh
+///            with sharp edges up to 0.1 more; 300 bytes a moving particle, with held and wall
+///            particles in their usual number
 RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroundings& surroundings,
                                const RelaxVolumeOptions& options, int threads);
 

@@ -1,7 +1,9 @@
 #include "fppg/relax_volume.h"
 
+#include "fit/fit_shapes.h"
 #include "fppg/error.h"
 #include "relax/volume_regions.h"
+#include "shapes/mesh_query.h"
 
 #include <gtest/gtest.h>
 
@@ -83,6 +85,43 @@ TEST(RelaxVolume, FitsTheCountInABoxThatTheLatticeMisses)
     const double counted = static_cast<double>(region.moving.size() + region.held.size()) +
                            0.5 * static_cast<double>(region.walls.size());
     EXPECT_NEAR(counted * 0.001, 1.6 * 1.4 * 1.2, 0.02 * 1.6 * 1.4 * 1.2);
+}
+
+TEST(RelaxVolume, SpreadsParticlesEvenlyBetweenTheFittedTeethOfAGear)
+{
+    const TriangleSoup soup = gear(8, 0.8, 1.1, 0.9);
+    const MeshQuery query(soup);
+    VolumeRegion region;
+    region.walls = FitInput(soup, region.dp).fit().positions;
+    region.closest = [&](const Vec3& p) { return query.closest_point(p).point; };
+    region.depth = [&](const Vec3& p)
+    { return (winding_number(soup, p) > 0.5 ? 1 : -1) * query.closest_point(p).distance; };
+    region.fill({-1.13, -1.14, 0.03}, {1.2, 1.2, 0.9});
+    const Evenness before = evenness(region);
+    RelaxVolumeOptions options = region.options();
+    options.fit_count = true;
+    relax(region, options);
+    const Evenness after = evenness(region);
+    EXPECT_GT(before.std, 0.06);
+    EXPECT_LT(after.std, 0.02);
+    EXPECT_NEAR(after.mean, 1, 0.03);
+    EXPECT_GE(least_depth_dp(region), 0.4 - 1e-5);
+    EXPECT_GT(least_gap_dp(region), 0.6);
+}
+
+TEST(RelaxVolume, SpreadsParticlesEvenlyWithAWiderKernel)
+{
+    for (const double h : {0.8, 1.3, 1.6})
+    {
+        VolumeRegion region = ball(1);
+        RelaxVolumeOptions options = region.options();
+        options.h_dp = h;
+        options.fit_count = true;
+        relax(region, options);
+        EXPECT_LT(evenness(region).std, 0.02) << h;
+        EXPECT_NEAR(evenness(region).mean, 1, 0.03) << h;
+        EXPECT_GE(least_depth_dp(region), 0.4 - 1e-5) << h;
+    }
 }
 
 TEST(RelaxVolume, KeepsALatticeWhoseWallsLieOnNodes)
