@@ -3,11 +3,11 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/flood.h"
-#include "lattice/mesh_path.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
@@ -17,7 +17,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
+#include <deque>
 #include <numeric>
 
 namespace fppg
@@ -230,21 +230,46 @@ private:
     void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
     void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
 
-    const MeshFile& mesh(const std::string& file)
+    const MeshFile& mesh(const MeshFileOp& op)
     {
-        const auto known = meshes_.find(file);
-        if (known != meshes_.end()) return known->second;
-        const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path, threads_);
-        report_.mesh_files.push_back({file, path, op_->source.line});
+        for (const ReadMesh& known : meshes_)
+            if (known.name == op.file && known.reading == op.reading) return known.mesh;
+        const std::string path = find_mesh_file(def_, op_->source, op.file);
+        MeshFile read = read_mesh_file(path, op.reading, threads_);
+        note_use(op.container, op.container);
+        note_use(op.file, path);
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
-        return meshes_.emplace(file, std::move(read)).first->second;
+        return meshes_.emplace_back(op.file, op.reading, std::move(read)).mesh;
+    }
+
+    void note_use(const std::string& name, const std::string& path)
+    {
+        const auto is_it = [&](const MeshFileUse& use) { return use.name == name; };
+        if (!name.empty() &&
+            std::none_of(report_.mesh_files.begin(), report_.mesh_files.end(), is_it))
+            report_.mesh_files.push_back(
+                {name, find_mesh_file(def_, op_->source, path), op_->source.line});
+    }
+
+    /// Single points and lines of a mesh file; lines are those of drawline.
+    void draw_points_and_lines(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<Vec3> points;
+        for (const Vec3& p : file.points) points.push_back(transform(p));
+        if (!points.empty()) draw(PointsOp{std::move(points)});
+        LinesOp lines;
+        for (const std::vector<Vec3>& line : file.lines)
+            for (std::size_t i = 1; i < line.size(); ++i)
+                lines.segments.emplace_back(transform(line[i - 1]), transform(line[i]));
+        if (!lines.segments.empty()) draw(lines);
     }
 
     void draw(const MeshFileOp& op)
     {
-        const TriangleSoup& source = mesh(op.file).soup;
+        const MeshFile& file = mesh(op);
+        const TriangleSoup& source = file.soup;
+        if (!op.advanced) draw_points_and_lines(file, op.transform);
         std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
             source.size(), threads_,
@@ -433,7 +458,13 @@ private:
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();
     std::uint64_t run_limit_ = memory_ / 5 * 4 / sizeof(Run);
-    std::map<std::string, MeshFile> meshes_;
+    struct ReadMesh
+    {
+        std::string name;
+        MeshReading reading;
+        MeshFile mesh;
+    };
+    std::deque<ReadMesh> meshes_;
 };
 
 } // namespace
