@@ -265,11 +265,48 @@ private:
         if (!lines.segments.empty()) draw(lines);
     }
 
+    TriangleSoup moved_soup(const TriangleSoup& source, const Transform& transform) const
+    {
+        TriangleSoup moved;
+        moved.vertices.resize(source.vertices.size());
+        parallel_for(
+            moved.vertices.size(), threads_,
+            [&](std::size_t i) { moved.vertices[i] = transform(source.vertices[i]); }, 4096);
+        return moved;
+    }
+
+    /// The sides of all triangles and quads, as lines.
+    void draw_wire(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        const auto node = [&](std::size_t i)
+        { return snap(transform(file.soup.vertices[i]), grid()); };
+        auto quad = file.quads.begin();
+        for (std::size_t t = 0; t < file.soup.size(); ++t)
+        {
+            std::vector<Node> corners{node(3 * t), node(3 * t + 1), node(3 * t + 2)};
+            if (quad != file.quads.end() && *quad == t)
+            {
+                ++quad;
+                corners.push_back(node(3 * ++t + 2));
+            }
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                segments.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+        }
+        paint_region(lines_region(segments, grid(), state().constants.line));
+    }
+
     void draw(const MeshFileOp& op)
     {
         const MeshFile& file = mesh(op);
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
+        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
+        {
+            draw_wire(file, op.transform);
+            if (op.autofill) autofill(moved_soup(source, op.transform), file, op.transform);
+            return;
+        }
         std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
             source.size(), threads_,
@@ -282,13 +319,7 @@ private:
             4096);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
-        if (op.advanced || op.fill_inside || op.autofill)
-        {
-            moved.vertices.resize(source.vertices.size());
-            parallel_for(
-                moved.vertices.size(), threads_,
-                [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
-        }
+        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(source, op.transform);
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
@@ -301,7 +332,7 @@ private:
             return;
         }
         draw_triangles(std::move(triangles));
-        if (op.autofill) autofill(moved);
+        if (op.autofill) autofill(moved, file, op.transform);
     }
 
     static SlabRegion region_of(SpanSet set)
@@ -318,9 +349,12 @@ private:
     /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
     /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
     /// so.
-    void autofill(const TriangleSoup& soup)
+    void autofill(const TriangleSoup& soup, const MeshFile& file, const Transform& transform)
     {
         Box3 bounds;
+        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const std::vector<Vec3>& line : file.lines)
+            for (const Vec3& p : line) bounds.add(transform(p));
         for (const Vec3& v : soup.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
         NodeBox box;

@@ -136,6 +136,7 @@ private:
         };
         for (const std::vector<Vec3>& line : file.lines)
         {
+            if (op.advanced) break; // takes surfaces only
             std::uint32_t before = add_vertex(line[0]);
             out.polygons.push_back({before, before});
             for (std::size_t i = 1; i < line.size(); ++i)

@@ -228,7 +228,7 @@ private:
                 for (std::size_t k = 2; k < cell.size(); ++k)
                 {
                     const std::size_t turned = k % 2;
-                    add_triangle(cell[k - 2 + turned], cell[k - 1 - turned], cell[k]);
+                    add_triangle(cell[k - 2], cell[k - 1 + turned], cell[k - turned]);
                 }
     }
 

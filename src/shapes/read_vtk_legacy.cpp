@@ -88,7 +88,11 @@ private:
             types_ = integers("int", n, "CELL_TYPES");
         }
         else if (key == "METADATA")
+        {
+            // The block ends with an empty line.
+            lines_.next_line();
             while (!lines_.is_at_end() && !is_blank_line(lines_.next_line())) continue;
+        }
         else if (key == "FIELD")
             skip_fields();
         else
