@@ -334,8 +334,9 @@ private:
         const std::uint64_t n = grid.xs.size();
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
             for (std::size_t i = 0; i < n; ++i)
-                mesh.points.push_back(Vec3{grid.xs[i], grid.ys[j], grid.z[j * n + i]} +
-                                      settings_.final_move);
+                mesh.points.push_back(
+                    {grid.xs[i] + settings_.final_move.x, grid.ys[j] + settings_.final_move.y,
+                     rounded({0, 0, grid.z[j * n + i] + settings_.final_move.z}).z});
         for (std::uint64_t j = 0; j + 1 < grid.ys.size(); ++j)
             for (std::uint64_t i = 0; i + 1 < n; ++i)
             {
