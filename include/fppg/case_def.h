@@ -3,6 +3,7 @@
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/lattice.h"
+#include "fppg/mesh_reading.h"
 #include "fppg/vec.h"
 
 #include <array>
@@ -164,11 +165,14 @@ struct EllipsoidOp
     double radius = 0;
 };
 
-/// `drawfilestl`
+/// `drawfilestl`, `drawfileply`, `drawfilevtk`, `drawfilecsv`, `drawbathymetry`, and one file of
+/// `drawfilevtm`
 struct MeshFileOp
 {
-    std::string file;    ///< as written in the case
-    Transform transform; ///< scale, rotation and move of the command, then the current matrix
+    std::string file;      ///< as written in the case; of a VTM file: beside it
+    std::string container; ///< the VTM file that names it, or empty
+    MeshReading reading;   ///< what the file is, and which of its shapes are drawn
+    Transform transform;   ///< scale, rotation and move of the command, then the current matrix
     bool autofill = false;
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)

@@ -2,6 +2,7 @@
 
 #include "fppg/lattice.h"
 #include "fppg/mesh.h"
+#include "fppg/mesh_reading.h"
 
 #include <cstdint>
 #include <string>
@@ -24,6 +25,25 @@ namespace fppg
 ///          a count that does not fit its size, has a facet that is no triangle or a number that
 ///          cannot be read (names the line), or has no facet left
 MeshFile read_stl(const std::string& path, int threads = 1);
+
+/// Reads a mesh file of any kind that is known: STL as read_stl; PLY; legacy VTK and the XML files
+/// .vtp and .vtu, points, lines and polygons; a table of heights (CSV); points of a bathymetry.
+/// Polygons and strips are cut into triangles as GenCase v5.4.354 cuts them, so that the soup of
+/// every kind can be body-fitted. Coordinates are float32 or double, as the file says: GenCase
+/// keeps both (points a millionth of dp beside a tie of the lattice fall as their type rounds
+/// them).
+///
+/// path     as the user named it, relative to the working directory
+/// reading  what the file is, and which of its shapes are wanted
+/// threads  number of threads; the result does not depend on it
+/// throws   IoError if the file cannot be opened; GeometryError if it is of another kind, is
+///          truncated, has a count that does not fit, names a point that is not there, or has no
+///          shape (names the line, the byte or the element, and what was expected)
+MeshFile read_mesh_file(const std::string& path, const MeshReading& reading, int threads = 1);
+
+/// The kind of a file by the ending of its name, whatever its case; STL for an ending that is not
+/// known.
+MeshFormat mesh_format_of(const std::string& path);
 
 /// The nodes inside a mesh or on it, by the sum of signed crossings along each column.
 ///

@@ -56,10 +56,10 @@ void choose_formats(const std::string& list, DropInOptions& options)
         }
         const bool all = word == "all";
         if (!all && word != "bi" && word != "vtkcells" && word != "vtkfreept" && word != "vtkall" &&
-            word != "vtkbound" && word != "vtkfluid" && word != "vtkfeatures")
+            word != "vtkbound" && word != "vtkfluid" && word != "vtkfeatures" && word != "relaxcsv")
             throw UsageError(fmt::format(
                 "-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
-                "vtkbound, vtkfluid or vtkfeatures, each with + or - before it",
+                "vtkbound, vtkfluid, vtkfeatures or relaxcsv, each with + or - before it",
                 word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
@@ -67,6 +67,7 @@ void choose_formats(const std::string& list, DropInOptions& options)
         if (all || word == "vtkbound") options.save_bound = on;
         if (all || word == "vtkfluid") options.save_fluid = on;
         if (all || word == "vtkfeatures") options.save_features = on;
+        if (all || word == "relaxcsv") options.save_relaxation = on;
     }
 }
 
@@ -202,7 +203,7 @@ std::string help_text()
         "vtkbound,\n"
         "                         vtkfluid, vtkfeatures (feature lines of body-fitted walls, "
         "where there are\n"
-        "                         any), all\n"
+        "                         any), relaxcsv (history of their relaxation), all\n"
         "  -save3vtk:0|1          three more copies of every VTK, _r00 to _r02 (default 0)\n"
         "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
         "  -debug:N               accepted, changes nothing\n"

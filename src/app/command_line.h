@@ -37,7 +37,8 @@ struct DropInOptions
     bool save_all = false;
     bool save_bound = false;
     bool save_fluid = false;
-    bool save_features = false; ///< where walls are fitted
+    bool save_features = false;   ///< where walls are fitted
+    bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
     bool create_folders = true;
 };

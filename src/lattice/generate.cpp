@@ -3,11 +3,11 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/flood.h"
-#include "lattice/mesh_path.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
@@ -19,7 +19,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
+#include <deque>
 
 namespace fppg
 {
@@ -130,13 +130,16 @@ private:
             state().mk.kind == MkKind::Bound ? fit_settings(def_.fit, state().mk.mk) : nullptr;
         if (settings == nullptr || state().mode == DrawMode::Wire) return false;
         const auto* file = std::get_if<MeshFileOp>(&op.what);
+        if (file != nullptr && mesh(*file).soup.vertices.empty()) return false;
         try
         {
             const std::vector<ShapeMesh> shapes =
-                shape_meshes(op, file != nullptr ? &mesh(file->file).soup : nullptr, grid().dp);
+                shape_meshes(op, file != nullptr ? &mesh(*file).soup : nullptr, grid().dp);
             if (shapes.empty()) return false;
             for (const ShapeMesh& shape : shapes)
                 if (state().draw_points) add_wall(fit(shape, op, *settings), file);
+            if (file != nullptr && !file->advanced)
+                draw_points_and_lines(mesh(*file), file->transform);
         }
         catch (const GeometryError& e)
         {
@@ -175,7 +178,8 @@ private:
     /// `advanced`: of the inside, the nodes whose depth is asked for.
     void keep_depth(FittedDraw& draw, const MeshFileOp& op)
     {
-        const SlabRegion region = depth_region(moved_soup(op), op, grid(), threads_);
+        const SlabRegion region =
+            depth_region(moved_soup(mesh(op).soup, op.transform), op, grid(), threads_);
         parallel_for(draw.volume.size(), threads_,
                      [&](std::size_t x)
                      {
@@ -275,32 +279,83 @@ private:
     void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
     void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
 
-    const MeshFile& mesh(const std::string& file)
+    const MeshFile& mesh(const MeshFileOp& op)
     {
-        const auto known = meshes_.find(file);
-        if (known != meshes_.end()) return known->second;
-        const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path, threads_);
-        report_.mesh_files.push_back({file, path, op_->source.line});
+        for (const ReadMesh& known : meshes_)
+            if (known.name == op.file && known.reading == op.reading) return known.mesh;
+        const std::string path = find_mesh_file(def_, op_->source, op.file);
+        MeshFile read = read_mesh_file(path, op.reading, threads_);
+        note_use(op.container, op.container);
+        note_use(op.file, path);
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
-        return meshes_.emplace(file, std::move(read)).first->second;
+        return meshes_.emplace_back(op.file, op.reading, std::move(read)).mesh;
     }
 
-    TriangleSoup moved_soup(const MeshFileOp& op)
+    void note_use(const std::string& name, const std::string& path)
     {
-        const TriangleSoup& source = mesh(op.file).soup;
+        const auto is_it = [&](const MeshFileUse& use) { return use.name == name; };
+        if (!name.empty() &&
+            std::none_of(report_.mesh_files.begin(), report_.mesh_files.end(), is_it))
+            report_.mesh_files.push_back(
+                {name, find_mesh_file(def_, op_->source, path), op_->source.line});
+    }
+
+    /// Single points and lines of a mesh file; lines are those of drawline.
+    void draw_points_and_lines(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<Vec3> points;
+        for (const Vec3& p : file.points) points.push_back(transform(p));
+        if (!points.empty()) draw(PointsOp{std::move(points)});
+        LinesOp lines;
+        for (const std::vector<Vec3>& line : file.lines)
+            for (std::size_t i = 1; i < line.size(); ++i)
+                lines.segments.emplace_back(transform(line[i - 1]), transform(line[i]));
+        if (!lines.segments.empty()) draw(lines);
+    }
+
+    TriangleSoup moved_soup(const TriangleSoup& source, const Transform& transform) const
+    {
         TriangleSoup moved;
         moved.vertices.resize(source.vertices.size());
         parallel_for(
             moved.vertices.size(), threads_,
-            [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
+            [&](std::size_t i) { moved.vertices[i] = transform(source.vertices[i]); }, 4096);
         return moved;
+    }
+
+    /// The sides of all triangles and quads, as lines.
+    void draw_wire(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        const auto node = [&](std::size_t i)
+        { return snap(transform(file.soup.vertices[i]), grid()); };
+        auto quad = file.quads.begin();
+        for (std::size_t t = 0; t < file.soup.size(); ++t)
+        {
+            std::vector<Node> corners{node(3 * t), node(3 * t + 1), node(3 * t + 2)};
+            if (quad != file.quads.end() && *quad == t)
+            {
+                ++quad;
+                corners.push_back(node(3 * ++t + 2));
+            }
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                segments.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+        }
+        paint_region(lines_region(segments, grid(), state().constants.line));
     }
 
     void draw(const MeshFileOp& op)
     {
-        const TriangleSoup& source = mesh(op.file).soup;
+        const MeshFile& file = mesh(op);
+        const TriangleSoup& source = file.soup;
+        if (!op.advanced) draw_points_and_lines(file, op.transform);
+        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
+        {
+            draw_wire(file, op.transform);
+            if (op.autofill) autofill(moved_soup(source, op.transform), file, op.transform);
+            return;
+        }
         std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
             source.size(), threads_,
@@ -313,7 +368,7 @@ private:
             4096);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
-        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(op);
+        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(source, op.transform);
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
@@ -326,7 +381,7 @@ private:
             return;
         }
         draw_triangles(std::move(triangles));
-        if (op.autofill) autofill(moved);
+        if (op.autofill) autofill(moved, file, op.transform);
     }
 
     static SlabRegion region_of(SpanSet set)
@@ -343,9 +398,12 @@ private:
     /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
     /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
     /// so.
-    void autofill(const TriangleSoup& soup)
+    void autofill(const TriangleSoup& soup, const MeshFile& file, const Transform& transform)
     {
         Box3 bounds;
+        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const std::vector<Vec3>& line : file.lines)
+            for (const Vec3& p : line) bounds.add(transform(p));
         for (const Vec3& v : soup.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
         NodeBox box;
@@ -492,7 +550,13 @@ private:
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();
     std::uint64_t run_limit_ = memory_ / 5 * 4 / sizeof(Run);
-    std::map<std::string, MeshFile> meshes_;
+    struct ReadMesh
+    {
+        std::string name;
+        MeshReading reading;
+        MeshFile mesh;
+    };
+    std::deque<ReadMesh> meshes_;
 };
 
 } // namespace
