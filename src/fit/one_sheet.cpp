@@ -16,6 +16,8 @@ namespace
 /// Two particles on either side of a plate lie up to this far apart, dp: its thickness and half a
 /// spacing along it.
 constexpr double reach_dp = 1.2;
+/// A corner of a plate lies this far from the nearest particle on its sides, dp.
+constexpr double rim_reach_dp = 1.6;
 
 /// Smooth parts of a surface: facets joined by edges that are no features.
 struct SmoothParts
@@ -97,7 +99,7 @@ std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& featur
     // Rims and narrow sides: what is near a taken particle and near the sheet that stays, but not
     // on it.
     std::vector<char> is_winner(parts.areas.size(), 0);
-    PointGrid taken(reach_dp * dp, 64);
+    PointGrid taken(rim_reach_dp * dp, 64);
     for (std::size_t i = 0; i < n; ++i)
     {
         if (!is_taken[i]) continue;
@@ -115,7 +117,7 @@ std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& featur
         n, threads,
         [&](std::size_t i)
         {
-            if (is_taken[i] || !taken.has_nearer(particles.positions[i], reach_dp * dp)) return;
+            if (is_taken[i] || !taken.has_nearer(particles.positions[i], rim_reach_dp * dp)) return;
             const double distance = query.closest_point(particles.positions[i]).distance;
             is_rim[i] = distance > 1e-6 * dp && distance < dp;
         },
