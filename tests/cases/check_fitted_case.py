@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""Runs the program on a case with one body-fitted mesh and looks at the particles themselves.
+
+    check_fitted_case.py PROGRAM CASE_FOLDER WORK_FOLDER   exits with 1 when something is wrong
+    check_fitted_case.py --summary OUT/Case                counts as expected_fitted.json holds them
+
+Held against the mesh, not against a recording: the distance of the wall's particles to its
+facets, the volume that the body's particles stand for, no fluid inside the clearance. The counts of
+expected_fitted.json may be off by half a per cent, as the last digits of sines and roots differ
+between machines.
+"""
+
+import glob
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools"))
+sys.dont_write_bytecode = True
+from particle_files import read_bi4, read_blocks, read_vtk  # noqa: E402 (found by the path above)
+
+VOLUME = 3  # of the array Kind; smaller numbers are corners, edges, surface
+
+
+def read_stl(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    return np.frombuffer(data, facet, offset=84)["corners"].astype(float)
+
+
+def distances(points, facets):
+    """From every point to the nearest facet, by the barycentric form; a few thousand points."""
+    a, b, c = facets[:, 0], facets[:, 1], facets[:, 2]
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    best = np.full(len(points), np.inf)
+    for p_begin in range(0, len(points), 200):
+        p = points[p_begin:p_begin + 200, None, :]
+        height = np.einsum("pfk,fk->pf", p - a, normal)
+        foot = p - height[..., None] * normal
+        inside = np.ones(height.shape, bool)
+        sides = np.full(height.shape, np.inf)
+        for u, v in ((a, b), (b, c), (c, a)):
+            inside &= np.einsum("pfk,fk->pf", np.cross(v - u, foot - u), normal) >= 0
+            t = np.einsum("pfk,fk->pf", p - u, v - u) / np.sum((v - u) ** 2, axis=1)
+            on_side = u + np.clip(t, 0, 1)[..., None] * (v - u)
+            sides = np.minimum(sides, np.linalg.norm(p - on_side, axis=2))
+        best[p_begin:p_begin + 200] = np.where(inside, np.abs(height), sides).min(axis=1)
+    return best
+
+
+def summarise(case):
+    values, _ = read_bi4(case + ".bi4")
+    picture = read_vtk(case + "_All.vtk")
+    kinds = np.bincount(np.asarray(picture["Kind"]).ravel(), minlength=4)
+    return {
+        "np": values["CaseNp"],
+        "blocks": [{k: b[k] for k in ("type", "mk", "count")} for b in read_blocks(case + ".xml")],
+        "corners": int(kinds[0]), "edges": int(kinds[1]), "surface": int(kinds[2]),
+    }
+
+
+def differences(found, expected, place=""):
+    """Yields a line for every value that differs; counts by more than half a per cent."""
+    if isinstance(expected, dict):
+        for key in expected:
+            yield from differences(found[key], expected[key], f"{place}/{key}")
+    elif isinstance(expected, list):
+        if len(found) != len(expected):
+            yield f"{place}: expected {len(expected)} entries, found {len(found)}"
+        for i, (a, b) in enumerate(zip(found, expected)):
+            yield from differences(a, b, f"{place}/{i}")
+    elif isinstance(expected, int) and not place.endswith("/mk"):
+        if abs(found - expected) > 0.005 * expected:
+            yield f"{place}: expected {expected}, found {found}"
+    elif found != expected:
+        yield f"{place}: expected {expected}, found {found}"
+
+
+def faults(case, folder, expected):
+    """Yields a line for everything about the particles that is wrong."""
+    values, arrays = read_bi4(case + ".bi4")
+    picture = read_vtk(case + "_All.vtk")
+    dp, positions = values["Dp"], arrays["Posd"]
+    kind, mk = np.asarray(picture["Kind"]).ravel(), np.asarray(picture["Mk"]).ravel()
+    body = mk == expected["mk"]
+    facets = read_stl(os.path.join(folder, expected["mesh"])) @ np.array(expected["turn"]).T
+    facets += np.array(expected["move"])
+    volume = np.einsum("fk,fk->f", facets[:, 0], np.cross(facets[:, 1], facets[:, 2])).sum() / 6
+
+    wall = positions[body & (kind < VOLUME)][::7]
+    farthest = distances(wall, facets).max() / dp
+    if farthest > 1e-4:
+        yield f"a wall particle is {farthest:.3g} dp off the mesh"
+    inside = np.count_nonzero(body & (kind == VOLUME))
+    stands_for = (inside + 0.5 * np.count_nonzero(body & (kind < VOLUME))) * dp ** 3
+    if abs(stands_for / volume - 1) > 0.01:
+        yield f"the particles stand for {stands_for:.6g} m3, the body has {volume:.6g}"
+    fluid = positions[mk == 1]
+    low, high = facets.min(axis=(0, 1)) - dp, facets.max(axis=(0, 1)) + dp
+    near = fluid[np.all((fluid > low) & (fluid < high), axis=1)][::7]
+    nearest = distances(near, facets).min() / dp
+    if nearest < 0.499:
+        yield f"fluid stands {nearest:.3g} dp from the mesh"
+    yield from differences(summarise(case), expected["counts"])
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--summary":
+        print(json.dumps(summarise(arguments[1]), indent=1))
+        return 0
+    if len(arguments) != 3:
+        sys.exit(__doc__)
+    program, folder, work = (os.path.abspath(a) for a in arguments)
+    definition, = glob.glob(os.path.join(glob.escape(folder), "*_Def.xml"))
+    name = os.path.basename(definition)[:-len("_Def.xml")]
+    out = os.path.join(work, name)
+    for old in glob.glob(glob.escape(out) + "*"):
+        os.remove(old)
+    run = subprocess.run([program, name + "_Def", out, "-save:all"], cwd=folder,
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if run.returncode != 0:
+        print(run.stdout)
+        print(f"{name}: the program stopped with {run.returncode}")
+        return 1
+    with open(os.path.join(folder, "expected_fitted.json"), encoding="utf-8") as file:
+        expected = json.load(file)
+    lines = list(faults(out, folder, expected))
+    for line in lines:
+        print(f"{name}: {line}")
+    print(f"{name}: {len(lines)} faults")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
