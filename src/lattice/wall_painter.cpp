@@ -201,7 +201,7 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     zone_options.is_solid = shape.is_solid;
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
-    if (shape.is_solid && !zone.has_inside)
+    if (shape.is_solid && !zone.has_inside && zone.warnings.empty())
         out.warnings.push_back(
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;

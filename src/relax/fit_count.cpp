@@ -32,12 +32,28 @@ double share_beyond(double radius, double h, bool is_2d)
     return sum;
 }
 
-/// How far the Shepard sum of a particle is from 1, at h 1.3 times as large: there the sum over
-/// even particles is 1 to a few thousandths, however they are arranged. What lies beyond the reach
-/// of the lists, `cut_off`, is taken as even. Near to a free surface, where the sum tells nothing,
-/// it is 0.
+/// The Shepard sum over the cubic lattice, which the bulk beyond the band keeps; points beyond a
+/// radius are taken as even.
+double lattice_sum(double radius, double h, double alpha, double cut_off, bool is_2d)
+{
+    const int reach = static_cast<int>(radius);
+    double sum = 0;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = is_2d ? 0 : -reach; y <= (is_2d ? 0 : reach); ++y)
+            for (int z = -reach; z <= reach; ++z)
+            {
+                const double r = std::sqrt(x * x + y * y + z * z);
+                if (r <= radius) sum += wendland(r / h);
+            }
+    return alpha * sum + cut_off;
+}
+
+/// How far the Shepard sum of a particle is from that of the lattice, `even`, at h 1.3 times as
+/// large: there the sum over even particles is the same to a few thousandths, however they are
+/// arranged. What lies beyond the reach of the lists, `cut_off`, is taken as even. Near to a free
+/// surface, where the sum tells nothing, it is 0.
 double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-                 const HalfSpace& beyond, double alpha, double h, double cut_off)
+                 const HalfSpace& beyond, double alpha, double h, double cut_off, double even)
 {
     double sum = 1;
     for (const std::uint32_t j : near)
@@ -52,7 +68,7 @@ double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_
     for_each_wall(band, i,
                   [&](const Plane&, float distance)
                   { sum += beyond.share(double{distance} + behind_wall); });
-    return sum - 1;
+    return sum - even;
 }
 
 /// Whether a straight way of a given length ends and stays off all walls.
@@ -132,6 +148,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
     const HalfSpace beyond(h, options.is_2d);
     const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     const double cut_off = share_beyond(list_radius(options.h_dp), h, options.is_2d);
+    const double even = lattice_sum(list_radius(options.h_dp), h, alpha, cut_off, options.is_2d);
     std::vector<float> excess(list.rows(), 0.0f);
     parallel_for(
         list.rows(), threads,
@@ -140,7 +157,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
             const std::uint32_t i = list.point(row);
             if (i >= band.moving || band.is_held[i] != 0) return;
             excess[row] = static_cast<float>(
-                excess_at(band, i, list.neighbours(row), beyond, alpha, h, cut_off));
+                excess_at(band, i, list.neighbours(row), beyond, alpha, h, cut_off, even));
         },
         chunk_size);
     CountChange change;
