@@ -93,9 +93,9 @@ struct RelaxVolumeReport
 ///
 /// A lattice whose walls lie along it has too many particles at one side and too few at another,
 /// which moving them cannot mend. With `fit_count`, at iterations 5, 10 and 15, the deviations of
-/// the Shepard sum from the lattice's are added up along a Morton curve; wherever half a particle has come
-/// together, the particle with the largest deviation of that stretch goes, or one is put into the
-/// widest gap beside it. So every region has its number to within about one particle.
+/// the Shepard sum from the lattice's are added up along a Morton curve; wherever half a particle
+/// has come together, the particle with the largest deviation of that stretch goes, or one is put
+/// into the widest gap beside it. So every region has its number to within about one particle.
 ///
 /// positions  of the moving particles, metres, at nodes of one lattice of spacing dp; changed in
 ///            place. Those that are held keep their bits. Number and order stay without `fit_count`
