@@ -165,6 +165,8 @@ private:
             draw.body.name += " " + file->file;
             if (file->advanced) keep_depth(draw, *file);
         }
+        // A tank drawn without its lid is open on purpose.
+        if (file == nullptr && !draw.body.is_solid) draw.warnings.clear();
         for (const std::string& w : draw.warnings)
             report_.warnings.push_back(file != nullptr
                                            ? fmt::format("{}: {}: {}", place(), file->file, w)
