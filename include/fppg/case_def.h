@@ -2,7 +2,9 @@
 
 #include "fppg/element.h"
 #include "fppg/fit.h"
+#include "fppg/initials.h"
 #include "fppg/lattice.h"
+#include "fppg/normals.h"
 #include "fppg/vec.h"
 
 #include <array>
@@ -351,7 +353,9 @@ struct CaseDef
     std::vector<DrawOp> ops;           ///< in order of execution
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
-    FitDef fit; ///< empty: every particle stands on the lattice
+    FitDef fit;                      ///< empty: every particle stands on the lattice
+    std::vector<InitialOp> initials; ///< in the order of the file
+    NormalsDef normals;
     std::vector<FloatingDef> floatings;
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
     Element properties;             ///< `<properties>` of the definition, or empty name

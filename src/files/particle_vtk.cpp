@@ -1,12 +1,13 @@
 // Every part of the file has a size that is known beforehand, so its pieces are written at their
-// places by several threads. Vel is zero everywhere, and a reserved file reads as zeros: it is
-// never written.
+// places by several threads. Vel is zero but where `<initials>` sets it, and a reserved file reads
+// as zeros: only pieces with such particles are written.
 
 #include "core/parallel.h"
 #include "files/particle_stream.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "particles/initials.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace fppg
 namespace
 {
 
-/// 30 bytes a particle at most: one MiB.
+/// 59 bytes a particle at most: two MiB.
 constexpr std::uint64_t particles_a_piece = 32768;
 constexpr std::uint64_t max_particles = 2147483647U;
 
@@ -29,16 +30,18 @@ struct Part
 
 struct Layout
 {
-    Part points, vertices, idp, vel, rhop, type, mk;
+    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes;
     bool has_vel_and_rhop = false;
+    bool has_normals = false; ///< then Mk stands before Type and is unsigned_short
     std::uint64_t mk_width = 1;
     std::uint64_t size = 0;
 };
 
-Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, std::uint64_t mk_width)
+Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, bool has_normals, std::uint64_t mk_width)
 {
     Layout layout;
     layout.has_vel_and_rhop = has_vel_and_rhop;
+    layout.has_normals = has_normals;
     layout.mk_width = mk_width;
     // Binary data end with a line end, so all parts but the first begin with one.
     const auto place = [&](Part& part, std::string text, std::uint64_t width)
@@ -51,7 +54,18 @@ Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, std::uint64_t mk_width)
     place(layout.vertices, fmt::format("\nVERTICES {} {}\n", n, 2 * n), 8);
     place(layout.idp,
           fmt::format("\nPOINT_DATA {}\nSCALARS Idp unsigned_int\nLOOKUP_TABLE default\n", n), 4);
-    const std::string fields = fmt::format("\nFIELD FieldData {}", has_vel_and_rhop ? 4 : 2);
+    const std::string fields =
+        fmt::format("\nFIELD FieldData {}", has_vel_and_rhop || has_normals ? 4 : 2);
+    const char* const mk_type = mk_width == 1 ? "unsigned_char" : "unsigned_short";
+    if (has_normals)
+    {
+        place(layout.mk, fmt::format("{}\nMk 1 {} {}\n", fields, n, mk_type), mk_width);
+        place(layout.type, fmt::format("\nType 1 {} unsigned_char\n", n), 1);
+        place(layout.normals, fmt::format("\nNormal 3 {} float\n", n), 12);
+        place(layout.sizes, fmt::format("\nNormalSize 1 {} float\n", n), 4);
+        layout.size += 1;
+        return layout;
+    }
     if (has_vel_and_rhop)
     {
         place(layout.vel, fmt::format("{}\nVel 3 {} float\n", fields, n), 12);
@@ -59,9 +73,7 @@ Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, std::uint64_t mk_width)
     }
     place(layout.type,
           fmt::format("{}\nType 1 {} unsigned_char\n", has_vel_and_rhop ? "" : fields, n), 1);
-    place(layout.mk,
-          fmt::format("\nMk 1 {} {}\n", n, mk_width == 1 ? "unsigned_char" : "unsigned_short"),
-          mk_width);
+    place(layout.mk, fmt::format("\nMk 1 {} {}\n", n, mk_type), mk_width);
     layout.size += 1;
     return layout;
 }
@@ -74,21 +86,62 @@ struct PieceBuffer
           vertices(points + 3 * n),
           idp(vertices + 2 * n),
           rhop(idp + n),
-          mk16(reinterpret_cast<std::uint16_t*>(rhop + n)),
+          vel(rhop + n),
+          normals(vel + 3 * n),
+          sizes(normals + 3 * n),
+          mk16(reinterpret_cast<std::uint16_t*>(sizes + n)),
           mk8(reinterpret_cast<std::uint8_t*>(mk16)),
           type(mk8 + 2 * n)
     {
     }
-    static constexpr std::size_t bytes_a_particle = 12 + 8 + 4 + 4 + 2 + 1;
+    static constexpr std::size_t bytes_a_particle = 12 + 8 + 4 + 4 + 12 + 12 + 4 + 2 + 1;
 
     std::uint32_t* points;
     std::uint32_t* vertices;
     std::uint32_t* idp;
     std::uint32_t* rhop;
+    std::uint32_t* vel;
+    std::uint32_t* normals;
+    std::uint32_t* sizes;
     std::uint16_t* mk16;
     std::uint8_t* mk8;
     std::uint8_t* type;
 };
+
+/// Runs `<initials>` on the particles of a segment.
+void start_segment(const PieceBuffer& buffer, std::size_t at, const Layout& layout,
+                   const LatticeGrid& grid, const ParticleSegment& segment)
+{
+    const auto start = [&](std::int64_t place, double x, double y, double z)
+    {
+        const std::size_t k = at + static_cast<std::size_t>(place);
+        InitialState state{{x, y, z}, {}, 0};
+        if (layout.has_vel_and_rhop)
+            state.rhop = static_cast<double>(std::bit_cast<float>(big_endian(buffer.rhop[k])));
+        apply_initials(segment.block->initials, state);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const std::size_t i = 3 * k + static_cast<std::size_t>(axis);
+            buffer.points[i] = big_endian(static_cast<float>(state.position[axis]));
+            buffer.vel[i] = big_endian(static_cast<float>(state.velocity[axis]));
+        }
+        buffer.rhop[k] = big_endian(static_cast<float>(state.rhop));
+    };
+    for_each_position(grid, segment, start);
+}
+
+/// Normals of `count` boundary particles from id `begin` on, and their lengths.
+void fill_normals(const PieceBuffer& buffer, const CaseParticles& particles, std::uint64_t begin,
+                  std::size_t count)
+{
+    for (std::size_t k = 0; k < count; ++k)
+    {
+        const std::array<float, 3>& n = particles.bound_normals[begin + k];
+        for (std::size_t i = 0; i < 3; ++i) buffer.normals[3 * k + i] = big_endian(n[i]);
+        const double length = norm({n[0], n[1], n[2]});
+        buffer.sizes[k] = big_endian(static_cast<float>(length));
+    }
+}
 
 void fill_segment(const PieceBuffer& buffer, std::size_t at, const Layout& layout,
                   const CaseParticles& particles, float rhop0, const ParticleSegment& segment)
@@ -108,6 +161,7 @@ void fill_segment(const PieceBuffer& buffer, std::size_t at, const Layout& layou
                          [&](std::uint32_t k, float v) { rhop[k] = big_endian(v); });
     }
     const ParticleBlock& block = *segment.block;
+    if (!block.initials.empty()) start_segment(buffer, at, layout, particles.grid, segment);
     std::fill_n(buffer.type + at, segment.count, static_cast<std::uint8_t>(block.type));
     if (layout.mk_width == 1)
         std::fill_n(buffer.mk8 + at, segment.count, static_cast<std::uint8_t>(block.mk));
@@ -128,9 +182,15 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
         buffer.vertices[2 * k + 1] = big_endian(static_cast<std::uint32_t>(place + k));
         buffer.idp[k] = big_endian(static_cast<std::uint32_t>(begin + k));
     }
+    bool has_vel = false;
+    if (layout.has_vel_and_rhop)
+        stream.for_each_segment(piece, [&](const ParticleSegment& segment)
+                                { has_vel = has_vel || !segment.block->initials.empty(); });
+    if (has_vel) std::fill_n(buffer.vel, 3 * count, 0U);
     stream.for_each_segment(
         piece, [&](const ParticleSegment& segment)
         { fill_segment(buffer, segment.id - begin, layout, particles, rhop0, segment); });
+    if (layout.has_normals) fill_normals(buffer, particles, begin, count);
 
     const auto write = [&](const Part& part, const void* data, std::size_t width)
     { file.write_at(part.data + place * width, data, count * width); };
@@ -138,6 +198,12 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
     write(layout.vertices, buffer.vertices, 8);
     write(layout.idp, buffer.idp, 4);
     if (layout.has_vel_and_rhop) write(layout.rhop, buffer.rhop, 4);
+    if (has_vel) write(layout.vel, buffer.vel, 12);
+    if (layout.has_normals)
+    {
+        write(layout.normals, buffer.normals, 12);
+        write(layout.sizes, buffer.sizes, 4);
+    }
     write(layout.type, buffer.type, 1);
     write(layout.mk, buffer.mk8, layout.mk_width);
 }
@@ -156,14 +222,16 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
             fmt::format("cannot write '{}': {} particles, but legacy VTK holds at most "
                         "{} (indices have 32 bits)",
                         file.path(), n, max_particles));
-    std::uint64_t mk_width = 1;
+    const bool has_normals = selection == VtkSelection::Bound && !particles.bound_normals.empty();
+    std::uint64_t mk_width = has_normals ? 2 : 1;
     for (const ParticleBlock& block : particles.blocks)
         if (block.mk > 255 && block.begin < last && block.begin + block.count > first) mk_width = 2;
 
-    const Layout layout = lay_out(n, selection != VtkSelection::Bound, mk_width);
+    const Layout layout = lay_out(n, selection != VtkSelection::Bound, has_normals, mk_width);
     file.reserve(layout.size);
-    for (const Part* part : {&layout.points, &layout.vertices, &layout.idp, &layout.vel,
-                             &layout.rhop, &layout.type, &layout.mk})
+    for (const Part* part :
+         {&layout.points, &layout.vertices, &layout.idp, &layout.vel, &layout.rhop, &layout.type,
+          &layout.mk, &layout.normals, &layout.sizes})
         file.write_at(part->data - part->text.size(), part->text.data(), part->text.size());
     file.write_at(layout.size - 1, "\n", 1);
 
