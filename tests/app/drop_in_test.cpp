@@ -541,6 +541,54 @@ TEST(FppgTemplates, WriteACaseThatRuns)
     EXPECT_EQ(result.code, 0) << result.output;
 }
 
+CaseText tank_with_normals(const std::string& file)
+{
+    CaseText text = tank();
+    const std::string list = text.mainlist;
+    text.mainlist =
+        "<setshapemode>actual | bound</setshapemode>" + list + R"(<shapeout file="wall" />)";
+    text.after_geometry = R"(<normals><norgeometry><geometryfile file=")" + file +
+                          R"(" /><svshapes v="true" /></norgeometry></normals>)";
+    return text;
+}
+
+TEST(FppgNormals, ComeFromTheShapeFileOfTheSameRun)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("[CaseName]_wall_Actual.vtk").text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case", "-save:all"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "Computing normals..."));
+    EXPECT_TRUE(contains(read_text(folder / "out/Case.bi4"), "BoundNor"));
+    EXPECT_TRUE(contains(read_text(folder / "out/Case_Bound.vtk"), "NormalSize 1"));
+    EXPECT_TRUE(fs::exists(folder / "out/Case_GeometryShapes.vtk"));
+}
+
+TEST(FppgNormals, ComeFromAFileBesideTheDefinitionToo)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("[CaseName]_wall_Actual.vtk").text());
+    ASSERT_EQ(run(folder, {"Case_Def", "out/Case"}).code, 0);
+    fs::copy_file(folder / "out/Case_wall_Actual.vtk", folder / "mine.vtk");
+    write_text(folder / "Other_Def.xml", tank_with_normals("mine.vtk").text());
+    const RunResult result = run(folder, {"Other_Def", "other/Case"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(read_text(folder / "out/Case.bi4") == read_text(folder / "other/Case.bi4"), true);
+}
+
+TEST(FppgNormals, NameTheShapeFilesThatThereAreWhenTheirsIsMissing)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("none.vtk").text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case"});
+    EXPECT_EQ(result.code, 4);
+    EXPECT_TRUE(contains(result.output,
+                         "<geometryfile file=\"none.vtk\">: no such shape file; "
+                         "this case writes Case_wall_Actual.vtk"))
+        << result.output;
+    EXPECT_FALSE(fs::exists(folder / "out/Case.bi4"));
+}
+
 TEST(FppgClean, WritesOnlyATidyDefinitionThatRunsTheSame)
 {
     const TemporaryFolder folder;

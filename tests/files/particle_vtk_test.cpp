@@ -47,6 +47,34 @@ TEST(WriteParticlesVtk, LeavesVelocityAndDensityOutOfTheBoundary)
     EXPECT_EQ(bound.arrays.at("Type").back(), 2);
 }
 
+TEST(WriteParticlesVtk, ShowsTheNormalsOfTheBoundaryAndTheirSizes)
+{
+    CaseParticles particles = small_particles();
+    for (int i = 0; i < 9; ++i) particles.bound_normals.push_back({3, 0, static_cast<float>(i)});
+    const VtkFile bound(vtk_of(particles, VtkSelection::Bound));
+    EXPECT_EQ(bound.arrays.at("Normal")[3 * 4 + 2], 4);
+    EXPECT_EQ(bound.arrays.at("NormalSize")[4], 5);
+    EXPECT_EQ(bound.types.at("Mk"), "unsigned_short");
+    EXPECT_EQ(bound.arrays.at("Mk").back(), 15);
+    EXPECT_EQ(bound.arrays.at("Type").back(), 2);
+    EXPECT_EQ(VtkFile(vtk_of(particles, VtkSelection::All)).arrays.count("Normal"), 0U);
+}
+
+TEST(WriteParticlesVtk, ShowsParticlesAfterTheInitialsOfTheirBlock)
+{
+    CaseParticles particles = small_particles();
+    Transform aside;
+    aside.offset = {0.5, 0, 0};
+    particles.blocks[3].initials = {{1, 1, {}, UniformVelocity{{0, 0, 7}}},
+                                    {2, 1, {}, MoveParticles{aside}}};
+    const VtkFile fluid(vtk_of(particles, VtkSelection::Fluid));
+    EXPECT_FLOAT_EQ(fluid.points[0], static_cast<float>(-0.1 + 0.8 + 0.5));
+    EXPECT_EQ(fluid.arrays.at("Vel")[2], 7);
+    EXPECT_EQ(fluid.arrays.at("Vel").back(), 0);
+    EXPECT_EQ(fluid.arrays.at("Rhop")[0], 1001);
+    EXPECT_EQ(fluid.arrays.at("Rhop").back(), 1006);
+}
+
 TEST(WriteParticlesVtk, KeepsTheIdsOfTheFluid)
 {
     const VtkFile fluid(vtk_of(small_particles(), VtkSelection::Fluid));
