@@ -2,8 +2,10 @@
 
 #include "fppg/vec.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -80,14 +82,38 @@ struct DepthDensity
     std::optional<double> b;
 };
 
+/// Values on the nodes of a box-shaped mesh, read between them by the linear rule along each axis;
+/// a place outside has the value of the nearest one inside (found with GenCase v5.4.354).
+struct MeshValues
+{
+    Vec3 origin;
+    std::array<Vec3, 3> steps; ///< from node to node, at right angles; metres
+    std::array<std::uint32_t, 3> n{1, 1, 1};
+    std::vector<double> values; ///< n[0] * n[1] * n[2], the first axis fastest
+};
+
+/// `<velmesh>`, m/s. Numbers of the file are speeds along the direction of the element; vectors
+/// count as they are, or where there is a direction with their part along it (GenCase v5.4.354).
+struct MeshVelocity
+{
+    std::array<std::shared_ptr<const MeshValues>, 3> components; ///< x, y, z
+};
+
+/// `<densitymesh>`
+struct MeshDensity
+{
+    std::shared_ptr<const MeshValues> densities; ///< kg/m3
+};
+
 /// `<move>`, `<rotateaxis>`. A rotation turns velocities too.
 struct MoveParticles
 {
     Transform map;
 };
 
-using InitialVariant = std::variant<UniformVelocity, ProfileVelocity, WaveVelocity, UniformDensity,
-                                    GradientDensity, DepthDensity, MoveParticles>;
+using InitialVariant =
+    std::variant<UniformVelocity, ProfileVelocity, WaveVelocity, UniformDensity, GradientDensity,
+                 DepthDensity, MeshVelocity, MeshDensity, MoveParticles>;
 
 /// A child of `<initials>`. They run in the order of the file, each on the particles as those
 /// before it left them; later values replace earlier ones. Found by experiments with GenCase

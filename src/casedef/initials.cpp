@@ -1,10 +1,14 @@
 #include "casedef/initials.h"
 
+#include "fppg/error.h"
+
+#include "casedef/mesh_data.h"
 #include "casedef/transforms.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace fppg
 {
@@ -34,12 +38,15 @@ public:
             op.what = move(e);
         else if (e.name == "rotateaxis")
             op.what = turn(e);
-        else if (e.name == "velmesh" || e.name == "densitymesh" || e.name == "moverandom")
+        else if (e.name == "velmesh" || e.name == "densitymesh")
+            op.what = mesh(e);
+        else if (e.name == "moverandom")
             read_.fail_unsupported(e);
         else
             read_.fail(e,
-                       "is not known in <initials>, expected velocity, velwave, densityuniform, "
-                       "densitygradient, densitydepth, move or rotateaxis");
+                       "is not known in <initials>, expected velocity, velwave, velmesh, "
+                       "densityuniform, densitygradient, densitydepth, densitymesh, move or "
+                       "rotateaxis");
         const bool moves = std::holds_alternative<MoveParticles>(op.what);
         op.mk = mk(e, moves);
         op.only = read_only_pos(e, read_);
@@ -153,6 +160,77 @@ private:
         depth.gamma = own_value(e, "gamma");
         depth.b = own_value(e, "b");
         return depth;
+    }
+
+    InitialVariant mesh(const Element& e) const
+    {
+        const bool is_velocity = e.name == "velmesh";
+        if (is_velocity)
+            require_known_children(e, {"onlypos", "direction", "meshdata"}, read_);
+        else
+            require_known_children(e, {"onlypos", "meshdata"}, read_);
+        Vec3 direction;
+        if (const Element* d = e.find_child("direction")) direction = read_.vec3(*d);
+        const bool has_direction = norm(direction) > 0;
+        if (has_direction) direction = direction / norm(direction);
+        const Element& file = read_.child(e, "meshdata");
+        const MeshData data = read_mesh_data(find_file(file));
+        // Only speeds say whether they have a direction of their own; densities never do.
+        const bool wants_vector = is_velocity && !magnitude(file);
+        if (data.is_vector != wants_vector)
+            read_.fail(file, fmt::format("the file holds {} a node, expected {}",
+                                         data.is_vector ? "three numbers" : "one number",
+                                         wants_vector ? "three (magnitude is false)" : "one"));
+        if (is_velocity && !wants_vector && !has_direction)
+            read_.fail(e, "a <direction> other than zero is missing in it, speeds need one");
+        MeshValues mesh = data.mesh;
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.origin[axis] += read_.number_or(file, std::string("set") + "xyz"[axis], 0);
+        const std::vector<double> numbers =
+            values_at_time(data, read_.number_or(file, "initialtime", 0));
+        if (!is_velocity)
+        {
+            mesh.values = numbers;
+            return MeshDensity{std::make_shared<MeshValues>(std::move(mesh))};
+        }
+        const double sign = read_.flag_or(file, "reverse", false) ? -1 : 1;
+        const std::size_t width = wants_vector ? 3 : 1;
+        MeshVelocity velocity;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            mesh.values.clear();
+            for (std::size_t i = 0; i < numbers.size(); i += width)
+            {
+                const Vec3 own = wants_vector ? Vec3{numbers[i], numbers[i + 1], numbers[i + 2]}
+                                              : numbers[i] * direction;
+                const Vec3 v =
+                    wants_vector && has_direction ? dot(own, direction) * direction : own;
+                mesh.values.push_back(sign * v[axis]);
+            }
+            velocity.components[static_cast<std::size_t>(axis)] =
+                std::make_shared<MeshValues>(mesh);
+        }
+        return velocity;
+    }
+
+    bool magnitude(const Element& file) const
+    {
+        read_.text(file, "magnitude");
+        return read_.flag_or(file, "magnitude", true);
+    }
+
+    /// A file in the working directory, as with GenCase, or beside the definition.
+    std::string find_file(const Element& e) const
+    {
+        const std::string name = read_.interpolated(e, read_.text(e, "file"));
+        if (std::filesystem::exists(name)) return name;
+        const std::filesystem::path beside =
+            std::filesystem::path(read_.file()).parent_path() / name;
+        if (std::filesystem::exists(beside)) return beside.string();
+        throw IoError(
+            fmt::format("{}:{}: <{} file=\"{}\">: there is no such file, neither in the "
+                        "working directory nor beside the definition",
+                        read_.file(), e.line, e.name, name));
     }
 
     InitialVariant move(const Element& e) const

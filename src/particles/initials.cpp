@@ -27,6 +27,37 @@ double speed_at(const ProfileVelocity& profile, double z)
     return sum;
 }
 
+double value_at(const MeshValues& mesh, const Vec3& p)
+{
+    std::array<std::uint32_t, 3> low{};
+    std::array<double, 3> share{};
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+        if (mesh.n[a] < 2) continue;
+        const double along =
+            dot(p - mesh.origin, mesh.steps[a]) / dot(mesh.steps[a], mesh.steps[a]);
+        const double place = std::clamp(along, 0.0, static_cast<double>(mesh.n[a] - 1));
+        low[a] = std::min(static_cast<std::uint32_t>(place), mesh.n[a] - 2);
+        share[a] = place - low[a];
+    }
+    double sum = 0;
+    for (unsigned corner = 0; corner < 8; ++corner)
+    {
+        double weight = 1;
+        std::array<std::size_t, 3> node{};
+        for (std::size_t a = 0; a < 3; ++a)
+        {
+            const unsigned up = corner >> a & 1U;
+            weight *= up != 0 ? share[a] : 1 - share[a];
+            node[a] = low[a] + up;
+        }
+        // Without weight a corner may lie beyond the last node.
+        if (weight > 0)
+            sum += weight * mesh.values[node[0] + mesh.n[0] * (node[1] + mesh.n[1] * node[2])];
+    }
+    return sum;
+}
+
 /// Runs one operation on a particle that it selects.
 struct Applier
 {
@@ -61,6 +92,16 @@ struct Applier
         state.rhop = is_uniform
                          ? *op.rhop0
                          : *op.rhop0 * std::pow(1 + *op.rhop0 * g * depth / *op.b, 1 / *op.gamma);
+    }
+    void operator()(const MeshVelocity& op) const
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            state.velocity[axis] =
+                value_at(*op.components[static_cast<std::size_t>(axis)], state.position);
+    }
+    void operator()(const MeshDensity& op) const
+    {
+        state.rhop = value_at(*op.densities, state.position);
     }
     void operator()(const MoveParticles& op) const
     {

@@ -139,6 +139,91 @@ TEST(InitialDensity, FindsTheSurfaceAmongTheSelectedParticlesAtTheirPlaces)
     EXPECT_EQ(s.water(0, 0, 0.4, 1234).rhop, 1234);
 }
 
+/// A file with 3 x 1 x 3 nodes 0.2 apart from (0, 0, 0) on, and what it holds at the times 0 and 1.
+std::string mesh_file(const std::string& type, const std::string& first, const std::string& second)
+{
+    return "Format;DataName;DataUnits;DataType;Data12;Npt1;Npt2;Npt3;PtRef.x [m];PtRef.y;PtRef.z;"
+           "Vec1.x [m];Vec1.y;Vec1.z;Vec2.x;Vec2.y;Vec2.z;Vec3.x;Vec3.y;Vec3.z;DirDat.x;DirDat.y;"
+           "DirDat.z\nJMeshTDatas-200817;Data; [x];" +
+           type + ";false;3;1;3; 0.0E+00;0;0;0.2;0;0;0;0.2;0;0;0;0.2;1;0;0\r\ntime [s];v(0:0:0)\n" +
+           first + "\n" + second + "\n";
+}
+
+Started start_with_mesh(const std::string& file, const std::string& initials)
+{
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "mesh.csv", file);
+    std::string text = initials;
+    text.replace(text.find("FILE"), 4, folder / "mesh.csv");
+    return start(text);
+}
+
+TEST(InitialMesh, GivesDensitiesBetweenItsNodesAndTimes)
+{
+    // 1000 + 10 i + 100 k, 7 more in the middle; 1000 more at the second time.
+    const std::string file = mesh_file("float", "0;1000;1010;1020;1100;1117;1120;1200;1210;1220",
+                                       "1;2000;2010;2020;2100;2117;2120;2200;2210;2220");
+    const Started s =
+        start_with_mesh(file, R"(<densitymesh mkfluid="0"><meshdata file="FILE" /></densitymesh>)");
+    EXPECT_NEAR(s.water(0.1, 0, 0.1).rhop, 1056.75, 1e-9); // value of GenCase v5.4.354
+    EXPECT_NEAR(s.water(0.2, 0.3, 0.2).rhop, 1117, 1e-9);
+    EXPECT_NEAR(s.water(0.5, 0, 0.5).rhop, 1220, 1e-9);
+    EXPECT_NEAR(s.water(-0.1, 0, -0.1).rhop, 1000, 1e-9);
+    const Started later = start_with_mesh(
+        file,
+        R"(<densitymesh mkfluid="0"><meshdata file="FILE" setx="0.1" initialtime="0.25" /></densitymesh>)");
+    EXPECT_NEAR(later.water(0.2, 0, 0.1).rhop, 1306.75, 1e-9);
+}
+
+TEST(InitialMesh, GivesSpeedsAlongADirectionOrVectors)
+{
+    const Started speeds = start_with_mesh(
+        mesh_file("float", "0;0;1;2;10;11;12;20;21;22", ""),
+        R"(<velmesh mkfluid="0"><direction x="1" y="1" z="0" /><meshdata file="FILE" magnitude="true" /></velmesh>)");
+    expect_vector(speeds.water(0.1, 0, 0.1).velocity,
+                  {5.5 * std::sqrt(0.5), 5.5 * std::sqrt(0.5), 0});
+    const std::string vectors =
+        mesh_file("float3", "0;3;4;0;3;4;0;0;0;0;1;2;2;1;2;2;0;0;0;1;2;2;1;2;2;0;0;0", "");
+    const Started whole = start_with_mesh(
+        vectors, R"(<velmesh mkfluid="0"><meshdata file="FILE" magnitude="false" /></velmesh>)");
+    expect_vector(whole.water(0.1, 0, 0.1).velocity, {2, 3, 1});
+    const Started part = start_with_mesh(
+        vectors,
+        R"(<velmesh mkfluid="0"><direction x="1" y="1" z="0" /><meshdata file="FILE" magnitude="false" reverse="true" /></velmesh>)");
+    expect_vector(part.water(0, 0, 0).velocity, {-3.5, -3.5, 0});
+}
+
+TEST(InitialMesh, IsRefusedWhereItsFileIsWrong)
+{
+    const auto message = [](const std::string& file, const std::string& magnitude)
+    {
+        try
+        {
+            start_with_mesh(file, R"(<velmesh mkfluid="0"><direction x="1" y="0" z="0" />)"
+                                  R"(<meshdata file="FILE" magnitude=")" +
+                                      magnitude + "\" /></velmesh>");
+        }
+        catch (const CaseError& error)
+        {
+            return std::string(error.what());
+        }
+        return std::string("nothing was thrown");
+    };
+    const std::string good = "0;0;1;2;10;11;12;20;21;22";
+    EXPECT_NE(message(mesh_file("float", good, ""), "false").find("holds one number a node"),
+              std::string::npos);
+    EXPECT_NE(
+        message(mesh_file("float", good + ";3", ""), "true").find("mesh.csv:4: the line has 11"),
+        std::string::npos);
+    EXPECT_NE(message(mesh_file("float", good, good), "true").find("mesh.csv:5: the line does not"),
+              std::string::npos);
+    EXPECT_NE(message(mesh_file("float", "", ""), "true").find("where values are expected"),
+              std::string::npos);
+    EXPECT_NE(message("x\ny\n", "true").find("is no mesh data"), std::string::npos);
+    EXPECT_THROW(start(R"(<densitymesh mkfluid="0"><meshdata file="no_such.csv" /></densitymesh>)"),
+                 IoError);
+}
+
 TEST(InitialMove, ShiftsPlacesBeforeWhatFollows)
 {
     const Started s = start(
@@ -204,7 +289,9 @@ INSTANTIATE_TEST_SUITE_P(
     Of, WrongInitials,
     testing::Values(
         Mistake{"<foo />", "<foo>: is not known in <initials>"},
-        Mistake{R"(<velmesh mkfluid="0" />)", "<velmesh>: not supported yet"},
+        Mistake{R"(<velmesh mkfluid="0" />)", "<velmesh>: the element <meshdata> is missing"},
+        Mistake{R"(<densitymesh mkfluid="0"><direction x="1" y="0" z="0" /></densitymesh>)",
+                "<direction>: is not known in <densitymesh>"},
         Mistake{R"(<moverandom mkfluid="0" />)", "<moverandom>: not supported yet"},
         Mistake{R"(<velocity x="1" y="0" z="0" />)", "attribute 'mkfluid' is missing"},
         Mistake{R"(<velocity mkbound="0" x="1" y="0" z="0" />)", "only fluid can have"},
