@@ -414,6 +414,8 @@ CASE_MESHES = (
     ("tank/gear.stl", "gear", {"module": 0.02, "teeth": 14, "width": 0.12, "bore": 0}),
     ("ford/body.stl", "vehicle_body", {}),
     ("ford/wheel.stl", "wheel", {}),
+    ("gear/gear.stl", "gear", {"module": 0.02, "teeth": 20, "width": 0.1, "bore": 0.1}),
+    ("tyre/tyre.stl", "tyre", {"tread_depth": 0.016, "blocks": 18}),
 )
 
 

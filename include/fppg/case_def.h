@@ -4,6 +4,7 @@
 #include "fppg/fit.h"
 #include "fppg/initials.h"
 #include "fppg/lattice.h"
+#include "fppg/mesh_reading.h"
 #include "fppg/normals.h"
 #include "fppg/vec.h"
 
@@ -166,11 +167,14 @@ struct EllipsoidOp
     double radius = 0;
 };
 
-/// `drawfilestl`
+/// `drawfilestl`, `drawfileply`, `drawfilevtk`, `drawfilecsv`, `drawbathymetry`, and one file of
+/// `drawfilevtm`
 struct MeshFileOp
 {
-    std::string file;    ///< as written in the case
-    Transform transform; ///< scale, rotation and move of the command, then the current matrix
+    std::string file;      ///< as written in the case; of a VTM file: beside it
+    std::string container; ///< the VTM file that names it, or empty
+    MeshReading reading;   ///< what the file is, and which of its shapes are drawn
+    Transform transform;   ///< scale, rotation and move of the command, then the current matrix
     bool autofill = false;
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
@@ -303,6 +307,19 @@ struct FloatingDef
     std::vector<Element> extra; ///< translationDOF and the like, copied into Case.xml
 };
 
+/// How the particles of a fitted wall and those near it are evened out: `<relax>`.
+struct RelaxSettings
+{
+    bool is_active = true;
+    std::optional<int> iterations; ///< 1 and more; empty: until `tolerance` is reached
+    double tolerance = 0.02;       ///< above 0, up to 1
+    double surface_h_dp = 0.8; ///< smoothing length for the particles on the surface, above 0 to 4
+    /// Particles inside the solid up to this far from its surface move, in dp; 0: none; may be
+    /// infinite.
+    double band_dp = 3;
+    bool operator==(const RelaxSettings&) const = default;
+};
+
 /// How the particles of a boundary mk are placed on its true surface: `<fppg><bodyfitted>`, or
 /// -fit.
 struct FitSettings
@@ -313,6 +330,8 @@ struct FitSettings
     std::optional<double> clearance_dp; ///< 0.5 to 1; empty: chosen per body from its volume
     /// A plate thinner than dp gets one sheet of particles instead of one on each side.
     bool one_sheet = false;
+    RelaxSettings relax;
+    bool operator==(const FitSettings&) const = default;
 };
 
 /// Which boundary mks are body-fitted.
@@ -320,6 +339,15 @@ struct FitDef
 {
     std::optional<FitSettings> all; ///< for every boundary mk that has none of its own
     std::vector<std::pair<std::uint16_t, FitSettings>> of_mk; ///< absolute mk; the last one counts
+    bool is_empty() const { return !all && of_mk.empty(); }
+};
+
+/// Fluid near fitted walls that is relaxed with them: `<fppg><fluidband>`.
+struct FluidBand
+{
+    int line = 0;                  ///< of the element
+    std::vector<std::uint16_t> mk; ///< absolute, ascending; empty: every fluid
+    double width_dp = 3; ///< fluid this near to a fitted wall moves, in dp; above 0, finite
 };
 
 /// A user variable, for `<uservars>`.
@@ -353,8 +381,9 @@ struct CaseDef
     std::vector<DrawOp> ops;           ///< in order of execution
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
-    FitDef fit;                      ///< empty: every particle stands on the lattice
-    std::vector<InitialOp> initials; ///< in the order of the file
+    FitDef fit;                         ///< empty: every particle stands on the lattice
+    std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
+    std::vector<InitialOp> initials;    ///< in the order of the file
     NormalsDef normals;
     std::vector<FloatingDef> floatings;
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
@@ -373,8 +402,8 @@ enum class FitChoice : std::uint8_t
 {
     AsCase, ///< those that the case's `<fppg>` block names
     On,     ///< every boundary mk; those that the block names with their settings
-    Raw,    ///< as On, without relaxation
-    Off,    ///< none, whatever the case says
+    Raw,    ///< as On, without relaxation of walls or fluid
+    Off,    ///< none; the block is not even read
 };
 
 /// Overrides of the command line.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 
 #include <cstdint>
@@ -81,12 +82,17 @@ enum class VtkSelection
 /// (unsigned_short), Type, Normal, NormalSize. Streamed like write_bi4, with the bytes of
 /// GenCase v5.4.354. Mk is unsigned_char, unsigned_short where a selected mk is above 255.
 ///
+/// Of a case with fitted walls, All and Bound have behind these Kind (int, as FitKind; nodes are
+/// Volume), Normal (3 float; zero for Volume) and Distance (float, metres, negative inside;
+/// distance_of_nodes for nodes). Where Normal stands there already, that of the wall is WallNormal.
+///
 /// throws  IoError if the file cannot be written, or from 2,147,483,648 selected particles on
 void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
                          const CaseConstants& constants, VtkSelection selection, int threads);
 
 /// Writes `_MkCells.vtk`: the faces between cells (dp wide, centred on the nodes) of different mk,
-/// merged into rectangles, each drawn 0.001 dp inside its own cell; CELL_DATA Mk (unsigned_short)
+/// merged into rectangles, each drawn 0.001 dp inside its own cell (nodes in the zone of a fitted
+/// wall as those of its mk); CELL_DATA Mk (unsigned_short)
 /// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Between two cells that carry
 /// different mk both faces are drawn. Normals point outwards. A 2-D field is drawn as the areas of
 /// its cells instead, at 0.001 dp above its y. Made from runs: cost grows with the number of runs,
@@ -111,6 +117,15 @@ struct ShapePolygons
 /// Writes shapes as legacy binary VTK: points of all objects in order, then VERTICES, LINES and
 /// POLYGONS (a part that is empty is left out), with CELL_DATA Mk and ObjId (int).
 void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// Writes the feature lines and singular points of all fitted bodies as legacy binary VTK
+/// (POLYDATA, big-endian, POINTS float: the mesh vertices that they use): VERTICES, one a singular
+/// point, then LINES, one polyline a feature line, a closed one ending at its first vertex. Bodies
+/// in their order in both. CELL_DATA Mk (int, absolute), Body (int, index in `walls`), Length
+/// (float, metres; 0 for points). Walls without features give a file without cells.
+///
+/// throws  IoError if the file cannot be written, or from 2,147,483,648 numbers on
+void write_features_vtk(OutputFile& file, const FittedWalls& walls);
 
 /// Numbers as a list of ranges, e.g. "10-11,20"; they are sorted first, repeated ones count once.
 std::string format_ranges(std::vector<int> numbers);

@@ -20,15 +20,16 @@ inline constexpr std::uint16_t wall_zone_bit = 0x8000;
 /// What a body is besides its triangles, so that its particles can be put on the exact surface.
 enum class RoundShape : std::uint8_t
 {
-    None,     ///< the triangles are the shape
-    Sphere,   ///< centre p0, radius
-    Cylinder, ///< axis p0 p1, radius; facets of the covers are plane and exact
+    None,      ///< the triangles are the shape
+    Sphere,    ///< centre p0, radius
+    Cylinder,  ///< axis p0 p1, radius; facets of the covers are plane and exact
+    Ellipsoid, ///< foci p0 and p1; `radius` is the sum of the distances to them
 };
 
 /// A shape of the case as triangles, in the coordinates of the case.
 struct ShapeMesh
 {
-    TriangleSoup soup;     ///< counter-clockwise from outside
+    TriangleSoup soup;     ///< counter-clockwise from outside; of a surface, as drawn
     bool is_solid = false; ///< the draw fills the inside, not only the surface
     RoundShape round = RoundShape::None;
     Vec3 p0;
@@ -63,6 +64,19 @@ struct WallParticles
     std::vector<std::uint32_t> bodies; ///< index into FittedWalls::bodies
     std::vector<std::uint32_t> facets; ///< of that body's mesh
     std::vector<std::uint16_t> mk;     ///< absolute; a redraw may have changed it
+    std::vector<char> held;            ///< 1: relaxation leaves it where it is
+
+    std::size_t size() const { return positions.size(); }
+};
+
+/// Particles off the lattice near the walls that stand in for lattice nodes, one entry each in all
+/// arrays. The nodes carry the wall_zone_bit on their mk, so that a water column still counts them;
+/// where they were taken out of the field altogether, the column ends below them.
+struct VolumeParticles
+{
+    std::vector<Vec3> positions;
+    std::vector<std::uint16_t> mk; ///< absolute, bound or fluid
+    std::vector<float> distances;  ///< metres to the nearest wall, negative inside
 
     std::size_t size() const { return positions.size(); }
 };
@@ -72,6 +86,11 @@ struct FittedWalls
 {
     std::vector<FittedBody> bodies;
     WallParticles particles;
+    VolumeParticles volume;
+    /// Where particles of a body were cut, by a later draw, a clip, the domain or as a second
+    /// sheet, and their bodies: no particle may be put there again.
+    std::vector<Vec3> cut;
+    std::vector<std::uint32_t> cut_bodies;
 };
 
 } // namespace fppg

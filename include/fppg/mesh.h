@@ -21,8 +21,14 @@ struct TriangleSoup
 /// A mesh file read, with what a reader noticed on the way.
 struct MeshFile
 {
-    TriangleSoup soup;
+    TriangleSoup soup; ///< every surface; polygons and strips are cut into triangles
     std::vector<std::string> warnings; ///< whole sentences; the caller adds the file name
+
+    /// Facets that are the first half (0, 1, 2) of a quad whose second half (0, 2, 3) is the facet
+    /// after it; ascending.
+    std::vector<std::uint32_t> quads;
+    std::vector<Vec3> points;             ///< single points, in the order of the file
+    std::vector<std::vector<Vec3>> lines; ///< polylines of two or more points
 };
 
 } // namespace fppg

@@ -54,17 +54,22 @@ struct ParticleBlock
     std::vector<InitialOp> initials;
 };
 
-/// Particles off the lattice, in id order, one entry each in all arrays.
+/// Particles off the lattice before `<initials>`, in id order, one entry each in all arrays.
 struct FreeParticles
 {
     std::vector<Vec3> positions;
     std::vector<FitKind> kinds;
-    std::vector<std::array<float, 3>> normals; ///< outward unit normal of the facet; zero: none
+    /// Outward unit normal of the facet; on an edge or a corner the mean of the facets that meet
+    /// there, weighted by their angles; zero for FitKind::Volume.
+    std::vector<std::array<float, 3>> normals;
     std::vector<float> distances; ///< metres to the surface it belongs to, negative inside
-    std::vector<float> rhop;      ///< boundary particles: rhop0
+    std::vector<float> rhop;      ///< boundary and floating particles: rhop0
 
     std::size_t size() const { return positions.size(); }
 };
+
+/// Distance of a lattice node to the walls in pictures: it is not measured, and far from any.
+inline constexpr float distance_of_nodes = 1e9F;
 
 /// What the solver needs of a floating body. SI units.
 struct FloatingBody
@@ -119,7 +124,8 @@ struct CaseParticles
 
     /// Fluid density. When gravity is along z (or zero), `rhop` is empty and the node `s` steps
     /// below the highest node of a run has rhop_of_depth[run.depth + s]. Otherwise `rhop` holds one
-    /// value a fluid particle, in id order. Boundary and floating particles have rhop0.
+    /// value a fluid particle, in id order, those off the lattice too. Boundary and floating
+    /// particles have rhop0. Particles off the lattice have free.rhop.
     std::vector<float> rhop_of_depth;
     std::vector<float> rhop;
 
@@ -134,12 +140,21 @@ struct CaseDef;
 /// order and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
 /// `<initials>` are distributed over the blocks; floating bodies and limits are those after it.
 ///
+/// With fitted walls, nodes whose mk has the wall_zone_bit give no particle; the particles of
+/// field.walls join the block of their mk. In the order of a block all positions are compared as
+/// doubles; at equal ones nodes come first, then the particles of walls, then those of the volume.
+/// A fluid particle off the lattice has the density of its true place below the top of the water
+/// column of its nearest node; where that is no water, of the nearest node of water within 4 dp,
+/// and rhop0 where there is none.
+///
 /// threads    number of threads; the result does not depend on it
 /// constants  filled: what the definition fixes, the rest by formula
 /// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b
-/// zero throws     CaseError when a block is both moving and floating, or a move leads out of the
-/// domain cost       O(runs) time and memory; O(particles) only where gravity is neither zero nor
-/// along z
+/// zero
+/// throws    CaseError when a block is both moving and floating, a move leads out of the domain, or
+/// there are more particles than ids
+/// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
+/// or `<initials>` need every place; O(n log n) for n particles off the lattice
 CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
                              CaseConstants& constants, std::vector<std::string>& warnings);
 

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace fppg
 {
@@ -15,6 +17,9 @@ struct WallZoneOptions
     /// for each side so that nodes and half of the wall's particles make up its volume.
     std::optional<double> clearance_dp;
     std::uint64_t wall_particles = 0; ///< on this surface, one dp^2 each
+    /// The nodes of `volume` will be drawn: they stop fills themselves, and may stay from 0.4 dp on
+    /// where the volume asks for them.
+    bool is_solid = false;
 };
 
 /// The lattice nodes around a fitted wall.
@@ -27,10 +32,19 @@ struct WallZone
     double clearance_inside_dp = 0;
     double clearance_outside_dp = 0;
     bool has_inside = false; ///< the mesh bounds a volume
-    /// (nodes of `volume` + wall_particles / 2) dp^3 / volume - 1; 0 without an inside
+    /// Of the body, metres cubed (2D: area of the section times dp); what several parts share
+    /// counts once, holes are closed. 0 without an inside.
+    double body_volume = 0;
+    /// How much of the wall's particles lies in the body: one half where every facet has the body
+    /// on one side, more where parts run through one another, less where sheets stand out of it.
+    double wall_share_inside = 0.5;
+    /// (nodes of `volume` + wall_particles * wall_share_inside) dp^3 / body_volume - 1, over all of
+    /// the body, be it in the lattice or not; 0 without an inside
     double volume_error = 0;
-    /// Facets whose inside was told by a vote or a winding number because columns disagreed.
+    /// Nodes whose inside a winding number told because columns disagreed.
     std::uint64_t disputed_nodes = 0;
+    std::uint64_t sheet_facets = 0;    ///< facets that bound no volume: sheets, fins, open shells
+    std::vector<std::string> warnings; ///< whole sentences; of meshes without fault there are none
 };
 
 /// The nodes inside a mesh and those too near to its surface.
@@ -39,14 +53,33 @@ struct WallZone
 /// different sides at least one is in it and no 6-connected fill passes through. Beyond that, nodes
 /// nearer than the clearance are left out. With an automatic clearance, the nodes of each side are
 /// left out in the order of their distance (ties spread evenly over space) up to 1.0 dp, until
-///   inside:  nodes + wall_particles / 2 = volume / dp^3, and
-///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles / 2
-/// or the limits 0.5 and 1.0 dp are reached. A mesh without an inside has the clearance 0.5 on both
-/// sides.
+///   inside:  nodes + wall_particles * share = volume / dp^3, and
+///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles * (1 - share)
+/// or the limits 0.5 and 1.0 dp are reached. (No node is ever kept nearer than 0.5 dp: a plane wall
+/// whose nearest nodes inside stand at t < 0.5 dp lacks t dp of thickness, so the volume error of
+/// a body whose walls all lie so is down to -t dp area / volume.) The share is one half but for
+/// parts that run through one another and sheets that stand out (wall_share_inside). A mesh without
+/// an inside has the clearance 0.5 on both sides.
+///
+/// Distances are exact to 1e-9 dp. A node at 0.5 dp belongs to the zone, unless it is inside and
+/// the volume asks for it: then its neighbour across the surface, which is no farther from it, is
+/// in the zone still, so that no two nodes that stay are neighbours across a surface.
+///
+/// Facets bound a volume where their shell is closed up to holes of less than a tenth of its area,
+/// or the shells that are not are closed by one another. The inside of a body without fault is that
+/// of inside_spans(), of others that of inside_by_vote().
+///
+/// In a 2D lattice, all of this is about the section of the mesh with the plane y = grid.origin.y:
+/// distances are those in the plane, a wall particle stands for dp of its length.
 ///
 /// mesh     as take_in_mesh() made it, with its report
+/// grid     a mesh may reach out of it: the clearances are those of the whole body, the nodes those
+///          in the lattice
 /// threads  number of threads; the result does not depend on it
-/// throws   GeometryError when the zone needs more memory than there is
+/// throws   GeometryError when the zone needs more memory than there is, the mesh spans more than
+///          2^31 dp, or a given clearance is not between 0.5 and 1
+/// cost     about 0.3 microseconds a node within 1 dp and 0.1 a facet smaller than dp; 30 bytes
+///          a node at its peak
 WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
                    const WallZoneOptions& options, int threads);
 

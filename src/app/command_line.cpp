@@ -56,17 +56,28 @@ void choose_formats(const std::string& list, DropInOptions& options)
         }
         const bool all = word == "all";
         if (!all && word != "bi" && word != "vtkcells" && word != "vtkfreept" && word != "vtkall" &&
-            word != "vtkbound" && word != "vtkfluid")
+            word != "vtkbound" && word != "vtkfluid" && word != "vtkfeatures" && word != "relaxcsv")
             throw UsageError(fmt::format(
                 "-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
-                "vtkbound or vtkfluid, each with + or - before it",
+                "vtkbound, vtkfluid, vtkfeatures or relaxcsv, each with + or - before it",
                 word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
         if (all || word == "vtkall") options.save_all = on;
         if (all || word == "vtkbound") options.save_bound = on;
         if (all || word == "vtkfluid") options.save_fluid = on;
+        if (all || word == "vtkfeatures") options.save_features = on;
+        if (all || word == "relaxcsv") options.save_relaxation = on;
     }
+}
+
+FitChoice fit_choice_of(const std::string& value, bool has_value)
+{
+    if (!has_value) return FitChoice::On;
+    if (value == "raw") return FitChoice::Raw;
+    if (value == "off") return FitChoice::Off;
+    throw UsageError(
+        fmt::format("-fit: \"{}\" is invalid, expected -fit, -fit:raw or -fit:off", value));
 }
 
 void read_option(const std::string& argument, DropInOptions& options)
@@ -103,6 +114,8 @@ void read_option(const std::string& argument, DropInOptions& options)
             options.evars.emplace_back(part.substr(0, equals), part.substr(equals + 1));
         }
     }
+    else if (name == "-fit")
+        options.fit = fit_choice_of(value, colon != std::string::npos);
     else if (name == "-threads" || name == "-ompthreads")
     {
         options.threads = number_of<int>(name, value, "a number of threads, 0 for all");
@@ -175,15 +188,22 @@ std::string help_text()
         "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
-        "Options (GenCase's own):\n"
+        "Options (GenCase's own, but for -fit and vtkfeatures):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
+        "  -fit                   body-fitted walls: every boundary mk gets its particles on its "
+        "true surface;\n"
+        "                         mks that <fppg> in the definition names keep their settings\n"
+        "  -fit:raw               the same without relaxation\n"
+        "  -fit:off               no body-fitted walls, whatever <fppg> says\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
         "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
         "each:\n"
         "                         bi, vtkcells, vtkfreept (these three by default), vtkall, "
         "vtkbound,\n"
-        "                         vtkfluid, all\n"
+        "                         vtkfluid, vtkfeatures (feature lines of body-fitted walls, "
+        "where there are\n"
+        "                         any), relaxcsv (history of their relaxation), all\n"
         "  -save3vtk:0|1          three more copies of every VTK, _r00 to _r02 (default 0)\n"
         "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
         "  -debug:N               accepted, changes nothing\n"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "fppg/case_def.h"
+
 #include <array>
 #include <optional>
 #include <string>
@@ -27,6 +29,7 @@ struct DropInOptions
     std::string output; ///< without extension
     std::optional<double> dp;
     std::vector<std::pair<std::string, std::string>> evars;
+    FitChoice fit = FitChoice::AsCase;
     int threads = 0; ///< 0: what the machine or its scheduler allows
     int debug = 0;
     bool save_bi4 = true;
@@ -34,6 +37,8 @@ struct DropInOptions
     bool save_all = false;
     bool save_bound = false;
     bool save_fluid = false;
+    bool save_features = false;   ///< where walls are fitted
+    bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
     bool create_folders = true;
 };

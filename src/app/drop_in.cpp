@@ -7,6 +7,7 @@
 #include "fppg/normals.h"
 #include "fppg/particles.h"
 #include "fppg/read_shapes.h"
+#include "fppg/relax_walls.h"
 #include "fppg/version.h"
 
 #include "app/case_template.h"
@@ -101,6 +102,7 @@ public:
             prepare_folder();
             read();
             draw();
+            relax();
             prepare();
             save();
         }
@@ -150,6 +152,7 @@ private:
               [this]
               {
                   CaseOptions case_options;
+                  case_options.fit = options_.fit;
                   case_options.dp = options_.dp;
                   case_options.evars = options_.evars;
                   case_options.case_name = fs::path(options_.output).filename().string();
@@ -196,6 +199,100 @@ private:
             fmt::print(stderr, "\rdraw {} of {}  ({:.0f} s)\x1b[K", done, all, shown);
             if (done + 1 >= all) fmt::print(stderr, "\r\x1b[K");
         };
+    }
+
+    /// Spreads the particles of fitted walls. Ctrl-C ends it early; what is reached is written.
+    void relax()
+    {
+        if (field_.walls.bodies.empty()) return;
+        log_fitted_walls();
+        if (!relaxes()) return;
+        stage("Relax",
+              [this]
+              {
+                  const StopSignalsAsk stop;
+                  RelaxReport report;
+                  const Stopwatch time;
+                  double shown = 0;
+                  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+                  relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp,s\n";
+                  const auto observe = [&](const RelaxStep& step)
+                  {
+                      relax_history_ +=
+                          fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.3f}\n", step.what,
+                                      step.iteration, step.particles, step.mean, step.deviation,
+                                      step.largest_step_dp, time.seconds());
+                      const double now = time.seconds();
+                      if (is_terminal && now > shown + 0.2)
+                      {
+                          shown = now;
+                          fmt::print(stderr,
+                                     "\rrelax {}: {} of at most {}, spread {:.3f}, largest step "
+                                     "{:.3f} dp ({:.0f} s)\x1b[K",
+                                     step.what, step.iteration, step.last_iteration, step.deviation,
+                                     step.largest_step_dp, now);
+                      }
+                      return !stop.is_asked();
+                  };
+                  relax_walls(def_, field_, threads_, observe, report);
+                  if (is_terminal) fmt::print(stderr, "\r\x1b[K");
+                  for (const RelaxedPart& part : report.parts) log_relaxed(part);
+                  for (std::string& w : report.warnings) warn(fmt::format("{}:{}", def_.file, w));
+                  if (report.is_stopped)
+                      warn(
+                          "The relaxation was stopped by the user; the files hold what it had "
+                          "reached.");
+              });
+    }
+
+    bool relaxes() const
+    {
+        const auto is_active = [this](const FittedBody& body)
+        {
+            const FitSettings* settings = fit_settings(def_.fit, body.mk);
+            return settings != nullptr && settings->relax.is_active;
+        };
+        const std::vector<FittedBody>& bodies = field_.walls.bodies;
+        return !def_.fluid_bands.empty() || std::any_of(bodies.begin(), bodies.end(), is_active);
+    }
+
+    void log_fitted_walls()
+    {
+        const FittedWalls& walls = field_.walls;
+        std::vector<std::array<std::uint64_t, 3>> counts(walls.bodies.size());
+        for (std::size_t i = 0; i < walls.particles.size(); ++i)
+            ++counts[walls.particles.bodies[i]][static_cast<std::size_t>(walls.particles.kinds[i])];
+        log_.line("Body-fitted walls:");
+        for (std::size_t b = 0; b < walls.bodies.size(); ++b)
+        {
+            const FittedBody& body = walls.bodies[b];
+            log_.line(fmt::format(
+                "  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface "
+                "particles",
+                body.name, body.line, body.mk, counts[b][0], counts[b][1], counts[b][2]));
+            const double volume = body.report.volume;
+            if (body.is_solid && volume > 0)
+                log_.line(
+                    fmt::format("    volume {:g}, area {:g}, clearance {:.3f} dp inside, "
+                                "{:.3f} dp outside",
+                                volume, body.report.area, body.clearance_inside / def_.grid.dp,
+                                body.clearance_outside / def_.grid.dp));
+        }
+        log_.line();
+    }
+
+    void log_relaxed(const RelaxedPart& part)
+    {
+        const char* mean = part.what == "surface" ? "spacing" : "density";
+        std::string text =
+            fmt::format("Relaxed {}: {} particles, {} iterations, {} {:.4f}", part.what,
+                        thousands(part.particles), part.iterations, mean, part.mean);
+        text += fmt::format(", spread {:.4f}", part.deviation);
+        if (part.deviation_before > 0)
+            text += fmt::format(" (before: {:.4f})", part.deviation_before);
+        if (part.inserted + part.removed > 0)
+            text += fmt::format(", {} inserted, {} removed", part.inserted, part.removed);
+        log_.line(text);
     }
 
     void prepare()
@@ -300,6 +397,11 @@ private:
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
                             [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
+                  if (options_.save_relaxation && !relax_history_.empty())
+                      timed("_Relax.csv", "", [&](OutputFile& f) { f.append(relax_history_); });
+                  if (options_.save_features && !field_.walls.bodies.empty())
+                      timed("_Features.vtk", "",
+                            [&](OutputFile& f) { write_features_vtk(f, field_.walls); });
                   field_ = {};
                   if (options_.save_bi4)
                       timed(".bi4", "<double>",
@@ -517,6 +619,7 @@ private:
     RunLog log_;
     CaseDef def_;
     RunField field_;
+    std::string relax_history_;
     CaseParticles particles_;
     CaseConstants constants_;
     std::vector<OutputFile> files_;

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "fppg/error.h"
 #include "fppg/features.h"
+#include "fppg/fit.h"
 #include "fppg/shapes.h"
 #include "shapes/mesh_query.h"
 
@@ -21,6 +22,8 @@ namespace
 constexpr std::size_t open_edges_shown = 5;
 /// Beyond this, particles on lines are not placed but estimated.
 constexpr double most_line_particles = 1e7;
+/// Beyond this, particles on the surface are not placed: it would take longer than a few seconds.
+constexpr double most_fitted_particles = 2e6;
 constexpr std::size_t thickness_samples = 20000;
 
 struct UnitGuess
@@ -70,8 +73,15 @@ void describe_features(const SurfaceMesh& mesh, Inspection& found)
         found.line_particles = found.line_length / options.dp;
         return;
     }
-    for (const FeatureParticle& particle : place_feature_particles(mesh, features, options))
+    const std::vector<FeatureParticle> particles = place_feature_particles(mesh, features, options);
+    for (const FeatureParticle& particle : particles)
         ++(particle.is_corner ? found.corner_particles : found.line_particles);
+    if (found.report.area > most_fitted_particles * options.dp * options.dp) return;
+    FitOptions fit;
+    fit.dp = options.dp;
+    const SurfaceParticles fitted =
+        fit_surface(mesh, features, particles, fit, found.options.threads);
+    found.fitted_particles = fitted.kinds.size() - particles.size();
 }
 
 struct Thickness
@@ -246,6 +256,14 @@ std::string to_text(const Inspection& found)
              fmt::format("{} particles (area / dp^2)", whole(found.surface_particles)));
         line("  on lines", fmt::format("{} particles, and {} on corners",
                                        whole(found.line_particles), whole(found.corner_particles)));
+        if (found.fitted_particles)
+            line("  with -fit",
+                 fmt::format("{} particles on the surface besides those on lines and corners",
+                             *found.fitted_particles));
+        if (!report.is_watertight)
+            line("",
+                 "not watertight: what -fit takes for its inside is a guess, an open sheet has "
+                 "none");
         line("  in the volume",
              fmt::format("{} particles (volume / dp^3)", whole(found.volume_particles)));
         line("  short lines", fmt::format("{} shorter than dp", found.short_lines));
@@ -298,6 +316,7 @@ std::string to_json(const Inspection& found)
                                       {"lines", found.line_particles},
                                       {"corners", found.corner_particles},
                                       {"volume", found.volume_particles}};
+        if (found.fitted_particles) json["fitted_particles"] = *found.fitted_particles;
         json["lines_shorter_than_dp"] = found.short_lines;
         json["thin"] = {{"share_of_area", found.thin_share}, {"least", found.thinnest}};
         if (found.thin_share > 0) json["thin"]["at"] = as_json(found.thinnest_at);

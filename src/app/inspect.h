@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,11 @@ struct Inspection
     double volume_particles = 0;  ///< volume / dp^3
     double corner_particles = 0;  ///< as placed; an estimate where there are very many
     double line_particles = 0;    ///< likewise
-    double thin_share = 0;        ///< of the area, where the opposite side is nearer than dp
-    double thinnest = 0;          ///< the least distance found there; 0 if no place is thin
+    /// Particles between lines and corners that -fit puts on the surface with its defaults; empty
+    /// where they are too many to be placed for a look.
+    std::optional<std::size_t> fitted_particles;
+    double thin_share = 0; ///< of the area, where the opposite side is nearer than dp
+    double thinnest = 0;   ///< the least distance found there; 0 if no place is thin
     Vec3 thinnest_at;
 };
 

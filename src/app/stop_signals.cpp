@@ -13,11 +13,14 @@ namespace
 {
 
 std::atomic<bool> is_ignored{false};
+std::atomic<bool> asks_first{false};
+std::atomic<bool> has_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait for a lock");
 
 extern "C" void stop(int)
 {
     if (is_ignored.load()) return;
+    if (asks_first.load() && !has_asked.exchange(true)) return;
     remove_temporary_files();
     constexpr char text[] = "\n*** Stopped by the user; no output file was changed.\n";
     const auto written = write(STDERR_FILENO, text, sizeof text - 1);
@@ -41,6 +44,20 @@ StopSignalsIgnored::StopSignalsIgnored()
 StopSignalsIgnored::~StopSignalsIgnored()
 {
     is_ignored.store(false);
+}
+
+StopSignalsAsk::StopSignalsAsk()
+{
+    has_asked.store(false);
+    asks_first.store(true);
+}
+StopSignalsAsk::~StopSignalsAsk()
+{
+    asks_first.store(false);
+}
+bool StopSignalsAsk::is_asked() const
+{
+    return has_asked.load();
 }
 
 } // namespace fppg

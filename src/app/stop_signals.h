@@ -19,4 +19,17 @@ public:
     StopSignalsIgnored& operator=(const StopSignalsIgnored&) = delete;
 };
 
+/// While one exists, the first Ctrl-C or SIGTERM only asks the work to end early with what it has;
+/// the second ends the program as usual.
+class StopSignalsAsk
+{
+public:
+    StopSignalsAsk();
+    ~StopSignalsAsk();
+    StopSignalsAsk(const StopSignalsAsk&) = delete;
+    StopSignalsAsk& operator=(const StopSignalsAsk&) = delete;
+
+    bool is_asked() const;
+};
+
 } // namespace fppg

@@ -17,12 +17,17 @@ constexpr auto built = std::to_array<std::string_view>({"abort",
                                                         "dpctesload",
                                                         "dpctesreset",
                                                         "dpctessave",
+                                                        "drawbathymetry",
                                                         "drawbox",
                                                         "drawcylinder",
                                                         "drawellipsoid",
                                                         "drawextrude",
                                                         "drawfigure",
+                                                        "drawfilecsv",
+                                                        "drawfileply",
                                                         "drawfilestl",
+                                                        "drawfilevtk",
+                                                        "drawfilevtm",
                                                         "drawline",
                                                         "drawlines",
                                                         "drawlineto",
@@ -87,9 +92,8 @@ constexpr auto built = std::to_array<std::string_view>({"abort",
                                                         "varssave"});
 
 constexpr auto planned = std::to_array<std::string_view>(
-    {"cellsout", "clipdomain", "drawbathymetry", "drawbeach", "drawfilecsv", "drawfileply",
-     "drawfilevtk", "drawfilevtm", "drawwave", "pointsmkout", "setmkbackbound", "setmkbackclear",
-     "setmkbackfluid", "setmkbackvoid", "setpattern"});
+    {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout", "setmkbackbound",
+     "setmkbackclear", "setmkbackfluid", "setmkbackvoid", "setpattern"});
 
 } // namespace
 

@@ -59,6 +59,10 @@ private:
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     void draw_box(const Element& e);
     void draw_mesh_file(const Element& e);
+    void draw_vtm_file(const Element& e, MeshFileOp op);
+    void draw_bathymetry(const Element& e);
+    Transform file_transform(const Element& e) const;
+    void read_depth(const Element& e, MeshFileOp& op) const;
     void shape_out(const Element& e);
 
     struct Saved

@@ -3,7 +3,6 @@
 
 #include "casedef/figures.h"
 #include "casedef/program.h"
-#include "casedef/transforms.h"
 
 #include <fmt/format.h>
 
@@ -150,54 +149,6 @@ void ProgramRunner::draw_box(const Element& e)
     }
 }
 
-void ProgramRunner::draw_mesh_file(const Element& e)
-{
-    MeshFileOp op;
-    op.file = read_.interpolated(e, read_.text(e, "file"));
-    op.autofill = read_.flag_or(e, "autofill", false);
-    op.advanced = read_.flag_or(e, "advanced", false);
-    if (const std::string* fill = e.find_attribute("fppg:fill"))
-    {
-        if (*fill != "inside")
-            read_.fail(e, fmt::format("fppg:fill=\"{}\" is invalid, expected inside", *fill));
-        op.fill_inside = true;
-    }
-    if (e.find_child("clipdomain") != nullptr) read_.fail_unsupported(e, "<clipdomain>");
-    Vec3 center;
-    Vec3 scale{1, 1, 1};
-    Vec3 angles;
-    Vec3 move;
-    if (const Element* c = e.find_child("drawcenter")) center = read_.vec3(*c);
-    if (const Element* c = e.find_child("drawscale")) scale = read_.vec3(*c);
-    if (const Element* c = e.find_child("drawrotate"))
-        angles = {read_.number(*c, "angx"), read_.number(*c, "angy"), read_.number(*c, "angz")};
-    if (const Element* c = e.find_child("drawmove")) move = read_.vec3(*c);
-    if (op.advanced)
-    {
-        op.depth_min = 0;
-        op.depth_max = 2 * def_.grid.dp;
-        op.reverse = read_.flag_or(e, "reverse", false);
-        if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
-        if (const Element* depth = e.find_child("depth"))
-        {
-            const auto low = read_.number_if(*depth, "depthmin");
-            const auto high = read_.number_if(*depth, "depthmax");
-            if (low) op.depth_min = *low;
-            if (low && !high) op.depth_max = std::numeric_limits<double>::infinity();
-            if (high) op.depth_max = *high;
-        }
-    }
-    // Scale, then rotate right-handed about y, x, z in this order, about the centre; then move
-    // (rule T5; the order was found with four random triples of angles: only this one puts all
-    // corners right).
-    Transform t = scaling(scale);
-    for (const int axis : {1, 0, 2})
-        if (angles[axis] != 0) t = rotation_about_axis(axis, radians(angles[axis])) * t;
-    if (!(center == Vec3{})) t = around(center, t);
-    op.transform = matrix_ * translation(move) * t;
-    add(e, std::move(op));
-}
-
 bool ProgramRunner::run_draw(const Element& e)
 {
     const std::string& name = e.name;
@@ -305,7 +256,9 @@ bool ProgramRunner::run_draw(const Element& e)
         if (state_.mode != DrawMode::Wire) // draws nothing in wire mode
             add(e, EllipsoidOp{points[0], points[1], read_.number(e, "radius")});
     }
-    else if (name == "drawfilestl")
+    else if (name == "drawbathymetry")
+        draw_bathymetry(e);
+    else if (name.starts_with("drawfile"))
         draw_mesh_file(e);
     else
         return false;

@@ -325,7 +325,7 @@ void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream
                             [&](const ParticleSegment& segment)
                             {
                                 double* p = pos + 3 * (segment.id - begin);
-                                for_each_position(particles.grid, segment,
+                                for_each_position(particles, segment,
                                                   [&](std::int64_t k, double x, double y, double z)
                                                   {
                                                       p[3 * k] = x;

@@ -286,11 +286,42 @@ std::array<Vec3, 4> corners(const LatticeGrid& grid, const Faces& faces, const R
     return out;
 }
 
+/// The nodes without the walls: those of a zone carry their plain mk, and touching runs of one mk
+/// are one.
+RunField without_zones(const RunField& field, int threads)
+{
+    RunField out;
+    out.grid = field.grid;
+    out.slabs.resize(field.slabs.size());
+    parallel_for(
+        field.slabs.size(), threads,
+        [&](std::size_t x)
+        {
+            for (Run run : field.slabs[x])
+            {
+                run.mk = static_cast<std::uint16_t>(run.mk & ~wall_zone_bit);
+                std::vector<Run>& runs = out.slabs[x];
+                if (!runs.empty() && runs.back().y == run.y && runs.back().mk == run.mk &&
+                    runs.back().z_end == run.z_begin)
+                    runs.back().z_end = run.z_end;
+                else
+                    runs.push_back(run);
+            }
+        },
+        16);
+    return out;
+}
+
 } // namespace
 
 void write_cells_vtk(OutputFile& file, const RunField& field,
                      const std::vector<ParticleType>& type_of_mk, int threads)
 {
+    if (!field.walls.bodies.empty())
+    {
+        write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
+        return;
+    }
     const std::vector<Faces> all = all_faces(field, threads);
     std::uint64_t n = 0;
     for (const Faces& faces : all) n += faces.rectangles.size();

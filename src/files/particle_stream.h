@@ -9,8 +9,8 @@
 namespace fppg
 {
 
-/// Consecutive particles of one run: node (x, y, z), then steps of `step` in z. Their places among
-/// the particles of the run are [offset, offset + count).
+/// Consecutive particles of one run. Their places among the particles of the run are
+/// [offset, offset + count).
 struct ParticleSegment
 {
     const ParticleBlock* block = nullptr;
@@ -85,8 +85,17 @@ private:
 
 /// Calls put(place in the segment, x, y, z) for the position of every particle of a segment.
 template <typename Put>
-void for_each_position(const LatticeGrid& grid, const ParticleSegment& segment, const Put& put)
+void for_each_position(const CaseParticles& particles, const ParticleSegment& segment,
+                       const Put& put)
 {
+    if (segment.run->is_free())
+    {
+        const Vec3* p =
+            particles.free.positions.data() + segment.run->free_begin() + segment.offset;
+        for (std::int64_t k = 0; k < segment.count; ++k) put(k, p[k].x, p[k].y, p[k].z);
+        return;
+    }
+    const LatticeGrid& grid = particles.grid;
     const double x = grid.origin.x + segment.run->x * grid.dp;
     const double y = grid.origin.y + segment.run->y * grid.dp;
     const double origin_z = grid.origin.z;
@@ -104,6 +113,13 @@ void for_each_density(const CaseParticles& particles, float rhop0, const Particl
                       const Put& put)
 {
     const std::uint32_t count = segment.count;
+    if (segment.run->is_free())
+    {
+        const float* values =
+            particles.free.rhop.data() + segment.run->free_begin() + segment.offset;
+        for (std::uint32_t k = 0; k < count; ++k) put(k, values[k]);
+        return;
+    }
     if (segment.block->type != ParticleType::Fluid ||
         (particles.rhop.empty() && particles.rhop_of_depth.empty()))
     {

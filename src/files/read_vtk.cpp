@@ -49,7 +49,8 @@ std::uint64_t big_endian_at(const char* place, std::size_t width)
 class VtkWalk
 {
 public:
-    VtkArray points, mk, type, kind;
+    VtkArray points, mk, type, kind, normal, wall_normal, distance;
+    bool has_sizes = false; ///< an array NormalSize
 
     VtkWalk(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path)
     {
@@ -108,10 +109,15 @@ private:
     }
     void keep(const std::string& name, const VtkArray& array, std::uint64_t components)
     {
-        if (!is_of_points_ || components != 1) return;
+        if (!is_of_points_) return;
+        if (name == "Normal" && components == 3) normal = array;
+        if (name == "WallNormal" && components == 3) wall_normal = array;
+        if (components != 1) return;
         if (name == "Mk") mk = array;
         if (name == "Type") type = array;
         if (name == "Kind") kind = array;
+        if (name == "Distance") distance = array;
+        if (name == "NormalSize") has_sizes = true;
     }
 
     void walk_part()
@@ -186,6 +192,45 @@ void copy_integers(const VtkWalk& walk, const char* name, const VtkArray& array,
     parallel_for(n, threads, copy, particles_a_chunk);
 }
 
+float float_at(const char* place)
+{
+    return std::bit_cast<float>(static_cast<std::uint32_t>(big_endian_at(place, 4)));
+}
+
+/// Checks that an array has a float, or several, for every point.
+void expect_floats(const VtkWalk& walk, const char* name, const VtkArray& array, std::size_t n)
+{
+    if (array.count != n)
+        walk.fail(fmt::format("array {} has {} values for {} points", name, array.count, n));
+    if (array.type != "float")
+        walk.fail(fmt::format("array {} has the type {}, expected float", name, array.type));
+}
+
+void copy_floats(const VtkWalk& walk, std::size_t n, ParticleCloud& cloud, int threads)
+{
+    // Beside NormalSize, "Normal" is the way to the boundary's surface.
+    const VtkArray& normal = walk.has_sizes ? walk.wall_normal : walk.normal;
+    if (!normal.type.empty())
+    {
+        expect_floats(walk, walk.has_sizes ? "WallNormal" : "Normal", normal, n);
+        cloud.normals.resize(n);
+        const auto copy = [&](std::size_t i)
+        {
+            const char* place = normal.data.data() + 12 * i;
+            cloud.normals[i] = {float_at(place), float_at(place + 4), float_at(place + 8)};
+        };
+        parallel_for(n, threads, copy, particles_a_chunk);
+    }
+    if (!walk.distance.type.empty())
+    {
+        expect_floats(walk, "Distance", walk.distance, n);
+        cloud.distances.resize(n);
+        const auto copy = [&](std::size_t i)
+        { cloud.distances[i] = float_at(walk.distance.data.data() + 4 * i); };
+        parallel_for(n, threads, copy, particles_a_chunk);
+    }
+}
+
 } // namespace
 
 void read_particles_vtk(const std::string& path, ParticleCloud& cloud, int threads)
@@ -207,14 +252,14 @@ void read_particles_vtk(const std::string& path, ParticleCloud& cloud, int threa
             const char* data = walk.points.data.data();
             cloud.positions[i][axis] =
                 is_double ? std::bit_cast<double>(big_endian_at(data + 8 * place, 8))
-                          : static_cast<double>(std::bit_cast<float>(
-                                static_cast<std::uint32_t>(big_endian_at(data + 4 * place, 4))));
+                          : static_cast<double>(float_at(data + 4 * place));
         }
     };
     parallel_for(n, threads, copy, particles_a_chunk);
     copy_integers(walk, "Mk", walk.mk, n, cloud.mk, threads);
     if (!walk.type.type.empty()) copy_integers(walk, "Type", walk.type, n, cloud.type, threads);
     if (!walk.kind.type.empty()) copy_integers(walk, "Kind", walk.kind, n, cloud.kind, threads);
+    copy_floats(walk, n, cloud, threads);
 }
 
 } // namespace fppg

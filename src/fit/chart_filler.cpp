@@ -16,8 +16,7 @@ constexpr double front_spacing = 1.075;
 constexpr double least_distance = 0.86;
 constexpr double same_site = 0.25;     ///< a front meets a particle where it would put one
 constexpr double clearly_taken = 0.50; ///< the walk there can be saved
-constexpr double hole_radius = 0.90;
-constexpr double reach = 2.0; ///< of everything that looks for neighbours
+constexpr double reach = 2.0;          ///< of everything that looks for neighbours
 
 struct Neighbour
 {
@@ -91,6 +90,41 @@ void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, double squa
 }
 
 } // namespace
+
+std::vector<FeatureSite> make_feature_sites(const SurfaceMesh& mesh, const WorkMesh& work,
+                                            const std::vector<FeatureParticle>& particles)
+{
+    std::vector<std::uint32_t> site_of_vertex(mesh.vertices.size(), no_index);
+    std::vector<FeatureSite> sites(particles.size());
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+    {
+        sites[p].position = particles[p].position;
+        if (particles[p].vertex != no_index)
+            site_of_vertex[particles[p].vertex] = p;
+        else
+            for (const std::uint32_t facet : mesh.edge_facets[particles[p].edge])
+                if (facet != no_index)
+                    sites[p].facets.push_back(work.locate(facet, particles[p].position));
+    }
+    for (std::uint32_t f = 0; f < work.facets.size(); ++f)
+        for (const std::uint32_t v : work.facets[f].vertices)
+            if (v < mesh.vertices.size() && site_of_vertex[v] != no_index)
+                sites[site_of_vertex[v]].facets.push_back(f);
+    for (FeatureSite& site : sites)
+    {
+        for (const std::uint32_t f : site.facets) site.normal = site.normal + work.facets[f].normal;
+        if (!site.facets.empty())
+            site.normal = site.normal / static_cast<double>(site.facets.size());
+    }
+    return sites;
+}
+
+void FillState::share_out_features()
+{
+    for (std::uint32_t s = 0; s < features.size(); ++s)
+        for (const std::uint32_t chart : charts.near_point(features[s].position))
+            if (charts.is_near(chart, features[s].position)) particles[chart].features.push_back(s);
+}
 
 struct ChartFiller::Work
 {
@@ -231,7 +265,7 @@ struct ChartFiller::Work
         const Vec3 y_axis = cross(normal, x_axis);
         find_near(position, reach);
         const double box = 1.3 * dp;
-        const double limit = hole_radius * hole_radius * dp * dp;
+        const double limit = state.hole_radius * state.hole_radius * dp * dp;
         polygon.assign({{-box, -box}, {box, -box}, {box, box}, {-box, box}});
         const auto is_far = [&](const PlanePoint& p) { return p.x * p.x + p.y * p.y > limit; };
         // The nearest first, after which there is mostly nothing left to cut.
@@ -262,8 +296,9 @@ struct ChartFiller::Work
     void propose(const SurfaceRay& place_of)
     {
         if (place_of.facet == no_index || state.charts.of_facet(place_of.facet) != chart) return;
+        if (state.may_fill && !state.may_fill(place_of.position)) return;
         const double distance = own_sheet_distance(place_of);
-        if (distance > hole_radius * dp) holes.push({distance, order++, place_of});
+        if (distance > state.hole_radius * dp) holes.push({distance, order++, place_of});
     }
 
     /// Crumbs have no sheets: one particle stands for all their sides.
@@ -348,7 +383,7 @@ struct ChartFiller::Work
                                    best = squared;
                                    towards = offset;
                                });
-            if (best > hole_radius * hole_radius * dp * dp) return propose(at);
+            if (best > state.hole_radius * state.hole_radius * dp * dp) return propose(at);
             const Vec3 away = normal * dot(towards, normal) - towards;
             const double length = norm(away);
             if (length < 1e-6 * dp) return;
@@ -380,7 +415,7 @@ struct ChartFiller::Work
             Hole hole = holes.top();
             holes.pop();
             const double distance = own_sheet_distance(hole.place);
-            if (distance <= hole_radius * dp) continue;
+            if (distance <= state.hole_radius * dp) continue;
             if (distance < hole.distance)
             {
                 hole.distance = distance;

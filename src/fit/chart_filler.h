@@ -1,9 +1,12 @@
 #pragma once
 
+#include "core/parallel.h"
 #include "fit/charts.h"
 #include "fit/walk.h"
 
+#include <functional>
 #include <memory>
+#include <mutex>
 
 namespace fppg
 {
@@ -15,6 +18,10 @@ struct FeatureSite
     Vec3 normal;                       ///< mean of its facets' normals, not of unit length
     std::vector<std::uint32_t> facets; ///< of the work mesh, that it lies on
 };
+
+/// The sites of feature particles, in their order.
+std::vector<FeatureSite> make_feature_sites(const SurfaceMesh& mesh, const WorkMesh& work,
+                                            const std::vector<FeatureParticle>& particles);
 
 /// What is known of a surface particle while its surroundings are still being filled.
 struct SurfaceSite
@@ -43,6 +50,12 @@ struct FillState
     const std::vector<FeatureSite>& features;
     double dp;
     std::vector<ChartParticles> particles; ///< per chart
+    double hole_radius = 0.90;             ///< dp; no point is left farther from a particle
+    /// Where particles may be put; empty: everywhere. Called from several threads.
+    std::function<bool(const Vec3&)> may_fill = {};
+
+    /// Gives every chart the feature particles that are near it.
+    void share_out_features();
 };
 
 /// Fills one chart after another; each thread has its own, for the memory that it keeps.
@@ -59,12 +72,39 @@ public:
     void advance_front(std::uint32_t chart);
 
     /// Puts particles into the holes, the farthest first, until no point of the chart is farther
-    /// than 0.90 dp from a particle. All charts must have had their front.
+    /// than the state's hole radius from a particle. All charts must have had their front.
     void fill_holes(std::uint32_t chart);
 
 private:
     struct Work;
     std::unique_ptr<Work> work_;
 };
+
+/// Runs step(filler, chart) on every chart, wave by wave; fillers keep their memory from chart to
+/// chart. The result does not depend on the number of threads.
+template <typename Step>
+void for_each_chart(FillState& state, int threads, const Step& step)
+{
+    std::vector<std::unique_ptr<ChartFiller>> idle;
+    std::mutex guard;
+    for (const auto& wave : state.charts.waves())
+        parallel_for(wave.size(), threads,
+                     [&](std::size_t i)
+                     {
+                         std::unique_ptr<ChartFiller> filler;
+                         {
+                             const std::lock_guard lock(guard);
+                             if (!idle.empty())
+                             {
+                                 filler = std::move(idle.back());
+                                 idle.pop_back();
+                             }
+                         }
+                         if (!filler) filler = std::make_unique<ChartFiller>(state);
+                         step(*filler, wave[i]);
+                         const std::lock_guard lock(guard);
+                         idle.push_back(std::move(filler));
+                     });
+}
 
 } // namespace fppg

@@ -8,6 +8,9 @@
 namespace fppg
 {
 
+/// Sides of facets that a work mesh to be cut into charts leaves whole, in dp.
+inline constexpr double longest_chart_side = 48;
+
 /// A mesh cut into charts: connected facets between borders, of no more than about one size; parts
 /// narrower than half a dp share charts of crumbs, so that a heap of them stays a few charts. How
 /// it is cut depends on the mesh and dp alone, so charts that do not come near one another can be

@@ -8,7 +8,6 @@
 #include "shapes/mesh_query.h"
 
 #include <algorithm>
-#include <mutex>
 
 namespace fppg
 {
@@ -16,8 +15,6 @@ namespace fppg
 namespace
 {
 
-/// Sides of facets that are left whole, in dp.
-constexpr double longest_side = 48;
 /// Cells whose closest points are the same point give one particle; in dp.
 constexpr double same_point = 1e-3;
 
@@ -54,72 +51,15 @@ SurfaceParticles take_feature_particles(const SurfaceMesh& mesh,
     return result;
 }
 
-std::vector<FeatureSite> make_sites(const SurfaceMesh& mesh, const WorkMesh& work,
-                                    const std::vector<FeatureParticle>& particles)
-{
-    std::vector<std::uint32_t> site_of_vertex(mesh.vertices.size(), no_index);
-    std::vector<FeatureSite> sites(particles.size());
-    for (std::uint32_t p = 0; p < particles.size(); ++p)
-    {
-        sites[p].position = particles[p].position;
-        if (particles[p].vertex != no_index)
-            site_of_vertex[particles[p].vertex] = p;
-        else
-            for (const std::uint32_t facet : mesh.edge_facets[particles[p].edge])
-                if (facet != no_index)
-                    sites[p].facets.push_back(work.locate(facet, particles[p].position));
-    }
-    for (std::uint32_t f = 0; f < work.facets.size(); ++f)
-        for (const std::uint32_t v : work.facets[f].vertices)
-            if (v < mesh.vertices.size() && site_of_vertex[v] != no_index)
-                sites[site_of_vertex[v]].facets.push_back(f);
-    for (FeatureSite& site : sites)
-    {
-        for (const std::uint32_t f : site.facets) site.normal = site.normal + work.facets[f].normal;
-        if (!site.facets.empty())
-            site.normal = site.normal / static_cast<double>(site.facets.size());
-    }
-    return sites;
-}
-
-/// Runs a step on every chart, wave by wave; fillers keep their memory from chart to chart.
-template <typename Step>
-void for_each_chart(FillState& state, int threads, const Step& step)
-{
-    std::vector<std::unique_ptr<ChartFiller>> idle;
-    std::mutex guard;
-    for (const auto& wave : state.charts.waves())
-        parallel_for(wave.size(), threads,
-                     [&](std::size_t i)
-                     {
-                         std::unique_ptr<ChartFiller> filler;
-                         {
-                             const std::lock_guard lock(guard);
-                             if (!idle.empty())
-                             {
-                                 filler = std::move(idle.back());
-                                 idle.pop_back();
-                             }
-                         }
-                         if (!filler) filler = std::make_unique<ChartFiller>(state);
-                         step(*filler, wave[i]);
-                         const std::lock_guard lock(guard);
-                         idle.push_back(std::move(filler));
-                     });
-}
-
 void add_area_particles(const SurfaceMesh& mesh, const Features& features,
                         const std::vector<FeatureParticle>& feature_particles, double dp,
                         int threads, SurfaceParticles& result)
 {
-    const WorkMesh work = make_work_mesh(mesh, features, longest_side * dp);
+    const WorkMesh work = make_work_mesh(mesh, features, longest_chart_side * dp);
     const Charts charts(work, dp);
-    const std::vector<FeatureSite> sites = make_sites(mesh, work, feature_particles);
+    const std::vector<FeatureSite> sites = make_feature_sites(mesh, work, feature_particles);
     FillState state{work, charts, sites, dp, std::vector<ChartParticles>(charts.size())};
-    for (std::uint32_t s = 0; s < sites.size(); ++s)
-        for (const std::uint32_t chart : charts.near_point(sites[s].position))
-            if (charts.is_near(chart, sites[s].position))
-                state.particles[chart].features.push_back(s);
+    state.share_out_features();
     for (const SurfaceRay& row : lay_first_rows(mesh, work, features, feature_particles, dp))
         state.particles[charts.of_facet(row.facet)].rows.push_back(row);
 

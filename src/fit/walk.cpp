@@ -10,15 +10,12 @@ namespace
 /// against its length needs as many; one that circles a vertex does.
 constexpr int max_crossings = 2000;
 
-struct Exit
-{
-    std::size_t side = 3; ///< 3: the line ends within the facet
-    double length = 0;
-};
+} // namespace
 
-Exit find_exit(const WorkFacet& facet, const SurfaceRay& ray, std::size_t entered, double length)
+FacetExit find_exit(const WorkFacet& facet, const SurfaceRay& ray, std::size_t entered,
+                    double length)
 {
-    Exit exit{3, length};
+    FacetExit exit{3, length};
     for (std::size_t s = 0; s < 3; ++s)
     {
         if (s == entered) continue;
@@ -32,7 +29,28 @@ Exit find_exit(const WorkFacet& facet, const SurfaceRay& ray, std::size_t entere
     return exit;
 }
 
-} // namespace
+std::size_t cross_side(const WorkMesh& mesh, SurfaceRay& ray, std::size_t side)
+{
+    const WorkFacet& facet = mesh.facets[ray.facet];
+    const std::uint32_t next = facet.neighbours[side];
+    const WorkFacet& other = mesh.facets[next];
+    const std::size_t end = side == 2 ? 0 : side + 1;
+    const Vec3 edge = facet.corners[end] - facet.corners[side];
+    const Vec3 along = edge / norm(edge);
+    const double a = dot(ray.direction, along);
+    const double b = dot(ray.direction, cross(along, facet.normal));
+    ray.direction = along * a + cross(along, other.normal) * b;
+    std::size_t entered = other.neighbours[0] == ray.facet   ? 0
+                          : other.neighbours[1] == ray.facet ? 1
+                                                             : 2;
+    // Two facets can share two edges; the one walked over is told by its vertices.
+    if (other.vertices[entered] != facet.vertices[end])
+        for (std::size_t s = 0; s < 3; ++s)
+            if (other.neighbours[s] == ray.facet && other.vertices[s] == facet.vertices[end])
+                entered = s;
+    ray.facet = next;
+    return entered;
+}
 
 SurfaceRay walk(const WorkMesh& mesh, SurfaceRay ray, double length)
 {
@@ -40,33 +58,16 @@ SurfaceRay walk(const WorkMesh& mesh, SurfaceRay ray, double length)
     for (int crossing = 0; crossing < max_crossings; ++crossing)
     {
         const WorkFacet& facet = mesh.facets[ray.facet];
-        const Exit exit = find_exit(facet, ray, entered, length);
+        const FacetExit exit = find_exit(facet, ray, entered, length);
         ray.position = ray.position + ray.direction * exit.length;
         if (exit.side == 3)
         {
-            // Rounding of earlier crossings is taken back: the point lies in this facet's plane.
-            ray.position =
-                ray.position - facet.normal * dot(ray.position - facet.corners[0], facet.normal);
+            ray.position = onto_plane(facet, ray.position);
             return ray;
         }
-        const std::uint32_t next = facet.neighbours[exit.side];
-        if (next == no_index) break;
+        if (facet.neighbours[exit.side] == no_index) break;
         length -= exit.length;
-        const WorkFacet& other = mesh.facets[next];
-        const Vec3 side =
-            facet.corners[exit.side == 2 ? 0 : exit.side + 1] - facet.corners[exit.side];
-        const Vec3 along = side / norm(side);
-        const double a = dot(ray.direction, along);
-        const double b = dot(ray.direction, cross(along, facet.normal));
-        ray.direction = along * a + cross(along, other.normal) * b;
-        entered = other.neighbours[0] == ray.facet ? 0 : other.neighbours[1] == ray.facet ? 1 : 2;
-        // Two facets can share two edges; the one walked over is told by its vertices.
-        if (other.vertices[entered] != facet.vertices[exit.side == 2 ? 0 : exit.side + 1])
-            for (std::size_t s = 0; s < 3; ++s)
-                if (other.neighbours[s] == ray.facet &&
-                    other.vertices[s] == facet.vertices[exit.side == 2 ? 0 : exit.side + 1])
-                    entered = s;
-        ray.facet = next;
+        entered = cross_side(mesh, ray, exit.side);
     }
     ray.facet = no_index;
     return ray;

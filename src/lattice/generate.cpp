@@ -3,61 +3,28 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/flood.h"
-#include "lattice/mesh_path.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
+#include "lattice/shape_mesh.h"
 #include "lattice/solids.h"
+#include "lattice/wall_painter.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
-#include <map>
-#include <numeric>
+#include <deque>
 
 namespace fppg
 {
 namespace
 {
-
-/// Drops the nodes that a clip refuses. Along a column the test value is monotone in double too, so
-/// the limit is found by bisection on the test itself.
-void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
-{
-    Spans kept;
-    kept.reserve(spans.size());
-    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-    for (const Span& s : spans)
-    {
-        const double y = grid.origin.y + static_cast<double>(s.y) * grid.dp;
-        const auto keeps = [&](std::uint32_t k)
-        {
-            const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-            return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
-        };
-        const bool first = keeps(s.z_begin);
-        const bool last = keeps(s.z_end - 1);
-        if (first && last)
-            kept.push_back(s);
-        else if (first || last)
-        {
-            std::uint32_t in = first ? s.z_begin : s.z_end - 1;
-            std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
-            while (std::max(in, out) - std::min(in, out) > 1)
-            {
-                const std::uint32_t middle = std::midpoint(in, out);
-                keeps(middle) ? in = middle : out = middle;
-            }
-            kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
-        }
-    }
-    spans.swap(kept);
-}
 
 std::uint64_t node_count(const std::vector<Spans>& nodes)
 {
@@ -71,7 +38,7 @@ class Generator
 {
 public:
     Generator(const CaseDef& def, int threads, LatticeReport& report)
-        : def_(def), threads_(threads), report_(report)
+        : def_(def), threads_(threads), report_(report), walls_(field_, threads)
     {
         field_.grid = def.grid;
         field_.slabs.resize(def.grid.n[0]);
@@ -80,10 +47,14 @@ public:
     void run(const DrawOp& op)
     {
         op_ = &op;
-        std::visit([this](const auto& what) { draw(what); }, op.what);
+        if (!draw_fitted(op)) std::visit([this](const auto& what) { draw(what); }, op.what);
     }
 
-    RunField take() { return std::move(field_); }
+    RunField take()
+    {
+        walls_.finish();
+        return std::move(field_);
+    }
 
 private:
     const DrawState& state() const { return *op_->state; }
@@ -123,12 +94,23 @@ private:
         parallel_for(nodes.size(), threads_, [&](std::size_t x) { paint_slab(x, nodes[x]); });
     }
 
+    /// A redraw with a boundary mk: walls keep their place and take the new mk.
+    void repaint_nodes(const std::vector<Spans>& nodes)
+    {
+        if (!state().draw_points) return;
+        const bool keeps_walls = state().mk.kind == MkKind::Bound;
+        parallel_for(nodes.size(), threads_,
+                     [&](std::size_t x) { paint_slab(x, nodes[x], keeps_walls); });
+    }
+
     /// Stops with a message where the machine would start to swap or kill the process.
-    void paint_slab(std::size_t x, const Spans& spans)
+    void paint_slab(std::size_t x, const Spans& spans, bool keeps_walls = false)
     {
         std::vector<Run>& slab = field_.slabs[x];
         const std::size_t before = slab.size();
+        const Spans zone = walls_.paint_over(x, spans, state().mk.mk, keeps_walls);
         paint(slab, spans, state().mk.mk);
+        if (!zone.empty()) paint(slab, zone, state().mk.mk | wall_zone_bit);
         const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
         if (runs > run_limit_ && runs < UINT64_MAX / 2)
             throw CaseError(
@@ -137,6 +119,73 @@ private:
                     "<{}>: the drawn regions need more memory than this machine has left: {} runs "
                     "of nodes so far; a larger dp or a smaller domain needs less",
                     op_->source.command, runs));
+    }
+
+    /// Draws a shape of a body-fitted mk by its true surface.
+    ///
+    /// returns  false for what stays on the lattice: other mks, points, lines, wires, fills
+    bool draw_fitted(const DrawOp& op)
+    {
+        const FitSettings* settings =
+            state().mk.kind == MkKind::Bound ? fit_settings(def_.fit, state().mk.mk) : nullptr;
+        if (settings == nullptr || state().mode == DrawMode::Wire) return false;
+        const auto* file = std::get_if<MeshFileOp>(&op.what);
+        if (file != nullptr && mesh(*file).soup.vertices.empty()) return false;
+        try
+        {
+            const std::vector<ShapeMesh> shapes =
+                shape_meshes(op, file != nullptr ? &mesh(*file).soup : nullptr, grid().dp);
+            if (shapes.empty()) return false;
+            for (const ShapeMesh& shape : shapes)
+                if (state().draw_points) add_wall(fit(shape, op, *settings), file);
+            if (file != nullptr && !file->advanced)
+                draw_points_and_lines(mesh(*file), file->transform);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
+        return true;
+    }
+
+    FittedDraw fit(const ShapeMesh& shape, const DrawOp& op, const FitSettings& settings) const
+    {
+        FittedDraw draw = fit_shape(shape, settings, grid(), state().clips, threads_);
+        draw.body.line = op.source.line;
+        draw.body.name = op.source.command;
+        draw.body.mk = state().mk.mk;
+        return draw;
+    }
+
+    void add_wall(FittedDraw&& draw, const MeshFileOp* file)
+    {
+        report_.triangles += draw.body.report.facets_read;
+        if (file != nullptr)
+        {
+            draw.body.name += " " + file->file;
+            if (file->advanced) keep_depth(draw, *file);
+        }
+        for (const std::string& w : draw.warnings)
+            report_.warnings.push_back(file != nullptr
+                                           ? fmt::format("{}: {}: {}", place(), file->file, w)
+                                           : fmt::format("{}: {}", place(), w));
+        if (draw.particles.size() == 0)
+            report_.warnings.push_back(fmt::format(
+                "{}: no particle of the body-fitted wall lies inside the domain", place()));
+        walls_.add(std::move(draw));
+    }
+
+    /// `advanced`: of the inside, the nodes whose depth is asked for.
+    void keep_depth(FittedDraw& draw, const MeshFileOp& op)
+    {
+        const SlabRegion region =
+            depth_region(moved_soup(mesh(op).soup, op.transform), op, grid(), threads_);
+        parallel_for(draw.volume.size(), threads_,
+                     [&](std::size_t x)
+                     {
+                         draw.volume[x] = intersect(
+                             draw.volume[x], listed(region, static_cast<std::uint32_t>(x), true));
+                     });
     }
 
     void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
@@ -230,21 +279,83 @@ private:
     void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
     void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
 
-    const MeshFile& mesh(const std::string& file)
+    const MeshFile& mesh(const MeshFileOp& op)
     {
-        const auto known = meshes_.find(file);
-        if (known != meshes_.end()) return known->second;
-        const std::string path = find_mesh_file(def_, op_->source, file);
-        MeshFile read = read_stl(path, threads_);
-        report_.mesh_files.push_back({file, path, op_->source.line});
+        for (const ReadMesh& known : meshes_)
+            if (known.name == op.file && known.reading == op.reading) return known.mesh;
+        const std::string path = find_mesh_file(def_, op_->source, op.file);
+        MeshFile read = read_mesh_file(path, op.reading, threads_);
+        note_use(op.container, op.container);
+        note_use(op.file, path);
         for (const std::string& w : read.warnings)
             report_.warnings.push_back(fmt::format("{}: {}: {}", place(), path, w));
-        return meshes_.emplace(file, std::move(read)).first->second;
+        return meshes_.emplace_back(op.file, op.reading, std::move(read)).mesh;
+    }
+
+    void note_use(const std::string& name, const std::string& path)
+    {
+        const auto is_it = [&](const MeshFileUse& use) { return use.name == name; };
+        if (!name.empty() &&
+            std::none_of(report_.mesh_files.begin(), report_.mesh_files.end(), is_it))
+            report_.mesh_files.push_back(
+                {name, find_mesh_file(def_, op_->source, path), op_->source.line});
+    }
+
+    /// Single points and lines of a mesh file; lines are those of drawline.
+    void draw_points_and_lines(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<Vec3> points;
+        for (const Vec3& p : file.points) points.push_back(transform(p));
+        if (!points.empty()) draw(PointsOp{std::move(points)});
+        LinesOp lines;
+        for (const std::vector<Vec3>& line : file.lines)
+            for (std::size_t i = 1; i < line.size(); ++i)
+                lines.segments.emplace_back(transform(line[i - 1]), transform(line[i]));
+        if (!lines.segments.empty()) draw(lines);
+    }
+
+    TriangleSoup moved_soup(const TriangleSoup& source, const Transform& transform) const
+    {
+        TriangleSoup moved;
+        moved.vertices.resize(source.vertices.size());
+        parallel_for(
+            moved.vertices.size(), threads_,
+            [&](std::size_t i) { moved.vertices[i] = transform(source.vertices[i]); }, 4096);
+        return moved;
+    }
+
+    /// The sides of all triangles and quads, as lines.
+    void draw_wire(const MeshFile& file, const Transform& transform)
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        const auto node = [&](std::size_t i)
+        { return snap(transform(file.soup.vertices[i]), grid()); };
+        auto quad = file.quads.begin();
+        for (std::size_t t = 0; t < file.soup.size(); ++t)
+        {
+            std::vector<Node> corners{node(3 * t), node(3 * t + 1), node(3 * t + 2)};
+            if (quad != file.quads.end() && *quad == t)
+            {
+                ++quad;
+                corners.push_back(node(3 * ++t + 2));
+            }
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                segments.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+        }
+        paint_region(lines_region(segments, grid(), state().constants.line));
     }
 
     void draw(const MeshFileOp& op)
     {
-        const TriangleSoup& source = mesh(op.file).soup;
+        const MeshFile& file = mesh(op);
+        const TriangleSoup& source = file.soup;
+        if (!op.advanced) draw_points_and_lines(file, op.transform);
+        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
+        {
+            draw_wire(file, op.transform);
+            if (op.autofill) autofill(moved_soup(source, op.transform), file, op.transform);
+            return;
+        }
         std::vector<SnappedTriangle> triangles(source.size());
         parallel_for(
             source.size(), threads_,
@@ -257,13 +368,7 @@ private:
             4096);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
-        if (op.advanced || op.fill_inside || op.autofill)
-        {
-            moved.vertices.resize(source.vertices.size());
-            parallel_for(
-                moved.vertices.size(), threads_,
-                [&](std::size_t i) { moved.vertices[i] = op.transform(source.vertices[i]); }, 4096);
-        }
+        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(source, op.transform);
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
@@ -276,7 +381,7 @@ private:
             return;
         }
         draw_triangles(std::move(triangles));
-        if (op.autofill) autofill(moved);
+        if (op.autofill) autofill(moved, file, op.transform);
     }
 
     static SlabRegion region_of(SpanSet set)
@@ -293,9 +398,12 @@ private:
     /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
     /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
     /// so.
-    void autofill(const TriangleSoup& soup)
+    void autofill(const TriangleSoup& soup, const MeshFile& file, const Transform& transform)
     {
         Box3 bounds;
+        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const std::vector<Vec3>& line : file.lines)
+            for (const Vec3& p : line) bounds.add(transform(p));
         for (const Vec3& v : soup.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
         NodeBox box;
@@ -317,7 +425,7 @@ private:
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
         const std::vector<Spans> filled =
-            flood(field_, seed, fillable_mks(filter, def_.mk_bound_first), box, nullptr, threads_);
+            flood(field_, seed, fillable(filter), box, nullptr, threads_);
 
         const SpanSet inside = inside_spans(soup, grid(), threads_);
         std::vector<Spans> wrong(filled.size());
@@ -376,6 +484,13 @@ private:
                     op_->source.command, columns));
     }
 
+    std::vector<char> fillable(const FillFilter& filter) const
+    {
+        std::vector<char> mks = fillable_mks(filter, def_.mk_bound_first);
+        if (walls_.has_walls()) count_wall_zones(mks);
+        return mks;
+    }
+
     void draw(const FillOp& op)
     {
         NodeBox box = whole_lattice(grid());
@@ -393,8 +508,8 @@ private:
         }
         check_columns(box);
         const Node seed = snap(op.seed, grid());
-        const std::vector<Spans> nodes = flood(
-            field_, seed, fillable_mks(op.filter, def_.mk_bound_first), box, mask_used, threads_);
+        const std::vector<Spans> nodes =
+            flood(field_, seed, fillable(op.filter), box, mask_used, threads_);
         if (state().draw_points && node_count(nodes) == 0)
             report_.warnings.push_back(
                 fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside "
@@ -407,7 +522,7 @@ private:
     void draw(const RedrawOp& op)
     {
         const NodeBox box = op.region ? node_box(*op.region, false) : whole_lattice(grid());
-        paint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
+        repaint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
     }
 
     void draw(const RedrawNearOp& op)
@@ -415,12 +530,13 @@ private:
         const NodeBox box =
             op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
         for (int i = 0; i < op.times; ++i)
-            paint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
+            repaint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
     }
 
     void draw(const ResetOp&)
     {
         for (auto& slab : field_.slabs) slab.clear();
+        walls_.reset();
     }
 
     void draw(const ShapeOutOp&) {}
@@ -429,11 +545,18 @@ private:
     int threads_;
     LatticeReport& report_;
     RunField field_;
+    WallPainter walls_;
     const DrawOp* op_ = nullptr;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();
     std::uint64_t run_limit_ = memory_ / 5 * 4 / sizeof(Run);
-    std::map<std::string, MeshFile> meshes_;
+    struct ReadMesh
+    {
+        std::string name;
+        MeshReading reading;
+        MeshFile mesh;
+    };
+    std::deque<ReadMesh> meshes_;
 };
 
 } // namespace

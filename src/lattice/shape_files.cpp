@@ -3,7 +3,7 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
-#include "lattice/mesh_path.h"
+#include "casedef/mesh_path.h"
 #include "lattice/snap.h"
 
 #include <algorithm>
@@ -120,13 +120,60 @@ private:
                          radius(cylinder->radius, snapped), constants.cylinder_sides);
         else if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
         {
-            const MeshFile file = read_stl(find_mesh_file(def_, op.source, mesh->file));
-            for (const Vec3& v : file.soup.vertices)
-                out.vertices.push_back(place(mesh->transform(v), snapped));
-            for (std::uint32_t t = 0; t < file.soup.size(); ++t)
-                out.polygons.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+            add_mesh(out, *mesh, find_mesh_file(def_, op.source, mesh->file), snapped);
         }
         return out;
+    }
+
+    /// Quads stay whole, those of a bathymetry only if they are flat; a polyline begins with a
+    /// line of no length. As in the files of GenCase v5.4.354.
+    void add_mesh(ShapePolygons& out, const MeshFileOp& op, const std::string& path,
+                  bool snapped) const
+    {
+        const MeshFile file = read_mesh_file(path, op.reading);
+        const auto add_vertex = [&](const Vec3& v)
+        {
+            out.vertices.push_back(place(op.transform(v), snapped));
+            return static_cast<std::uint32_t>(out.vertices.size() - 1);
+        };
+        for (const std::vector<Vec3>& line : file.lines)
+        {
+            if (op.advanced) break; // takes surfaces only
+            std::uint32_t before = add_vertex(line[0]);
+            out.polygons.push_back({before, before});
+            for (std::size_t i = 1; i < line.size(); ++i)
+            {
+                const std::uint32_t next = add_vertex(line[i]);
+                out.polygons.push_back({before, next});
+                before = next;
+            }
+        }
+        const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry &&
+                                 op.reading.format != MeshFormat::CsvBathymetry;
+        const auto first = static_cast<std::uint32_t>(out.vertices.size());
+        for (const Vec3& v : file.soup.vertices) add_vertex(v);
+        auto quad = file.quads.begin();
+        for (std::uint32_t t = 0; t < file.soup.size(); ++t)
+        {
+            const std::uint32_t a = first + 3 * t;
+            const bool is_quad = quad != file.quads.end() && *quad == t;
+            if (is_quad) ++quad;
+            if (is_quad && (may_be_bent || is_flat(&file.soup.vertices[3 * std::size_t{t}])))
+            {
+                out.polygons.push_back({a, a + 1, a + 2, a + 5});
+                ++t;
+            }
+            else
+                out.polygons.push_back({a, a + 1, a + 2});
+        }
+    }
+
+    /// Whether the six corners of two triangles lie in one plane, but for the rounding of float.
+    static bool is_flat(const Vec3* corners)
+    {
+        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        const Vec3 last = corners[5] - corners[0];
+        return std::fabs(dot(normal, last)) <= 1e-5 * norm(normal) * norm(last);
     }
 
     double radius(double r, bool snapped) const

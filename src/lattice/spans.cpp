@@ -1,6 +1,7 @@
 #include "lattice/spans.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace fppg
 {
@@ -197,6 +198,11 @@ void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk)
     std::copy(rebuilt.begin(), rebuilt.end(), runs.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
+void count_wall_zones(std::vector<char>& wanted)
+{
+    for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk) wanted[mk | wall_zone_bit] = wanted[mk];
+}
+
 Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted)
 {
     Spans out;
@@ -210,6 +216,38 @@ Spans occupied(const std::vector<Run>& runs)
     Spans out;
     for (const Run& r : runs) append_joined(out, {r.y, r.z_begin, r.z_end});
     return out;
+}
+
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
+{
+    Spans kept;
+    kept.reserve(spans.size());
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+    for (const Span& s : spans)
+    {
+        const double y = grid.origin.y + static_cast<double>(s.y) * grid.dp;
+        const auto keeps = [&](std::uint32_t k)
+        {
+            const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
+            return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
+        };
+        const bool first = keeps(s.z_begin);
+        const bool last = keeps(s.z_end - 1);
+        if (first && last)
+            kept.push_back(s);
+        else if (first || last)
+        {
+            std::uint32_t in = first ? s.z_begin : s.z_end - 1;
+            std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
+            while (std::max(in, out) - std::min(in, out) > 1)
+            {
+                const std::uint32_t middle = std::midpoint(in, out);
+                keeps(middle) ? in = middle : out = middle;
+            }
+            kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
+        }
+    }
+    spans.swap(kept);
 }
 
 } // namespace fppg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
 #include <functional>
@@ -37,10 +38,16 @@ Spans complement(const Spans& spans, const NodeBox& box);
 
 /// Gives the nodes of `spans` the value `mk` (0 erases) in the runs of one slab.
 void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk);
+/// Nodes in the zone of a wall count as those of its mk: `wanted`, per mk, has 65536 entries.
+void count_wall_zones(std::vector<char>& wanted);
 /// The nodes whose mk is wanted. `wanted` has 65536 entries; entry 0 is not looked at.
 Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted);
 /// All nodes that carry an mk.
 Spans occupied(const std::vector<Run>& runs);
+
+/// Drops the nodes of one slab that a clip refuses. Along a column the test value is monotone in
+/// double too, so the limit is found by bisection on the test itself.
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid);
 
 /// A region that can be listed slab by slab: emit(x, out) appends the spans of slab x in any order.
 /// Calls for different x may run at the same time.

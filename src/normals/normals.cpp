@@ -288,6 +288,22 @@ private:
         return most;
     }
 
+    /// The least node of the box of all particles: that of the lattice where some stand off it,
+    /// which count for the node nearest to them.
+    Vec3 first_node() const
+    {
+        Vec3 low = particles_.pos_min;
+        if (particles_.free.size() == 0) return low;
+        const LatticeGrid& grid = particles_.grid;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double steps = (low[axis] - grid.origin[axis]) / grid.dp;
+            // Half-way between two it is the lower one, so that no particle lies before it.
+            low[axis] = grid.origin[axis] + std::ceil(steps - 0.5 - 1e-6) * grid.dp;
+        }
+        return low;
+    }
+
     void from_parts(const NormalOp& op, double reach)
     {
         std::vector<Vec3> selected;
@@ -295,8 +311,7 @@ private:
             if (!op.has_mk || std::find(op.mk.begin(), op.mk.end(), place.block->mk) != op.mk.end())
                 for (std::uint32_t k = 0; k < place.run->count; ++k)
                     selected.push_back(position(place, k));
-        const PartSurface surface(selected, particles_.pos_min, particles_.pos_max, def_.grid.dp,
-                                  reach);
+        const PartSurface surface(selected, first_node(), particles_.pos_max, def_.grid.dp, reach);
         set(op, [&](const Vec3& p) { return surface.normal_at(p); });
     }
 

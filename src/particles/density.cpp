@@ -54,8 +54,97 @@ private:
     const std::vector<ParticleType>& type_of_mk_;
 };
 
-/// Calls body(run index in the slab, block, run index in the block) for all runs of water, slab by
-/// slab. Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
+/// Whether the nodes of a run are particles.
+class ParticleTest
+{
+public:
+    explicit ParticleTest(const RunField& field) : has_walls_(!field.walls.bodies.empty()) {}
+    bool operator()(const Run& run) const { return !has_walls_ || (run.mk & wall_zone_bit) == 0; }
+
+private:
+    bool has_walls_;
+};
+
+/// The node of water that gives a particle off the lattice its depth.
+struct Host
+{
+    static constexpr std::uint32_t none = 0xFFFFFFFF;
+    std::uint32_t slab = none;
+    std::uint32_t run = 0;   ///< index in the slab
+    std::uint32_t below = 0; ///< steps from the run's highest node down to the node
+    Vec3 offset;             ///< from the particle to the node, in steps
+};
+
+class HostFinder
+{
+public:
+    HostFinder(const RunField& field, const DepthMeter& meter) : field_(field), meter_(meter) {}
+
+    Host find(const Vec3& p) const
+    {
+        const LatticeGrid& grid = field_.grid;
+        const Vec3 q = (p - grid.origin) / grid.dp;
+        std::array<std::int64_t, 3> nearest{};
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            nearest[k] = std::clamp<std::int64_t>(std::llround(q[axis]), 0,
+                                                  static_cast<std::int64_t>(grid.n[k]) - 1);
+        }
+        Best best;
+        search_column(nearest[0], nearest[1], q, best);
+        for (int ring = 1; ring <= reach; ++ring)
+        {
+            // Columns of this ring are at least so far away.
+            const double gap = ring - 0.5;
+            if (best.distance <= gap * gap) break;
+            for (std::int64_t dx = -ring; dx <= ring; ++dx)
+                for (std::int64_t dy = -ring; dy <= ring; ++dy)
+                    if (std::max(std::abs(dx), std::abs(dy)) == ring)
+                        search_column(nearest[0] + dx, nearest[1] + dy, q, best);
+        }
+        return best.host;
+    }
+
+private:
+    static constexpr int reach = 4; ///< steps
+    struct Best
+    {
+        double distance = double{reach} * reach; ///< squared, in steps
+        Host host;
+    };
+
+    void search_column(std::int64_t x, std::int64_t y, const Vec3& q, Best& best) const
+    {
+        if (x < 0 || y < 0 || x >= static_cast<std::int64_t>(field_.slabs.size())) return;
+        const std::vector<Run>& runs = field_.slabs[static_cast<std::size_t>(x)];
+        const double dx = static_cast<double>(x) - q.x;
+        const double dy = static_cast<double>(y) - q.y;
+        auto run = std::lower_bound(runs.begin(), runs.end(), y,
+                                    [](const Run& r, std::int64_t v) { return r.y < v; });
+        for (; run != runs.end() && run->y == y; ++run)
+        {
+            if (run->z_begin - q.z > reach) return;
+            if (q.z - run->z_end > reach || meter_.medium(run->mk) != Medium::Water) continue;
+            const double node = std::clamp(std::round(q.z), static_cast<double>(run->z_begin),
+                                           static_cast<double>(run->z_end - 1));
+            const double dz = node - q.z;
+            const double distance = dx * dx + dy * dy + dz * dz;
+            if (distance >= best.distance) continue;
+            best.distance = distance;
+            best.host = {static_cast<std::uint32_t>(x),
+                         static_cast<std::uint32_t>(run - runs.begin()),
+                         run->z_end - 1 - static_cast<std::uint32_t>(node),
+                         {dx, dy, dz}};
+        }
+    }
+
+    const RunField& field_;
+    const DepthMeter& meter_;
+};
+
+/// Calls body(run index in the slab, block, run index in the block) for all runs of particles, slab
+/// by slab. Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
 class BlockCursor
 {
 public:
@@ -73,6 +162,7 @@ public:
         for (std::size_t i = 0; i < runs.size(); ++i)
         {
             const std::size_t b = block_of_mk_[runs[i].mk];
+            if (b == SIZE_MAX) continue;
             body(i, particles_.blocks[b], next_[b]++);
         }
     }
@@ -126,32 +216,46 @@ public:
     {
     }
 
-    /// Calls body(run index, node in the run, depth) for the water nodes of every slab, last slab
-    /// first.
-    template <typename Body>
-    void for_each(const Body& body)
+    /// What is known of one slab.
+    struct Slab
     {
-        SlabSteps next;
+        std::size_t x = 0;
+        SlabSteps steps;
+        std::vector<std::uint32_t> top; ///< per run, from its highest node
+    };
+
+    /// Calls body(slab, run index, node in the run, depth) for the water nodes of every slab, last
+    /// slab first, and after_slab(slab) behind each.
+    template <typename Body, typename AfterSlab>
+    void for_each(const Body& body, const AfterSlab& after_slab)
+    {
+        Slab slab;
         for (std::size_t x = field_.slabs.size(); x-- > 0;)
         {
             const std::vector<Run>& runs = field_.slabs[x];
-            SlabSteps steps = count(x, next);
-            const std::vector<std::uint32_t> top = meter_.depths_along_z(x);
+            slab.steps = count(x, slab.steps);
+            slab.x = x;
+            slab.top = meter_.depths_along_z(x);
             for (std::size_t i = 0; i < runs.size(); ++i)
             {
                 if (meter_.medium(runs[i].mk) != Medium::Water) continue;
                 const std::uint32_t n = runs[i].z_end - runs[i].z_begin;
-                for (std::uint32_t k = 0; k < n; ++k)
-                {
-                    const std::size_t at = steps.begin[i] + k;
-                    const double dx = steps.x[at] * dp_ * gravity_.x;
-                    const double dy = steps.y[at] * dp_ * gravity_.y;
-                    const double dz = (top[i] + (n - 1 - k)) * dp_ * gravity_.z;
-                    body(x, i, k, std::sqrt(dx * dx + dy * dy + dz * dz) / g_);
-                }
+                for (std::uint32_t k = 0; k < n; ++k) body(x, i, k, depth(slab, i, n - 1 - k, {}));
             }
-            next = std::move(steps);
+            after_slab(slab);
         }
+    }
+
+    /// The depth `below` steps under the highest node of a run, and `offset` steps towards the
+    /// smaller coordinates from there.
+    double depth(const Slab& slab, std::size_t run, std::uint32_t below, const Vec3& offset) const
+    {
+        const Run& r = field_.slabs[slab.x][run];
+        const std::size_t at = slab.steps.begin[run] + (r.z_end - r.z_begin - 1 - below);
+        const double dx = std::max(slab.steps.x[at] + offset.x, 0.0) * dp_ * gravity_.x;
+        const double dy = std::max(slab.steps.y[at] + offset.y, 0.0) * dp_ * gravity_.y;
+        const double dz = std::max(slab.top[run] + below + offset.z, 0.0) * dp_ * gravity_.z;
+        return std::sqrt(dx * dx + dy * dy + dz * dz) / g_;
     }
 
 private:
@@ -212,10 +316,94 @@ void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
     constants.b = c.b.value_or(constants.speed_sound * constants.speed_sound * c.rhop0 / c.gamma);
 }
 
+/// Depths, in metres, of the particles off the lattice that are water.
+class FreeDepths
+{
+public:
+    FreeDepths(const RunField& field, const DepthMeter& meter,
+               const std::vector<std::uint64_t>& free_begin, const CaseParticles& particles,
+               int threads)
+        : blocks_(particles.blocks), free_begin_(free_begin)
+    {
+        for (std::size_t b = 0; b < blocks_.size(); ++b)
+            if (blocks_[b].type == ParticleType::Fluid || blocks_[b].type == ParticleType::Floating)
+            {
+                // Blocks are sorted by type, so all of water stand together.
+                if (hosts_.empty()) first_ = free_begin[b];
+                hosts_.resize(free_begin[b + 1] - first_);
+            }
+        depths_.assign(hosts_.size(), 0);
+        const HostFinder finder(field, meter);
+        parallel_for(
+            hosts_.size(), threads,
+            [&](std::size_t i) { hosts_[i] = finder.find(particles.free.positions[first_ + i]); },
+            1024);
+    }
+
+    bool is_empty() const { return hosts_.empty(); }
+    std::uint64_t first() const { return first_; }
+    double depth(std::uint64_t particle) const { return depths_[particle - first_]; }
+    double deepest() const
+    {
+        return depths_.empty() ? 0 : *std::max_element(depths_.begin(), depths_.end());
+    }
+
+    void measure_along_z(const std::vector<std::vector<std::uint32_t>>& top, double dp)
+    {
+        for (std::size_t i = 0; i < hosts_.size(); ++i)
+        {
+            const Host& h = hosts_[i];
+            if (h.slab != Host::none)
+                depths_[i] = std::max(top[h.slab][h.run] + h.below + h.offset.z, 0.0) * dp;
+        }
+    }
+
+    /// Sorts the particles by slab, so that measure() finds those of one.
+    void sort_by_slab(std::size_t slabs)
+    {
+        slab_begin_.assign(slabs + 1, 0);
+        for (const Host& h : hosts_)
+            if (h.slab != Host::none) ++slab_begin_[h.slab + 1];
+        for (std::size_t x = 0; x < slabs; ++x) slab_begin_[x + 1] += slab_begin_[x];
+        by_slab_.resize(slab_begin_[slabs]);
+        std::vector<std::uint64_t> next(slab_begin_.begin(), slab_begin_.end() - 1);
+        for (std::size_t i = 0; i < hosts_.size(); ++i)
+            if (hosts_[i].slab != Host::none)
+                by_slab_[next[hosts_[i].slab]++] = static_cast<std::uint32_t>(i);
+    }
+    void measure(const TiltedDepths& tilted, const TiltedDepths::Slab& slab)
+    {
+        for (std::uint64_t k = slab_begin_[slab.x]; k < slab_begin_[slab.x + 1]; ++k)
+        {
+            const Host& h = hosts_[by_slab_[k]];
+            depths_[by_slab_[k]] = tilted.depth(slab, h.run, h.below, h.offset);
+        }
+    }
+
+    /// Calls body(particle) for those of the fluid.
+    template <typename Body>
+    void for_each_of_fluid(const Body& body) const
+    {
+        for (std::size_t b = 0; b < blocks_.size(); ++b)
+            if (blocks_[b].type == ParticleType::Fluid)
+                for (std::uint64_t i = free_begin_[b]; i < free_begin_[b + 1]; ++i) body(i);
+    }
+
+private:
+    const std::vector<ParticleBlock>& blocks_;
+    const std::vector<std::uint64_t>& free_begin_;
+    std::uint64_t first_ = 0;
+    std::vector<Host> hosts_;
+    std::vector<double> depths_;
+    std::vector<std::uint64_t> slab_begin_;
+    std::vector<std::uint32_t> by_slab_;
+};
+
 } // namespace
 
 void compute_densities(const CaseDef& def, const RunField& field,
-                       const std::vector<ParticleType>& type_of_mk, CaseParticles& particles,
+                       const std::vector<ParticleType>& type_of_mk,
+                       const std::vector<std::uint64_t>& free_begin, CaseParticles& particles,
                        CaseConstants& constants, int threads)
 {
     const ConstantsDef& c = def.constants;
@@ -224,6 +412,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
     const DepthMeter meter(field, type_of_mk);
     const bool is_vertical = c.gravity.x == 0 && c.gravity.y == 0;
     const bool by_height = c.rhop_gradient == 3;
+    const ParticleTest is_particle(field);
 
     std::vector<std::vector<std::uint32_t>> top(field.slabs.size());
     parallel_for(
@@ -241,7 +430,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
         for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
         {
             const Run& r = field.slabs[x][i];
-            if (meter.medium(r.mk) != Medium::Water) continue;
+            if (meter.medium(r.mk) != Medium::Water || !is_particle(r)) continue;
             deepest = std::max(deepest, top[x][i] + (r.z_end - r.z_begin - 1));
             if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
             z_max = std::max(z_max, r.z_end - 1);
@@ -255,6 +444,25 @@ void compute_densities(const CaseDef& def, const RunField& field,
                 }
         }
 
+    FreeDepths free(field, meter, free_begin, particles, threads);
+    double excess = 0; // height of the highest particle off the lattice above the highest node
+    if (g > 0 && by_height)
+    {
+        const double of_nodes = s_max;
+        free.for_each_of_fluid(
+            [&](std::uint64_t i)
+            {
+                const Vec3& p = particles.free.positions[i];
+                s_max = std::max(s_max, height(p.x, p.y, p.z));
+                s_min = std::min(s_min, height(p.x, p.y, p.z));
+            });
+        if (std::isfinite(of_nodes)) excess = s_max - of_nodes;
+    }
+    else if (g > 0 && is_vertical)
+        free.measure_along_z(top, dp);
+    else if (g > 0)
+        free.sort_by_slab(field.slabs.size());
+
     if (c.hswl)
         constants.hswl = *c.hswl;
     else if (particles.n_fluid == 0 || g == 0)
@@ -262,14 +470,18 @@ void compute_densities(const CaseDef& def, const RunField& field,
     else if (by_height)
         constants.hswl = s_max - s_min;
     else if (is_vertical)
-        constants.hswl = deepest * dp;
+        constants.hswl = std::max(deepest * dp, free.deepest());
     else
     {
         double most = 0;
-        TiltedDepths(def, field, meter)
-            .for_each([&](std::size_t, std::size_t, std::uint32_t, double d)
-                      { most = std::max(most, d); });
-        constants.hswl = most;
+        TiltedDepths tilted(def, field, meter);
+        tilted.for_each(
+            [&](std::size_t x, std::size_t i, std::uint32_t, double d)
+            {
+                if (is_particle(field.slabs[x][i])) most = std::max(most, d);
+            },
+            [&](const TiltedDepths::Slab& slab) { free.measure(tilted, slab); });
+        constants.hswl = std::max(most, free.deepest());
     }
     set_speeds(def, g, constants);
 
@@ -280,7 +492,19 @@ void compute_densities(const CaseDef& def, const RunField& field,
                           : static_cast<float>(
                                 c.rhop0 * std::pow(1 + c.rhop0 * g * d / constants.b, 1 / c.gamma));
     };
+    std::fill(particles.free.rhop.begin(), particles.free.rhop.end(), static_cast<float>(c.rhop0));
     if (particles.n_fluid == 0) return;
+    const auto set_free = [&]
+    {
+        if (is_uniform) return;
+        free.for_each_of_fluid(
+            [&](std::uint64_t i)
+            {
+                const Vec3& p = particles.free.positions[i];
+                particles.free.rhop[i] =
+                    rhop(by_height ? s_max - height(p.x, p.y, p.z) : free.depth(i));
+            });
+    };
 
     BlockCursor cursor(particles);
     const bool is_by_steps = is_uniform || (is_vertical && (!by_height || c.gravity.z < 0));
@@ -313,8 +537,9 @@ void compute_densities(const CaseDef& def, const RunField& field,
         for (std::uint32_t s = 0; s <= most_steps; ++s)
         {
             const double step = s * dp * c.gravity.z;
-            particles.rhop_of_depth[s] = rhop(is_uniform ? 0 : std::sqrt(step * step) / g);
+            particles.rhop_of_depth[s] = rhop(is_uniform ? 0 : std::sqrt(step * step) / g + excess);
         }
+        set_free();
         return;
     }
 
@@ -337,13 +562,16 @@ void compute_densities(const CaseDef& def, const RunField& field,
     particles.rhop.assign(particles.n_fluid, static_cast<float>(c.rhop0));
     const auto set = [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
     {
+        if (!is_particle(field.slabs[x][i])) return;
         const std::size_t b = block_of_mk[field.slabs[x][i].mk];
         if (particles.blocks[b].type == ParticleType::Fluid)
             particles.rhop[run_begin[b][run_of[x][i]] + k] = rhop(d);
     };
     if (!by_height)
     {
-        TiltedDepths(def, field, meter).for_each(set);
+        TiltedDepths tilted(def, field, meter);
+        tilted.for_each(set, [&](const TiltedDepths::Slab& slab) { free.measure(tilted, slab); });
+        set_free();
         return;
     }
     parallel_for(field.slabs.size(), threads,
@@ -352,13 +580,14 @@ void compute_densities(const CaseDef& def, const RunField& field,
                      for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
                      {
                          const Run& r = field.slabs[x][i];
-                         if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
+                         if (type_of_mk[r.mk] != ParticleType::Fluid || !is_particle(r)) continue;
                          for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
                              set(x, i, z - r.z_begin,
                                  s_max - height(place(0, static_cast<std::uint32_t>(x)),
                                                 place(1, r.y), place(2, z)));
                      }
                  });
+    set_free();
 }
 
 } // namespace fppg

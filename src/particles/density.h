@@ -19,10 +19,21 @@ namespace fppg
 /// where
 ///   b or gravity is zero (GenCase writes NaN there)
 ///
+/// A node with the wall_zone_bit counts in its column as the mk without the bit but has no depth of
+/// its own. A particle off the lattice has the number of steps of its nearest node, less its real
+/// distance from there along each axis, at least 0; where its nearest node is no water, of the
+/// nearest node of water within 4 dp, and without any the depth 0. It counts for hswl as nodes do.
+///
 /// Sets hswl, speed_system, speed_sound, b of `constants`, the depths of the fluid runs, and
-/// rhop_of_depth or rhop of `particles`. Fluid runs must be in the default order (x, y, z).
+/// rhop_of_depth or rhop of `particles`, and particles.free.rhop. Runs must be in the default order
+/// (x, y, z) and without those off the lattice; where values are stored one a particle, those of a
+/// block's nodes come first.
+///
+/// type_of_mk  size 65536; with walls, an mk with the bit has the type of that without
+/// free_begin  per block its first particle in particles.free, and their number as last entry
 void compute_densities(const CaseDef& def, const RunField& field,
-                       const std::vector<ParticleType>& type_of_mk, CaseParticles& particles,
+                       const std::vector<ParticleType>& type_of_mk,
+                       const std::vector<std::uint64_t>& free_begin, CaseParticles& particles,
                        CaseConstants& constants, int threads);
 
 } // namespace fppg

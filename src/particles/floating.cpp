@@ -1,9 +1,56 @@
 #include "particles/floating.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fppg
 {
+namespace
+{
+
+using Moments = std::array<std::array<double, 3>, 3>;
+
+/// Sums over particles off the lattice, in steps of dp from the node `from`.
+class FreeSums
+{
+public:
+    FreeSums(const LatticeGrid& grid, const std::array<std::int64_t, 3>& from)
+        : grid_(grid),
+          from_{static_cast<double>(from[0]), static_cast<double>(from[1]),
+                static_cast<double>(from[2])}
+    {
+    }
+
+    void add(const Vec3& position)
+    {
+        Vec3 p = (position - grid_.origin) / grid_.dp - from_;
+        if (grid_.is_2d) p.y = 0;
+        places_.push_back(p);
+        sum_ = sum_ + p;
+    }
+    bool is_empty() const { return places_.empty(); }
+    const Vec3& sum() const { return sum_; }
+    Moments moments(const Vec3& about) const
+    {
+        Moments out{};
+        for (const Vec3& p : places_)
+        {
+            const Vec3 d = p - about;
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = i; j < 3; ++j)
+                    out[i][j] += d[static_cast<int>(i)] * d[static_cast<int>(j)];
+        }
+        return out;
+    }
+
+private:
+    const LatticeGrid& grid_;
+    Vec3 from_;
+    Vec3 sum_;
+    std::vector<Vec3> places_;
+};
+
+} // namespace
 
 FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particles,
                            std::size_t block_index, double mass_bound)
@@ -14,11 +61,23 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
 
     // Sums over the nodes, indices taken from the first node so that they stay small.
     using Whole = __int128;
-    const std::array<std::int64_t, 3> from{block.runs[0].x, block.runs[0].y, block.runs[0].z};
+    std::array<std::int64_t, 3> from{0, 0, 0};
+    const auto first = std::find_if(block.runs.begin(), block.runs.end(),
+                                    [](const ParticleRun& r) { return !r.is_free(); });
+    if (first != block.runs.end()) from = {first->x, first->y, first->z};
+    std::uint64_t nodes = 0;
+    FreeSums free(grid, from);
     std::array<Whole, 3> sum{};
     std::array<std::array<Whole, 3>, 3> product{};
     for (const ParticleRun& run : block.runs)
     {
+        if (run.is_free())
+        {
+            for (std::uint32_t i = 0; i < run.count; ++i)
+                free.add(particles.free.positions[run.free_begin() + i]);
+            continue;
+        }
+        nodes += run.count;
         // A run's nodes differ in z only, whichever way they follow one another.
         const std::int64_t low =
             block.run_descending ? static_cast<std::int64_t>(run.z) - run.count + 1 : run.z;
@@ -49,7 +108,8 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto k = static_cast<std::size_t>(axis);
-        mean[axis] = static_cast<double>(sum[k]) / n;
+        mean[axis] = free.is_empty() ? static_cast<double>(sum[k]) / n
+                                     : (static_cast<double>(sum[k]) + free.sum()[axis]) / n;
         body.center[axis] =
             grid.origin[axis] + (static_cast<double>(from[k]) + mean[axis]) * grid.dp;
     }
@@ -65,14 +125,26 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
         body.inertia = *def.inertia;
         return body;
     }
-    // Second moments about the mean, n * product - sum * sum in whole numbers, then about the
-    // centre.
-    std::array<std::array<double, 3>, 3> moment{};
+    // Second moments about the mean, in steps: those of the nodes about their own mean are
+    // n * product - sum * sum in whole numbers. Then about the centre, in metres.
+    const Moments of_free = free.moments(mean);
+    const auto n_nodes = static_cast<double>(nodes);
+    Moments moment{};
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = i; j < 3; ++j)
         {
-            const Whole exact = static_cast<Whole>(block.count) * product[i][j] - sum[i] * sum[j];
-            moment[i][j] = static_cast<double>(exact) / n * (grid.dp * grid.dp) +
+            const Whole exact = static_cast<Whole>(nodes) * product[i][j] - sum[i] * sum[j];
+            double about_mean = nodes > 0 ? static_cast<double>(exact) / n_nodes : 0;
+            if (!free.is_empty())
+            {
+                const auto shift = [&](std::size_t k) {
+                    return nodes > 0
+                               ? static_cast<double>(sum[k]) / n_nodes - mean[static_cast<int>(k)]
+                               : 0;
+                };
+                about_mean += n_nodes * shift(i) * shift(j) + of_free[i][j];
+            }
+            moment[i][j] = about_mean * (grid.dp * grid.dp) +
                            n * offset[static_cast<int>(i)] * offset[static_cast<int>(j)];
             moment[j][i] = moment[i][j];
         }

@@ -9,8 +9,8 @@ namespace fppg
 /// Mass, centre and inertia of a floating block as GenCase computes them (rules F2, F3): massbody =
 /// rhopbody * n * dp^dim; masspart = massbound; centre = mean of the positions; inertia of equal
 /// point masses massbody / n about the centre, off-diagonal entries with the minus sign; in a flat
-/// case with y left out. What the definition gives replaces it. Sums are exact, in whole numbers of
-/// dp.
+/// case with y left out. What the definition gives replaces it. Sums over nodes are exact, in whole
+/// numbers of dp; those over particles off the lattice are of doubles, in id order.
 FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particles,
                            std::size_t block, double mass_bound);
 

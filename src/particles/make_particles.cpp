@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "particles/density.h"
 #include "particles/floating.h"
+#include "particles/free_particles.h"
 #include "particles/initials.h"
 
 #include <fmt/format.h>
@@ -42,14 +43,17 @@ public:
     CaseParticles run(CaseConstants& constants, std::vector<std::string>& warnings)
     {
         out_.grid = def_.grid;
+        out_.has_walls = !field_.walls.bodies.empty();
         set_types();
         make_blocks();
         number_blocks();
         fill_runs();
+        sort_free();
         set_limits();
         set_constants(constants);
-        compute_densities(def_, field_, type_of_mk_, out_, constants, threads_);
+        compute_densities(def_, field_, type_of_mk_, free_begin_, out_, constants, threads_);
         orient_blocks();
+        merge_free();
         set_initials(def_, constants, out_);
         make_floatings();
         set_properties();
@@ -81,6 +85,9 @@ private:
                 type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
                     ParticleType::Floating;
             }
+        if (!out_.has_walls) return;
+        for (std::size_t mk = 0; mk < wall_zone_bit; ++mk)
+            type_of_mk_[mk | wall_zone_bit] = type_of_mk_[mk];
     }
 
     void make_blocks()
@@ -88,6 +95,13 @@ private:
         std::vector<char> used(65536, 0);
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab) used[r.mk] = 1;
+        if (out_.has_walls)
+        {
+            std::fill(used.begin() + wall_zone_bit, used.end(), 0);
+            free_of_mk_ = count_free_particles(field_.walls);
+            for (std::size_t mk = 0; mk < used.size(); ++mk)
+                if (free_of_mk_[mk] > 0) used[mk] = 1;
+        }
         for (const ParticleType type : {ParticleType::Fixed, ParticleType::Moving,
                                         ParticleType::Floating, ParticleType::Fluid})
             for (std::uint32_t mk = 1; mk < 65536; ++mk)
@@ -100,7 +114,7 @@ private:
                     mk - (type == ParticleType::Fluid ? def_.mk_fluid_first : def_.mk_bound_first));
                 out_.blocks.push_back(block);
             }
-        block_of_mk_.assign(65536, 0);
+        block_of_mk_.assign(65536, no_block);
         for (std::size_t b = 0; b < out_.blocks.size(); ++b) block_of_mk_[out_.blocks[b].mk] = b;
     }
 
@@ -117,6 +131,7 @@ private:
                 for (const Run& r : field_.slabs[x])
                 {
                     const std::size_t b = block_of_mk_[r.mk];
+                    if (b == no_block) continue; // in the zone of a wall
                     ++run_begin_[(x + 1) * n + b];
                     nodes[x * n + b] += r.z_end - r.z_begin;
                 }
@@ -128,6 +143,8 @@ private:
                 run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
                 out_.blocks[b].count += nodes[x * n + b];
             }
+        if (out_.has_walls)
+            for (ParticleBlock& block : out_.blocks) block.count += free_of_mk_[block.mk];
         std::uint64_t all = 0;
         for (const ParticleBlock& block : out_.blocks) all += block.count;
         // Ids in Case.bi4 are 32-bit numbers, the last of which means none.
@@ -167,6 +184,7 @@ private:
                 for (const Run& r : field_.slabs[x])
                 {
                     const std::size_t b = block_of_mk_[r.mk];
+                    if (b == no_block) continue;
                     out_.blocks[b].runs[next[b]++] = {static_cast<std::uint32_t>(x), r.y, r.z_begin,
                                                       r.z_end - r.z_begin, 0};
                 }
@@ -175,9 +193,37 @@ private:
         run_begin_ = {};
     }
 
+    /// The order that the definition asks for in an mk; the last one counts.
+    PositionOrder order_of(std::uint16_t mk) const
+    {
+        PositionOrder order;
+        for (const MkOrient& orient : def_.mk_orients)
+            if (orient.mk == mk) order = PositionOrder(orient);
+        return order;
+    }
+
+    void sort_free()
+    {
+        free_begin_.assign(out_.blocks.size() + 1, 0);
+        if (!out_.has_walls) return;
+        std::vector<PositionOrder> orders;
+        for (const ParticleBlock& block : out_.blocks) orders.push_back(order_of(block.mk));
+        out_.free = sort_free_particles(field_.walls, out_.blocks, orders, threads_, free_begin_);
+    }
+
+    void merge_free()
+    {
+        if (!out_.has_walls) return;
+        for (std::size_t b = 0; b < out_.blocks.size(); ++b)
+            merge_free_particles(out_, out_.blocks[b], order_of(out_.blocks[b].mk), free_begin_[b],
+                                 free_begin_[b + 1]);
+    }
+
     void set_limits()
     {
         if (out_.np == 0) return;
+        Box3 limits;
+        for (const Vec3& p : out_.free.positions) limits.add(p);
         std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX};
         std::array<std::uint32_t, 3> high{0, 0, 0};
         for (const ParticleBlock& block : out_.blocks)
@@ -189,11 +235,18 @@ private:
             }
         for (int axis = 0; axis < 3; ++axis)
         {
-            out_.pos_min[axis] =
-                def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp;
-            out_.pos_max[axis] =
-                def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp;
+            if (out_.np > out_.free.size())
+            {
+                limits.min[axis] = std::min(
+                    limits.min[axis],
+                    def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp);
+                limits.max[axis] = std::max(
+                    limits.max[axis],
+                    def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp);
+            }
         }
+        out_.pos_min = limits.min;
+        out_.pos_max = limits.max;
     }
 
     void set_constants(CaseConstants& constants) const
@@ -356,7 +409,11 @@ private:
     const RunField& field_;
     int threads_;
     std::vector<ParticleType> type_of_mk_;
+    static constexpr std::size_t no_block = SIZE_MAX;
     std::vector<std::size_t> block_of_mk_;
+    std::vector<std::uint64_t> free_of_mk_; ///< particles off the lattice; empty without walls
+    std::vector<std::uint64_t>
+        free_begin_; ///< per block its first one in out_.free, then their number
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
     CaseParticles out_;
 };

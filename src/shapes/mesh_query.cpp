@@ -7,6 +7,7 @@
 #include "fppg/error.h"
 #include "shapes/column_cut.h"
 #include "shapes/embree.h"
+#include "shapes/facet_distance.h"
 
 namespace fppg
 {
@@ -16,40 +17,6 @@ namespace
 
 /// Room for what float rounds away in coordinates between -1 and 1 and in Embree's own arithmetic.
 constexpr double rounding_room = 1.0 / (1 << 20);
-
-bool is_less(const Vec3& a, const Vec3& b)
-{
-    if (a.x != b.x) return a.x < b.x;
-    return a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
-/// The ends are put in order first, so that both facets of an edge find the same bits.
-Vec3 closest_on_edge(const Vec3& point, const Vec3& a, const Vec3& b)
-{
-    const bool is_ordered = is_less(a, b);
-    const Vec3& from = is_ordered ? a : b;
-    const Vec3& to = is_ordered ? b : a;
-    const Vec3 along = to - from;
-    const double share = dot(point - from, along) / dot(along, along);
-    if (!(share > 0)) return from;
-    return share >= 1 ? to : from + share * along;
-}
-
-Vec3 closest_on_facet(const Vec3& point, const Vec3* corners)
-{
-    const Vec3 &a = corners[0], &b = corners[1], &c = corners[2];
-    const Vec3 normal = cross(b - a, c - a);
-    const double to_a = dot(cross(c - b, point - b), normal);
-    const double to_b = dot(cross(a - c, point - c), normal);
-    const double to_c = dot(cross(b - a, point - a), normal);
-    if (to_a > 0 && to_b > 0 && to_c > 0)
-        return (to_a * a + to_b * b + to_c * c) / (to_a + to_b + to_c);
-
-    Vec3 best = closest_on_edge(point, a, b);
-    for (const Vec3& other : {closest_on_edge(point, b, c), closest_on_edge(point, c, a)})
-        if (dot(other - point, other - point) < dot(best - point, best - point)) best = other;
-    return best;
-}
 
 struct ReleaseDevice
 {

@@ -13,6 +13,7 @@
 #include "core/file_map.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
+#include "shapes/facet_checks.h"
 
 namespace fppg
 {
@@ -27,8 +28,6 @@ constexpr std::size_t header_bytes = 84; // 80 of comment, 4 of count
 constexpr std::size_t facet_bytes = 50;  // normal, three corners, two bytes of attribute
 constexpr std::size_t facets_per_block = 16384;
 constexpr std::size_t text_bytes_per_chunk = std::size_t{1} << 20;
-/// So far from zero nothing that is simulated can be; the number is most likely damaged.
-constexpr double huge_coordinate = 1e10;
 
 bool is_space(char c)
 {
@@ -445,144 +444,13 @@ MeshFile read_bytes(std::string_view bytes, const std::string& path, int threads
     return read_binary(bytes, path, threads);
 }
 
-/// What a pass over the facets finds; blocks are combined in order.
-struct FacetCounts
-{
-    std::size_t not_finite = 0;
-    std::size_t first_not_finite = SIZE_MAX;
-    std::size_t far = 0;
-    std::size_t first_far = SIZE_MAX;
-    std::size_t without_area = 0;
-    std::size_t first_without_area = SIZE_MAX;
-    Box3 box; ///< of the corners that are neither far nor not finite
-
-    void count_facet(std::size_t i, const Vec3* corners)
-    {
-        const auto note = [i](std::size_t& count, std::size_t& first)
-        {
-            ++count;
-            first = std::min(first, i);
-        };
-        if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2]))
-            return note(not_finite, first_not_finite);
-        double largest = 0;
-        for (int k = 0; k < 3; ++k)
-            for (int axis = 0; axis < 3; ++axis)
-                largest = std::max(largest, std::abs(corners[k][axis]));
-        if (largest > huge_coordinate) return note(far, first_far);
-        for (int k = 0; k < 3; ++k) box.add(corners[k]);
-        if (cross(corners[1] - corners[0], corners[2] - corners[0]) == Vec3{})
-            note(without_area, first_without_area);
-    }
-    void add(const FacetCounts& other)
-    {
-        not_finite += other.not_finite;
-        first_not_finite = std::min(first_not_finite, other.first_not_finite);
-        far += other.far;
-        first_far = std::min(first_far, other.first_far);
-        without_area += other.without_area;
-        first_without_area = std::min(first_without_area, other.first_without_area);
-        if (!other.box.is_empty())
-        {
-            box.add(other.box.min);
-            box.add(other.box.max);
-        }
-    }
-};
-
-FacetCounts count_facets(const TriangleSoup& soup, int threads)
-{
-    const std::size_t blocks = (soup.size() + facets_per_block - 1) / facets_per_block;
-    std::vector<FacetCounts> counts(blocks);
-    parallel_for(blocks, threads,
-                 [&](std::size_t block)
-                 {
-                     const std::size_t begin = block * facets_per_block;
-                     const std::size_t end = std::min(soup.size(), begin + facets_per_block);
-                     FacetCounts local;
-                     for (std::size_t i = begin; i < end; ++i)
-                         local.count_facet(i, &soup.vertices[3 * i]);
-                     counts[block] = local;
-                 });
-    FacetCounts total;
-    for (const FacetCounts& part : counts) total.add(part);
-    return total;
-}
-
-void leave_out_not_finite(TriangleSoup& soup)
-{
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < soup.size(); ++i)
-    {
-        const Vec3* const corners = &soup.vertices[3 * i];
-        if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2])) continue;
-        std::copy(corners, corners + 3, &soup.vertices[3 * kept]);
-        ++kept;
-    }
-    soup.vertices.resize(3 * kept);
-}
-
-std::string facets_have(std::size_t count, std::size_t all)
-{
-    return fmt::format("{} of {} facets {}", count, all, count == 1 ? "has" : "have");
-}
-
-/// Float32 has 24 bits: far from the origin neighbouring numbers lie so far apart that the shape
-/// is lost.
-void warn_of_coarse_numbers(const Box3& box, std::vector<std::string>& warnings)
-{
-    constexpr double steps_of_a_shape = 1000;
-    if (box.is_empty()) return;
-    double largest = 0;
-    double extent = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        largest = std::max({largest, std::abs(box.min[axis]), std::abs(box.max[axis])});
-        extent = std::max(extent, box.max[axis] - box.min[axis]);
-    }
-    const double step = std::ldexp(1.0, std::ilogb(std::max(largest, 1e-30)) - 23);
-    if (extent < steps_of_a_shape * step)
-        warnings.push_back(fmt::format(
-            "The mesh is {:.4g} wide and lies up to {:.4g} from the origin, where the numbers of "
-            "the file are {:.4g} apart; its shape is coarse. Move it near the origin before it is "
-            "written.",
-            extent, largest, step));
-}
-
-void check_facets(MeshFile& mesh, const std::string& path, int threads)
-{
-    const std::size_t all = mesh.soup.size();
-    const FacetCounts counts = count_facets(mesh.soup, threads);
-    if (counts.not_finite == all)
-        throw GeometryError(fmt::format(
-            "{}: each of its {} facets has a coordinate that is not finite", path, all));
-    if (counts.not_finite > 0)
-    {
-        leave_out_not_finite(mesh.soup);
-        mesh.warnings.push_back(fmt::format(
-            "{} a coordinate that is not finite and {} left out; the first is facet {}.",
-            facets_have(counts.not_finite, all), counts.not_finite == 1 ? "is" : "are",
-            counts.first_not_finite + 1));
-    }
-    if (counts.far > 0)
-        mesh.warnings.push_back(
-            fmt::format("{} a coordinate beyond {:.0e}, most likely a damaged number; the first is "
-                        "facet {}.",
-                        facets_have(counts.far, all), huge_coordinate, counts.first_far + 1));
-    if (counts.without_area > 0)
-        mesh.warnings.push_back(fmt::format("{} no area; the first is facet {}.",
-                                            facets_have(counts.without_area, all),
-                                            counts.first_without_area + 1));
-    warn_of_coarse_numbers(counts.box, mesh.warnings);
-}
-
 } // namespace
 
 MeshFile read_stl(const std::string& path, int threads)
 {
     const FileMap file(path);
     MeshFile mesh = read_bytes(file.bytes(), path, threads);
-    check_facets(mesh, path, threads);
+    check_facets(mesh, path, true, threads);
     return mesh;
 }
 

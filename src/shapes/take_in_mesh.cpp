@@ -409,6 +409,46 @@ void drop_loose_slivers(SurfaceMesh& mesh, int threads, MeshReport& report)
     build_edges(mesh, threads);
 }
 
+std::size_t count_open(const SurfaceMesh& mesh)
+{
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) count += is_open(mesh, e) ? 1 : 0;
+    return count;
+}
+
+/// Joins the corners of a mesh whose facets do not meet: where a quarter of all edges are open, and
+/// moving corners together by a small distance leaves a tenth of that open at most. The smallest of
+/// three distances that does is taken, if it is below a tenth of the mean side.
+void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    const std::size_t open = count_open(mesh);
+    if (4 * open <= mesh.edges.size()) return;
+    Box3 bounds;
+    for (const Vec3& p : mesh.vertices) bounds.add(p);
+    const Vec3 size = bounds.max - bounds.min;
+    double sides = 0;
+    for (const auto& [a, b] : mesh.edges) sides += norm(mesh.vertices[b] - mesh.vertices[a]);
+    for (const double share : {1e-6, 1e-5, 1e-4})
+    {
+        const double distance = share * std::max({size.x, size.y, size.z});
+        if (!(distance < 0.1 * sides / static_cast<double>(mesh.edges.size()))) return;
+        SurfaceMesh joined;
+        joined.vertices = mesh.vertices;
+        joined.facets = mesh.facets;
+        weld_near(distance, joined);
+        MeshReport dropped;
+        drop_degenerate(joined, dropped);
+        if (joined.facets.empty()) return;
+        build_edges(joined, threads);
+        if (10 * count_open(joined) > open) continue;
+        report.joined_corners = mesh.vertices.size() - joined.vertices.size();
+        report.degenerate_facets += dropped.degenerate_facets;
+        report.joined_within = distance;
+        mesh = std::move(joined);
+        return;
+    }
+}
+
 /// A vertex inside an open edge, at a share of the way from the edge's first vertex.
 struct Junction
 {
@@ -812,6 +852,7 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         throw GeometryError(
             fmt::format("no facet is left of {}: all lack area", report.facets_read));
     build_edges(mesh, threads);
+    if (options.weld_distance == 0) close_cracks(mesh, threads, report);
     drop_copies(mesh, threads, report);
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);
@@ -844,6 +885,10 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         first_turned = f;
     }
 
+    if (report.joined_corners > 0)
+        report.warnings.push_back(fmt::format(
+            "The facets do not meet: {} within {:.3g} m of another, joined with it.",
+            counted(report.joined_corners, "corner lies", "corners lie"), report.joined_within));
     if (report.degenerate_facets > 0)
         report.warnings.push_back(
             fmt::format("{} without area but for rounding, left out.",

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "app/inspect_command.h"
@@ -51,6 +52,35 @@ TEST(Inspect, MeasuresACube)
     EXPECT_EQ(found.line_particles, 12 * 7);
     EXPECT_EQ(found.corner_particles, 8);
     EXPECT_EQ(found.thin_share, 0);
+}
+
+TEST(Inspect, CountsWhatFitPutsOnTheSurface)
+{
+    const TemporaryFile file = file_of(box({0, 0, 0}, {1, 1, 1}));
+    const Inspection found = inspect_mesh({.path = file.path(), .dp = 0.125});
+    ASSERT_TRUE(found.fitted_particles.has_value());
+    const double all = static_cast<double>(*found.fitted_particles) + found.line_particles +
+                       found.corner_particles;
+    EXPECT_NEAR(all, found.surface_particles, 0.15 * found.surface_particles);
+    EXPECT_TRUE(has(to_text(found),
+                    fmt::format("{} particles on the surface besides", *found.fitted_particles)));
+    EXPECT_TRUE(
+        has(to_json(found), fmt::format("\"fitted_particles\": {}", *found.fitted_particles)));
+    EXPECT_FALSE(has(to_text(found), "not watertight"));
+    // Twelve thousand million particles are not placed for a look.
+    const Inspection fine = inspect_mesh({.path = file.path(), .dp = 2e-5});
+    EXPECT_FALSE(fine.fitted_particles.has_value());
+    EXPECT_FALSE(has(to_json(fine), "fitted_particles"));
+}
+
+TEST(Inspect, SaysThatTheInsideOfAnOpenSheetIsAGuess)
+{
+    TriangleSoup soup = box({0, 0, 0}, {1, 1, 1});
+    soup.vertices.resize(soup.vertices.size() - 3);
+    const TemporaryFile file = file_of(soup);
+    EXPECT_TRUE(has(to_text(inspect_mesh({.path = file.path(), .dp = 0.125})),
+                    "not watertight: what -fit takes for its inside is a guess"));
+    EXPECT_FALSE(has(to_text(inspect_mesh({.path = file.path()})), "-fit"));
 }
 
 TEST(Inspect, FindsHowThinAPlateIs)

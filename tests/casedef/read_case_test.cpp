@@ -300,7 +300,7 @@ TEST(ReadCase, IgnoresUnknownAttributesBlocksAndUnderscoredElements)
     CaseText text = test::tank();
     text.mainlist +=
         R"(<_drawteapot /><drawpoint x="0" y="0" z="0" colour="red" /><!-- a comment -->)";
-    text.after_geometry = R"(<fppg><anything /></fppg><someblock a="1" />)";
+    text.after_geometry = R"(<someblock a="1" />)";
     text.lists = R"(<_list /><list name="Unused"><_x /></list>)";
     EXPECT_EQ(read(text).ops.size(), test::tank().mainlist.empty() ? 0u : 3u);
 }
@@ -412,12 +412,85 @@ TEST(CommandSupport, KnowsEveryCommandOfTheLanguage)
     EXPECT_EQ(command_support("drawteapot"), CommandSupport::Unknown);
 }
 
+const MeshFileOp& mesh_op(const CaseDef& def, std::size_t i)
+{
+    return std::get<MeshFileOp>(def.ops.at(i).what);
+}
+
+TEST(ReadCase, ReadsWhichShapesOfAVtkFileAreDrawn)
+{
+    const CaseDef def = run(R"(<drawfilevtk file="a.vtk"><polyselec>points | quads</polyselec>
+<drawmove x="1" y="0" z="0" /></drawfilevtk><drawfileply file="a.ply" autofill="true" />)");
+    EXPECT_EQ(mesh_op(def, 0).reading.shapes, (ShapeSelection{true, false, false, true, false}));
+    EXPECT_EQ(mesh_op(def, 0).transform({}), (Vec3{1, 0, 0}));
+    EXPECT_EQ(mesh_op(def, 1).reading.format, MeshFormat::Ply);
+    EXPECT_TRUE(mesh_op(def, 1).autofill);
+    EXPECT_NE(error_of(R"(<drawfilevtk file="a.vtk"><polyselec>dots</polyselec></drawfilevtk>)")
+                  .find("polyselec \"dots\" is invalid"),
+              std::string::npos);
+    EXPECT_NE(error_of(R"(<drawfilecsv file="a.csv" />)").find("mode"), std::string::npos);
+}
+
+/// A case beside a VTM file of three parts.
+CaseDef run_with_vtm(const std::string& selection)
+{
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "a.vtm",
+                     R"(<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><Block>
+<DataSet index="0" name="A" file="s0.vtp"/><DataSet index="1" name="B" file="s1.vtp"/>
+<DataSet index="2" name="C" file="s2.vtp"/></Block></vtkMultiBlockDataSet></VTKFile>)");
+    CaseText text;
+    text.mainlist =
+        R"(<setmkbound mk="1" /><drawfilevtm file="a.vtm">)" + selection + "</drawfilevtm>";
+    test::write_text(folder / "Case_Def.xml", text.text());
+    return read_case(folder / "Case_Def.xml", {});
+}
+
+TEST(ReadCase, DrawsEveryDataSetOfAVtmFile)
+{
+    const CaseDef def = run_with_vtm("");
+    ASSERT_EQ(def.ops.size(), 3U);
+    EXPECT_EQ(mesh_op(def, 2).file, "s2.vtp");
+    EXPECT_EQ(mesh_op(def, 2).container, "a.vtm");
+}
+
+TEST(ReadCase, GivesSelectedDataSetsTheirMkInTheOrderOfBothLists)
+{
+    const CaseDef def =
+        run_with_vtm(R"(<onlysurfaces index="2,0" mkbound="4-5" /><onlysurfaces name="B" />)");
+    ASSERT_EQ(def.ops.size(), 3U);
+    EXPECT_EQ(mesh_op(def, 0).file, "s2.vtp");
+    EXPECT_EQ(def.ops[0].state->mk.mk_type, 4);
+    EXPECT_EQ(def.ops[1].state->mk.mk_type, 5);
+    EXPECT_EQ(def.ops[2].state->mk.mk_type, 1);
+}
+
+TEST(ReadCase, RefusesSelectionsThatDoNotFitTheVtmFile)
+{
+    for (const char* wrong :
+         {R"(<onlysurfaces name="b" />)", R"(<onlysurfaces index="0-1" mkbound="3" />)",
+          R"(<onlysurfaces index="7" />)", R"(<onlysurfaces index="0" name="A" />)",
+          R"(<onlysurfaces index="0" /><onlysurfaces name="A" />)", R"(<onlysurfaces />)"})
+        EXPECT_THROW(run_with_vtm(wrong), CaseError) << wrong;
+}
+
+TEST(ReadCase, ReadsTheGridOfABathymetry)
+{
+    const CaseDef def = run(R"(<drawbathymetry><zpoints file="p.xyz"><scale x="1" y="1" z="2" />
+<move x="0" y="0" z="1" /></zpoints><grid dp="0.5"><expands><xmin size="1" z="3" size2="2" />
+</expands><periodicy rampwidth="0.5" /></grid></drawbathymetry>)");
+    const BathymetryGrid& grid = *mesh_op(def, 0).reading.bathymetry;
+    EXPECT_EQ(grid.transform({0, 0, 2}), (Vec3{0, 0, 5}));
+    EXPECT_EQ(grid.expands[0], (BathymetryRamp{1, 3.0, 2, std::nullopt}));
+    EXPECT_FALSE(grid.periods[0].has_value());
+    EXPECT_EQ(grid.periods[1], (BathymetryPeriod{0.5, 0}));
+}
+
 TEST(ReadCase, SaysOfPlannedCommandsThatTheyAreNotSupportedYet)
 {
     int planned = 0;
     for (const char* name :
-         {"cellsout", "clipdomain", "drawbathymetry", "drawbeach", "drawfilecsv", "drawfileply",
-          "drawfilevtk", "drawfilevtm", "drawwave", "pointsmkout", "setmkbackbound",
+         {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout", "setmkbackbound",
           "setmkbackclear", "setmkbackfluid", "setmkbackvoid", "setpattern"})
     {
         if (command_support(name) != CommandSupport::Planned) continue;

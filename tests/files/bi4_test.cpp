@@ -250,6 +250,29 @@ TEST(WriteBi4, RunsTheInitialsOfABlockAndLeavesTheOthers)
     EXPECT_EQ(vel[3 * 17 + 1], 0.0f);
 }
 
+TEST(WriteBi4, RunsTheInitialsOnParticlesOffTheLattice)
+{
+    CaseParticles particles = walled_particles();
+    PositionFilter far;
+    far.min.x = 2.15;
+    Transform up;
+    up.offset = {0, 0, 0.5};
+    particles.blocks[4].initials = {{1, 2, far, UniformVelocity{{1, 2, 3}}},
+                                    {2, 2, far, UniformDensity{1200}},
+                                    {3, 2, {}, MoveParticles{up}}};
+    const Bi4Reader file(bi4_of(particles, small_constants()));
+    const auto pos = file.root.items[0].array<double>(1);
+    const auto vel = file.root.items[0].array<float>(2);
+    const auto rhop = file.root.items[0].array<float>(3);
+    // The last three are those off the lattice, at x = 2.1, 2.2 and 2.3.
+    EXPECT_EQ(rhop[25], 1010.0f);
+    EXPECT_EQ(rhop[26], 1200.0f);
+    EXPECT_EQ(vel[3 * 25 + 1], 0.0f);
+    EXPECT_EQ(vel[3 * 27 + 1], 2.0f);
+    EXPECT_EQ(pos[3 * 25 + 2], 1.0);
+    EXPECT_EQ(pos[3 * 27], 2.3);
+}
+
 TEST(WriteBi4, AddsTheNormalsOfTheBoundaryAsAFifthArray)
 {
     CaseParticles particles = small_particles();
@@ -311,6 +334,24 @@ TEST(WriteBi4, GivesTheSameBytesForAnyNumberOfThreads)
     const auto rhop = file.root.items[0].array<float>(3);
     EXPECT_EQ(rhop.back(), 1000.0f + 39999.0f);
     EXPECT_EQ(rhop[100 * 777 + 90 * 1001 - 1], 1000.0f);
+}
+
+TEST(WriteBi4, HasTheParticlesOffTheLatticeBetweenTheNodes)
+{
+    const CaseParticles particles = walled_particles();
+    const std::string one = bi4_of(particles, small_constants(), 1);
+    EXPECT_TRUE(one == bi4_of(particles, small_constants(), 8));
+    const Bi4Reader file(one);
+    EXPECT_EQ(file.root.number<std::uint64_t>("CaseNmoving"), 4U);
+    const auto pos = file.root.items[0].array<double>(1);
+    ASSERT_EQ(pos.size(), 84U);
+    EXPECT_EQ(pos[3 * 3 + 2], 0.3 + 1 * 0.1);
+    EXPECT_EQ(pos[3 * 4 + 2], 0.41);
+    EXPECT_EQ(pos[3 * 5 + 2], 1.0 / 3);
+    EXPECT_EQ(pos[3 * 6 + 2], 0.3 + 2 * 0.1);
+    const auto rhop = file.root.items[0].array<float>(3);
+    EXPECT_EQ(rhop[5], 999);
+    EXPECT_EQ(rhop[27], 1012);
 }
 
 TEST(WriteBi4, RefusesMoreParticlesThanIds)

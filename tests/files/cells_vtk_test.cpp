@@ -171,6 +171,20 @@ RC_GTEST_PROP(WriteCellsVtk, DrawsTheAreasOfTwoDimensionalCells, ())
     RC_ASSERT(drawn == expected);
 }
 
+TEST(WriteCellsVtk, DrawsNodesInTheZoneOfAWallAsThoseOfItsMk)
+{
+    NodeField nodes;
+    nodes.n = {4, 5, 6};
+    nodes.mk.resize(120);
+    for (std::size_t i = 0; i < 120; ++i) nodes.mk[i] = std::array{0, 1, 1, 11, 11, 11}[i * 7 % 6];
+    NodeField zoned = nodes;
+    for (std::size_t i = 0; i < 120; i += 4)
+        if (zoned.mk[i] != 0) zoned.mk[i] |= wall_zone_bit;
+    RunField field = run_field(zoned);
+    field.walls.bodies.emplace_back();
+    EXPECT_TRUE(vtk_of(field) == vtk_of(run_field(nodes)));
+}
+
 TEST(WriteCellsVtk, DrawsABoxWithSixRectangles)
 {
     NodeField nodes{{5, 4, 3}, std::vector<int>(60, 1)};

@@ -119,6 +119,29 @@ inline CaseParticles small_particles()
     return particles;
 }
 
+/// small_particles() with a fitted wall: a run of two particles off the lattice in the middle of
+/// the moving block and one of three at the end of the fluid, of all kinds.
+inline CaseParticles walled_particles()
+{
+    CaseParticles particles = small_particles();
+    std::vector<ParticleBlock> blocks = std::move(particles.blocks);
+    constexpr std::uint32_t off = ParticleRun::off_lattice;
+    blocks[1].runs = {{3, 0, 1, 1, 0}, {off, 0, 0, 2, 0}, {3, 0, 2, 1, 0}};
+    blocks[1].count += 2;
+    blocks[4].runs.push_back({off, 2, 0, 3, 0});
+    blocks[4].count += 3;
+    particles = make_particles(std::move(blocks));
+    particles.has_walls = true;
+    particles.free.positions = {
+        {0.2, 0.25, 0.41}, {0.2, 0.25, 1.0 / 3}, {2.1, 0.3, 0.5}, {2.2, 0.3, 0.5}, {2.3, 0.3, 0.5}};
+    particles.free.kinds = {FitKind::Corner, FitKind::Edge, FitKind::Surface, FitKind::Volume,
+                            FitKind::Volume};
+    particles.free.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0.6F, 0.8F}, {0, 0, 0}, {0, 0, 0}};
+    particles.free.distances = {0, 1e-17F, -1e-17F, 0.1F, 0.2F};
+    particles.free.rhop = {999, 999, 1010, 1011, 1012};
+    return particles;
+}
+
 inline CaseConstants small_constants()
 {
     CaseConstants constants;

@@ -102,15 +102,101 @@ TEST(WriteParticlesVtk, WritesAnEmptySelection)
     EXPECT_TRUE(empty.points.empty());
 }
 
+TEST(WriteParticlesVtk, HasKindNormalAndDistanceWhereThereAreWalls)
+{
+    const CaseParticles particles = walled_particles();
+    const VtkFile all(vtk_of(particles, VtkSelection::All));
+    const VtkFile bound(vtk_of(particles, VtkSelection::Bound));
+    const std::vector<double> kinds{3, 3, 3, 3, 0, 1, 3, 3, 3, 3, 3};
+    EXPECT_EQ(bound.arrays.at("Kind"), kinds);
+    EXPECT_EQ(bound.types.at("Kind"), "int");
+    ASSERT_EQ(all.arrays.at("Kind").size(), 28U);
+    EXPECT_EQ(all.arrays.at("Kind")[25], 2);
+    ASSERT_EQ(all.arrays.at("Normal").size(), 84U);
+    EXPECT_EQ(all.arrays.at("Normal")[16], 1);
+    EXPECT_EQ(all.arrays.at("Normal")[77], 0.8F);
+    EXPECT_EQ(all.arrays.at("Normal")[0], 0);
+    EXPECT_EQ(all.arrays.at("Distance")[0], distance_of_nodes);
+    EXPECT_EQ(all.arrays.at("Distance")[5], 1e-17F);
+    EXPECT_EQ(all.arrays.at("Distance").back(), 0.2F);
+    EXPECT_EQ(bound.arrays.at("Distance")[5], 1e-17F);
+    EXPECT_EQ(all.points[3 * 5 + 2], static_cast<float>(1.0 / 3));
+    EXPECT_EQ(all.arrays.at("Rhop")[4], 999);
+    EXPECT_EQ(all.arrays.at("Rhop").back(), 1012);
+    EXPECT_EQ(all.arrays.at("Mk").back(), 2);
+    const VtkFile fluid(vtk_of(particles, VtkSelection::Fluid));
+    EXPECT_EQ(fluid.arrays.count("Kind"), 0U);
+    EXPECT_EQ(fluid.points.back(), 0.5F);
+}
+
+TEST(WriteParticlesVtk, NamesTheNormalsOfWallsApartFromThoseOfTheBoundary)
+{
+    CaseParticles particles = walled_particles();
+    for (int i = 0; i < 11; ++i) particles.bound_normals.push_back({3, 0, static_cast<float>(i)});
+    const VtkFile bound(vtk_of(particles, VtkSelection::Bound));
+    ASSERT_EQ(bound.arrays.at("Normal").size(), 33U);
+    EXPECT_EQ(bound.arrays.at("Normal")[3 * 4 + 2], 4);
+    EXPECT_EQ(bound.arrays.at("NormalSize")[4], 5);
+    ASSERT_EQ(bound.arrays.at("WallNormal").size(), 33U);
+    EXPECT_EQ(bound.arrays.at("WallNormal")[3 * 5 + 1], 1);
+    EXPECT_EQ(bound.arrays.at("Kind")[5], 1);
+    EXPECT_EQ(bound.arrays.at("Distance")[5], 1e-17F);
+    EXPECT_EQ(VtkFile(vtk_of(particles, VtkSelection::All)).arrays.at("Normal")[3 * 5 + 1], 1);
+}
+
+TEST(WriteParticlesVtk, MovesParticlesOffTheLatticeAndTurnsTheirNormals)
+{
+    CaseParticles particles = walled_particles();
+    Transform turn; // a quarter about z, then upwards
+    turn.linear = {Vec3{0, -1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}};
+    turn.offset = {0, 0, 1};
+    particles.blocks[1].initials = {{1, 11, {}, MoveParticles{turn}}};
+    for (const VtkSelection selection : {VtkSelection::All, VtkSelection::Bound})
+    {
+        const VtkFile file(vtk_of(particles, selection));
+        EXPECT_EQ(file.points[3 * 4], -0.25F);
+        EXPECT_EQ(file.points[3 * 4 + 1], 0.2F);
+        EXPECT_EQ(file.points[3 * 4 + 2], 1.41F);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 4], 0);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 4 + 1], 1);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 5], -1);
+    }
+}
+
+TEST(WriteParticlesVtk, HasNoArraysOfWallsInACaseWithoutThem)
+{
+    const VtkFile all(vtk_of(small_particles(), VtkSelection::All));
+    for (const char* name : {"Kind", "Normal", "Distance"}) EXPECT_EQ(all.arrays.count(name), 0U);
+}
+
 TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)
 {
-    const CaseParticles particles =
-        make_particles({columns(ParticleType::Fixed, 10, 0, 100, 777),
-                        columns(ParticleType::Fluid, 1, 100, 90, 1001)});
+    CaseParticles particles = make_particles({columns(ParticleType::Fixed, 10, 0, 100, 777),
+                                              columns(ParticleType::Fluid, 1, 100, 90, 1001)});
+    // Runs off the lattice of several pieces, that begin and end within pieces.
+    std::vector<ParticleBlock> blocks = particles.blocks;
+    for (std::uint32_t block = 0; block < 2; ++block)
+    {
+        blocks[block].runs.insert(
+            blocks[block].runs.begin() + 40,
+            ParticleRun{ParticleRun::off_lattice, block * 50000, 0, 50000, 0});
+        blocks[block].count += 50000;
+    }
+    particles = make_particles(std::move(blocks));
+    particles.has_walls = true;
+    for (int i = 0; i < 100000; ++i)
+    {
+        particles.free.positions.push_back({0.001 * i, 0.1, 0.2});
+        particles.free.kinds.push_back(static_cast<FitKind>(i % 4));
+        particles.free.normals.push_back({0, static_cast<float>(i), 0});
+        particles.free.distances.push_back(static_cast<float>(-i));
+        particles.free.rhop.push_back(static_cast<float>(1000 + i));
+    }
     for (const VtkSelection selection :
          {VtkSelection::All, VtkSelection::Bound, VtkSelection::Fluid})
     {
         const std::string one = vtk_of(particles, selection, 1);
+        EXPECT_TRUE(one == vtk_of(particles, selection, 2));
         EXPECT_TRUE(one == vtk_of(particles, selection, 8));
         const VtkFile file(one);
         EXPECT_EQ(file.arrays.at("Mk").back(), selection == VtkSelection::Bound ? 10 : 1);

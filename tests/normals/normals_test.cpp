@@ -363,6 +363,23 @@ TEST(NormalsOfParts, LeadHalfADpBeyondTheOuterParticles)
     expect_vector(made.at(0.3, 0, 0), {0, 0, 0});
 }
 
+TEST(NormalsOfParts, KeepToTheNodesBesideAFittedWall)
+{
+    CaseText text = floor_2d(R"(<setmkbound mk="1" />)"
+                             R"(<drawsphere radius="0.15"><point x="0.1" y="0" z="0.6" />)"
+                             "</drawsphere>",
+                             R"(<norparts mkbound="0"><maxdisth v="1.2" /></norparts>)");
+    text.after_geometry += R"(<fppg><bodyfitted mkbound="1" /></fppg>)";
+    const Made made = make(text);
+    ASSERT_GT(made.particles.free.size(), 5U);
+    ASSERT_NEAR(made.particles.pos_min.x, -0.05, 0.01);
+    for (const double x : {0.2, 0.3, 0.4, 0.5, 0.6})
+    {
+        expect_vector(made.at(x, 0, 0.2), {0, 0, 0.5});
+        expect_vector(made.at(x, 0, 0.1), {0, 0, 1.5});
+    }
+}
+
 TEST(NormalsOfParts, AreNoneWhereNothingStandsBeyondTheWall)
 {
     const Made made = make(floor_2d("", R"(<norparts mkbound="0" />)"));

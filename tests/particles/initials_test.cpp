@@ -35,7 +35,8 @@ struct Started
     }
 };
 
-Started start(const std::string& initials, const std::string& gravity = "")
+Started start(const std::string& initials, const std::string& gravity = "",
+              const std::string& more = "")
 {
     CaseText text;
     if (!gravity.empty()) text.gravity = gravity;
@@ -44,7 +45,8 @@ Started start(const std::string& initials, const std::string& gravity = "")
                     R"(<setmkbound mk="0" />)" +
                     box_command(R"(x="0.8" y="0" z="0")", R"(x="0.2" y="0.4" z="0.2")");
     text.after_geometry = "<initials>" + initials + "</initials>" +
-                          R"(<floatings><floating mkbound="0" rhopbody="500" /></floatings>)";
+                          R"(<floatings><floating mkbound="0" rhopbody="500" /></floatings>)" +
+                          more;
     const test::TemporaryFolder folder;
     test::write_text(folder / "Case_Def.xml", text.text());
     Started out;
@@ -259,6 +261,27 @@ TEST(InitialRotation, TakesAFloatingBodyAlong)
     EXPECT_NEAR(after.inertia[0].x, before.inertia[1].y, 1e-9);
     EXPECT_NEAR(after.inertia[1].y, before.inertia[0].x, 1e-9);
     EXPECT_NE(before.inertia[0].x, before.inertia[1].y);
+}
+
+TEST(InitialMove, TakesAFittedBodyAlongWithTheLimits)
+{
+    const char* const fit = R"(<fppg><bodyfitted mkbound="0" /></fppg>)";
+    const Started still = start("", "", fit);
+    const Started moved = start(R"(<move mkbound="0" x="0.03" y="0" z="0.31" />)", "", fit);
+    ASSERT_GT(moved.particles.free.size(), 30U);
+    EXPECT_TRUE(moved.particles.free.positions == still.particles.free.positions);
+    expect_vector(moved.particles.pos_min, {0, 0, 0});
+    expect_vector(still.particles.pos_max, {1, 0.5, 0.5});
+    expect_vector(moved.particles.pos_max, {1.03, 0.5, 0.51});
+    expect_vector(moved.particles.floatings.at(0).center,
+                  still.particles.floatings.at(0).center + Vec3{0.03, 0, 0.31}, 1e-9);
+}
+
+TEST(InitialMove, RefusesAFittedBodyThatLeavesTheDomain)
+{
+    const char* const fit = R"(<fppg><bodyfitted mkbound="0" /></fppg>)";
+    EXPECT_NO_THROW(start(R"(<move mkbound="0" x="0.5" y="0" z="0" />)", "", fit));
+    EXPECT_THROW(start(R"(<move mkbound="0" x="0.5001" y="0" z="0" />)", "", fit), CaseError);
 }
 
 struct Mistake

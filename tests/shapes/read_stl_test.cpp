@@ -250,12 +250,21 @@ TEST(ReadStl, RefusesAFileOfNothingButNaN)
     expect_refused(binary_stl({corners, corners}), "each of its 2 facets");
 }
 
-TEST(ReadStl, KeepsAHugeCoordinateWithAWarning)
+TEST(ReadStl, LeavesAFacetWithAHugeCoordinateOutWithAWarning)
 {
-    const std::vector<Corners> facets{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 1e30f, 0, 0, 0, 1, 0}};
-    const MeshFile mesh = read(binary_stl(facets));
-    expect_facets(mesh, facets);
+    const Corners good{0, 0, 0, 1, 0, 0, 0, 1, 0}, huge{0, 0, 0, 1e30f, 0, 0, 0, 1, 0};
+    const MeshFile mesh = read(binary_stl({good, huge}));
+    expect_facets(mesh, {good});
     expect_warned(mesh, "1 of 2 facets has a coordinate beyond");
+    expect_warned(mesh, "is left out; the first is facet 2");
+}
+
+TEST(ReadStl, KeepsAMeshThatIsHugeAsAWhole)
+{
+    const Corners huge{0, 0, 0, 1e30f, 0, 0, 0, 1, 0};
+    const MeshFile mesh = read(binary_stl({huge}));
+    expect_facets(mesh, {huge});
+    expect_warned(mesh, "1 of 1 facets has a coordinate beyond");
 }
 
 TEST(ReadStl, WarnsOfAMeshThatFloatsCannotResolve)
@@ -306,7 +315,7 @@ TEST(ReadStl, ReadsOrRefusesEveryDirtyFile)
                                                         {"fin_zero_thickness", 14},
                                                         {"hole_large_cap", 1148},
                                                         {"holes_small", 1272},
-                                                        {"huge_coordinate_1e30", 1281},
+                                                        {"huge_coordinate_1e30", 1280},
                                                         {"inf_coordinates", 1278},
                                                         {"nan_coordinates", 1278},
                                                         {"needle_facets", 13},

@@ -239,11 +239,27 @@ TEST(TakeInMesh, WeldsCracksWithinADistance)
     std::uniform_real_distribution<double> jitter(-1e-5, 1e-5);
     for (Vec3& v : soup.vertices) v = v + Vec3{jitter(random), jitter(random), jitter(random)};
     MeshReport report;
-    taken_in(soup, report);
+    taken_in(soup, report, 1e-9);
     EXPECT_GE(report.open_edges, 3 * soup.size());
-    const SurfaceMesh mesh = taken_in(soup, report, 1e-4);
-    EXPECT_TRUE(report.is_watertight);
-    EXPECT_EQ(mesh.vertices.size(), soup.size() / 2 + 2);
+    for (const double distance : {1e-4, 0.0})
+    {
+        const SurfaceMesh mesh = taken_in(soup, report, distance);
+        EXPECT_TRUE(report.is_watertight);
+        EXPECT_EQ(mesh.vertices.size(), soup.size() / 2 + 2);
+    }
+    EXPECT_EQ(report.joined_corners, 3 * soup.size() - soup.size() / 2 - 2);
+    EXPECT_NE(report.warnings.front().find("The facets do not meet"), std::string::npos);
+}
+
+TEST(TakeInMesh, LeavesSheetsWithGapsApart)
+{
+    // Two sheets 1e-5 of their width apart are as open joined as they are apart.
+    TriangleSoup soup;
+    add_quad(soup, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    add_quad(soup, {1.00001, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1.00001, 1, 0});
+    MeshReport report;
+    EXPECT_EQ(taken_in(soup, report).vertices.size(), 8u);
+    EXPECT_EQ(report.joined_corners, 0u);
 }
 
 TEST(TakeInMesh, CountsFacetsThatCross)

@@ -1,11 +1,14 @@
-// Fits particles to the surface of an STL file, says how long that takes, and writes them as a
-// legacy VTK file with their kind as mk.
+// Fits particles to the surface of an STL file, relaxes them on request, says how long that takes,
+// and writes them as a legacy VTK file with their kind as mk and the normal of their facet.
 //
-//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]
+//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] [--relax N] [--h H]
+//
+// N is the number of iterations, 0 for as many as improve the spacing.
 
 #include "fit/neighbour_grid.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
+#include "fppg/relax.h"
 #include "fppg/shapes.h"
 
 #include <bit>
@@ -16,6 +19,7 @@
 #include <ctime>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -32,7 +36,8 @@ void write_double(std::ofstream& out, double value)
     out.write(reinterpret_cast<const char*>(&bits), 8);
 }
 
-void write_vtk(const std::string& path, const fppg::SurfaceParticles& particles)
+void write_vtk(const std::string& path, const fppg::SurfaceMesh& mesh,
+               const fppg::SurfaceParticles& particles)
 {
     std::ofstream out(path, std::ios::binary);
     const std::size_t n = particles.positions.size();
@@ -42,7 +47,57 @@ void write_vtk(const std::string& path, const fppg::SurfaceParticles& particles)
         for (int axis = 0; axis < 3; ++axis) write_double(out, p[axis]);
     out << "\nPOINT_DATA " << n << "\nSCALARS Mk unsigned_char 1\nLOOKUP_TABLE default\n";
     for (const fppg::FitKind kind : particles.kinds) out.put(static_cast<char>(kind));
+    out << "\nNORMALS Normal double\n";
+    for (const std::uint32_t facet : particles.facets)
+        for (int axis = 0; axis < 3; ++axis) write_double(out, mesh.normals[facet][axis]);
     out << "\n";
+}
+
+/// Takes an option with a value out of the arguments.
+const char* take_option(std::vector<char*>& arguments, const char* name)
+{
+    for (std::size_t i = 1; i + 1 < arguments.size(); ++i)
+        if (std::strcmp(arguments[i], name) == 0)
+        {
+            const char* value = arguments[i + 1];
+            const auto at = arguments.begin() + static_cast<std::ptrdiff_t>(i);
+            arguments.erase(at, at + 2);
+            return value;
+        }
+    return nullptr;
+}
+
+void relax(fppg::SurfaceMesh& mesh, const fppg::Features& features,
+           fppg::SurfaceParticles& particles, const fppg::RelaxSurfaceOptions& options, int threads)
+{
+    std::vector<fppg::FittedBody> bodies(1);
+    bodies[0].mesh = std::move(mesh);
+    bodies[0].features = features;
+    fppg::WallParticles walls;
+    walls.bodies.assign(particles.positions.size(), 0);
+    walls.mk.assign(particles.positions.size(), 0);
+    walls.positions = std::move(particles.positions);
+    walls.kinds = std::move(particles.kinds);
+    walls.facets = std::move(particles.facets);
+    std::vector<char> held;
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpu_start = std::clock();
+    const auto report = fppg::relax_surface(bodies, walls, held, options, threads);
+    const double seconds = seconds_since(start);
+    const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+    const double updates = static_cast<double>(walls.size()) * report.after.iteration;
+    std::printf(
+        "   relaxed: %d iterations, %zu particles (+%zu -%zu), spacing %.4f +- %.4f to "
+        "%.4f +- %.4f, %zu projected, %zu returned\n   %.3f s (%.3f s of processor, "
+        "%.3f us a particle and iteration)\n",
+        report.after.iteration, walls.size(), report.inserted, report.removed,
+        report.before.spacing_mean, report.before.spacing_deviation, report.after.spacing_mean,
+        report.after.spacing_deviation, report.projected, report.returned, seconds, cpu_seconds,
+        1e6 * cpu_seconds / updates);
+    particles.positions = std::move(walls.positions);
+    particles.kinds = std::move(walls.kinds);
+    particles.facets = std::move(walls.facets);
+    mesh = std::move(bodies[0].mesh);
 }
 
 /// Counts pairs closer than 0.3 dp, and those of them whose facets look apart: through a plate.
@@ -74,18 +129,24 @@ void count_close_pairs(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticl
 
 } // namespace
 
-int main(int argc, char** argv)
+int main(int count, char** values)
 {
+    std::vector<char*> argv(values, values + count);
+    const char* iterations = take_option(argv, "--relax");
+    const char* h = take_option(argv, "--h");
+    const std::size_t argc = argv.size();
     if (argc < 3)
     {
-        std::fprintf(stderr, "usage: fit_bench mesh.stl DP [out.vtk] [threads] [area|cell]\n");
+        std::fprintf(stderr,
+                     "usage: fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] "
+                     "[--relax N] [--h H]\n");
         return 2;
     }
     using clock = std::chrono::steady_clock;
     const double dp = std::atof(argv[2]);
     const int threads = argc > 4 ? std::atoi(argv[4]) : 1;
     fppg::MeshReport report;
-    const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
+    auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
     const auto start_lines = clock::now();
     fppg::FeatureOptions feature_options;
     feature_options.dp = dp;
@@ -97,7 +158,7 @@ int main(int argc, char** argv)
     if (argc > 5 && std::strcmp(argv[5], "cell") == 0) options.density = fppg::FitDensity::Cell;
     const auto start = clock::now();
     const std::clock_t cpu_start = std::clock();
-    const auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
+    auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
     const double seconds = seconds_since(start);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     double area = 0;
@@ -108,7 +169,15 @@ int main(int argc, char** argv)
         "(%.3f s of processor, %.2f us a particle)\n",
         mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
         cpu_seconds, 1e6 * cpu_seconds / n);
+    if (iterations != nullptr)
+    {
+        fppg::RelaxSurfaceOptions relax_options;
+        relax_options.dp = dp;
+        relax_options.iterations = std::atoi(iterations);
+        if (h != nullptr) relax_options.h = std::atof(h);
+        relax(mesh, features, particles, relax_options, threads);
+    }
     count_close_pairs(mesh, particles, dp);
-    if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], particles);
+    if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], mesh, particles);
     return 0;
 }

@@ -8,12 +8,15 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(core_may_see)
-foreach(folder casedef shapes particles)
+foreach(folder casedef shapes)
   set(${folder}_may_see core)
 endforeach()
-foreach(folder lattice fit boolean relax normals files)
+set(particles_may_see shapes core)
+foreach(folder lattice fit boolean normals files)
   set(${folder}_may_see casedef shapes particles core)
 endforeach()
+# Relaxation fills the holes that open as fitting does.
+set(relax_may_see fit casedef shapes particles core)
 foreach(folder compare render)
   set(${folder}_may_see files particles shapes core)
 endforeach()
@@ -21,8 +24,10 @@ set(app_may_see compare render lattice fit boolean relax normals files casedef s
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
-set(wrapped_libraries tinyxml2 embree png CLI)
-set(tinyxml2_may_be_seen_by casedef)
+set(wrapped_libraries tinyxml2 embree png zlib CLI)
+# The case definition, and mesh files whose numbers are too many to pass through a tree.
+set(tinyxml2_may_be_seen_by casedef shapes)
+set(zlib_may_be_seen_by shapes)
 set(embree_may_be_seen_by shapes render)
 set(png_may_be_seen_by render)
 set(CLI_may_be_seen_by app)

@@ -1,4 +1,4 @@
-#include "lattice/mesh_path.h"
+#include "casedef/mesh_path.h"
 
 #include "fppg/error.h"
 

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/lattice.h"
+#include "fppg/relax.h"
+#include "fppg/relax_volume.h"
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// What a running relaxation has reached.
+struct RelaxStep
+{
+    std::string what;          ///< "surface", or "volume mk 11" and the like
+    int iteration = 0;         ///< from 1
+    int last_iteration = 0;    ///< that it may come to
+    std::size_t particles = 0; ///< that may move, and of a surface all
+    double mean = 0;           ///< spacing in dp on a surface, Shepard sum in a volume
+    double deviation = 0;      ///< standard deviation over mean
+    double largest_step_dp = 0;
+};
+
+/// Called after every iteration; false ends the relaxation of everything, and what is reached is
+/// kept.
+using RelaxObserver = std::function<bool(const RelaxStep&)>;
+
+/// What one relaxation did.
+struct RelaxedPart
+{
+    std::string what;
+    int iterations = 0;
+    std::size_t particles = 0; ///< afterwards
+    std::size_t inserted = 0;
+    std::size_t removed = 0;
+    double mean_before = 0; ///< surfaces only: spacing in dp
+    double deviation_before = 0;
+    double mean = 0; ///< as in RelaxStep
+    double deviation = 0;
+};
+
+struct RelaxReport
+{
+    std::vector<RelaxedPart> parts;
+    std::vector<std::string> warnings; ///< whole sentences
+    bool is_stopped = false;           ///< by the observer
+};
+
+/// Relaxes the fitted walls of a field and the volume beside them, as the settings of their mks and
+/// the fluid bands of the case say: first all surfaces, then the inside of every solid mk, then the
+/// fluid.
+///
+/// The particles of a surface stay on it (relax_surface()); those within 2 dp of a cut are held.
+/// Lattice nodes within the band of a wall become particles off the lattice: they go into
+/// walls.volume, and their nodes carry the wall_zone_bit. Nodes that did not move stay nodes.
+/// Nodes within 3 dp of a place where a wall was cut do not move, nor do those along a sheet that
+/// has nodes of the same mks on both sides.
+///
+/// observe  may be empty; what it throws is passed on and leaves the field in a state of no use
+/// threads  number of threads; the result does not depend on it
+/// throws   GeometryError for options out of range
+void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
+                 RelaxReport& report);
+
+} // namespace fppg

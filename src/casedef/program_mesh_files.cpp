@@ -1,0 +1,353 @@
+// Commands that draw files of meshes and heights.
+#include "fppg/error.h"
+
+#include "casedef/mesh_path.h"
+#include "casedef/program.h"
+#include "casedef/transforms.h"
+#include "casedef/xml_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+namespace fppg
+{
+namespace
+{
+
+/// Scale, then rotate right-handed about y, x, z in this order, about the centre; then move (rule
+/// T5; the order was found with four random triples of angles: only this one puts all corners
+/// right).
+Transform placement(const Vec3& center, const Vec3& scale, const Vec3& angles_deg, const Vec3& move)
+{
+    Transform t = scaling(scale);
+    for (const int axis : {1, 0, 2})
+        if (angles_deg[axis] != 0) t = rotation_about_axis(axis, radians(angles_deg[axis])) * t;
+    if (!(center == Vec3{})) t = around(center, t);
+    return translation(move) * t;
+}
+
+/// A file that a VTM file names.
+struct VtmEntry
+{
+    int index = 0;
+    std::string name;
+    std::string file; ///< beside the VTM file, as GenCase takes it
+};
+
+std::string trimmed(const std::string& text)
+{
+    const std::size_t first = text.find_first_not_of(" \t");
+    if (first == std::string::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string> names_of(const std::string& list)
+{
+    std::vector<std::string> names;
+    std::size_t begin = 0;
+    while (begin <= list.size())
+    {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        names.push_back(trimmed(list.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return names;
+}
+
+std::vector<VtmEntry> read_vtm(const std::string& path, const std::string& name)
+{
+    const Element root = read_xml(path);
+    if (root.name != "VTKFile")
+        throw CaseError(path, root.line, "is no VTM file: its root is not <VTKFile>");
+    const Element* blocks = root.find_child("vtkMultiBlockDataSet");
+    const Element* block = blocks == nullptr ? nullptr : blocks->find_child("Block");
+    if (block == nullptr)
+        throw CaseError(path, root.line,
+                        "has no <Block> in <vtkMultiBlockDataSet>, expected one with <DataSet>s");
+    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+    std::vector<VtmEntry> entries;
+    for (const Element& e : block->children)
+    {
+        if (e.kind != Element::Kind::Tag || e.name != "DataSet") continue;
+        const std::string* file = e.find_attribute("file");
+        if (file == nullptr) continue; // an empty part of the block
+        VtmEntry entry;
+        const std::string* index = e.find_attribute("index");
+        entry.index = static_cast<int>(entries.size());
+        if (index != nullptr)
+        {
+            const bool is_count = !index->empty() && index->size() < 9 &&
+                                  index->find_first_not_of("0123456789") == std::string::npos;
+            if (!is_count)
+                throw CaseError(path, e.line,
+                                fmt::format("<DataSet>: index=\"{}\" is no whole number", *index));
+            entry.index = std::stoi(*index);
+        }
+        if (const std::string* label = e.find_attribute("name")) entry.name = *label;
+        entry.file = (folder / *file).string();
+        entries.push_back(std::move(entry));
+    }
+    if (entries.empty())
+        throw CaseError(path, block->line, "<Block>: has no <DataSet> with a file");
+    return entries;
+}
+
+/// GenCase reads the first block only.
+std::size_t data_sets_elsewhere(const Element& e, bool is_counted)
+{
+    std::size_t n = 0;
+    bool is_first_block = e.name == "vtkMultiBlockDataSet";
+    for (const Element& child : e.children)
+    {
+        if (child.kind != Element::Kind::Tag) continue;
+        if (child.name == "DataSet" && is_counted) ++n;
+        const bool is_read = child.name == "Block" && is_first_block;
+        if (child.name == "Block") is_first_block = false;
+        n += data_sets_elsewhere(child, !is_read && e.name != "VTKFile");
+    }
+    return n;
+}
+
+} // namespace
+
+Transform ProgramRunner::file_transform(const Element& e) const
+{
+    Vec3 center;
+    Vec3 scale{1, 1, 1};
+    Vec3 angles;
+    Vec3 move;
+    if (const Element* c = e.find_child("drawcenter")) center = read_.vec3(*c);
+    if (const Element* c = e.find_child("drawscale")) scale = read_.vec3(*c);
+    if (const Element* c = e.find_child("drawrotate"))
+        angles = {read_.number(*c, "angx"), read_.number(*c, "angy"), read_.number(*c, "angz")};
+    if (const Element* c = e.find_child("drawmove")) move = read_.vec3(*c);
+    return matrix_ * placement(center, scale, angles, move);
+}
+
+void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
+{
+    op.depth_min = 0;
+    op.depth_max = 2 * def_.grid.dp;
+    op.reverse = read_.flag_or(e, "reverse", false);
+    if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
+    if (const Element* depth = e.find_child("depth"))
+    {
+        const auto low = read_.number_if(*depth, "depthmin");
+        const auto high = read_.number_if(*depth, "depthmax");
+        if (low) op.depth_min = *low;
+        if (low && !high) op.depth_max = std::numeric_limits<double>::infinity();
+        if (high) op.depth_max = *high;
+    }
+}
+
+void ProgramRunner::draw_mesh_file(const Element& e)
+{
+    MeshFileOp op;
+    op.file = read_.interpolated(e, read_.text(e, "file"));
+    const bool is_table = e.name == "drawfilecsv";
+    if (e.name == "drawfileply") op.reading.format = MeshFormat::Ply;
+    if (e.name == "drawfilevtk" || e.name == "drawfilevtm") op.reading.format = MeshFormat::Vtk;
+    if (is_table)
+    {
+        op.reading.format = MeshFormat::CsvBathymetry;
+        if (const std::string& mode = read_.text(e, "mode"); mode != "bathymetry")
+            read_.fail(e, fmt::format("mode=\"{}\" is invalid, expected bathymetry", mode));
+    }
+    // A table is a surface without an inside: GenCase does not heed these there.
+    if (!is_table)
+    {
+        op.autofill = read_.flag_or(e, "autofill", false);
+        op.advanced = read_.flag_or(e, "advanced", false);
+        if (const std::string* fill = e.find_attribute("fppg:fill"))
+        {
+            if (*fill != "inside")
+                read_.fail(e, fmt::format("fppg:fill=\"{}\" is invalid, expected inside", *fill));
+            op.fill_inside = true;
+        }
+    }
+    if (e.find_child("clipdomain") != nullptr) read_.fail_unsupported(e, "<clipdomain>");
+    if (const Element* select = e.find_child("polyselec"))
+    {
+        if (op.reading.format != MeshFormat::Vtk)
+            read_.fail(*select, "is possible in <drawfilevtk> and <drawfilevtm> only");
+        ShapeSelection& shapes = op.reading.shapes;
+        shapes = {false, false, false, false, false};
+        for (const std::string& w : read_.words(
+                 *select, select->text, "polyselec",
+                 {"all", "points", "lines", "triangles", "quads", "otherpolys", "polygons"}))
+        {
+            const bool is_all = w == "all";
+            shapes.points |= is_all || w == "points";
+            shapes.lines |= is_all || w == "lines";
+            shapes.triangles |= is_all || w == "polygons" || w == "triangles";
+            shapes.quads |= is_all || w == "polygons" || w == "quads";
+            shapes.other_polygons |= is_all || w == "polygons" || w == "otherpolys";
+        }
+    }
+    op.transform = file_transform(e);
+    if (op.advanced) read_depth(e, op);
+    if (e.name == "drawfilevtm")
+        draw_vtm_file(e, std::move(op));
+    else
+        add(e, std::move(op));
+}
+
+/// Found by experiment with GenCase v5.4.354: only the first block of the file is read; indices are
+/// those written in it; names are matched with their case; a data set may be selected once; with
+/// mkbound or mkfluid there must be as many numbers as data sets, taken in the order of both lists;
+/// without, and behind the command, the mk is that of before.
+void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
+{
+    op.container = op.file;
+    const std::string path = find_mesh_file(def_, {e.line, e.name}, op.container);
+    const std::vector<VtmEntry> entries = read_vtm(path, op.container);
+    if (const std::size_t n = data_sets_elsewhere(read_xml(path), false); n > 0)
+        def_.warnings.push_back(fmt::format(
+            "{}:{}: <{}>: {}: {} data sets outside its first block are not drawn, as in GenCase.",
+            def_.file, e.line, e.name, path, n));
+    std::vector<char> is_selected(entries.size(), 0);
+    const auto draw = [&](std::size_t i)
+    {
+        op.file = entries[i].file;
+        add(e, op);
+    };
+    bool has_selection = false;
+    for (const Element& select : e.children)
+    {
+        if (select.kind != Element::Kind::Tag || select.name != "onlysurfaces") continue;
+        has_selection = true;
+        const bool by_index = select.find_attribute("index") != nullptr;
+        const bool by_name = select.find_attribute("name") != nullptr;
+        if (by_index == by_name) read_.fail(select, "needs one of the attributes index and name");
+        std::vector<std::size_t> found;
+        const auto choose = [&](const auto& is_it, const std::string& what)
+        {
+            const auto entry = std::find_if(entries.begin(), entries.end(), is_it);
+            if (entry == entries.end())
+                read_.fail(select,
+                           fmt::format("there is no data set with the {} in '{}'", what, path));
+            const auto i = static_cast<std::size_t>(entry - entries.begin());
+            if (is_selected[i])
+                read_.fail(select, fmt::format("the data set with the {} is selected twice", what));
+            is_selected[i] = 1;
+            found.push_back(i);
+        };
+        if (by_index)
+            for (const std::uint16_t number : read_.number_list(select, "index"))
+                choose([number](const VtmEntry& v) { return v.index == number; },
+                       fmt::format("index {}", number));
+        else
+            for (const std::string& name : names_of(read_.text(select, "name")))
+                choose([&name](const VtmEntry& v) { return v.name == name; },
+                       fmt::format("name '{}'", name));
+        const bool has_bound = select.find_attribute("mkbound") != nullptr;
+        const bool has_fluid = select.find_attribute("mkfluid") != nullptr;
+        if (has_bound && has_fluid)
+            read_.fail(select, "has both mkbound and mkfluid, expected one of them");
+        if (!has_bound && !has_fluid)
+        {
+            for (const std::size_t i : found) draw(i);
+            continue;
+        }
+        const std::vector<std::uint16_t> mks =
+            read_.number_list(select, has_bound ? "mkbound" : "mkfluid");
+        if (mks.size() != found.size())
+            read_.fail(select, fmt::format("names {} mks for {} data sets, expected as many",
+                                           mks.size(), found.size()));
+        const MkValue before = state_.mk;
+        for (std::size_t i = 0; i < found.size(); ++i)
+        {
+            set_mk(select, has_bound ? MkKind::Bound : MkKind::Fluid, mks[i]);
+            draw(found[i]);
+        }
+        state_.mk = before;
+        shared_state_.reset();
+    }
+    if (!has_selection)
+        for (std::size_t i = 0; i < entries.size(); ++i) draw(i);
+}
+
+/// Found by experiment with GenCase v5.4.354, on the polygons that its shapeout writes: a grid that
+/// a file gives needs no points; rotate takes angx, angy and angz and does not heed x, y, z; the
+/// current matrix acts on the whole grid.
+void ProgramRunner::draw_bathymetry(const Element& e)
+{
+    MeshFileOp op;
+    op.reading.format = MeshFormat::Bathymetry;
+    BathymetryGrid bathymetry;
+    const Element& grid = read_.child(e, "grid");
+    bathymetry.is_grid_file = grid.find_attribute("file") != nullptr;
+    const auto rectangle = [&](const Element& r)
+    {
+        const Element& point = read_.child(r, "point");
+        const Element& size = read_.child(r, "size");
+        const GroundRectangle out{read_.number(point, "x"), read_.number(point, "y"),
+                                  read_.number(size, "x"), read_.number(size, "y")};
+        if (!(out.x_size >= 0 && out.y_size >= 0))
+            read_.fail(size, fmt::format("x={:g} y={:g} is invalid, expected 0 or more", out.x_size,
+                                         out.y_size));
+        return out;
+    };
+    if (bathymetry.is_grid_file)
+        op.file = read_.interpolated(e, read_.text(grid, "file"));
+    else
+    {
+        const Element& points = read_.child(e, "zpoints");
+        op.file = read_.interpolated(e, read_.text(points, "file"));
+        Vec3 scale{1, 1, 1};
+        Vec3 angles;
+        Vec3 move;
+        if (const Element* c = points.find_child("scale")) scale = read_.vec3(*c);
+        if (const Element* c = points.find_child("move")) move = read_.vec3(*c);
+        if (const Element* c = points.find_child("rotate"))
+        {
+            if (c->find_attribute("angx") == nullptr && c->find_attribute("angy") == nullptr &&
+                c->find_attribute("angz") == nullptr)
+                def_.warnings.push_back(fmt::format(
+                    "{}:{}: <rotate> turns nothing, as in GenCase: it takes angx, angy and angz.",
+                    def_.file, c->line));
+            angles = {read_.number_or(*c, "angx", 0), read_.number_or(*c, "angy", 0),
+                      read_.number_or(*c, "angz", 0)};
+        }
+        bathymetry.transform = placement({}, scale, angles, move);
+        if (const Element* c = points.find_child("selection")) bathymetry.selection = rectangle(*c);
+        bathymetry.spacing = read_.number(grid, "dp");
+        if (!(bathymetry.spacing > 0))
+            read_.fail(grid, fmt::format("dp={:g} is invalid, expected a positive number",
+                                         bathymetry.spacing));
+        if (const Element* c = grid.find_child("initdomain")) bathymetry.domain = rectangle(*c);
+    }
+    if (const Element* expands = grid.find_child("expands"))
+        for (std::size_t side = 0; side < 4; ++side)
+        {
+            static constexpr std::array<const char*, 4> sides{"xmin", "xmax", "ymin", "ymax"};
+            const Element* c = expands->find_child(sides[side]);
+            if (c == nullptr) continue;
+            BathymetryRamp& ramp = bathymetry.expands[side];
+            ramp.size = read_.number(*c, "size");
+            ramp.z = read_.number_if(*c, "z");
+            ramp.size2 = read_.number_or(*c, "size2", 0);
+            ramp.z2 = read_.number_if(*c, "z2");
+            if (ramp.size2 < 0)
+                read_.fail(*c,
+                           fmt::format("size2={:g} is invalid, expected 0 or more", ramp.size2));
+        }
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        if (const Element* c = grid.find_child(axis == 0 ? "periodicx" : "periodicy"))
+        {
+            const BathymetryPeriod period{read_.number(*c, "rampwidth"),
+                                          read_.number_or(*c, "flatwidth", 0)};
+            if (!(period.ramp_width >= 0 && period.flat_width >= 0))
+                read_.fail(*c, "a width is negative, expected 0 or more");
+            bathymetry.periods[axis] = period;
+        }
+    if (const Element* c = grid.find_child("finalmove")) bathymetry.final_move = read_.vec3(*c);
+    op.reading.bathymetry = bathymetry;
+    op.transform = matrix_;
+    add(e, std::move(op));
+}
+
+} // namespace fppg

@@ -1,0 +1,340 @@
+#include "fit/near_nodes.h"
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "fppg/error.h"
+#include "shapes/facet_distance.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include <fmt/format.h>
+
+namespace fppg
+{
+
+namespace
+{
+
+/// How far nodes are looked for, in dp; more than 1 by what rounding may take.
+constexpr double reach_dp = 1 + 1e-8;
+/// Facets whose box is smaller than this need no cutting to rows, in dp.
+constexpr double small_facet_dp = 2.5;
+
+/// Nodes [begin, end) along an axis.
+struct Range
+{
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+};
+
+/// Nodes of the lattice from `low` to `high` metres.
+Range nodes_between(double low, double high, double origin, double dp, std::uint32_t n)
+{
+    const double begin = std::ceil((low - origin) / dp);
+    const double end = std::floor((high - origin) / dp) + 1;
+    return {static_cast<std::int64_t>(std::clamp(begin, 0.0, static_cast<double>(n))),
+            static_cast<std::int64_t>(std::clamp(end, 0.0, static_cast<double>(n)))};
+}
+
+/// The part of a facet between two planes across one axis: at most seven corners after two cuts.
+struct Outline
+{
+    Vec3 corners[8];
+    std::size_t count = 0;
+
+    void add(const Vec3& p) { corners[count++] = p; }
+};
+
+Outline cut_outline(const Outline& outline, int axis, double at, bool keeps_above)
+{
+    const auto is_kept = [&](const Vec3& p) { return keeps_above ? p[axis] >= at : p[axis] <= at; };
+    Outline result;
+    for (std::size_t i = 0; i < outline.count; ++i)
+    {
+        const Vec3& p = outline.corners[i];
+        const Vec3& q = outline.corners[(i + 1) % outline.count];
+        if (is_kept(p)) result.add(p);
+        if (is_kept(p) == is_kept(q)) continue;
+        Vec3 cut = p + (q - p) * ((at - p[axis]) / (q[axis] - p[axis]));
+        cut[axis] = at;
+        result.add(cut);
+    }
+    return result;
+}
+
+Range range_of(const Outline& outline, int axis, double reach, const LatticeGrid& grid)
+{
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < outline.count; ++i)
+    {
+        low = std::min(low, outline.corners[i][axis]);
+        high = std::max(high, outline.corners[i][axis]);
+    }
+    return nodes_between(low - reach, high + reach, grid.origin[axis], grid.dp,
+                         grid.n[static_cast<std::size_t>(axis)]);
+}
+
+/// Nodes [begin, end) of a row that may be near a facet.
+struct Stretch
+{
+    std::uint32_t row;
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::uint32_t facet; ///< in the order of the slab
+};
+
+/// How far a number lies from the interval between two others.
+double distance_between(double value, double low, double high)
+{
+    return std::max({low - value, value - high, 0.0});
+}
+
+/// Works through the slabs of a lattice one by one; keeps its memory from slab to slab.
+class SlabSearch
+{
+public:
+    SlabSearch(const TriangleSoup& soup, const LatticeGrid& grid)
+        : soup_(soup), grid_(grid), reach_(reach_dp * grid.dp), offsets_(grid.n[1] + 1)
+    {
+        nearest_.resize(grid.n[2], far_);
+        touched_.resize((grid.n[2] / chunk + 63) / 64 + 1, 0);
+    }
+
+    std::vector<NearNode> search(std::uint32_t slab, const std::uint32_t* begin,
+                                 const std::uint32_t* end)
+    {
+        x_ = grid_.origin.x + slab * grid_.dp;
+        stretches_.clear();
+        facets_.clear();
+        for (const std::uint32_t* f = begin; f < end; ++f) add_stretches(*f);
+        sort_by_row();
+        std::vector<NearNode> result;
+        for (std::uint32_t row = first_row_; row < last_row_; ++row)
+        {
+            for (std::uint32_t i = offsets_[row - first_row_]; i < offsets_[row - first_row_ + 1];
+                 ++i)
+                measure(stretches_[order_[i]]);
+            collect(row, result);
+        }
+        result.shrink_to_fit();
+        return result;
+    }
+
+private:
+    static constexpr double far_ = std::numeric_limits<double>::infinity();
+    static constexpr std::uint32_t chunk = 16; ///< nodes of a row that are looked through together
+
+    void add_stretches(std::uint32_t f)
+    {
+        const Vec3* const corners = &soup_.vertices[3 * std::size_t{f}];
+        facets_.emplace_back(corners);
+        const Box3& box = facets_.back().box();
+        const Vec3 size = box.max - box.min;
+        if (std::max({size.x, size.y, size.z}) < small_facet_dp * grid_.dp)
+            add_small(box);
+        else
+            add_large(corners, box);
+    }
+
+    void add_small(const Box3& box)
+    {
+        const double aside = distance_between(x_, box.min.x, box.max.x);
+        const double left = reach_ * reach_ - aside * aside;
+        if (left < 0) return;
+        const double reach = std::sqrt(left);
+        const Range rows = nodes_between(box.min.y - reach, box.max.y + reach, grid_.origin.y,
+                                         grid_.dp, grid_.n[1]);
+        for (std::int64_t row = rows.begin; row < rows.end; ++row)
+        {
+            const double y = grid_.origin.y + static_cast<double>(row) * grid_.dp;
+            const double across = distance_between(y, box.min.y, box.max.y);
+            const double rest = std::sqrt(std::max(left - across * across, 0.0));
+            add(row, nodes_between(box.min.z - rest, box.max.z + rest, grid_.origin.z, grid_.dp,
+                                   grid_.n[2]));
+        }
+    }
+
+    void add_large(const Vec3* corners, const Box3& box)
+    {
+        Outline outline;
+        for (std::size_t k = 0; k < 3; ++k) outline.add(corners[k]);
+        if (box.min.x < x_ - reach_) outline = cut_outline(outline, 0, x_ - reach_, true);
+        if (box.max.x > x_ + reach_) outline = cut_outline(outline, 0, x_ + reach_, false);
+        if (outline.count == 0) return;
+        const Range rows = range_of(outline, 1, reach_, grid_);
+        for (std::int64_t row = rows.begin; row < rows.end; ++row)
+        {
+            const double y = grid_.origin.y + static_cast<double>(row) * grid_.dp;
+            const Outline strip =
+                cut_outline(cut_outline(outline, 1, y - reach_, true), 1, y + reach_, false);
+            if (strip.count > 0) add(row, range_of(strip, 2, reach_, grid_));
+        }
+    }
+
+    /// Nodes of a row that may be near the facet that was added last.
+    void add(std::int64_t row, const Range& nodes)
+    {
+        if (nodes.begin < nodes.end)
+            stretches_.push_back({static_cast<std::uint32_t>(row),
+                                  static_cast<std::uint32_t>(nodes.begin),
+                                  static_cast<std::uint32_t>(nodes.end),
+                                  static_cast<std::uint32_t>(facets_.size() - 1)});
+    }
+
+    /// Facets keep their order within a row.
+    void sort_by_row()
+    {
+        first_row_ = last_row_ = 0;
+        if (stretches_.empty()) return;
+        first_row_ = stretches_.front().row;
+        for (const Stretch& s : stretches_)
+        {
+            first_row_ = std::min(first_row_, s.row);
+            last_row_ = std::max(last_row_, s.row + 1);
+        }
+        const std::size_t rows = last_row_ - first_row_;
+        std::fill_n(offsets_.begin(), rows + 1, 0);
+        for (const Stretch& s : stretches_) ++offsets_[s.row - first_row_ + 1];
+        for (std::size_t r = 0; r < rows; ++r) offsets_[r + 1] += offsets_[r];
+        filled_.assign(offsets_.begin(), offsets_.begin() + static_cast<std::ptrdiff_t>(rows));
+        order_.resize(stretches_.size());
+        for (std::uint32_t i = 0; i < stretches_.size(); ++i)
+            order_[filled_[stretches_[i].row - first_row_]++] = i;
+    }
+
+    void measure(const Stretch& s)
+    {
+        const FacetDistance& facet = facets_[s.facet];
+        const Box3& box = facet.box();
+        Vec3 p{x_, grid_.origin.y + s.row * grid_.dp, 0};
+        const double aside = distance_between(p.x, box.min.x, box.max.x);
+        const double across = distance_between(p.y, box.min.y, box.max.y);
+        const double to_row = aside * aside + across * across;
+        const double limit = reach_ * reach_;
+        for (std::uint32_t k = s.begin; k < s.end; ++k)
+        {
+            p.z = grid_.origin.z + k * grid_.dp;
+            const double before = std::min(nearest_[k], limit);
+            const double along = distance_between(p.z, box.min.z, box.max.z);
+            if (to_row + along * along >= before) continue;
+            const double squared = facet.squared(p, before);
+            if (squared < before) nearest_[k] = squared;
+        }
+        for (std::uint32_t c = s.begin / chunk; c <= (s.end - 1) / chunk; ++c)
+            touched_[c / 64] |= std::uint64_t{1} << (c % 64);
+    }
+
+    /// Lists the nodes of a row and makes it clean for the next.
+    void collect(std::uint32_t row, std::vector<NearNode>& result)
+    {
+        const double scale = distance_units / grid_.dp;
+        for (std::size_t word = 0; word < touched_.size(); ++word)
+            for (; touched_[word] != 0; touched_[word] &= touched_[word] - 1)
+            {
+                const auto bit = static_cast<std::uint32_t>(std::countr_zero(touched_[word]));
+                const std::uint32_t begin = (static_cast<std::uint32_t>(word) * 64 + bit) * chunk;
+                const std::uint32_t end = std::min(begin + chunk, grid_.n[2]);
+                for (std::uint32_t k = begin; k < end; ++k)
+                {
+                    if (nearest_[k] == far_) continue;
+                    const double distance = std::floor(std::sqrt(nearest_[k]) * scale + 0.5);
+                    nearest_[k] = far_;
+                    if (distance <= distance_units)
+                        result.push_back({row, k, static_cast<std::uint32_t>(distance)});
+                }
+            }
+    }
+
+    const TriangleSoup& soup_;
+    const LatticeGrid& grid_;
+    double reach_;
+    double x_ = 0;
+    std::vector<FacetDistance> facets_; ///< of the slab in hand
+    std::vector<Stretch> stretches_;
+    std::vector<std::uint32_t> offsets_, filled_, order_;
+    std::uint32_t first_row_ = 0, last_row_ = 0;
+    std::vector<double> nearest_; ///< squared distance per node of the row in hand
+    std::vector<std::uint64_t> touched_;
+};
+
+/// Nodes within 1 dp: two a dp^2 of surface, and those around long sides.
+void check_memory(const TriangleSoup& soup, const LatticeGrid& grid)
+{
+    double nodes = 0;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const Vec3* p = &soup.vertices[3 * f];
+        const double longest =
+            std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])}) / grid.dp;
+        nodes += norm(cross(p[1] - p[0], p[2] - p[0])) / (grid.dp * grid.dp);
+        if (longest > 2) nodes += longest;
+    }
+    constexpr double bytes_a_node = 30;
+    constexpr double bytes_a_slab = 200;
+    const double bytes = bytes_a_node * nodes + bytes_a_slab * grid.n[0];
+    const auto available = static_cast<double>(available_memory());
+    if (!(bytes < available))
+        throw GeometryError(fmt::format(
+            "the lattice nodes around the surface need about {:.3g} GB of memory, and {:.3g} GB "
+            "are free; take a larger dp or a smaller mesh",
+            bytes * 1e-9, available * 1e-9));
+}
+
+} // namespace
+
+std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
+                                                   const LatticeGrid& grid, int threads)
+{
+    check_memory(soup, grid);
+    // The facets of every slab, in their order.
+    std::vector<Range> ranges(soup.size());
+    std::vector<std::size_t> offsets(grid.n[0] + std::size_t{1}, 0);
+    const double reach = reach_dp * grid.dp;
+    for (std::size_t f = 0; f < ranges.size(); ++f)
+    {
+        const auto [low, high] = std::minmax(
+            {soup.vertices[3 * f].x, soup.vertices[3 * f + 1].x, soup.vertices[3 * f + 2].x});
+        ranges[f] = nodes_between(low - reach, high + reach, grid.origin.x, grid.dp, grid.n[0]);
+        for (std::int64_t x = ranges[f].begin; x < ranges[f].end; ++x)
+            ++offsets[static_cast<std::size_t>(x) + 1];
+    }
+    for (std::size_t x = 0; x < grid.n[0]; ++x) offsets[x + 1] += offsets[x];
+    std::vector<std::uint32_t> facets(offsets.back());
+    std::vector<std::size_t> filled(offsets.begin(), offsets.end() - 1);
+    for (std::size_t f = 0; f < ranges.size(); ++f)
+        for (std::int64_t x = ranges[f].begin; x < ranges[f].end; ++x)
+            facets[filled[static_cast<std::size_t>(x)]++] = static_cast<std::uint32_t>(f);
+
+    std::vector<std::vector<NearNode>> slabs(grid.n[0]);
+    std::vector<std::unique_ptr<SlabSearch>> idle;
+    std::mutex guard;
+    parallel_for(grid.n[0], threads,
+                 [&](std::size_t x)
+                 {
+                     if (offsets[x] == offsets[x + 1]) return;
+                     std::unique_ptr<SlabSearch> search;
+                     {
+                         const std::lock_guard lock(guard);
+                         if (!idle.empty())
+                         {
+                             search = std::move(idle.back());
+                             idle.pop_back();
+                         }
+                     }
+                     if (!search) search = std::make_unique<SlabSearch>(soup, grid);
+                     slabs[x] =
+                         search->search(static_cast<std::uint32_t>(x), facets.data() + offsets[x],
+                                        facets.data() + offsets[x + 1]);
+                     const std::lock_guard lock(guard);
+                     idle.push_back(std::move(search));
+                 });
+    return slabs;
+}
+
+} // namespace fppg

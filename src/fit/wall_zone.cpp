@@ -1,0 +1,520 @@
+#include "fppg/wall_zone.h"
+
+#include "core/parallel.h"
+#include "fit/closed_part.h"
+#include "fit/near_nodes.h"
+#include "fppg/error.h"
+#include "shapes/column_spans.h"
+#include "shapes/inside_by_vote.h"
+#include "shapes/mesh_query.h"
+#include "shapes/winding_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::uint32_t half_dp = distance_units / 2;
+
+/// A lattice around the mesh whose nodes are those of the case's lattice, moved by whole steps.
+struct WideGrid
+{
+    LatticeGrid grid;
+    std::array<std::int64_t, 3> offset{0, 0, 0}; ///< of its node 0 in the lattice of the case
+};
+
+/// The lattice itself where it holds the mesh and all nodes near it, else a larger one.
+WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
+{
+    WideGrid wide;
+    wide.grid = lattice;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (axis == 1 && lattice.is_2d) continue;
+        const auto k = static_cast<std::size_t>(axis);
+        const double low = std::floor((bounds.min[axis] - lattice.origin[axis]) / lattice.dp) - 2;
+        const double high = std::ceil((bounds.max[axis] - lattice.origin[axis]) / lattice.dp) + 2;
+        constexpr double limit = 2147483648.0;
+        if (!(std::abs(low) < limit && std::abs(high) < limit))
+            throw GeometryError(fmt::format(
+                "the mesh reaches from {:.6g} to {:.6g} m along {}, more than 2^31 dp of {:.6g} m",
+                bounds.min[axis], bounds.max[axis], "xyz"[axis], lattice.dp));
+        const double begin = std::min(low, 0.0);
+        const double end = std::max(high + 1, static_cast<double>(lattice.n[k]));
+        wide.offset[k] = static_cast<std::int64_t>(begin);
+        wide.grid.n[k] = static_cast<std::uint32_t>(end - begin);
+        wide.grid.origin[axis] = lattice.origin[axis] + begin * lattice.dp;
+    }
+    return wide;
+}
+
+/// The surface that nodes keep away from: facets, or in 2D the lines where they meet the plane.
+struct Wall
+{
+    TriangleSoup soup;
+    std::vector<Vec3> normals;     ///< of unit length
+    std::vector<double> sizes;     ///< areas or lengths
+    std::vector<char> is_bounding; ///< per facet of the soup
+    double section_area = 0;       ///< 2D: within the lines that bound a volume
+};
+
+Wall whole_surface(const SurfaceMesh& mesh, const ClosedPart& part)
+{
+    Wall wall;
+    wall.soup.vertices.reserve(3 * mesh.facets.size());
+    for (const auto& facet : mesh.facets)
+        for (const std::uint32_t v : facet) wall.soup.vertices.push_back(mesh.vertices[v]);
+    wall.normals = mesh.normals;
+    wall.sizes = mesh.areas;
+    wall.is_bounding = part.is_bounding;
+    return wall;
+}
+
+/// Corners on the plane count as below it, as in cut_column(); a mesh that only touches the plane
+/// with what is below it is cut there as well.
+Wall section_of(const SurfaceMesh& mesh, const ClosedPart& part, double plane_y)
+{
+    Wall wall;
+    for (const bool on_plane_is_above : {false, true})
+    {
+        const auto is_above = [&](const Vec3& p)
+        { return on_plane_is_above ? p.y >= plane_y : p.y > plane_y; };
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        {
+            Vec3 ends[2]; // where the outline goes down through the plane, and where up
+            int cuts = 0;
+            for (std::size_t s = 0; s < 3; ++s)
+            {
+                const Vec3& p = mesh.vertices[mesh.facets[f][s]];
+                const Vec3& q = mesh.vertices[mesh.facets[f][(s + 1) % 3]];
+                if (is_above(p) == is_above(q)) continue;
+                // From below to above, so that both facets of an edge find the same bits.
+                const Vec3& low = is_above(p) ? q : p;
+                const Vec3& high = is_above(p) ? p : q;
+                Vec3 cut = low + (high - low) * ((plane_y - low.y) / (high.y - low.y));
+                cut.y = plane_y;
+                ends[is_above(p) ? 0 : 1] = cut;
+                ++cuts;
+            }
+            if (cuts != 2 || ends[0] == ends[1]) continue;
+            const Vec3 along = ends[1] - ends[0];
+            const Vec3 side{-along.z, 0, along.x};
+            const double length = norm(along);
+            const Vec3 normal = side * ((dot(side, mesh.normals[f]) < 0 ? -1 : 1) / length);
+            wall.soup.vertices.insert(wall.soup.vertices.end(), {ends[0], ends[1], ends[1]});
+            wall.normals.push_back(normal);
+            wall.sizes.push_back(length);
+            wall.is_bounding.push_back(part.is_bounding[f]);
+        }
+        if (wall.soup.size() > 0) break;
+    }
+    if (wall.soup.size() == 0) return wall;
+    // Divergence in the plane: half the sum of place times outward normal times length.
+    const Vec3 from = wall.soup.vertices[0];
+    for (std::size_t i = 0; i < wall.soup.size(); ++i)
+        if (wall.is_bounding[i] != 0)
+            wall.section_area +=
+                0.5 * dot(wall.soup.vertices[3 * i] - from, wall.normals[i]) * wall.sizes[i];
+    return wall;
+}
+
+/// How much of a wall lies inside the body, from points spread evenly over it: each of the two
+/// sides of a point counts one half.
+double share_inside(const Wall& wall, const TriangleSoup& body, bool is_exact, double dp,
+                    int threads)
+{
+    constexpr std::size_t samples = 4096;
+    double total = 0;
+    for (const double size : wall.sizes) total += size;
+    std::vector<std::size_t> facet_of(samples, 0);
+    double passed = 0;
+    std::size_t next = 0;
+    for (std::size_t f = 0; f < wall.sizes.size(); ++f)
+    {
+        passed += wall.sizes[f];
+        for (; next < samples && (static_cast<double>(next) + 0.5) * total < passed * samples;
+             ++next)
+            facet_of[next] = f;
+    }
+    // Of a body without holes, the crossings of a half line are its winding number.
+    const std::unique_ptr<MeshQuery> query =
+        is_exact ? std::make_unique<MeshQuery>(body, threads) : nullptr;
+    const TriangleSoup nothing;
+    const WindingTree tree(is_exact ? nothing : body);
+    const auto is_inside = [&](const Vec3& p)
+    {
+        if (!is_exact) return tree.winding_number(p) > 0.5;
+        int sum = 0;
+        for (const Crossing& crossing : query->crossings(p, 0)) sum -= crossing.step;
+        return sum > 0;
+    };
+    std::vector<char> sides(samples, 0);
+    parallel_for(
+        samples, threads,
+        [&](std::size_t i)
+        {
+            const Vec3* p = &wall.soup.vertices[3 * facet_of[i]];
+            // Spread over large facets by the plastic number, as two coordinates of a triangle.
+            double u = std::fmod(0.7548776662466927 * static_cast<double>(i), 1.0);
+            double v = std::fmod(0.5698402909980532 * static_cast<double>(i), 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const Vec3 at = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
+            for (const double way : {-1e-4, 1e-4})
+                if (is_inside(at + way * dp * wall.normals[facet_of[i]])) ++sides[i];
+        },
+        64);
+    std::size_t sum = 0;
+    for (const char side : sides) sum += static_cast<std::size_t>(side);
+    return static_cast<double>(sum) / (2 * samples);
+}
+
+/// What a signed volume of a body without holes counts more than once, less that counted below
+/// zero, metres cubed: along lines in z that are spread evenly over the body's box. The columns of
+/// the lattice would do this worse where facets are parallel to them.
+double measure_overlap(const TriangleSoup& body, int threads)
+{
+    constexpr std::size_t samples = 1 << 15;
+    const MeshQuery query(body, threads);
+    Box3 box;
+    for (const Vec3& p : body.vertices) box.add(p);
+    const Vec3 size = box.max - box.min;
+    std::vector<double> lengths(samples, 0);
+    parallel_for(
+        samples, threads,
+        [&](std::size_t i)
+        {
+            const auto n = static_cast<double>(i);
+            const Vec3 at{box.min.x + size.x * std::fmod(0.5 + 0.7548776662466927 * n, 1.0),
+                          box.min.y + size.y * std::fmod(0.5 + 0.5698402909980532 * n, 1.0),
+                          box.min.z - 0.01 * size.z};
+            int sum = 0;
+            double before = at.z;
+            for (const Crossing& crossing : query.crossings(at, 2))
+            {
+                lengths[i] += (sum - (sum > 0 ? 1 : 0)) * (crossing.position - before);
+                before = crossing.position;
+                sum += crossing.step;
+            }
+        },
+        256);
+    double total = 0;
+    for (const double length : lengths) total += length;
+    return total / samples * size.x * size.y;
+}
+
+/// No node of a solid is nearer to its surface than this, 0.4 dp.
+constexpr std::uint32_t least_distance = distance_units / 5 * 2;
+
+/// A number for each node such that those below any bound are spread evenly over any plane of the
+/// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
+std::uint32_t spread(std::int64_t x, std::int64_t y, std::int64_t z)
+{
+    constexpr std::uint64_t a1 = 3518319155, a2 = 2882110345, a3 = 2360945575;
+    return static_cast<std::uint32_t>(a1 * static_cast<std::uint64_t>(x) +
+                                      a2 * static_cast<std::uint64_t>(y) +
+                                      a3 * static_cast<std::uint64_t>(z));
+}
+
+/// The nodes near the wall on one side of it: which of them are left out.
+class Side
+{
+public:
+    /// Nodes nearer than this are always left out.
+    explicit Side(std::uint32_t always_below) : always_below_(always_below) {}
+
+    std::uint64_t key(std::uint32_t distance, std::uint32_t hash) const
+    {
+        return std::uint64_t{distance} << 32 | hash;
+    }
+    void add(std::uint32_t distance, std::uint32_t hash)
+    {
+        if (distance < always_below_)
+            ++always_;
+        else
+            keys_.push_back(key(distance, hash));
+    }
+
+    /// Leaves out `wanted` nodes, or as near to that as may be.
+    void leave_out(double wanted)
+    {
+        const double more = std::clamp(std::floor(wanted + 0.5) - static_cast<double>(always_), 0.0,
+                                       static_cast<double>(keys_.size()));
+        const auto n = static_cast<std::ptrdiff_t>(more);
+        if (n == 0)
+            below_ = 0;
+        else if (n == static_cast<std::ptrdiff_t>(keys_.size()))
+            below_ = UINT64_MAX;
+        else
+        {
+            std::nth_element(keys_.begin(), keys_.begin() + n, keys_.end());
+            below_ = keys_[static_cast<std::size_t>(n)];
+        }
+        keys_ = {};
+    }
+    /// Leaves out all nodes nearer than the distance.
+    void leave_out_below(std::uint32_t distance) { below_ = key(distance, 0); }
+
+    bool is_left_out(std::uint32_t distance, std::uint32_t hash) const
+    {
+        return distance < always_below_ || key(distance, hash) < below_;
+    }
+    /// In dp; the distance that all nodes which stay have at least.
+    double clearance() const
+    {
+        const auto distance =
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(below_ >> 32, distance_units));
+        return std::max(distance, std::min(always_below_, half_dp)) /
+               static_cast<double>(distance_units);
+    }
+
+private:
+    std::uint32_t always_below_;
+    std::uint64_t always_ = 0;
+    std::uint64_t below_ = 0; ///< keys below this are left out
+    std::vector<std::uint64_t> keys_;
+};
+
+/// Walks the near nodes of a slab together with its inside; body(node, is_inside).
+template <typename Body>
+void for_each_near_node(const std::vector<NearNode>& nodes, const std::vector<Span>& inside,
+                        const Body& body)
+{
+    std::size_t i = 0;
+    for (const NearNode& node : nodes)
+    {
+        while (i < inside.size() &&
+               (inside[i].y < node.y || (inside[i].y == node.y && inside[i].z_end <= node.z)))
+            ++i;
+        body(node, i < inside.size() && inside[i].y == node.y && inside[i].z_begin <= node.z);
+    }
+}
+
+void append_node(std::vector<Span>& spans, std::uint32_t y, std::uint32_t z)
+{
+    if (!spans.empty() && spans.back().y == y && spans.back().z_end == z)
+        ++spans.back().z_end;
+    else
+        spans.push_back({y, z, z + 1});
+}
+
+/// Spans less a sorted list of nodes.
+std::vector<Span> without(const std::vector<Span>& spans, const std::vector<Span>& gone)
+{
+    std::vector<Span> result;
+    std::size_t j = 0;
+    for (const Span& s : spans)
+    {
+        while (j < gone.size() &&
+               (gone[j].y < s.y || (gone[j].y == s.y && gone[j].z_end <= s.z_begin)))
+            ++j;
+        std::uint32_t from = s.z_begin;
+        for (std::size_t k = j; k < gone.size() && gone[k].y == s.y && gone[k].z_begin < s.z_end;
+             ++k)
+        {
+            if (gone[k].z_begin > from) result.push_back({s.y, from, gone[k].z_begin});
+            from = std::max(from, gone[k].z_end);
+        }
+        if (from < s.z_end) result.push_back({s.y, from, s.z_end});
+    }
+    return result;
+}
+
+std::uint64_t count_nodes(const std::vector<Span>& spans)
+{
+    std::uint64_t count = 0;
+    for (const Span& s : spans) count += s.z_end - s.z_begin;
+    return count;
+}
+
+/// The spans of a slab of the wide lattice that lie in the lattice of the case.
+std::vector<Span> clip(const std::vector<Span>& spans, const WideGrid& wide,
+                       const LatticeGrid& lattice)
+{
+    std::vector<Span> result;
+    for (const Span& s : spans)
+    {
+        const std::int64_t y = s.y + wide.offset[1];
+        const std::int64_t begin = std::max<std::int64_t>(s.z_begin + wide.offset[2], 0);
+        const std::int64_t end = std::min<std::int64_t>(s.z_end + wide.offset[2], lattice.n[2]);
+        if (y < 0 || y >= lattice.n[1] || begin >= end) continue;
+        result.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(begin),
+                          static_cast<std::uint32_t>(end)});
+    }
+    return result;
+}
+
+/// Takes the empty slabs at both ends away.
+void trim(SpanSet& set)
+{
+    std::size_t begin = 0;
+    while (begin < set.slabs.size() && set.slabs[begin].empty()) ++begin;
+    while (set.slabs.size() > begin && set.slabs.back().empty()) set.slabs.pop_back();
+    set.slabs.erase(set.slabs.begin(), set.slabs.begin() + static_cast<std::ptrdiff_t>(begin));
+    set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(begin);
+}
+
+void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
+          WallZone& zone)
+{
+    if (!zone.has_inside)
+        zone.warnings.push_back(fmt::format(
+            "The mesh of {} facets bounds no volume: {} edges are open; its surface is covered on "
+            "both sides and it has no inside.",
+            report.facets_read, report.open_edges));
+    else if (zone.sheet_facets > 0)
+        zone.warnings.push_back(fmt::format(
+            "{} of {} facets bound no volume; they are covered as sheets and are not part of the "
+            "inside.",
+            zone.sheet_facets, part.is_bounding.size()));
+    if (overlap > 1e-6 * zone.body_volume)
+        zone.warnings.push_back(
+            fmt::format("Parts of the mesh overlap; {:.3g} m3, {:.2g} % of the body, count once.",
+                        overlap, 100 * overlap / zone.body_volume));
+    if (zone.has_inside && part.hole_area > 0)
+        zone.warnings.push_back(
+            fmt::format("Holes of {:.3g} m2, {:.2g} % of the surface, count as closed.",
+                        part.hole_area, 100 * part.hole_area / area));
+    if (zone.disputed_nodes > 0)
+        zone.warnings.push_back(fmt::format(
+            "Whether {} nodes are inside was told by the winding number of the surface, as lines "
+            "through it disagree.",
+            zone.disputed_nodes));
+}
+
+} // namespace
+
+WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
+                   const WallZoneOptions& options, int threads)
+{
+    if (options.clearance_dp && !(*options.clearance_dp >= 0.5 && *options.clearance_dp <= 1.0))
+        throw GeometryError(
+            fmt::format("a clearance of {:.6g} dp, expected 0.5 to 1", *options.clearance_dp));
+    WallZone zone;
+    const ClosedPart part = find_closed_part(mesh);
+    const Wall wall =
+        grid.is_2d ? section_of(mesh, part, grid.origin.y) : whole_surface(mesh, part);
+    if (wall.soup.size() == 0) return zone;
+    const WideGrid wide = widen(grid, report.bounds);
+    const auto near = find_near_nodes(wall.soup, wide.grid, threads);
+
+    const double dp3 = grid.dp * grid.dp * grid.dp;
+    zone.sheet_facets = part.sheet_facets;
+    zone.body_volume = grid.is_2d ? wall.section_area * grid.dp : part.volume;
+    zone.has_inside = part.volume > 0 && zone.body_volume > 0;
+    SpanSet inside;
+    double overlap = 0;
+    if (zone.has_inside)
+    {
+        InsideVote vote;
+        if (part.is_exact)
+        {
+            ColumnOptions column_options;
+            column_options.measures_overlap = true;
+            ColumnCuts cuts = cut_columns(part.soup, wide.grid, column_options, threads);
+            vote.inside = std::move(cuts.inside);
+            vote.overlap = cuts.overlap;
+        }
+        else
+            vote = vote_inside(part.soup, wide.grid, threads);
+        zone.disputed_nodes = vote.disputed;
+        overlap = vote.overlap;
+        if (overlap != 0 && part.is_exact && !grid.is_2d)
+            overlap = measure_overlap(part.soup, threads);
+        zone.body_volume -= overlap;
+        if (overlap != 0 || zone.sheet_facets > 0)
+            zone.wall_share_inside = share_inside(wall, part.soup, part.is_exact, grid.dp, threads);
+        inside = std::move(vote.inside);
+    }
+    else
+        zone.body_volume = 0;
+    const std::vector<Span> nothing;
+    const auto inside_of = [&](std::size_t x) -> const std::vector<Span>&
+    {
+        const bool has_slab = x >= inside.x_begin && x - inside.x_begin < inside.slabs.size();
+        return has_slab ? inside.slabs[x - inside.x_begin] : nothing;
+    };
+    const auto hash_of = [&](std::size_t x, const NearNode& node)
+    {
+        return spread(static_cast<std::int64_t>(x) + wide.offset[0], node.y + wide.offset[1],
+                      node.z + wide.offset[2]);
+    };
+
+    // The nodes of a solid stop a fill themselves.
+    Side within(options.is_solid ? least_distance : half_dp), beyond(half_dp + 1);
+    if (options.clearance_dp)
+    {
+        // Nodes at 0.5 dp inside are in the zone as well: no volume asks for them.
+        const auto distance =
+            static_cast<std::uint32_t>(std::floor(*options.clearance_dp * distance_units + 0.5));
+        within.leave_out_below(std::max(distance, half_dp + 1));
+        beyond.leave_out_below(distance);
+    }
+    else if (zone.has_inside)
+    {
+        std::uint64_t in_body = 0;
+        for (std::size_t x = 0; x < near.size(); ++x)
+        {
+            in_body += count_nodes(inside_of(x));
+            for_each_near_node(
+                near[x], inside_of(x),
+                [&](const NearNode& node, bool is_inside)
+                { (is_inside ? within : beyond).add(node.distance, hash_of(x, node)); });
+        }
+        const auto particles = static_cast<double>(options.wall_particles);
+        const double cells = zone.body_volume / dp3;
+        const auto nodes = static_cast<double>(in_body);
+        within.leave_out(nodes - (cells - particles * zone.wall_share_inside));
+        beyond.leave_out(cells + particles * (1 - zone.wall_share_inside) - nodes);
+    }
+
+    std::vector<std::uint64_t> kept(near.size(), 0);
+    zone.volume.slabs.resize(grid.n[0]);
+    zone.zone.slabs.resize(grid.n[0]);
+    parallel_for(near.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     std::vector<Span> left_out;
+                     for_each_near_node(near[x], inside_of(x),
+                                        [&](const NearNode& node, bool is_inside)
+                                        {
+                                            const Side& side = is_inside ? within : beyond;
+                                            if (side.is_left_out(node.distance, hash_of(x, node)))
+                                                append_node(left_out, node.y, node.z);
+                                        });
+                     const std::vector<Span> volume = without(inside_of(x), left_out);
+                     kept[x] = count_nodes(volume);
+                     const std::int64_t slab = static_cast<std::int64_t>(x) + wide.offset[0];
+                     if (slab < 0 || slab >= grid.n[0]) return;
+                     zone.volume.slabs[static_cast<std::size_t>(slab)] = clip(volume, wide, grid);
+                     zone.zone.slabs[static_cast<std::size_t>(slab)] = clip(left_out, wide, grid);
+                 });
+    trim(zone.volume);
+    trim(zone.zone);
+    zone.clearance_inside_dp = within.clearance();
+    zone.clearance_outside_dp = beyond.clearance();
+    if (zone.has_inside)
+    {
+        double nodes = 0;
+        for (const std::uint64_t count : kept) nodes += static_cast<double>(count);
+        const double wall_cells =
+            static_cast<double>(options.wall_particles) * zone.wall_share_inside;
+        zone.volume_error = (nodes + wall_cells) * dp3 / zone.body_volume - 1;
+    }
+    double area = 0;
+    for (const double a : mesh.areas) area += a;
+    warn(part, report, area, overlap, zone);
+    return zone;
+}
+
+} // namespace fppg

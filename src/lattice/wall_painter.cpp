@@ -1,0 +1,439 @@
+#include "lattice/wall_painter.h"
+
+#include "fppg/one_sheet.h"
+#include "fppg/section.h"
+#include "fppg/wall_zone.h"
+
+#include "core/parallel.h"
+#include "lattice/snap.h"
+#include "shapes/mesh_query.h"
+#include "shapes/point_grid.h"
+#include "shapes/round_surface.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// Later fitted bodies cut the particles of earlier ones within this distance of their surface, dp.
+constexpr double cut_distance_dp = 0.5;
+/// Particles this near to a cut one are held in place, dp.
+constexpr double held_distance_dp = 2;
+
+std::vector<Spans> by_slab(SpanSet&& set, const LatticeGrid& grid)
+{
+    std::vector<Spans> out(grid.n[0]);
+    for (std::size_t i = 0; i < set.slabs.size(); ++i)
+        out[set.x_begin + i] = std::move(set.slabs[i]);
+    return out;
+}
+
+bool contains(const Spans& spans, std::uint32_t y, std::uint32_t z)
+{
+    const auto after =
+        std::upper_bound(spans.begin(), spans.end(), std::pair(y, z),
+                         [](const std::pair<std::uint32_t, std::uint32_t>& at, const Span& s)
+                         { return at.first < s.y || (at.first == s.y && at.second < s.z_begin); });
+    return after != spans.begin() && std::prev(after)->y == y && z < std::prev(after)->z_end;
+}
+
+/// The corners of the lattice cell around a point that lie in the lattice, nearest first; corners
+/// equally near in the order of x, y, z.
+struct CellCorners
+{
+    std::array<Node, 8> nodes;
+    int count = 0;
+};
+
+CellCorners cell_corners(const Vec3& p, const LatticeGrid& grid)
+{
+    const auto floor_of = [&](int axis)
+    {
+        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        return static_cast<std::int64_t>(std::floor(std::clamp(index, -4e9, 4e9)));
+    };
+    const Node low{floor_of(0), floor_of(1), floor_of(2)};
+    std::array<std::pair<double, Node>, 8> found;
+    std::size_t count = 0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        const Node n{low.x + (corner >> 2), low.y + (corner >> 1 & 1), low.z + (corner & 1)};
+        if (!is_inside(n, grid)) continue;
+        const Vec3 away = position(n, grid) - p;
+        found[count++] = {dot(away, away), n};
+    }
+    std::stable_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    CellCorners out;
+    out.count = static_cast<int>(count);
+    for (std::size_t i = 0; i < count; ++i) out.nodes[i] = found[i].second;
+    return out;
+}
+
+/// Between the first and the last nodes of the lattice, with room for rounding.
+bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        if (!(index >= -1e-6 && index <= grid.n[static_cast<std::size_t>(axis)] - 1 + 1e-6))
+            return false;
+    }
+    return true;
+}
+
+bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
+{
+    return std::all_of(clips.begin(), clips.end(),
+                       [&](const ClipPlane& clip)
+                       {
+                           const double length = norm(clip.normal);
+                           return dot(p - clip.point, clip.normal) <= 1e-9 * dp * length;
+                       });
+}
+
+void append(WallParticles& to, const WallParticles& from, std::size_t i)
+{
+    to.positions.push_back(from.positions[i]);
+    to.kinds.push_back(from.kinds[i]);
+    to.bodies.push_back(from.bodies[i]);
+    to.facets.push_back(from.facets[i]);
+    to.mk.push_back(from.mk[i]);
+    to.held.push_back(from.held[i]);
+}
+
+/// The slab's runs that belong to the zone of a wall.
+Spans zone_of(const std::vector<Run>& runs)
+{
+    Spans out;
+    for (const Run& r : runs)
+        if ((r.mk & wall_zone_bit) != 0) out.push_back({r.y, r.z_begin, r.z_end});
+    sort_and_join(out);
+    return out;
+}
+
+TriangleSoup soup_of(const SurfaceMesh& mesh)
+{
+    TriangleSoup soup;
+    soup.vertices.reserve(3 * mesh.facets.size());
+    for (const auto& f : mesh.facets)
+        for (const std::uint32_t v : f) soup.vertices.push_back(mesh.vertices[v]);
+    return soup;
+}
+
+/// Inside by the sum of signed crossings along each axis, two of three. Used away from the surface.
+bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
+{
+    int votes = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        int sum = 0;
+        for (const Crossing& c : query.crossings(p, axis)) sum -= c.step;
+        votes += sum > 0 ? 1 : 0;
+    }
+    return votes >= 2;
+}
+
+SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& feature_options,
+                            const FitSettings& settings, const LatticeGrid& grid, int threads,
+                            std::vector<Vec3>& cut)
+{
+    FitOptions options;
+    options.dp = grid.dp;
+    options.lattice_origin = grid.origin;
+    options.density = settings.density;
+    SurfaceParticles particles = fit_surface(
+        body.mesh, body.features,
+        place_feature_particles(body.mesh, body.features, feature_options), options, threads);
+    if (settings.one_sheet)
+        cut = keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
+    return particles;
+}
+
+/// In 2D the wall is where the surface meets the plane of the particles.
+SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid)
+{
+    SectionOptions options;
+    options.y = grid.origin.y;
+    options.dp = grid.dp;
+    options.feature_angle_deg = settings.feature_angle_deg;
+    SectionParticles section = section_particles(body.mesh, options);
+    return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
+}
+
+} // namespace
+
+FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+                     const std::vector<ClipPlane>& clips, int threads)
+{
+    FittedDraw out;
+    FittedBody& body = out.body;
+    body.is_solid = shape.is_solid;
+    body.round = shape.round;
+    body.p0 = shape.p0;
+    body.p1 = shape.p1;
+    body.radius = shape.radius;
+    body.mesh = take_in_mesh(shape.soup, {}, threads, body.report);
+    out.warnings = body.report.warnings;
+    FeatureOptions feature_options;
+    feature_options.angle_deg = settings.feature_angle_deg;
+    feature_options.dp = grid.dp;
+    body.features = find_features(body.mesh, feature_options);
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid)
+                   : surface_of(body, feature_options, settings, grid, threads, out.cut);
+    if (body.round != RoundShape::None)
+        parallel_for(
+            surface.positions.size(), threads,
+            [&](std::size_t i)
+            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
+            4096);
+
+    WallZoneOptions zone_options;
+    zone_options.clearance_dp = settings.clearance_dp;
+    zone_options.wall_particles = surface.positions.size();
+    zone_options.is_solid = shape.is_solid;
+    WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
+    out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
+    if (shape.is_solid && !zone.has_inside)
+        out.warnings.push_back(
+            "the shape has no inside that could be filled: only its surface has particles");
+    body.clearance_inside = zone.clearance_inside_dp * grid.dp;
+    body.clearance_outside = zone.clearance_outside_dp * grid.dp;
+    out.zone = by_slab(std::move(zone.zone), grid);
+    out.volume = by_slab(shape.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
+    for (const ClipPlane& clip : clips)
+        parallel_for(grid.n[0], threads,
+                     [&](std::size_t x)
+                     {
+                         apply_clip(out.zone[x], static_cast<std::uint32_t>(x), clip, grid);
+                         apply_clip(out.volume[x], static_cast<std::uint32_t>(x), clip, grid);
+                     });
+
+    const std::size_t n = surface.positions.size();
+    std::vector<char> is_kept(n);
+    parallel_for(
+        n, threads,
+        [&](std::size_t i)
+        {
+            const Vec3& p = surface.positions[i];
+            is_kept[i] = is_in_domain(p, grid) && is_kept_by(clips, p, grid.dp);
+        },
+        4096);
+    WallParticles& particles = out.particles;
+    std::size_t kept = 0;
+    for (const char k : is_kept) kept += k != 0;
+    particles.positions.reserve(kept);
+    particles.kinds.reserve(kept);
+    particles.facets.reserve(kept);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        if (!is_kept[i])
+        {
+            out.cut.push_back(surface.positions[i]);
+            continue;
+        }
+        particles.positions.push_back(surface.positions[i]);
+        particles.kinds.push_back(surface.kinds[i]);
+        particles.facets.push_back(surface.facets[i]);
+    }
+    particles.bodies.assign(kept, 0);
+    particles.mk.assign(kept, 0);
+    particles.held.assign(kept, 0);
+
+    // A blob smaller than a cell, or a clip, can leave a particle without a node of the zone.
+    std::vector<Spans> added(grid.n[0]);
+    for (const Vec3& p : particles.positions)
+    {
+        const CellCorners corners = cell_corners(p, grid);
+        const auto in_zone = [&](const Node& c)
+        {
+            return contains(out.zone[static_cast<std::size_t>(c.x)],
+                            static_cast<std::uint32_t>(c.y), static_cast<std::uint32_t>(c.z));
+        };
+        const auto* end = corners.nodes.begin() + corners.count;
+        if (corners.count == 0 || std::any_of(corners.nodes.begin(), end, in_zone)) continue;
+        const Node& c = corners.nodes[0];
+        added[static_cast<std::size_t>(c.x)].push_back({static_cast<std::uint32_t>(c.y),
+                                                        static_cast<std::uint32_t>(c.z),
+                                                        static_cast<std::uint32_t>(c.z) + 1});
+    }
+    for (std::size_t x = 0; x < added.size(); ++x)
+    {
+        if (added[x].empty()) continue;
+        sort_and_join(added[x]);
+        out.zone[x] = unite(out.zone[x], added[x]);
+        out.volume[x] = subtract(out.volume[x], added[x]);
+    }
+    return out;
+}
+
+void WallPainter::add(FittedDraw&& draw)
+{
+    if (has_walls()) cut_by(draw);
+    FittedWalls& walls = field_->walls;
+    const auto body = static_cast<std::uint32_t>(walls.bodies.size());
+    const std::uint16_t mk = draw.body.mk;
+    parallel_for(field_->slabs.size(), threads_,
+                 [&](std::size_t x)
+                 {
+                     paint(field_->slabs[x], draw.volume[x], mk);
+                     paint(field_->slabs[x], draw.zone[x],
+                           static_cast<std::uint16_t>(mk | wall_zone_bit));
+                 });
+    walls.bodies.push_back(std::move(draw.body));
+    const std::size_t first = walls.particles.size();
+    for (std::size_t i = 0; i < draw.particles.size(); ++i)
+    {
+        draw.particles.bodies[i] = body;
+        draw.particles.mk[i] = mk;
+        append(walls.particles, draw.particles, i);
+    }
+    walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
+    walls.cut_bodies.resize(walls.cut.size(), body);
+    is_cut_.resize(walls.particles.size(), 0);
+    anchor(first, draw.zone);
+}
+
+void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& zone)
+{
+    const LatticeGrid& grid = field_->grid;
+    const std::vector<Vec3>& positions = field_->walls.particles.positions;
+    anchors_.resize(field_->slabs.size());
+    std::vector<Node> nodes(positions.size() - first_particle);
+    parallel_for(
+        nodes.size(), threads_,
+        [&](std::size_t i)
+        {
+            const CellCorners corners = cell_corners(positions[first_particle + i], grid);
+            for (int k = 0; k < corners.count; ++k)
+            {
+                const Node& c = corners.nodes[static_cast<std::size_t>(k)];
+                if (!contains(zone[static_cast<std::size_t>(c.x)], static_cast<std::uint32_t>(c.y),
+                              static_cast<std::uint32_t>(c.z)))
+                    continue;
+                nodes[i] = c;
+                break;
+            }
+        },
+        1024);
+    std::vector<char> touched(anchors_.size(), 0);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+        const auto x = static_cast<std::size_t>(nodes[i].x);
+        anchors_[x].push_back({static_cast<std::uint32_t>(nodes[i].y),
+                               static_cast<std::uint32_t>(nodes[i].z),
+                               static_cast<std::uint32_t>(first_particle + i)});
+        touched[x] = 1;
+    }
+    parallel_for(anchors_.size(), threads_,
+                 [&](std::size_t x)
+                 {
+                     if (!touched[x]) return;
+                     std::sort(anchors_[x].begin(), anchors_[x].end(),
+                               [](const Anchor& a, const Anchor& b) {
+                                   return std::tuple(a.y, a.z, a.particle) <
+                                          std::tuple(b.y, b.z, b.particle);
+                               });
+                 });
+}
+
+void WallPainter::cut_by(const FittedDraw& draw)
+{
+    const double reach = cut_distance_dp * field_->grid.dp;
+    Box3 bounds;
+    for (const auto& f : draw.body.mesh.facets)
+        for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
+    const auto is_near = [&](const Vec3& p)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            if (p[axis] < bounds.min[axis] - reach || p[axis] > bounds.max[axis] + reach)
+                return false;
+        return true;
+    };
+    std::optional<MeshQuery> query;
+    const std::vector<Vec3>& positions = field_->walls.particles.positions;
+    if (std::none_of(positions.begin(), positions.end(), is_near)) return;
+    query.emplace(soup_of(draw.body.mesh), threads_);
+    parallel_for(
+        positions.size(), threads_,
+        [&](std::size_t i)
+        {
+            const Vec3& p = positions[i];
+            if (is_cut_[i] || !is_near(p)) return;
+            if (query->closest_point(p).distance < reach ||
+                (draw.body.is_solid && is_inside_mesh(*query, p)))
+                is_cut_[i] = 1;
+        },
+        1024);
+}
+
+Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls)
+{
+    if (!has_walls() || spans.empty()) return {};
+    std::vector<std::uint16_t>& mks = field_->walls.particles.mk;
+    if (x < anchors_.size())
+    {
+        auto span = spans.begin();
+        for (const Anchor& a : anchors_[x])
+        {
+            while (span != spans.end() && (span->y < a.y || (span->y == a.y && span->z_end <= a.z)))
+                ++span;
+            if (span == spans.end()) break;
+            if (span->y != a.y || a.z < span->z_begin || is_cut_[a.particle]) continue;
+            if (keeps_walls)
+                mks[a.particle] = mk;
+            else
+                is_cut_[a.particle] = 1;
+        }
+    }
+    return keeps_walls ? intersect(spans, zone_of(field_->slabs[x])) : Spans{};
+}
+
+void WallPainter::reset()
+{
+    field_->walls = {};
+    anchors_.clear();
+    is_cut_.clear();
+}
+
+void WallPainter::finish()
+{
+    FittedWalls& walls = field_->walls;
+    WallParticles& all = walls.particles;
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        if (!is_cut_[i]) continue;
+        walls.cut.push_back(all.positions[i]);
+        walls.cut_bodies.push_back(all.bodies[i]);
+    }
+    WallParticles left;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (!is_cut_[i]) append(left, all, i);
+    all = std::move(left);
+    is_cut_.clear();
+    anchors_.clear();
+    if (walls.cut.empty()) return;
+    const double reach = held_distance_dp * field_->grid.dp;
+    PointGrid cut(reach, walls.cut.size());
+    for (const Vec3& p : walls.cut) cut.add(p);
+    parallel_for(
+        all.size(), threads_,
+        [&](std::size_t i)
+        {
+            cut.for_each_near(all.positions[i], reach,
+                              [&](std::uint32_t c, double)
+                              {
+                                  if (walls.cut_bodies[c] == all.bodies[i]) all.held[i] = 1;
+                              });
+        },
+        1024);
+}
+
+} // namespace fppg

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
+#include "fppg/lattice.h"
+
+#include "lattice/spans.h"
+
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// What one fitted draw adds to the field.
+struct FittedDraw
+{
+    FittedBody body;
+    WallParticles particles;   ///< of this body only; `bodies` is 0
+    std::vector<Vec3> cut;     ///< places of particles that were left out
+    std::vector<Spans> volume; ///< one entry a slab of the lattice
+    std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
+    std::vector<std::string> warnings; ///< without the place of the draw
+};
+
+/// Puts particles on the true surface of a shape and finds the nodes inside and around it.
+///
+/// shape    in the coordinates of the case
+/// clips    particles and nodes beyond them are left out; particles are judged by their true place
+/// returns  particles inside the domain (between its first and last nodes) only
+/// throws   GeometryError without the place of the draw
+FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+                     const std::vector<ClipPlane>& clips, int threads);
+
+/// The walls of a field while it is drawn: what a later draw paints over is cut out of them.
+///
+/// Draws on the lattice cut the particles whose node (the nearest one of the wall's zone at the
+/// corners of their cell) they paint. A later fitted body cuts by its true shape: everything inside
+/// it when it is solid, and everything nearer than 0.5 dp to its surface.
+class WallPainter
+{
+public:
+    WallPainter(RunField& field, int threads) : field_(&field), threads_(threads) {}
+
+    bool has_walls() const { return !field_->walls.bodies.empty(); }
+
+    /// A fitted body on top of all that was drawn; paints its nodes too.
+    void add(FittedDraw&& draw);
+
+    /// Before the spans of slab x are painted with `mk` (0: void). A redraw gives walls another mk
+    /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
+    /// same time. Returns the spans that must be painted with `mk` and the bit of the zone.
+    Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls);
+
+    /// Forgets everything.
+    void reset();
+
+    /// Takes the cut particles out; those that are left within 2 dp of one are held.
+    void finish();
+
+private:
+    struct Anchor
+    {
+        std::uint32_t y = 0;
+        std::uint32_t z = 0;
+        std::uint32_t particle = 0;
+    };
+
+    void cut_by(const FittedDraw& draw);
+    void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
+
+    RunField* field_;
+    int threads_;
+    std::vector<std::vector<Anchor>> anchors_; ///< per slab, sorted by (y, z, particle)
+    std::vector<char> is_cut_;                 ///< per particle of field.walls
+};
+
+} // namespace fppg

@@ -1,0 +1,208 @@
+#include "relax/fit_count.h"
+
+#include "core/parallel.h"
+#include "relax/continuum.h"
+#include "relax/kernel.h"
+
+#include <numbers>
+
+namespace fppg
+{
+
+namespace
+{
+
+/// A stretch of so many particles that together make up for less than half of one is even enough.
+constexpr std::size_t even_stretch = 40;
+constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+
+/// The share of the kernel's integral that is farther than a radius, by the rule of rectangles.
+double share_beyond(double radius, double h, bool is_2d)
+{
+    constexpr int steps = 200;
+    const double width = (2 * h - radius) / steps;
+    double sum = 0;
+    for (int n = 0; width > 0 && n < steps; ++n)
+    {
+        const double r = radius + (n + 0.5) * width;
+        const double w = wendland(r / h) * width;
+        sum += is_2d ? wendland_alpha_2d(h) * w * 2 * std::numbers::pi * r
+                     : wendland_alpha_3d(h) * w * 4 * std::numbers::pi * r * r;
+    }
+    return sum;
+}
+
+/// How far the Shepard sum of a particle is from 1, at h 1.3 times as large: there the sum over
+/// even particles is 1 to a few thousandths, however they are arranged. What lies beyond the reach
+/// of the lists, `cut_off`, is taken as even. Near to a free surface, where the sum tells nothing,
+/// it is 0.
+double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+                 const HalfSpace& beyond, double alpha, double h, double cut_off)
+{
+    double sum = 1;
+    for (const std::uint32_t j : near)
+    {
+        if (j < band.moving && band.is_held[j] != 0) return 0;
+        const float x = band.points.x[j] - band.points.x[i];
+        const float y = band.points.y[j] - band.points.y[i];
+        const float z = band.points.z[j] - band.points.z[i];
+        sum += wendland(static_cast<double>(std::sqrt(x * x + y * y + z * z)) / h);
+    }
+    sum = alpha * sum + cut_off;
+    for_each_wall(band, i,
+                  [&](const Plane&, float distance)
+                  { sum += beyond.share(double{distance} + behind_wall); });
+    return sum - 1;
+}
+
+/// Whether a straight way of a given length ends and stays off all walls.
+bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, double length,
+                 double limit, const ClosestWallPoint& closest)
+{
+    if (!closest) return true;
+    for (double way = 0;;)
+    {
+        const Vec3 at = from + (band.dp * way) * direction;
+        const double distance = norm(closest(at) - at) / band.dp;
+        if (distance < limit) return false;
+        if (way >= length) return true;
+        way = std::min(length, way + 0.9 * distance);
+    }
+}
+
+/// The place beside a particle that is farthest from others, among 26 directions (8 in 2D); the
+/// particle's own where all are too near to others or to a wall.
+Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+                const RelaxVolumeOptions& options, const ClosestWallPoint& closest)
+{
+    constexpr double length = 0.75;
+    constexpr double least_gap = 0.5;
+    double widest = least_gap;
+    Vec3 best = band.place(i);
+    for (int number = 0; number < 27; ++number)
+    {
+        Vec3 direction{static_cast<double>(number % 3 - 1), static_cast<double>(number / 3 % 3 - 1),
+                       static_cast<double>(number / 9 - 1)};
+        if (number == 13 || (options.is_2d && direction.y != 0)) continue;
+        direction = direction / norm(direction);
+        double gap = 2;
+        for (const std::uint32_t j : near)
+            gap = std::min(gap, norm(Vec3{double{band.points.x[j]} - double{band.points.x[i]},
+                                          double{band.points.y[j]} - double{band.points.y[i]},
+                                          double{band.points.z[j]} - double{band.points.z[i]}} -
+                                     length * direction));
+        // A gap must be wider by more than rounding, so that equal ones do not hang on it.
+        if (gap < widest + 1e-3) continue;
+        if (!is_way_free(band, band.place(i), direction, length,
+                         std::min(options.min_wall_distance_dp + 0.05,
+                                  static_cast<double>(band.wall_distances[i] - band.moved_by(i))),
+                         closest))
+            continue;
+        widest = gap;
+        best = band.place(i) + (band.dp * length) * direction;
+    }
+    return best;
+}
+
+/// Takes removed particles out of an array and puts inserted ones behind those that stay.
+template <typename T, typename Value>
+void change_array(std::vector<T>& array, const CountChange& change, const Value& inserted)
+{
+    const std::size_t moving = change.is_removed.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < moving; ++i)
+        if (change.is_removed[i] == 0) array[kept++] = array[i];
+    std::vector<T> come;
+    for (const CountChange::Inserted& one : change.inserted) come.push_back(inserted(one));
+    array.erase(array.begin() + static_cast<std::ptrdiff_t>(kept),
+                array.begin() + static_cast<std::ptrdiff_t>(moving));
+    // Room for no more than these: doubling would cost more than all that is done here.
+    array.reserve(array.size() + come.size());
+    array.insert(array.begin() + static_cast<std::ptrdiff_t>(kept), come.begin(), come.end());
+}
+
+} // namespace
+
+CountChange find_count_change(const Band& band, const NeighbourList& list,
+                              const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
+                              int threads)
+{
+    constexpr double wider = 1.3;
+    const double h = wider * options.h_dp;
+    const HalfSpace beyond(h, options.is_2d);
+    const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
+    const double cut_off = share_beyond(list_radius(options.h_dp), h, options.is_2d);
+    std::vector<float> excess(list.rows(), 0.0f);
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving || band.is_held[i] != 0) return;
+            excess[row] = static_cast<float>(
+                excess_at(band, i, list.neighbours(row), beyond, alpha, h, cut_off));
+        },
+        chunk_size);
+    CountChange change;
+    change.is_removed.assign(band.moving, 0);
+    double sum = 0;
+    std::size_t highest = 0;
+    std::size_t lowest = 0;
+    std::size_t length = 0;
+    for (std::size_t row = 0; row < list.rows(); ++row)
+    {
+        if (excess[row] == 0) continue;
+        ++length;
+        sum += static_cast<double>(excess[row]);
+        if (excess[row] > excess[highest]) highest = row;
+        if (excess[row] < excess[lowest]) lowest = row;
+        if (std::abs(sum) < 0.5) continue;
+        if (length > even_stretch)
+            sum = 0;
+        else if (sum > 0)
+        {
+            change.is_removed[list.point(highest)] = 1;
+            ++change.removed;
+            sum -= 1;
+        }
+        else
+        {
+            const std::uint32_t i = list.point(lowest);
+            const Vec3 place = gap_beside(band, i, list.neighbours(lowest), options, closest);
+            if (!(place == band.place(i))) change.inserted.push_back({i, place});
+            sum += 1;
+        }
+        length = 0;
+        highest = lowest = row + 1 < list.rows() ? row + 1 : row;
+    }
+    return change;
+}
+
+void change_count(Band& band, const CountChange& change)
+{
+    using Inserted = CountChange::Inserted;
+    const auto place = [&](const Inserted& one) { return (one.place - band.origin) / band.dp; };
+    const auto zero = [](const Inserted&) { return 0.0f; };
+    change_array(band.points.x, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).x); });
+    change_array(band.points.y, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).y); });
+    change_array(band.points.z, change,
+                 [&](const Inserted& one) { return static_cast<float>(place(one).z); });
+    for (auto* array :
+         {&band.velocities.x, &band.velocities.y, &band.velocities.z, &band.moved.y, &band.moved.z,
+          &band.wall_distances, &band.wall_normals.x, &band.wall_normals.y, &band.wall_normals.z})
+        change_array(*array, change, zero);
+    // As if moved far from a wall that was near: walls are looked for before it moves.
+    change_array(band.moved.x, change, [](const Inserted&) { return 1.0f; });
+    const std::vector<std::uint32_t> sources = band.sources;
+    change_array(band.sources, change, [&](const Inserted& one) { return sources[one.beside]; });
+    change_array(band.is_inserted, change, [](const Inserted&) { return char{1}; });
+    change_array(band.is_held, change, [](const Inserted&) { return char{0}; });
+    change_array(band.light_looks, change, [](const Inserted&) { return char{0}; });
+    change_array(band.meetings, change, [](const Inserted&) { return no_meeting; });
+    band.volume_end += band.sources.size() - band.moving;
+    band.moving = band.sources.size();
+}
+
+} // namespace fppg

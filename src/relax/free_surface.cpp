@@ -1,0 +1,84 @@
+#include "relax/free_surface.h"
+
+#include "core/parallel.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+
+/// Which of the six neighbours along the axes a particle has, as bits.
+unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)
+{
+    unsigned found = 0;
+    for (const std::uint32_t j : near)
+    {
+        if (j >= band.volume_end) continue;
+        const std::array<float, 3> d{band.points.x[j] - band.points.x[i],
+                                     band.points.y[j] - band.points.y[i],
+                                     band.points.z[j] - band.points.z[i]};
+        for (unsigned axis = 0; axis < 3; ++axis)
+        {
+            const float across = std::abs(d[(axis + 1) % 3]) + std::abs(d[(axis + 2) % 3]);
+            const float along = std::abs(d[axis]);
+            if (across < 0.2f && std::abs(along - 1) < 0.1f)
+                found |= 1u << (2 * axis + (d[axis] > 0 ? 1 : 0));
+        }
+    }
+    return found;
+}
+
+} // namespace
+
+std::size_t hold_free_surface(Band& band, const NeighbourList& list,
+                              const VolumeSurroundings& around, const RelaxVolumeOptions& options,
+                              int threads)
+{
+    std::vector<char> is_surface(band.moving, 0);
+    const auto is_explained = [&](std::size_t i, unsigned side)
+    {
+        if (!around.closest) return false;
+        Vec3 node = band.place(i);
+        node[static_cast<int>(side / 2)] += side % 2 == 1 ? band.dp : -band.dp;
+        return norm(around.closest(node) - node) <= (options.clearance_dp + 1e-4) * band.dp;
+    };
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving) return;
+            const unsigned found = axis_neighbours(band, i, list.neighbours(row));
+            for (unsigned side = 0; side < 6; ++side)
+            {
+                if (options.is_2d && side / 2 == 1) continue;
+                if ((found >> side & 1) == 0 && !is_explained(i, side)) is_surface[i] = 1;
+            }
+        },
+        chunk_size);
+    // A little less than 2 h, where the kernel has ended: rows at just that distance are free.
+    const auto reach = static_cast<float>(1.999 * options.h_dp);
+    parallel_for(
+        list.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving) return;
+            band.is_held[i] = is_surface[i];
+            for (const std::uint32_t j : list.neighbours(row))
+            {
+                if (j >= band.moving || is_surface[j] == 0) continue;
+                const float x = band.points.x[j] - band.points.x[i];
+                const float y = band.points.y[j] - band.points.y[i];
+                const float z = band.points.z[j] - band.points.z[i];
+                if (x * x + y * y + z * z < reach * reach) band.is_held[i] = 1;
+            }
+        },
+        chunk_size);
+    return static_cast<std::size_t>(std::count(band.is_held.begin(), band.is_held.end(), 1));
+}
+
+} // namespace fppg

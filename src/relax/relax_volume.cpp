@@ -1,0 +1,383 @@
+#include "fppg/relax_volume.h"
+
+#include "core/parallel.h"
+#include "fppg/error.h"
+#include "relax/continuum.h"
+#include "relax/fit_count.h"
+#include "relax/free_surface.h"
+#include "relax/kernel.h"
+#include "relax/volume_band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace fppg
+{
+
+namespace
+{
+
+// All lengths below are in dp, unless they are of Vec3.
+
+constexpr float momentum = 0.9f;
+constexpr float longest_step = 0.1f;
+constexpr float push_reach = 0.8f;
+constexpr float push_strength = 5.6f; ///< in units of the kernel's factor, a dp
+constexpr int most_iterations = 100;
+/// The count is fitted at these iterations: when forces have evened out what they can.
+constexpr int first_count_change = 5;
+constexpr int count_change_interval = 5;
+constexpr int last_count_change = 15;
+
+constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+
+/// What one chunk of particles adds up to.
+struct ChunkSums
+{
+    double work = 0; ///< force times velocity
+    double shepard = 0;
+    double shepard_squared = 0;
+    std::size_t count = 0;
+    float largest_step = 0;
+    std::size_t pushed_back = 0;
+};
+
+void check(const RelaxVolumeOptions& o, std::span<const Vec3> positions,
+           const VolumeSurroundings& surroundings)
+{
+    const auto require = [](bool is_met, const char* name, double value, const char* range)
+    {
+        if (!is_met)
+            throw GeometryError(fmt::format("relaxation of volume particles: {} is {}, not {}",
+                                            name, value, range));
+    };
+    require(o.dp > 0 && std::isfinite(o.dp), "dp", o.dp, "above 0");
+    require(o.h_dp >= 0.6 && o.h_dp <= 2, "h_dp", o.h_dp, "from 0.6 to 2");
+    require(o.iterations >= 0, "iterations", o.iterations, "at least 0");
+    require(o.min_wall_distance_dp >= 0 && o.min_wall_distance_dp <= 1, "min_wall_distance_dp",
+            o.min_wall_distance_dp, "from 0 to 1");
+    require(o.clearance_dp >= 0 && o.clearance_dp <= 2, "clearance_dp", o.clearance_dp,
+            "from 0 to 2");
+    for (const auto& some : {positions, surroundings.held, surroundings.walls})
+        for (const Vec3& p : some)
+            if (!is_finite(p))
+                throw GeometryError(fmt::format(
+                    "relaxation of volume particles: ({}, {}, {}) is no position", p.x, p.y, p.z));
+}
+
+/// The forces of equation 15 and the Shepard sums, with what is the same for all particles.
+struct Forces
+{
+    Forces(double h, bool is_2d)
+        : beyond(h, is_2d), alpha(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h))
+    {
+        inverse_h = static_cast<float>(1 / h);
+        slope = static_cast<float>(5 * alpha / (h * h));
+        push = static_cast<float>(push_strength * alpha);
+    }
+
+    HalfSpace beyond;
+    double alpha;
+    float inverse_h;
+    float slope;
+    float push;
+
+    /// Offsets of neighbours, read one by one so that the sums can be vectorised.
+    struct Offsets
+    {
+        std::vector<float> x, y, z;
+    };
+
+    struct Result
+    {
+        float x, y, z;
+        double shepard;
+    };
+
+    /// The force on particle i and its Shepard sum.
+    Result on(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
+              Offsets& offsets) const
+    {
+        const std::size_t n = near.size();
+        if (offsets.x.size() < n)
+            for (auto* v : {&offsets.x, &offsets.y, &offsets.z}) v->resize(2 * n);
+        float* const dx = offsets.x.data();
+        float* const dy = offsets.y.data();
+        float* const dz = offsets.z.data();
+        const PointArrays& points = band.points;
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            const std::uint32_t j = near[k];
+            dx[k] = points.x[i] - points.x[j];
+            dy[k] = points.y[i] - points.y[j];
+            dz[k] = points.z[i] - points.z[j];
+        }
+        float fx = 0, fy = 0, fz = 0, sum = 0;
+#pragma omp simd reduction(+ : fx, fy, fz, sum)
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
+            const float r = std::sqrt(squared);
+            const float q = r * inverse_h;
+            const float s = std::max(0.0f, 1 - 0.5f * q);
+            const float s3 = s * s * s;
+            const float closeness = std::max(0.0f, 1 - r * (1 / push_reach));
+            const float size = slope * s3 + push * closeness;
+            fx += size * dx[k];
+            fy += size * dy[k];
+            fz += size * dz[k];
+            sum += s3 * s * (2 * q + 1);
+        }
+        double shepard = alpha * (1 + static_cast<double>(sum));
+        for_each_wall(band, i,
+                      [&](const Plane& plane, float distance)
+                      {
+                          const double way = double{distance} + behind_wall;
+                          if (way >= beyond.reach()) return;
+                          const auto size = static_cast<float>(beyond.force(way));
+                          fx -= size * plane.x;
+                          fy -= size * plane.y;
+                          fz -= size * plane.z;
+                          shepard += beyond.share(way);
+                      });
+        return {fx, fy, fz, shepard};
+    }
+};
+
+ChunkSums add_up(const std::vector<ChunkSums>& chunks)
+{
+    ChunkSums total;
+    for (const ChunkSums& c : chunks)
+    {
+        total.work += c.work;
+        total.shepard += c.shepard;
+        total.shepard_squared += c.shepard_squared;
+        total.count += c.count;
+        total.largest_step = std::max(total.largest_step, c.largest_step);
+        total.pushed_back += c.pushed_back;
+    }
+    return total;
+}
+
+template <typename Body>
+ChunkSums sum_over_chunks(std::size_t n, int threads, const Body& body)
+{
+    std::vector<ChunkSums> chunks((n + chunk_size - 1) / chunk_size);
+    parallel_for(chunks.size(), threads,
+                 [&](std::size_t c)
+                 {
+                     const std::size_t end = std::min(n, (c + 1) * chunk_size);
+                     for (std::size_t k = c * chunk_size; k < end; ++k) body(k, chunks[c]);
+                 });
+    return add_up(chunks);
+}
+
+/// Adds the forces to the velocities, of which `kept` remains.
+ChunkSums accelerate(Band& band, const NeighbourList& list, const Forces& forces, float step_length,
+                     float kept, int threads)
+{
+    return sum_over_chunks(list.rows(), threads,
+                           [&](std::size_t row, ChunkSums& sums)
+                           {
+                               const std::uint32_t i = list.point(row);
+                               if (i >= band.moving || band.is_held[i] != 0) return;
+                               thread_local Forces::Offsets offsets;
+                               const Forces::Result f =
+                                   forces.on(band, i, list.neighbours(row), offsets);
+                               sums.shepard += f.shepard;
+                               sums.shepard_squared += (f.shepard - 1) * (f.shepard - 1);
+                               ++sums.count;
+                               float& x = band.velocities.x[i];
+                               float& y = band.velocities.y[i];
+                               float& z = band.velocities.z[i];
+                               sums.work += static_cast<double>(f.x * x + f.y * y + f.z * z);
+                               x = kept * x + step_length * f.x;
+                               y = kept * y + step_length * f.y;
+                               z = kept * z + step_length * f.z;
+                           });
+}
+
+/// A step that may come too near to a wall: checked with the exact distance, taken back where it
+/// does, and given up where that does not help.
+class WallGuard
+{
+public:
+    WallGuard(const ClosestWallPoint& closest, const RelaxVolumeOptions& options)
+        : closest_(closest), limit_(options.min_wall_distance_dp), is_2d_(options.is_2d)
+    {
+    }
+
+    bool is_safe(const Band& band, std::size_t i, const Vec3& step) const
+    {
+        if (!closest_) return true;
+        const Vec3 moved = Vec3{band.moved.x[i], band.moved.y[i], band.moved.z[i]} + step;
+        return static_cast<double>(band.wall_distances[i]) - norm(moved) > limit_ + 1e-3;
+    }
+
+    /// Returns the step to make instead, in dp.
+    Vec3 allowed_step(Band& band, std::size_t i, Vec3 step) const
+    {
+        const Vec3 start = band.place(i);
+        const WallPlanes nearest = find_nearest_wall(start, (2 * limit_ + 1) * band.dp, closest_);
+        renew_nearest_wall(band, i, nearest);
+        const double distance = nearest.distance / band.dp;
+        const double limit = std::min(limit_, distance);
+        if (norm(step) > 0.9 * distance) step = step * (0.9 * distance / norm(step));
+        for (int attempt = 0; attempt < 3; ++attempt)
+        {
+            const Vec3 end = band.place_after(i, step);
+            const Vec3 to_wall = (closest_(end) - end) / band.dp;
+            const double left = norm(to_wall);
+            if (left >= limit && norm(step) < distance) return step;
+            if (!(left > 0)) break;
+            Vec3 back = to_wall * ((limit - left + 1e-3) / left);
+            if (is_2d_) back.y = 0;
+            step = step - back;
+        }
+        return {};
+    }
+
+private:
+    const ClosestWallPoint& closest_;
+    double limit_;
+    bool is_2d_;
+};
+
+ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
+{
+    return sum_over_chunks(
+        band.moving, threads,
+        [&](std::size_t i, ChunkSums& sums)
+        {
+            if (band.is_held[i] != 0) return;
+            Vec3 step{band.velocities.x[i], band.velocities.y[i], band.velocities.z[i]};
+            if (options.is_2d) step.y = 0;
+            const double length = norm(step);
+            if (length > double{longest_step}) step = step * (double{longest_step} / length);
+            if (!guard.is_safe(band, i, step))
+            {
+                const Vec3 allowed = guard.allowed_step(band, i, step);
+                if (!(allowed == step)) ++sums.pushed_back;
+                step = allowed;
+            }
+            const auto x = static_cast<float>(step.x);
+            const auto y = static_cast<float>(step.y);
+            const auto z = static_cast<float>(step.z);
+            band.velocities.x[i] = x;
+            band.velocities.y[i] = y;
+            band.velocities.z[i] = z;
+            band.points.x[i] += x;
+            band.points.y[i] += y;
+            band.points.z[i] += z;
+            band.moved.x[i] += x;
+            band.moved.y[i] += y;
+            band.moved.z[i] += z;
+            sums.largest_step = std::max(sums.largest_step, static_cast<float>(norm(step)));
+        });
+}
+
+/// Gives the positions back in the caller's order, inserted ones last.
+void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
+               RelaxVolumeReport& report)
+{
+    std::vector<std::uint32_t> order(band.moving);
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i)
+    { return std::tuple(band.is_inserted[i], band.sources[i], i); };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::vector<Vec3> result(band.moving);
+    for (std::size_t k = 0; k < order.size(); ++k)
+    {
+        const std::uint32_t i = order[k];
+        const Vec3& start = positions[band.sources[i]];
+        result[k] = band.is_held[i] != 0 ? start : band.place(i);
+        if (options.is_2d) result[k].y = start.y;
+        if (options.fit_count) report.sources.push_back(band.sources[i]);
+    }
+    positions = std::move(result);
+}
+
+/// An upper bound of the largest eigenvalue of the forces' derivative on square and cubic lattices.
+/// Source: computed over the Brillouin zone for h from 0.7 to 1.5, rounded up.
+double stiffness(double h, bool is_2d)
+{
+    return (is_2d ? 4.2 : 5.0) / (h * h * h);
+}
+
+bool is_count_due(int iteration)
+{
+    return iteration >= first_count_change && iteration <= last_count_change &&
+           (iteration - first_count_change) % count_change_interval == 0;
+}
+
+/// Whether the spread has come down by less than 5 per cent over ten iterations.
+bool has_settled(const std::vector<double>& spreads)
+{
+    constexpr std::size_t apart = 10;
+    return spreads.size() > std::size_t{last_count_change} + apart &&
+           spreads.back() > 0.95 * spreads[spreads.size() - 1 - apart];
+}
+
+} // namespace
+
+RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroundings& surroundings,
+                               const RelaxVolumeOptions& options, int threads)
+{
+    check(options, positions, surroundings);
+    RelaxVolumeReport report;
+    if (positions.empty()) return report;
+    Band band = make_band(positions, surroundings, options, threads);
+    NeighbourList list(0, 0);
+    build_list(list, band, options.h_dp, threads);
+    report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
+
+    const Forces forces(options.h_dp, options.is_2d);
+    const WallGuard guard(surroundings.closest, options);
+    const double wall_reach = 2 * options.h_dp - behind_wall;
+    const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
+    const int last = options.iterations > 0 ? options.iterations : most_iterations;
+    std::vector<double> spreads;
+    float kept = momentum;
+    renew_walls(band, list, wall_reach, true, surroundings.closest, threads);
+    for (int iteration = 1; iteration <= last; ++iteration)
+    {
+        if (list.is_outdated(band.points, threads)) build_list(list, band, options.h_dp, threads);
+        if (options.fit_count && is_count_due(iteration))
+        {
+            const CountChange change =
+                find_count_change(band, list, options, surroundings.closest, threads);
+            report.removed += change.removed;
+            report.inserted += change.inserted.size();
+            change_count(band, change);
+            build_list(list, band, options.h_dp, threads);
+        }
+        if (iteration > 1)
+            renew_walls(band, list, wall_reach, false, surroundings.closest, threads);
+        const ChunkSums sums = accelerate(band, list, forces, step_length, kept, threads);
+        if (sums.count == 0) break;
+        kept = sums.work < 0 ? 0 : momentum;
+        const ChunkSums steps = move(band, guard, options, threads);
+        const auto n = static_cast<double>(sums.count);
+        const double mean = sums.shepard / n;
+        const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);
+        report.iterations = iteration;
+        report.pushed_back += steps.pushed_back;
+        report.shepard_mean = mean;
+        report.shepard_std = std::sqrt(std::max(0.0, variance)) / mean;
+        spreads.push_back(report.shepard_std);
+        if (options.on_iteration &&
+            !options.on_iteration({iteration, report.shepard_mean, report.shepard_std,
+                                   static_cast<double>(steps.largest_step)}))
+            break;
+        if (options.iterations == 0 && has_settled(spreads)) break;
+    }
+    give_back(band, options, positions, report);
+    return report;
+}
+
+} // namespace fppg

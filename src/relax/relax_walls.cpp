@@ -1,0 +1,592 @@
+#include "fppg/relax_walls.h"
+
+#include "core/parallel.h"
+#include "shapes/mesh_query.h"
+#include "shapes/point_grid.h"
+#include "shapes/round_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// Nodes this near to a place where a wall was cut do not move, dp.
+constexpr double reach_of_cuts_dp = 3;
+/// A sheet with nodes of a region this near on both sides stays as it is, dp.
+constexpr double reach_of_sides_dp = 1.5;
+constexpr int surface_iterations = 100;
+constexpr int volume_iterations = 30;
+
+struct NodeIndex
+{
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    std::uint32_t z = 0;
+    bool operator==(const NodeIndex&) const = default;
+};
+
+Vec3 place_of(const NodeIndex& n, const LatticeGrid& grid)
+{
+    return {grid.origin.x + n.x * grid.dp, grid.origin.y + n.y * grid.dp,
+            grid.origin.z + n.z * grid.dp};
+}
+
+/// Blocks of the lattice, a few nodes a side, that have a wall particle in or beside them.
+class NearBlocks
+{
+public:
+    /// side   of a block, nodes
+    /// reach  how many blocks beyond that of the particle count
+    NearBlocks(const std::vector<Vec3>& points, const LatticeGrid& grid, std::uint32_t side,
+               int reach)
+        : side_(side)
+    {
+        std::vector<std::array<std::int64_t, 3>> cores;
+        for (const Vec3& p : points)
+        {
+            std::array<std::int64_t, 3> block{};
+            for (int axis = 0; axis < 3; ++axis)
+                block[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(
+                    std::floor((p[axis] - grid.origin[axis]) / grid.dp / side));
+            if (cores.empty() || cores.back() != block) cores.push_back(block);
+        }
+        std::sort(cores.begin(), cores.end());
+        cores.erase(std::unique(cores.begin(), cores.end()), cores.end());
+        for (const auto& c : cores)
+            for (std::int64_t x = c[0] - reach; x <= c[0] + reach; ++x)
+                for (std::int64_t y = c[1] - reach; y <= c[1] + reach; ++y)
+                    for (std::int64_t z = c[2] - reach; z <= c[2] + reach; ++z)
+                        if (x >= 0 && y >= 0 && z >= 0) keys_.push_back(key(x, y, z));
+        std::sort(keys_.begin(), keys_.end());
+        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    }
+
+    /// Calls visit(z begin, z end) for the stretches of a column that lie in blocks.
+    template <typename Visit>
+    void for_each_stretch(std::uint32_t x, const Run& run, const Visit& visit) const
+    {
+        const auto first = key(x / side_, run.y / side_, run.z_begin / side_);
+        for (auto at = std::lower_bound(keys_.begin(), keys_.end(), first); at != keys_.end(); ++at)
+        {
+            if (*at >> 21 != first >> 21) break;
+            const auto begin = static_cast<std::uint32_t>(*at & 0x1FFFFF) * side_;
+            if (begin >= run.z_end) break;
+            visit(std::max(begin, run.z_begin), std::min(begin + side_, run.z_end));
+        }
+    }
+
+private:
+    static std::uint64_t key(std::uint64_t x, std::uint64_t y, std::uint64_t z)
+    {
+        return x << 42 | y << 21 | z;
+    }
+    template <typename A>
+    static std::uint64_t key(A x, A y, A z)
+    {
+        return key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
+                   static_cast<std::uint64_t>(z));
+    }
+
+    std::uint32_t side_;
+    std::vector<std::uint64_t> keys_;
+};
+
+/// The facets of all bodies as one mesh.
+class AllWalls
+{
+public:
+    AllWalls(const std::vector<FittedBody>& bodies, int threads)
+    {
+        TriangleSoup soup;
+        for (const FittedBody& body : bodies)
+        {
+            first_.push_back(soup.vertices.size() / 3);
+            for (const auto& facet : body.mesh.facets)
+                for (const std::uint32_t v : facet) soup.vertices.push_back(body.mesh.vertices[v]);
+        }
+        if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
+    }
+
+    ClosestPoint closest(const Vec3& p) const { return query_->closest_point(p); }
+    std::size_t body_of(std::uint32_t facet) const
+    {
+        return static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), facet) -
+                                        first_.begin()) -
+               1;
+    }
+    std::uint32_t facet_in_body(std::uint32_t facet) const
+    {
+        return static_cast<std::uint32_t>(facet - first_[body_of(facet)]);
+    }
+
+private:
+    std::vector<std::size_t> first_;
+    std::optional<MeshQuery> query_;
+};
+
+/// Nodes of a set of mks that are relaxed together.
+struct Region
+{
+    std::string what;
+    std::vector<double> band; ///< per mk, in dp; 0: not of the region
+    std::vector<char> beside; ///< per mk: not of the region, but its nodes push
+    bool is_solid = false;
+    double h_dp = 1;
+    std::optional<int> iterations;
+};
+
+class Relaxation
+{
+public:
+    Relaxation(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
+               RelaxReport& report)
+        : def_(def), field_(field), threads_(threads), observe_(observe), report_(report)
+    {
+    }
+
+    void run()
+    {
+        if (!field_.grid.is_2d) relax_surfaces();
+        relax_volumes();
+    }
+
+private:
+    const FitSettings* settings_of(std::uint16_t mk) const { return fit_settings(def_.fit, mk); }
+
+    bool observe(const RelaxStep& step)
+    {
+        if (observe_ && !observe_(step)) report_.is_stopped = true;
+        return !report_.is_stopped;
+    }
+
+    /// All bodies whose mks are relaxed alike are one call.
+    void relax_surfaces()
+    {
+        std::vector<RelaxSettings> kinds;
+        std::vector<std::size_t> kind_of_body;
+        for (const FittedBody& body : field_.walls.bodies)
+        {
+            const FitSettings* settings = settings_of(body.mk);
+            const RelaxSettings relax = settings != nullptr ? settings->relax : RelaxSettings{};
+            const auto known = std::find(kinds.begin(), kinds.end(), relax);
+            kind_of_body.push_back(static_cast<std::size_t>(known - kinds.begin()));
+            if (known == kinds.end()) kinds.push_back(relax);
+        }
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        {
+            if (report_.is_stopped || !kinds[kind].is_active) continue;
+            std::vector<char> is_meant;
+            for (const std::size_t k : kind_of_body) is_meant.push_back(k == kind);
+            if (kinds.size() == 1)
+                relax_surface_of(field_.walls.particles, kinds[kind]);
+            else
+            {
+                WallParticles meant = take(is_meant, true);
+                WallParticles others = take(is_meant, false);
+                relax_surface_of(meant, kinds[kind]);
+                join(meant, others);
+            }
+        }
+    }
+
+    static void append(WallParticles& to, const WallParticles& from, std::size_t i)
+    {
+        to.positions.push_back(from.positions[i]);
+        to.kinds.push_back(from.kinds[i]);
+        to.bodies.push_back(from.bodies[i]);
+        to.facets.push_back(from.facets[i]);
+        to.mk.push_back(from.mk[i]);
+        to.held.push_back(from.held[i]);
+    }
+
+    WallParticles take(const std::vector<char>& is_meant, bool meant) const
+    {
+        const WallParticles& all = field_.walls.particles;
+        WallParticles out;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if ((is_meant[all.bodies[i]] != 0) == meant) append(out, all, i);
+        return out;
+    }
+
+    /// Puts two sets together again by body.
+    void join(const WallParticles& a, const WallParticles& b)
+    {
+        WallParticles out;
+        std::size_t i = 0;
+        std::size_t j = 0;
+        while (i < a.size() || j < b.size())
+            if (j == b.size() || (i < a.size() && a.bodies[i] < b.bodies[j]))
+                append(out, a, i++);
+            else
+                append(out, b, j++);
+        field_.walls.particles = std::move(out);
+    }
+
+    void relax_surface_of(WallParticles& particles, const RelaxSettings& settings)
+    {
+        const double dp = field_.grid.dp;
+        const FittedWalls& walls = field_.walls;
+        RelaxSurfaceOptions options;
+        options.dp = dp;
+        options.h = settings.surface_h_dp;
+        options.iterations = settings.iterations.value_or(0);
+        options.max_iterations = surface_iterations;
+        options.on_progress = [&](const RelaxProgress& p)
+        {
+            return observe({"surface", p.iteration,
+                            settings.iterations.value_or(surface_iterations), p.particles,
+                            p.spacing_mean, p.spacing_deviation, p.largest_displacement});
+        };
+        PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
+        for (const Vec3& p : walls.cut) cut.add(p);
+        if (!walls.cut.empty())
+            options.may_insert = [&](std::size_t body, const Vec3& p)
+            {
+                bool is_free = true;
+                cut.for_each_near(p, 1.5 * dp,
+                                  [&](std::uint32_t c, double)
+                                  { is_free = is_free && walls.cut_bodies[c] != body; });
+                return is_free;
+            };
+        std::vector<char> held = std::move(particles.held);
+        const RelaxSurfaceReport done =
+            relax_surface(walls.bodies, particles, held, options, threads_);
+        particles.held = std::move(held);
+        particles.held.resize(particles.size(), 0);
+        parallel_for(
+            particles.size(), threads_,
+            [&](std::size_t i)
+            {
+                project_to_round(walls.bodies[particles.bodies[i]], particles.positions[i],
+                                 particles.facets[i]);
+            },
+            1024);
+        RelaxedPart part;
+        part.what = "surface";
+        part.iterations = done.after.iteration;
+        part.particles = particles.size();
+        part.inserted = done.inserted;
+        part.removed = done.removed;
+        part.mean_before = done.before.spacing_mean;
+        part.deviation_before = done.before.spacing_deviation;
+        part.mean = done.after.spacing_mean;
+        part.deviation = done.after.spacing_deviation;
+        report_.parts.push_back(part);
+    }
+
+    void relax_volumes()
+    {
+        std::vector<Region> regions;
+        std::vector<char> has_solid(65536, 0);
+        for (const FittedBody& body : field_.walls.bodies)
+            if (body.is_solid) has_solid[body.mk] = 1;
+        for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+        {
+            if (!has_solid[mk]) continue;
+            const FitSettings* settings = settings_of(static_cast<std::uint16_t>(mk));
+            if (settings == nullptr || !settings->relax.is_active || settings->relax.band_dp <= 0)
+                continue;
+            Region region;
+            region.what = fmt::format("volume mk {}", mk);
+            region.band.assign(65536, 0);
+            region.band[mk] = settings->relax.band_dp;
+            region.beside.assign(65536, 0);
+            region.is_solid = true;
+            if (settings->relax.iterations)
+                region.iterations = std::min(*settings->relax.iterations, volume_iterations);
+            regions.push_back(std::move(region));
+        }
+        if (!def_.fluid_bands.empty())
+        {
+            Region region;
+            region.what = "fluid";
+            region.band.assign(65536, 0);
+            region.beside.assign(65536, 0);
+            for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+            {
+                const bool is_fluid = mk < def_.mk_bound_first;
+                region.beside[mk] =
+                    is_fluid || settings_of(static_cast<std::uint16_t>(mk)) == nullptr;
+                for (const FluidBand& band : def_.fluid_bands)
+                    if (is_fluid && (band.mk.empty() || std::find(band.mk.begin(), band.mk.end(),
+                                                                  mk) != band.mk.end()))
+                        region.band[mk] = band.width_dp;
+            }
+            regions.push_back(std::move(region));
+        }
+        if (regions.empty() || field_.walls.particles.size() == 0) return;
+        const AllWalls all(field_.walls.bodies, threads_);
+        for (const Region& region : regions)
+            if (!report_.is_stopped) relax_region(region, all);
+    }
+
+    struct Mover
+    {
+        NodeIndex node;
+        std::uint16_t mk = 0;
+    };
+
+    /// The nodes of a region that move, slab by slab.
+    std::vector<Mover> find_movers(const Region& region, const AllWalls& all,
+                                   const NearBlocks& blocks)
+    {
+        const LatticeGrid& grid = field_.grid;
+        const FittedWalls& walls = field_.walls;
+        struct Candidate
+        {
+            Mover mover;
+            std::uint32_t body = 0;
+            bool is_outside = false;
+            bool is_at_sides = false;
+        };
+        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size());
+        for (const Vec3& p : walls.cut) cut.add(p);
+        std::vector<std::vector<Candidate>> slabs(field_.slabs.size());
+        parallel_for(
+            slabs.size(), threads_,
+            [&](std::size_t x)
+            {
+                for (const Run& run : field_.slabs[x])
+                {
+                    const double band = region.band[run.mk];
+                    if (band <= 0) continue;
+                    const auto test = [&](std::uint32_t begin, std::uint32_t end)
+                    {
+                        for (std::uint32_t z = begin; z < end; ++z)
+                        {
+                            Candidate c;
+                            c.mover = {{static_cast<std::uint32_t>(x), run.y, z}, run.mk};
+                            const Vec3 p = place_of(c.mover.node, grid);
+                            const ClosestPoint near = all.closest(p);
+                            if (near.distance > band * grid.dp ||
+                                cut.has_nearer(p, reach_of_cuts_dp * grid.dp))
+                                continue;
+                            c.body = static_cast<std::uint32_t>(all.body_of(near.facet));
+                            const SurfaceMesh& mesh = walls.bodies[c.body].mesh;
+                            c.is_outside = dot(p - near.point,
+                                               mesh.normals[all.facet_in_body(near.facet)]) > 0;
+                            c.is_at_sides = near.distance < reach_of_sides_dp * grid.dp;
+                            slabs[x].push_back(c);
+                        }
+                    };
+                    if (std::isinf(band))
+                        test(run.z_begin, run.z_end);
+                    else
+                        blocks.for_each_stretch(static_cast<std::uint32_t>(x), run, test);
+                }
+            },
+            1);
+        // Per body: whether it has nodes of the region on its inner and its outer side.
+        std::vector<std::array<char, 2>> sides(walls.bodies.size());
+        for (const auto& slab : slabs)
+            for (const Candidate& c : slab)
+                if (c.is_at_sides) sides[c.body][c.is_outside ? 1 : 0] = 1;
+        std::vector<Mover> movers;
+        std::vector<char> is_warned(walls.bodies.size(), 0);
+        for (const auto& slab : slabs)
+            for (const Candidate& c : slab)
+            {
+                if (walls.bodies[c.body].is_solid || !sides[c.body][0] || !sides[c.body][1])
+                {
+                    movers.push_back(c.mover);
+                    continue;
+                }
+                if (is_warned[c.body]) continue;
+                is_warned[c.body] = 1;
+                report_.warnings.push_back(fmt::format(
+                    "{}: <{}> has particles of {} on both sides of its sheet: they are left as "
+                    "they are next to it.",
+                    walls.bodies[c.body].line, walls.bodies[c.body].name, region.what));
+            }
+        return movers;
+    }
+
+    /// The nodes beside those that move, within the reach of their forces.
+    std::vector<Vec3> find_held(const Region& region, const std::vector<Mover>& movers,
+                                const NearBlocks& blocks) const
+    {
+        const LatticeGrid& grid = field_.grid;
+        const double reach = (2 * region.h_dp + 0.6) * grid.dp;
+        PointGrid moving(reach, movers.size());
+        for (const Mover& m : movers) moving.add(place_of(m.node, grid));
+        std::vector<std::vector<Vec3>> slabs(field_.slabs.size());
+        parallel_for(
+            slabs.size(), threads_,
+            [&](std::size_t x)
+            {
+                const auto at_slab = [](const Mover& m, std::size_t slab)
+                { return m.node.x < slab; };
+                auto mover = std::lower_bound(movers.begin(), movers.end(), x, at_slab);
+                for (const Run& run : field_.slabs[x])
+                {
+                    if (region.band[run.mk] <= 0 && !region.beside[run.mk]) continue;
+                    blocks.for_each_stretch(
+                        static_cast<std::uint32_t>(x), run,
+                        [&](std::uint32_t begin, std::uint32_t end)
+                        {
+                            for (std::uint32_t z = begin; z < end; ++z)
+                            {
+                                const NodeIndex node{static_cast<std::uint32_t>(x), run.y, z};
+                                while (mover != movers.end() && mover->node.x == x &&
+                                       std::tuple(mover->node.y, mover->node.z) <
+                                           std::tuple(node.y, node.z))
+                                    ++mover;
+                                if (mover != movers.end() && mover->node == node) continue;
+                                const Vec3 p = place_of(node, grid);
+                                if (moving.has_nearer(p, reach)) slabs[x].push_back(p);
+                            }
+                        });
+                }
+            },
+            1);
+        std::vector<Vec3> held;
+        for (const auto& slab : slabs) held.insert(held.end(), slab.begin(), slab.end());
+        // What an earlier region set free pushes as well.
+        const VolumeParticles& free = field_.walls.volume;
+        for (std::size_t i = 0; i < free.size(); ++i)
+            if ((region.band[free.mk[i]] > 0 || region.beside[free.mk[i]]) &&
+                moving.has_nearer(free.positions[i], reach))
+                held.push_back(free.positions[i]);
+        return held;
+    }
+
+    void relax_region(const Region& region, const AllWalls& all)
+    {
+        const LatticeGrid& grid = field_.grid;
+        const FittedWalls& walls = field_.walls;
+        double widest = 0;
+        for (const double band : region.band)
+            if (std::isfinite(band)) widest = std::max(widest, band);
+        const auto side = static_cast<std::uint32_t>(std::ceil(widest)) + 1;
+        const NearBlocks blocks(walls.particles.positions, grid, side, 1);
+        const std::vector<Mover> movers = find_movers(region, all, blocks);
+        if (movers.empty()) return;
+        const NearBlocks wide_blocks(walls.particles.positions, grid, side, 2);
+        const std::vector<Vec3> held = find_held(region, movers, wide_blocks);
+
+        std::vector<Vec3> positions;
+        positions.reserve(movers.size());
+        for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
+        VolumeSurroundings surroundings;
+        surroundings.held = held;
+        surroundings.walls = walls.particles.positions;
+        surroundings.closest = [&](const Vec3& p) { return all.closest(p).point; };
+        RelaxVolumeOptions options;
+        options.dp = grid.dp;
+        options.h_dp = region.h_dp;
+        options.iterations = region.iterations.value_or(volume_iterations);
+        options.is_2d = grid.is_2d;
+        options.fit_count = true;
+        options.on_iteration = [&](const RelaxVolumeProgress& p)
+        {
+            return observe({region.what, p.iteration, options.iterations, movers.size(),
+                            p.shepard_mean, p.shepard_std, p.largest_step_dp});
+        };
+        const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
+        keep_moved(region, all, movers, positions, done.sources);
+
+        RelaxedPart part;
+        part.what = region.what;
+        part.iterations = done.iterations;
+        part.particles = positions.size();
+        part.inserted = done.inserted;
+        part.removed = done.removed;
+        part.mean = done.shepard_mean;
+        part.deviation = done.shepard_std;
+        report_.parts.push_back(part);
+    }
+
+    /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
+    /// particle was removed, get the bit of the zone.
+    void keep_moved(const Region& region, const AllWalls& all, const std::vector<Mover>& movers,
+                    const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& sources)
+    {
+        const LatticeGrid& grid = field_.grid;
+        VolumeParticles& volume = field_.walls.volume;
+        std::vector<char> stays(movers.size(), 0);
+        const std::size_t first = volume.size();
+        for (std::size_t i = 0; i < positions.size(); ++i)
+        {
+            const std::uint32_t source =
+                sources.empty() ? static_cast<std::uint32_t>(i) : sources[i];
+            if (positions[i] == place_of(movers[source].node, grid))
+            {
+                stays[source] = 1;
+                continue;
+            }
+            volume.positions.push_back(positions[i]);
+            volume.mk.push_back(movers[source].mk);
+        }
+        volume.distances.resize(volume.positions.size());
+        parallel_for(
+            volume.size() - first, threads_,
+            [&](std::size_t i)
+            {
+                const double distance = all.closest(volume.positions[first + i]).distance;
+                volume.distances[first + i] =
+                    static_cast<float>(region.is_solid ? -distance : distance);
+            },
+            256);
+        std::vector<std::vector<Mover>> left(field_.slabs.size());
+        for (std::size_t i = 0; i < movers.size(); ++i)
+            if (!stays[i]) left[movers[i].node.x].push_back(movers[i]);
+        parallel_for(field_.slabs.size(), threads_,
+                     [&](std::size_t x) { mark_zone(field_.slabs[x], left[x]); });
+    }
+
+    /// Gives nodes, sorted by (y, z), the bit of the zone.
+    static void mark_zone(std::vector<Run>& runs, const std::vector<Mover>& nodes)
+    {
+        if (nodes.empty()) return;
+        std::vector<Run> out;
+        const auto append_run = [&](const Run& run)
+        {
+            if (run.z_begin >= run.z_end) return;
+            if (!out.empty() && out.back().y == run.y && out.back().mk == run.mk &&
+                out.back().z_end == run.z_begin)
+                out.back().z_end = run.z_end;
+            else
+                out.push_back(run);
+        };
+        auto node = nodes.begin();
+        for (const Run& run : runs)
+        {
+            std::uint32_t from = run.z_begin;
+            for (; node != nodes.end() && node->node.y == run.y && node->node.z < run.z_end; ++node)
+            {
+                const std::uint32_t z = node->node.z;
+                append_run({run.y, from, z, run.mk});
+                append_run({run.y, z, z + 1, static_cast<std::uint16_t>(run.mk | wall_zone_bit)});
+                from = z + 1;
+            }
+            append_run({run.y, from, run.z_end, run.mk});
+        }
+        runs = std::move(out);
+    }
+
+    const CaseDef& def_;
+    RunField& field_;
+    int threads_;
+    const RelaxObserver& observe_;
+    RelaxReport& report_;
+};
+
+} // namespace
+
+void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
+                 RelaxReport& report)
+{
+    if (field.walls.bodies.empty()) return;
+    Relaxation(def, field, threads, observe, report).run();
+}
+
+} // namespace fppg

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "fppg/relax_volume.h"
+#include "fppg/vec.h"
+
+#include <array>
+
+namespace fppg
+{
+
+/// A wall near a point, as a plane.
+struct WallPlane
+{
+    Vec3 normal;         ///< unit, from the point towards the wall
+    double distance = 0; ///< from the point, metres
+};
+
+/// The walls within reach of a point.
+struct WallPlanes
+{
+    std::array<WallPlane, 3> planes;
+    int count = 0;
+    Vec3 nearest;        ///< the nearest wall point, whether within reach or not
+    double distance = 0; ///< to it
+
+    const WallPlane* begin() const { return planes.data(); }
+    const WallPlane* end() const { return planes.data() + count; }
+};
+
+/// Finds the nearest wall, if it is within reach.
+///
+/// reach  metres
+WallPlanes find_nearest_wall(const Vec3& point, double reach, const ClosestWallPoint& closest);
+
+/// Adds the walls that meet the nearest one, up to three in all: those that are nearest to places
+/// farther off the walls found before. In the corner of a box these are its other sides.
+void add_further_walls(WallPlanes& found, const Vec3& point, double reach,
+                       const ClosestWallPoint& closest);
+
+/// Both of these.
+WallPlanes find_wall_planes(const Vec3& point, double reach, const ClosestWallPoint& closest);
+
+} // namespace fppg

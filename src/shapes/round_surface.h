@@ -1,0 +1,28 @@
+#pragma once
+
+#include "fppg/fitted_walls.h"
+
+#include <cstdint>
+
+namespace fppg
+{
+
+/// Moves a particle from the triangles of a round body to its exact surface, by about the chord
+/// error. Covers of a cylinder stay plane; a particle on a rim comes to lie on the rim's circle.
+/// Does nothing for a body that is not round.
+///
+/// position  on the facet, to rounding
+/// facet     of body.mesh
+/// is_2d     y stays as it is; the particle moves within its plane y = constant
+void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t facet,
+                      bool is_2d = false);
+
+/// The unit normal of the exact surface at a particle, on the side to which its facet looks:
+/// outward for closed bodies. That of the facet where the body is not round, and on covers.
+Vec3 exact_normal(const FittedBody& body, const Vec3& position, std::uint32_t facet);
+
+/// How far a point is outside the exact surface, metres, negative inside; to first order in the
+/// distance for an ellipsoid. From the facet's plane where the body is not round, and on covers.
+double exact_distance(const FittedBody& body, const Vec3& position, std::uint32_t facet);
+
+} // namespace fppg

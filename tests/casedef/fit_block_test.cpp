@@ -1,0 +1,369 @@
+// The block <fppg> of <casedef>, and -fit.
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+
+#include "helpers/case_text.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+using test::CaseText;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// mk of mkbound 0 where <mkconfig> leaves nine for fluid.
+constexpr std::uint16_t first_bound = 10;
+
+CaseDef read(const CaseText& text, FitChoice fit = FitChoice::AsCase)
+{
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "Case_Def.xml", text.text());
+    CaseOptions options;
+    options.fit = fit;
+    return read_case(folder / "Case_Def.xml", options);
+}
+
+/// A tank with this after its geometry.
+CaseText tank_with(const std::string& text)
+{
+    CaseText out = test::tank();
+    out.after_geometry = text;
+    return out;
+}
+
+CaseDef read_block(const std::string& inside, FitChoice fit = FitChoice::AsCase)
+{
+    return read(tank_with("<fppg>" + inside + "</fppg>"), fit);
+}
+
+/// The message without the folder of the file.
+std::string error_of(const CaseText& text, FitChoice fit = FitChoice::AsCase)
+{
+    try
+    {
+        read(text, fit);
+    }
+    catch (const CaseError& error)
+    {
+        const std::string what = error.what();
+        return what.substr(what.find("Case_Def.xml"));
+    }
+    return "no error";
+}
+
+const FitSettings& settings(const CaseDef& def, int mkbound)
+{
+    const FitSettings* found =
+        fit_settings(def.fit, static_cast<std::uint16_t>(first_bound + mkbound));
+    if (found == nullptr) throw std::runtime_error("not fitted");
+    return *found;
+}
+
+bool is_fitted(const CaseDef& def, int mkbound)
+{
+    return fit_settings(def.fit, static_cast<std::uint16_t>(first_bound + mkbound)) != nullptr;
+}
+
+TEST(FitBlock, IsAbsentInAPlainCase)
+{
+    const CaseDef def = read(test::tank());
+    EXPECT_TRUE(def.fit.is_empty());
+    EXPECT_TRUE(def.fluid_bands.empty());
+    EXPECT_EQ(fit_settings(def.fit, first_bound), nullptr);
+}
+
+TEST(FitBlock, FitsEveryBoundaryWithTheDefaultsWhenItSaysNothingElse)
+{
+    const CaseDef def = read_block("<bodyfitted />");
+    for (const int mkbound : {0, 1, 239})
+    {
+        const FitSettings& s = settings(def, mkbound);
+        EXPECT_EQ(s.feature_angle_deg, 30);
+        EXPECT_EQ(s.density, FitDensity::Area);
+        EXPECT_FALSE(s.clearance_dp || s.one_sheet || s.relax.iterations);
+        EXPECT_TRUE(s.relax.is_active);
+        EXPECT_EQ(s.relax, RelaxSettings{});
+    }
+    EXPECT_THAT(def.warnings, IsEmpty());
+}
+
+TEST(FitBlock, SetsEverythingThatItNames)
+{
+    const CaseDef def = read_block(
+        R"(<bodyfitted mkbound="0-1,7" featureangle="45" density="cell" clearance="0.55" plates="one">
+<relax iterations="40" tolerance="0.1" h="1.2" band="2" /></bodyfitted>)");
+    for (const int mkbound : {0, 1, 7})
+    {
+        const FitSettings& s = settings(def, mkbound);
+        EXPECT_EQ(s.feature_angle_deg, 45);
+        EXPECT_EQ(s.density, FitDensity::Cell);
+        EXPECT_EQ(s.clearance_dp, 0.55);
+        EXPECT_TRUE(s.one_sheet);
+        EXPECT_EQ(s.relax, (RelaxSettings{true, 40, 0.1, 1.2, 2}));
+    }
+    EXPECT_FALSE(is_fitted(def, 2));
+}
+
+TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
+{
+    const CaseDef def = read_block(
+        R"(<bodyfitted density="area" clearance="auto" plates="both"><relax iterations="auto" /></bodyfitted>)");
+    FitSettings plain;
+    plain.line = settings(def, 0).line;
+    EXPECT_EQ(settings(def, 0), plain);
+}
+
+TEST(FitBlock, SwitchesRelaxationOffAndWidensItsBand)
+{
+    EXPECT_FALSE(settings(read_block(R"(<bodyfitted><relax active="false" /></bodyfitted>)"), 0)
+                     .relax.is_active);
+    EXPECT_TRUE(std::isinf(
+        settings(read_block(R"(<bodyfitted><relax band="all" /></bodyfitted>)"), 0).relax.band_dp));
+}
+
+TEST(FitBlock, LetsTheLaterElementWin)
+{
+    const CaseDef narrow_last = read_block(
+        R"(<bodyfitted featureangle="10" /><bodyfitted mkbound="0,1" featureangle="20" /><bodyfitted mkbound="1" featureangle="40" />)");
+    EXPECT_EQ(settings(narrow_last, 0).feature_angle_deg, 20);
+    EXPECT_EQ(settings(narrow_last, 1).feature_angle_deg, 40);
+    EXPECT_EQ(settings(narrow_last, 2).feature_angle_deg, 10);
+    const CaseDef all_last = read_block(
+        R"(<bodyfitted mkbound="0" featureangle="20" /><bodyfitted featureangle="10" />)");
+    EXPECT_EQ(settings(all_last, 0).feature_angle_deg, 10);
+}
+
+TEST(FitBlock, EvaluatesExpressionsWithVariablesOfTheCommands)
+{
+    CaseText text = tank_with(
+        R"(<fppg><bodyfitted mkbound="#wall" featureangle="#2*a"><relax iterations="#a" /></bodyfitted></fppg>)");
+    text.mainlist += R"(<newvar a="20" wall="0" />)";
+    const CaseDef def = read(text);
+    EXPECT_EQ(settings(def, 0).feature_angle_deg, 40);
+    EXPECT_EQ(settings(def, 0).relax.iterations, 20);
+}
+
+TEST(FitBlock, ReadsBandsOfFluid)
+{
+    const CaseDef def = read_block(
+        R"(<fluidband width="2.5" /><fluidband mkfluid="0" /><bodyfitted mkbound="0" />)");
+    ASSERT_EQ(def.fluid_bands.size(), 2u);
+    EXPECT_TRUE(def.fluid_bands[0].mk.empty());
+    EXPECT_EQ(def.fluid_bands[0].width_dp, 2.5);
+    EXPECT_EQ(def.fluid_bands[1].mk, std::vector<std::uint16_t>{1});
+    EXPECT_EQ(def.fluid_bands[1].width_dp, 3);
+}
+
+TEST(FitBlock, MayStandAnywhereInCasedefAndMoreThanOnce)
+{
+    std::string text =
+        tank_with(R"(<fppg><bodyfitted mkbound="1" featureangle="5" /></fppg>)").text();
+    text.insert(text.find("<constantsdef>"),
+                R"(<fppg><bodyfitted mkbound="0-1" featureangle="15" /></fppg>)");
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "Case_Def.xml", text);
+    const CaseDef def = read_case(folder / "Case_Def.xml", {});
+    EXPECT_EQ(settings(def, 0).feature_angle_deg, 15);
+    EXPECT_EQ(settings(def, 1).feature_angle_deg, 5);
+}
+
+TEST(FitBlock, PassesOverRemarks)
+{
+    const CaseDef def = read_block(
+        R"(<!-- all --><_bodyfitted angle="1" /><bodyfitted comment="walls" _angle="1"><_relax /></bodyfitted>)");
+    EXPECT_TRUE(is_fitted(def, 0));
+}
+
+TEST(FitBlock, StaysInTheCopyOfTheDefinition)
+{
+    const CaseDef def = read_block(R"(<bodyfitted mkbound="0" featureangle="#15*2" />)");
+    const Element* block = def.casedef.find_child("fppg");
+    ASSERT_NE(block, nullptr);
+    EXPECT_EQ(*block->find_child("bodyfitted")->find_attribute("mkbound"), "0");
+}
+
+// -- the command line
+// -------------------------------------------------------------------------------------
+
+TEST(FitChoice, OnAddsTheDefaultsToWhatTheBlockNames)
+{
+    const CaseDef plain = read(test::tank(), FitChoice::On);
+    EXPECT_EQ(settings(plain, 5), FitSettings{});
+    const CaseDef named =
+        read_block(R"(<bodyfitted mkbound="0" featureangle="20" />)", FitChoice::On);
+    EXPECT_EQ(settings(named, 0).feature_angle_deg, 20);
+    EXPECT_EQ(settings(named, 1), FitSettings{});
+    const CaseDef all = read_block(R"(<bodyfitted featureangle="20" />)", FitChoice::On);
+    EXPECT_EQ(settings(all, 1).feature_angle_deg, 20);
+}
+
+TEST(FitChoice, RawIsOnWithoutRelaxation)
+{
+    const CaseDef def = read_block(
+        R"(<bodyfitted mkbound="0" featureangle="20"><relax active="true" /></bodyfitted><fluidband />)",
+        FitChoice::Raw);
+    EXPECT_EQ(settings(def, 0).feature_angle_deg, 20);
+    EXPECT_FALSE(settings(def, 0).relax.is_active);
+    EXPECT_FALSE(settings(def, 1).relax.is_active);
+    EXPECT_TRUE(def.fluid_bands.empty());
+}
+
+TEST(FitChoice, OffIgnoresTheBlockWhole)
+{
+    const CaseDef def = read_block("<bodyfitted /><fluidband /><wrong />", FitChoice::Off);
+    EXPECT_TRUE(def.fit.is_empty());
+    EXPECT_TRUE(def.fluid_bands.empty());
+    EXPECT_THAT(def.warnings, IsEmpty());
+}
+
+// -- warnings
+// ---------------------------------------------------------------------------------------------
+
+TEST(FitBlock, WarnsOfNumbersThatNothingDraws)
+{
+    const CaseDef def = read_block(R"(<bodyfitted mkbound="0-2" />
+<fluidband mkfluid="0,3" />)");
+    ASSERT_EQ(def.warnings.size(), 2u);
+    EXPECT_THAT(def.warnings[0], HasSubstr("Case_Def.xml:9: <bodyfitted>: mkbound 1,2: nothing"));
+    EXPECT_THAT(def.warnings[1], HasSubstr("Case_Def.xml:10: <fluidband>: mkfluid 3: nothing"));
+    EXPECT_TRUE(is_fitted(def, 2));
+}
+
+TEST(FitBlock, WarnsOfALongListInOneShortLine)
+{
+    const CaseDef def = read_block(R"(<bodyfitted mkbound="0-200" />)");
+    ASSERT_EQ(def.warnings.size(), 1u);
+    EXPECT_THAT(def.warnings[0], HasSubstr("mkbound 1,2,3,4,5,6,7,8,9,10 and 190 more: nothing"));
+}
+
+TEST(FitBlock, CountsADrawOfPointsAsNoSurface)
+{
+    CaseText text = tank_with(R"(<fppg><bodyfitted mkbound="1" /></fppg>)");
+    text.mainlist += R"(<setmkbound mk="1" /><drawpoint x="0" y="0" z="0" />)";
+    EXPECT_EQ(read(text).warnings.size(), 1u);
+    text.mainlist += R"(<drawsphere radius="0.3"><point x="0.5" y="0.5" z="0.5" /></drawsphere>)";
+    EXPECT_THAT(read(text).warnings, IsEmpty());
+}
+
+TEST(FitBlock, WarnsOfAFluidBandWithoutWalls)
+{
+    const CaseDef def = read_block("<fluidband />");
+    ASSERT_EQ(def.warnings.size(), 1u);
+    EXPECT_THAT(def.warnings[0], HasSubstr("<fluidband>: no wall is body-fitted"));
+    EXPECT_THAT(read_block("<fluidband />", FitChoice::On).warnings, IsEmpty());
+}
+
+// -- mistakes
+// ---------------------------------------------------------------------------------------------
+
+struct Mistake
+{
+    const char* name;
+    const char* block;
+    const char* message;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out)
+{
+    *out << mistake.name;
+}
+
+class FitBlockMistake : public testing::TestWithParam<Mistake>
+{
+};
+
+TEST_P(FitBlockMistake, IsNamedWithFileLineElementAndWhatIsExpected)
+{
+    const std::string message = error_of(tank_with(GetParam().block));
+    EXPECT_EQ(message.rfind("Case_Def.xml:9: <", 0), 0u) << message;
+    EXPECT_THAT(message, HasSubstr(GetParam().message));
+}
+
+std::string name_of(const testing::TestParamInfo<Mistake>& info)
+{
+    return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Block, FitBlockMistake,
+    testing::Values(
+        Mistake{"UnknownElement", "<fppg><bodyfit /></fppg>",
+                "<bodyfit>: is not known in <fppg>, expected bodyfitted, fluidband"},
+        Mistake{
+            "UnknownAttribute", R"(<fppg><bodyfitted angle="30" /></fppg>)",
+            "<bodyfitted>: attribute angle=\"30\" is not known, expected mkbound, featureangle,"},
+        Mistake{"AttributeOfTheBlock", R"(<fppg active="0"></fppg>)",
+                "<fppg>: attribute active=\"0\" is not known, expected none"},
+        Mistake{"UnknownInBodyfitted", "<fppg><bodyfitted><fluidband /></bodyfitted></fppg>",
+                "<fluidband>: is not known in <bodyfitted>, expected relax"},
+        Mistake{"UnknownRelaxAttribute",
+                R"(<fppg><bodyfitted><relax steps="3" /></bodyfitted></fppg>)",
+                "<relax>: attribute steps=\"3\" is not known, expected active, iterations,"},
+        Mistake{"Text", "<fppg>walls</fppg>", "<fppg>: text \"walls\" has no meaning here"},
+        Mistake{"TwoRelaxes", "<fppg><bodyfitted><relax /><relax /></bodyfitted></fppg>",
+                "<relax>: stands twice in <bodyfitted>, expected once at most"},
+        Mistake{"FlatAngle", R"(<fppg><bodyfitted featureangle="180" /></fppg>)",
+                "attribute featureangle=\"180\" is 180, expected degrees from 0 to less than 180"},
+        Mistake{"EmptyAngle", R"(<fppg><bodyfitted featureangle=" " /></fppg>)",
+                "attribute featureangle=\"\" is empty, expected degrees"},
+        Mistake{"NoNumber", R"(<fppg><bodyfitted clearance="wide" /></fppg>)",
+                "attribute clearance=\"wide\""},
+        Mistake{"UnknownVariable", R"(<fppg><bodyfitted clearance="#wide" /></fppg>)",
+                "attribute clearance=\"#wide\""},
+        Mistake{"NarrowClearance", R"(<fppg><bodyfitted clearance="0.4" /></fppg>)",
+                "clearance=\"0.4\" is 0.4, expected auto or 0.5 to 1 (times dp)"},
+        Mistake{"Density", R"(<fppg><bodyfitted density="Area" /></fppg>)",
+                "attribute density=\"Area\" is invalid, expected area or cell"},
+        Mistake{"Plates", R"(<fppg><bodyfitted plates="none" /></fppg>)",
+                "attribute plates=\"none\" is invalid, expected both or one"},
+        Mistake{"NoIterations", R"(<fppg><bodyfitted><relax iterations="0" /></bodyfitted></fppg>)",
+                "iterations=\"0\" is 0, expected auto or a whole number from 1 to 1000000"},
+        Mistake{"HalfAnIteration",
+                R"(<fppg><bodyfitted><relax iterations="1.5" /></bodyfitted></fppg>)",
+                "iterations=\"1.5\" is 1.5, expected auto"},
+        Mistake{"NoTolerance", R"(<fppg><bodyfitted><relax tolerance="0" /></bodyfitted></fppg>)",
+                "tolerance=\"0\" is 0, expected above 0 to 1"},
+        Mistake{"NoH", R"(<fppg><bodyfitted><relax h="0" /></bodyfitted></fppg>)",
+                "h=\"0\" is 0, expected above 0 to 4"},
+        Mistake{"NegativeBand", R"(<fppg><bodyfitted><relax band="-1" /></bodyfitted></fppg>)",
+                "band=\"-1\" is -1, expected all or a width from 0 on"},
+        Mistake{"NoWidth", R"(<fppg><fluidband width="0" /></fppg>)",
+                "<fluidband>: attribute width=\"0\" is 0, expected a width above 0"},
+        Mistake{"BadList", R"(<fppg><bodyfitted mkbound="3-1" /></fppg>)",
+                "attribute mkbound=\"3-1\" is not a list of whole numbers"},
+        Mistake{"EmptyList", R"(<fppg><bodyfitted mkbound="" /></fppg>)",
+                "attribute mkbound=\"\" is not a list of whole numbers"},
+        Mistake{"BrokenMk", R"(<fppg><bodyfitted mkbound="#0.5" /></fppg>)",
+                "mkbound=\"#0.5\" is 0.5, expected a whole number from 0 to 65000"},
+        Mistake{"MkboundBeyondMkconfig", R"(<fppg><bodyfitted mkbound="240" /></fppg>)",
+                "<bodyfitted>: mkbound 240 is out of range, <mkconfig> leaves 0 to 239 (raise "
+                "boundcount"},
+        Mistake{"MkfluidBeyondMkconfig", R"(<fppg><fluidband mkfluid="9" /></fppg>)",
+                "<fluidband>: mkfluid 9 is out of range, <mkconfig> leaves 0 to 8 (raise "
+                "fluidcount"},
+        Mistake{"WrongPlace", "<someblock><fppg /></someblock>",
+                "<fppg>: stands in <someblock>, expected directly in <casedef>"}),
+    name_of);
+
+TEST(FitBlock, RefusesNumbersWhoseTopBitIsTaken)
+{
+    CaseText text = tank_with(R"(<fppg><bodyfitted mkbound="32757-32758" /></fppg>)");
+    text.mkconfig = R"(<mkconfig boundcount="40000" fluidcount="9" />)";
+    EXPECT_THAT(error_of(text), HasSubstr("<bodyfitted>: mkbound 32758 is mk 32768 and cannot be "
+                                          "fitted, expected a number below 32758"));
+    text.after_geometry.clear();
+    text.mainlist += R"(<setmkbound mk="32758" /><drawpoint x="0" y="0" z="0" />)";
+    EXPECT_EQ(error_of(text), "no error");
+    EXPECT_THAT(error_of(text, FitChoice::On),
+                HasSubstr("Case_Def.xml:7: <drawpoint>: mkbound 32758 is mk 32768 and cannot stand "
+                          "in a case with body-fitted walls, expected a number below 32758"));
+}
+
+} // namespace
+} // namespace fppg

@@ -1,0 +1,452 @@
+#include "fppg/relax.h"
+
+#include "fit/fit_shapes.h"
+#include "fit/neighbour_grid.h"
+#include "fppg/error.h"
+#include "shapes/mesh_query.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace fppg
+{
+
+namespace
+{
+
+using namespace test;
+
+TriangleSoup cylinder(int sides, double radius, double height)
+{
+    TriangleSoup soup;
+    const Vec3 up{0, 0, height};
+    for (int i = 0; i < sides; ++i)
+    {
+        const auto corner = [&](int k)
+        {
+            const double angle = 2 * std::numbers::pi * (k % sides) / sides;
+            return Vec3{radius * std::cos(angle), radius * std::sin(angle), 0};
+        };
+        const Vec3 a = corner(i);
+        const Vec3 b = corner(i + 1);
+        add_facet(soup, b, a, {});
+        add_facet(soup, a + up, b + up, up);
+        add_quad(soup, a, b, b + up, a + up);
+    }
+    return soup;
+}
+
+TriangleSoup wedge()
+{
+    TriangleSoup soup;
+    const std::array<Vec3, 3> front{Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{2, 0, 0.5}};
+    const Vec3 back{0, 1.3, 0};
+    add_facet(soup, front[0], front[1], front[2]);
+    add_facet(soup, front[2] + back, front[1] + back, front[0] + back);
+    for (std::size_t i = 0; i < 3; ++i)
+        add_quad(soup, front[(i + 1) % 3], front[i], front[i] + back, front[(i + 1) % 3] + back);
+    return soup;
+}
+
+/// Walls of one fitted body, and what it takes to relax and judge them.
+struct Walls
+{
+    std::vector<FittedBody> bodies;
+    WallParticles particles;
+    std::vector<char> held;
+    RelaxSurfaceOptions options;
+
+    Walls(const TriangleSoup& soup, double dp) { add(soup, dp); }
+
+    void add(const TriangleSoup& soup, double dp)
+    {
+        const FitInput input(soup, dp);
+        const SurfaceParticles fitted = input.fit();
+        FittedBody body;
+        body.mesh = input.mesh;
+        body.features = input.features;
+        const auto b = static_cast<std::uint32_t>(bodies.size());
+        bodies.push_back(body);
+        for (std::size_t i = 0; i < fitted.positions.size(); ++i)
+        {
+            particles.positions.push_back(fitted.positions[i]);
+            particles.kinds.push_back(fitted.kinds[i]);
+            particles.facets.push_back(fitted.facets[i]);
+            particles.bodies.push_back(b);
+            particles.mk.push_back(static_cast<std::uint16_t>(10 + b));
+        }
+        options.dp = dp;
+    }
+
+    RelaxSurfaceReport relax(int threads = 1)
+    {
+        return relax_surface(bodies, particles, held, options, threads);
+    }
+};
+
+struct Named
+{
+    const char* name;
+    TriangleSoup soup;
+    double dp;
+    double deviation; ///< allowed; more where lines crowd
+};
+
+std::vector<Named> shapes()
+{
+    return {{"sphere of small facets", sphere(5), 0.05, 0.045},
+            {"sphere of large facets", sphere(2), 0.03, 0.045},
+            {"cube", box({0.1, 0.2, 0.3}, {1.13, 1.17, 1.21}), 0.0371, 0.045},
+            {"cylinder", cylinder(48, 0.5, 1.3), 0.04, 0.045},
+            {"thin plate", box({0, 0, 0}, {1, 1, 0.009}), 0.03, 0.06},
+            {"wedge", wedge(), 0.04, 0.06},
+            {"coarse gear", gear(14, 0.8, 1, 0.3), 0.04, 0.10}};
+}
+
+double farthest_point(const Walls& walls)
+{
+    const double dp = walls.options.dp;
+    NeighbourGrid grid;
+    grid.start(2 * dp);
+    for (const Vec3& p : walls.particles.positions) grid.add(p);
+    double farthest = 0;
+    double due = 0;
+    unsigned count = 0;
+    const SurfaceMesh& mesh = walls.bodies[0].mesh;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        for (due += 30 * mesh.areas[f] / (dp * dp); due >= 1; due -= 1)
+        {
+            ++count;
+            double u = std::fmod(0.7548776662466927 * count, 1.0);
+            double v = std::fmod(0.5698402909980532 * count, 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const Vec3& b = mesh.vertices[mesh.facets[f][1]];
+            const Vec3& c = mesh.vertices[mesh.facets[f][2]];
+            double nearest = 4 * dp * dp;
+            grid.for_each_near(a + (b - a) * u + (c - a) * v, 2 * dp,
+                               [&](std::uint32_t, const Vec3&, double squared)
+                               { nearest = std::min(nearest, squared); });
+            farthest = std::max(farthest, nearest);
+        }
+    return std::sqrt(farthest) / dp;
+}
+
+/// How far a particle is from the plane of its facet and beyond its sides, in dp.
+double off_facet(const Walls& walls, std::size_t i)
+{
+    const SurfaceMesh& mesh = walls.bodies[walls.particles.bodies[i]].mesh;
+    const std::uint32_t f = walls.particles.facets[i];
+    const Vec3& p = walls.particles.positions[i];
+    const Vec3& normal = mesh.normals[f];
+    double off = std::abs(dot(p - mesh.vertices[mesh.facets[f][0]], normal));
+    for (std::size_t s = 0; s < 3; ++s)
+    {
+        const Vec3& from = mesh.vertices[mesh.facets[f][s]];
+        const Vec3 side = mesh.vertices[mesh.facets[f][(s + 1) % 3]] - from;
+        off = std::max(off, -dot(p - from, cross(normal, side / norm(side))));
+    }
+    return off / walls.options.dp;
+}
+
+void expect_same(const WallParticles& a, const WallParticles& b)
+{
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(
+        std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(Vec3)), 0);
+    EXPECT_EQ(a.facets, b.facets);
+    EXPECT_EQ(a.kinds, b.kinds);
+    EXPECT_EQ(a.mk, b.mk);
+    EXPECT_EQ(a.bodies, b.bodies);
+}
+
+} // namespace
+
+TEST(RelaxSurface, SpreadsParticlesEvenly)
+{
+    for (const Named& shape : shapes())
+    {
+        Walls walls(shape.soup, shape.dp);
+        const RelaxSurfaceReport report = walls.relax(2);
+        EXPECT_LE(report.after.iteration, 100) << shape.name;
+        EXPECT_LE(report.after.spacing_deviation, shape.deviation) << shape.name;
+        EXPECT_GE(report.after.spacing_mean, 0.93) << shape.name;
+        EXPECT_LE(report.after.spacing_mean, 1.10) << shape.name;
+    }
+}
+
+TEST(RelaxSurface, LeavesNoPointOfTheSurfaceFarFromAParticle)
+{
+    for (const Named& shape : shapes())
+    {
+        Walls walls(shape.soup, shape.dp);
+        walls.relax(2);
+        EXPECT_LE(farthest_point(walls), 0.75) << shape.name;
+    }
+}
+
+TEST(RelaxSurface, KeepsSurfaceParticlesApart)
+{
+    for (const Named& shape : shapes())
+    {
+        Walls walls(shape.soup, shape.dp);
+        walls.relax(2);
+        const double dp = shape.dp;
+        NeighbourGrid grid;
+        grid.start(dp);
+        for (const Vec3& p : walls.particles.positions) grid.add(p);
+        double least = dp * dp;
+        for (std::uint32_t i = 0; i < walls.particles.size(); ++i)
+        {
+            if (walls.particles.kinds[i] != FitKind::Surface) continue;
+            const auto& normals = walls.bodies[0].mesh.normals;
+            const Vec3& normal = normals[walls.particles.facets[i]];
+            grid.for_each_near(walls.particles.positions[i], dp,
+                               [&](std::uint32_t j, const Vec3& offset, double squared)
+                               {
+                                   // Edge particles behind a plate belong to its other side.
+                                   const bool is_behind =
+                                       walls.particles.kinds[j] != FitKind::Surface &&
+                                       std::abs(dot(offset, normal)) > 0.1 * dp;
+                                   if (j != i && !is_behind &&
+                                       dot(normal, normals[walls.particles.facets[j]]) > -0.5)
+                                       least = std::min(least, squared);
+                               });
+        }
+        EXPECT_GE(std::sqrt(least) / dp, 0.6) << shape.name;
+    }
+}
+
+TEST(RelaxSurface, KeepsParticlesOnTheirFacets)
+{
+    for (const Named& shape : shapes())
+    {
+        Walls walls(shape.soup, shape.dp);
+        walls.relax();
+        double farthest = 0;
+        for (std::size_t i = 0; i < walls.particles.size(); ++i)
+            farthest = std::max(farthest, off_facet(walls, i));
+        EXPECT_LE(farthest, 1e-9) << shape.name;
+    }
+}
+
+TEST(RelaxSurface, LeavesEdgeAndCornerParticlesWhereTheyAre)
+{
+    Walls walls(gear(14, 0.8, 1, 0.3), 0.04);
+    const WallParticles given = walls.particles;
+    const RelaxSurfaceReport report = walls.relax();
+    EXPECT_EQ(walls.particles.size(), given.size() + report.inserted - report.removed);
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < given.size(); ++i)
+    {
+        if (given.kinds[i] == FitKind::Surface) break;
+        ASSERT_EQ(walls.particles.kinds[i], given.kinds[i]);
+        EXPECT_EQ(walls.particles.positions[i], given.positions[i]);
+        EXPECT_EQ(walls.particles.facets[i], given.facets[i]);
+        ++moved;
+    }
+    EXPECT_GT(moved, 100u);
+}
+
+TEST(RelaxSurface, GivesTheSameBytesForAnyNumberOfThreads)
+{
+    for (const Named& shape : shapes())
+    {
+        Walls one(shape.soup, shape.dp);
+        one.options.iterations = 30;
+        Walls many = one;
+        one.relax(1);
+        for (const int threads : {2, 8})
+        {
+            SCOPED_TRACE(shape.name);
+            Walls copy = many;
+            copy.relax(threads);
+            expect_same(one.particles, copy.particles);
+        }
+    }
+}
+
+TEST(RelaxSurface, LetsNoParticleThroughAThinPlate)
+{
+    Walls walls(box({0, 0, 0}, {1, 1, 0.002}), 0.05);
+    const auto count = [&](double z)
+    {
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < walls.particles.size(); ++i)
+            n += walls.particles.kinds[i] == FitKind::Surface &&
+                 walls.bodies[0].mesh.normals[walls.particles.facets[i]].z * z > 0.5;
+        return n;
+    };
+    const std::size_t above = count(1);
+    const std::size_t below = count(-1);
+    const RelaxSurfaceReport report = walls.relax();
+    EXPECT_EQ(report.returned, 0u);
+    EXPECT_NEAR(static_cast<double>(count(1)), static_cast<double>(above), 15);
+    EXPECT_NEAR(static_cast<double>(count(-1)), static_cast<double>(below), 15);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i)
+    {
+        const double z = walls.bodies[0].mesh.normals[walls.particles.facets[i]].z;
+        if (walls.particles.kinds[i] != FitKind::Surface || std::abs(z) < 0.5) continue;
+        EXPECT_NEAR(walls.particles.positions[i].z, z > 0 ? 0.002 : 0, 1e-12);
+    }
+}
+
+TEST(RelaxSurface, KeepsAWholeStateWhenToldToStop)
+{
+    Walls walls(sphere(4), 0.05);
+    int calls = 0;
+    walls.options.on_progress = [&](const RelaxProgress& progress)
+    {
+        EXPECT_EQ(progress.iteration, ++calls);
+        EXPECT_LE(progress.largest_displacement, 0.1001);
+        return calls < 12;
+    };
+    const RelaxSurfaceReport report = walls.relax();
+    EXPECT_EQ(report.after.iteration, 12);
+    EXPECT_LT(report.after.spacing_deviation, report.before.spacing_deviation);
+    EXPECT_LE(farthest_point(walls), 0.75);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
+}
+
+TEST(RelaxSurface, EndsWhenTheSpacingNoLongerImproves)
+{
+    Walls until_settled(sphere(4), 0.05);
+    Walls not_long(sphere(4), 0.05);
+    Walls exact(sphere(4), 0.05);
+    until_settled.options.tolerance = 1; // no improvement is enough
+    not_long.options.max_iterations = 7;
+    exact.options.iterations = 13;
+    EXPECT_LT(until_settled.relax().after.iteration, 80);
+    EXPECT_EQ(not_long.relax().after.iteration, 7);
+    EXPECT_EQ(exact.relax().after.iteration, 13);
+}
+
+TEST(RelaxSurface, LeavesParticlesAsTheyWereWhenTheCallbackThrows)
+{
+    Walls walls(sphere(3), 0.1);
+    const WallParticles given = walls.particles;
+    walls.options.on_progress = [](const RelaxProgress&) -> bool
+    { throw std::runtime_error("stop"); };
+    EXPECT_THROW(walls.relax(), std::runtime_error);
+    expect_same(walls.particles, given);
+}
+
+TEST(RelaxSurface, HoldsWhatIsHeld)
+{
+    Walls walls(sphere(4), 0.05);
+    const WallParticles given = walls.particles;
+    for (const Vec3& p : given.positions) walls.held.push_back(p.z > 0);
+    walls.relax();
+    ASSERT_EQ(walls.held.size(), walls.particles.size());
+    // Those that are given keep their order; new ones follow.
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < given.size(); ++i)
+    {
+        if (given.positions[i].z <= 0) continue;
+        while (held < walls.particles.size() && !walls.held[held]) ++held;
+        ASSERT_LT(held, walls.particles.size());
+        EXPECT_EQ(walls.particles.positions[held++], given.positions[i]);
+    }
+}
+
+TEST(RelaxSurface, FillsHolesOnlyWhereItMay)
+{
+    Walls walls(box({0, 0, 0}, {1, 1, 1}), 0.1);
+    // A body cut at half its height: nothing of it is left above.
+    WallParticles& p = walls.particles;
+    WallParticles lower;
+    for (std::size_t i = 0; i < p.size(); ++i)
+    {
+        if (p.positions[i].z > 0.5) continue;
+        lower.positions.push_back(p.positions[i]);
+        lower.kinds.push_back(p.kinds[i]);
+        lower.facets.push_back(p.facets[i]);
+        lower.bodies.push_back(p.bodies[i]);
+        lower.mk.push_back(p.mk[i]);
+        walls.held.push_back(p.positions[i].z > 0.35);
+    }
+    p = lower;
+    walls.options.may_insert = [](std::size_t body, const Vec3& at)
+    { return body == 0 && at.z <= 0.5; };
+    walls.relax();
+    for (const Vec3& at : p.positions) EXPECT_LE(at.z, 0.5);
+}
+
+TEST(RelaxSurface, GivesNewParticlesTheMkAroundThem)
+{
+    Walls walls(sphere(4), 0.05);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i)
+        walls.particles.mk[i] = walls.particles.positions[i].x > 0 ? 3 : 4;
+    const RelaxSurfaceReport report = walls.relax();
+    ASSERT_GT(report.inserted, 0u);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i)
+    {
+        const double x = walls.particles.positions[i].x;
+        if (std::abs(x) < 0.1) continue;
+        EXPECT_EQ(walls.particles.mk[i], x > 0 ? 3 : 4);
+    }
+}
+
+TEST(RelaxSurface, RelaxesBodiesThatTouchOnTheirOwn)
+{
+    Walls both(sphere(4), 0.08);
+    Transform aside;
+    aside.offset = {1.5, 0, 0};
+    both.add(moved(sphere(4), aside), 0.08);
+    both.options.iterations = 20;
+    both.relax();
+    Walls one(sphere(4), 0.08);
+    one.options.iterations = 20;
+    one.relax();
+    std::size_t of_first = 0;
+    for (std::size_t i = 0; i < both.particles.size(); ++i)
+        of_first += both.particles.bodies[i] == 0;
+    ASSERT_EQ(of_first, one.particles.size());
+    EXPECT_TRUE(std::is_sorted(both.particles.bodies.begin(), both.particles.bodies.end()));
+    EXPECT_EQ(both.particles.mk.back(), 11);
+}
+
+TEST(RelaxSurface, TakesParticlesOfARoundShapeToTheFacets)
+{
+    Walls walls(sphere(3), 0.1);
+    for (Vec3& p : walls.particles.positions) p = p / norm(p);
+    walls.relax();
+    for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
+}
+
+TEST(RelaxSurface, CrossesAnyNumberOfNarrowFacets)
+{
+    // A sheet of strips so narrow that a step leads over more facets than a walk may cross.
+    TriangleSoup sheet;
+    constexpr int strips = 6000;
+    for (int i = 0; i < strips; ++i)
+    {
+        const double a = static_cast<double>(i) / strips;
+        const double b = static_cast<double>(i + 1) / strips;
+        add_quad(sheet, {a, 0, 0}, {b, 0, 0}, {b, 1, 0}, {a, 1, 0});
+    }
+    Walls walls(sheet, 0.1);
+    const RelaxSurfaceReport report = walls.relax();
+    EXPECT_GT(report.projected, 0u);
+    EXPECT_EQ(report.returned, 0u);
+    EXPECT_LT(report.after.spacing_deviation, 0.06);
+    EXPECT_LE(farthest_point(walls), 0.75);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
+}
+
+TEST(RelaxSurface, RefusesLengthsOutOfRange)
+{
+    Walls walls(sphere(2), 0.3);
+    walls.options.h = 0.1;
+    EXPECT_THROW(walls.relax(), GeometryError);
+    walls.options.h = 0.8;
+    walls.options.dp = 0;
+    EXPECT_THROW(walls.relax(), GeometryError);
+}
+
+} // namespace fppg
