@@ -2,8 +2,10 @@
 
 #include "fppg/element.h"
 #include "fppg/fit.h"
+#include "fppg/initials.h"
 #include "fppg/lattice.h"
 #include "fppg/mesh_reading.h"
+#include "fppg/normals.h"
 #include "fppg/vec.h"
 
 #include <array>
@@ -381,6 +383,8 @@ struct CaseDef
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
+    std::vector<InitialOp> initials;    ///< in the order of the file
+    NormalsDef normals;
     std::vector<FloatingDef> floatings;
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
     Element properties;             ///< `<properties>` of the definition, or empty name

@@ -58,10 +58,11 @@ struct FileOrigin
 /// A bi4 file of this many bytes and more has 64-bit sizes; a reader takes 32-bit ones up to here.
 constexpr std::uint64_t bi4_limit_of_32_bit_sizes = 4228102018U;
 
-/// Writes `Case.bi4` (JBinaryData: one item JPartDataBi4 with PART_0000: Idp, Posd, Vel, Rhop) as a
-/// stream: no array of all particles is made, pieces of about one MiB are filled and written by
-/// `threads` threads at their offsets. The same input gives the same bytes for any number of
-/// threads (Date is "???"), equal to those of GenCase v5.4.354 but for AppName.
+/// Writes `Case.bi4` (JBinaryData: one item JPartDataBi4 with PART_0000: Idp, Posd, Vel, Rhop, and
+/// BoundNor where there are normals) as a stream: no array of all particles is made, pieces of
+/// about one MiB are filled and written by `threads` threads at their offsets. The same input gives
+/// the same bytes for any number of threads (Date is "???"), equal to those of GenCase v5.4.354 but
+/// for AppName.
 ///
 /// limit_of_32_bit_sizes  bytes from which the sizes of arrays take 64 bits
 /// throws                 IoError if the file cannot be written, or from 4,294,967,295 particles on
@@ -77,12 +78,13 @@ enum class VtkSelection
 };
 
 /// Writes particles as legacy binary VTK (POLYDATA, big-endian, POINTS float): All and Fluid with
-/// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk. Streamed like write_bi4, with the bytes of
+/// Idp, Vel, Rhop, Type, Mk, Bound with Idp, Type, Mk, or where there are normals with Idp, Mk
+/// (unsigned_short), Type, Normal, NormalSize. Streamed like write_bi4, with the bytes of
 /// GenCase v5.4.354. Mk is unsigned_char, unsigned_short where a selected mk is above 255.
 ///
 /// Of a case with fitted walls, All and Bound have behind these Kind (int, as FitKind; nodes are
 /// Volume), Normal (3 float; zero for Volume) and Distance (float, metres, negative inside;
-/// distance_of_nodes for nodes).
+/// distance_of_nodes for nodes). Where Normal stands there already, that of the wall is WallNormal.
 ///
 /// throws  IoError if the file cannot be written, or from 2,147,483,648 selected particles on
 void write_particles_vtk(OutputFile& file, const CaseParticles& particles,

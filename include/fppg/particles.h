@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/initials.h"
 #include "fppg/lattice.h"
 
 #include <array>
@@ -48,9 +49,12 @@ struct ParticleBlock
     std::vector<ParticleRun> runs; ///< in id order; their counts add up to `count`
     std::string property;          ///< names joined with '+', or empty
     int ref_motion = -1;           ///< moving: index in the motion of Case.xml
+    /// What `<initials>` does to its particles; nothing in them is empty. Runs and densities are
+    /// those before it.
+    std::vector<InitialOp> initials;
 };
 
-/// Particles off the lattice, in id order, one entry each in all arrays.
+/// Particles off the lattice before `<initials>`, in id order, one entry each in all arrays.
 struct FreeParticles
 {
     std::vector<Vec3> positions;
@@ -102,7 +106,7 @@ struct CaseConstants
 /// The particles of a case in id order: fixed, moving, floating, fluid; within a type by mk; within
 /// an mk by x, y, z (or by the order that mkorient asks for), those off the lattice among the
 /// nodes. Positions and densities of nodes are not stored: writers make them from the runs, node n
-/// at grid.origin + n * grid.dp.
+/// at grid.origin + n * grid.dp, and apply the `initials` of the block.
 struct CaseParticles
 {
     LatticeGrid grid;
@@ -124,12 +128,17 @@ struct CaseParticles
     /// particles have rhop0. Particles off the lattice have free.rhop.
     std::vector<float> rhop_of_depth;
     std::vector<float> rhop;
+
+    /// From every boundary particle to the boundary's surface, in id order; empty: the case asks
+    /// for no normals. Zero: none.
+    std::vector<std::array<float, 3>> bound_normals;
 };
 
 struct CaseDef;
 
 /// Turns the nodes of a case into its particles and derives the constants that depend on them:
 /// order and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
+/// `<initials>` are distributed over the blocks; floating bodies and limits are those after it.
 ///
 /// With fitted walls, nodes whose mk has the wall_zone_bit give no particle; the particles of
 /// field.walls join the block of their mk. In the order of a block all positions are compared as
@@ -142,10 +151,10 @@ struct CaseDef;
 /// constants  filled: what the definition fixes, the rest by formula
 /// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b
 /// zero
-/// throws    CaseError when a block is both moving and floating, or there are more particles than
-/// ids
-/// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z;
-/// O(n log n) for n particles off the lattice
+/// throws    CaseError when a block is both moving and floating, a move leads out of the domain, or
+/// there are more particles than ids
+/// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
+/// or `<initials>` need every place; O(n log n) for n particles off the lattice
 CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
                              CaseConstants& constants, std::vector<std::string>& warnings);
 

@@ -4,7 +4,9 @@
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "fppg/lattice.h"
+#include "fppg/normals.h"
 #include "fppg/particles.h"
+#include "fppg/read_shapes.h"
 #include "fppg/relax_walls.h"
 #include "fppg/version.h"
 
@@ -391,6 +393,7 @@ private:
                   std::vector<VtkOutEntry> vtk_out;
                   copy_meshes();
                   save_shapes(vtk_out);
+                  make_normals();
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
                             [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
@@ -469,7 +472,8 @@ private:
 
     void save_shapes(std::vector<VtkOutEntry>& vtk_out)
     {
-        for (const ShapeFile& shape_file : collect_shape_files(def_))
+        shape_files_ = collect_shape_files(def_);
+        for (const ShapeFile& shape_file : shape_files_)
         {
             timed(shape_file.name, "",
                   [&](OutputFile& f) { write_shapes_vtk(f, shape_file.shapes); });
@@ -488,6 +492,44 @@ private:
                                format_ranges(mk), format_ranges(mk_bound),
                                format_ranges(mk_fluid)});
         }
+    }
+
+    void make_normals()
+    {
+        if (!def_.normals.is_active) return;
+        NormalsReport report;
+        particles_.bound_normals =
+            compute_normals(def_, particles_, normal_geometry(), threads_, report);
+        shape_files_.clear();
+        for (const std::string& line : report.log) log_.line(line);
+        for (std::string& w : report.warnings) warn(std::move(w));
+        if (!report.shapes.empty())
+            timed("_GeometryShapes.vtk", "",
+                  [&](OutputFile& f) { write_shapes_vtk(f, report.shapes); });
+    }
+
+    /// The polygons that norgeometry asks for: those of a shape file of this run, or of a file that
+    /// stands in the folder of the output, where GenCase looks for it, or beside the definition.
+    std::vector<ShapePolygons> normal_geometry() const
+    {
+        if (!def_.normals.geometry) return {};
+        const GeometryNormals& geometry = *def_.normals.geometry;
+        for (const ShapeFile& shape_file : shape_files_)
+            if (def_.case_name + shape_file.name == geometry.file) return shape_file.shapes;
+        const fs::path beside = fs::path(options_.input).parent_path() / geometry.file;
+        const fs::path in_output = fs::path(options_.output).parent_path() / geometry.file;
+        std::error_code ignored;
+        for (const fs::path& path : {in_output, beside})
+            if (fs::exists(path, ignored)) return read_shapes_vtk(path.string());
+        std::vector<std::string> names;
+        for (const ShapeFile& shape_file : shape_files_)
+            names.push_back(def_.case_name + shape_file.name);
+        throw IoError(fmt::format(
+            "{}:{}: <geometryfile file=\"{}\">: no such shape file; this case writes {}, and "
+            "neither {} nor {} exists",
+            def_.file, geometry.line, geometry.file,
+            names.empty() ? "none (<shapeout> does)" : fmt::format("{}", fmt::join(names, ", ")),
+            in_output.string(), beside.string()));
     }
 
     std::vector<ParticleType> types() const
@@ -582,6 +624,7 @@ private:
     CaseConstants constants_;
     std::vector<OutputFile> files_;
     std::vector<MeshFileUse> mesh_files_;
+    std::vector<ShapeFile> shape_files_; ///< until the normals are made
     std::vector<std::string> warnings_;
 };
 

@@ -3,7 +3,9 @@
 
 #include "casedef/attributes.h"
 #include "casedef/fit_block.h"
+#include "casedef/initials.h"
 #include "casedef/motion.h"
+#include "casedef/normals.h"
 #include "casedef/program.h"
 #include "casedef/variable_commands.h"
 #include "casedef/xml_document.h"
@@ -58,13 +60,14 @@ public:
         commands_.require_all_overrides_used();
         evaluate_parameters();
 
-        if (const Element* e = casedef.find_child("initials")) refuse_children(*e);
+        if (const Element* e = casedef.find_child("initials"))
+            def_.initials = read_initials(*e, def_, read_);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
         if (const Element* e = casedef.find_child("properties")) read_properties(*e);
         if (const Element* e = casedef.find_child("motion"))
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
-            if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+            def_.normals = read_normals(*e, def_, read_, def_.warnings);
         if (const Element* e = casedef.find_child("vres"))
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
         read_fit(root, read_, options_.fit, def_);
@@ -317,14 +320,6 @@ private:
         variables_.predefine("H", def_.h);
         variables_.predefine("MassBound", def_.mass_bound);
         variables_.predefine("MassFluid", def_.mass_fluid);
-    }
-
-    void refuse_children(const Element& e) const
-    {
-        for (const Element& c : e.children)
-            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') &&
-                read_.flag_or(c, "active", true))
-                read_.fail_unsupported(c);
     }
 
     /// The value of an attribute of the floating, or of its child of that name.

@@ -14,14 +14,17 @@
 // Everything is little-endian. Count and size of an array are u32, or u64 when si64 is 1; the byte
 // order is then 10 instead of 0, so that older readers refuse the file.
 //
-// Vel is zero everywhere, and a reserved file reads as zeros: it is never written.
+// Vel is zero but where `<initials>` sets it, and a reserved file reads as zeros: only pieces with
+// such particles are written.
 
 #include "core/parallel.h"
 #include "files/particle_stream.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "particles/initials.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -256,6 +259,7 @@ struct Bi4Layout
 {
     std::string start; ///< all before the first array
     ArrayPlace idp, posd, vel, rhop;
+    ArrayPlace normals; ///< without a definition where there are none
     std::uint64_t size = 0;
 };
 
@@ -263,24 +267,46 @@ Bi4Layout lay_out(const CaseParticles& particles, const CaseConstants& constants
                   const FileOrigin& origin, bool has_64_bit_sizes)
 {
     Bi4Layout layout;
-    layout.start = bi4_head(has_64_bit_sizes) +
-                   bi4_item("JPartDataBi4", 0, 1, case_values(particles, constants, origin)) +
-                   bi4_item("PART_0000", 4, 0, part_values(particles));
+    layout.start =
+        bi4_head(has_64_bit_sizes) +
+        bi4_item("JPartDataBi4", 0, 1, case_values(particles, constants, origin)) +
+        bi4_item("PART_0000", particles.bound_normals.empty() ? 4 : 5, 0, part_values(particles));
     layout.size = layout.start.size();
-    const auto place = [&](std::string_view name, Bi4Type type, std::uint64_t element_size)
+    const auto place =
+        [&](std::string_view name, Bi4Type type, std::uint64_t element_size, std::uint64_t count)
     {
         ArrayPlace array;
-        array.definition = bi4_array(name, type, particles.np, element_size, has_64_bit_sizes);
+        array.definition = bi4_array(name, type, count, element_size, has_64_bit_sizes);
         array.data = layout.size + array.definition.size();
         array.element_size = element_size;
-        layout.size = array.data + particles.np * element_size;
+        layout.size = array.data + count * element_size;
         return array;
     };
-    layout.idp = place("Idp", Bi4Type::Uint, 4);
-    layout.posd = place("Posd", Bi4Type::Double3, 24);
-    layout.vel = place("Vel", Bi4Type::Float3, 12);
-    layout.rhop = place("Rhop", Bi4Type::Float, 4);
+    layout.idp = place("Idp", Bi4Type::Uint, 4, particles.np);
+    layout.posd = place("Posd", Bi4Type::Double3, 24, particles.np);
+    layout.vel = place("Vel", Bi4Type::Float3, 12, particles.np);
+    layout.rhop = place("Rhop", Bi4Type::Float, 4, particles.np);
+    if (!particles.bound_normals.empty())
+        layout.normals = place("BoundNor", Bi4Type::Float3, 12, particles.bound_normals.size());
     return layout;
+}
+
+/// Runs `<initials>` on the particles of a segment, given three positions, three velocities and a
+/// density each.
+void start_segment(const ParticleSegment& segment, double* pos, float* vel, float* rhop)
+{
+    for (std::uint32_t k = 0; k < segment.count; ++k)
+    {
+        InitialState state{{pos[3 * k], pos[3 * k + 1], pos[3 * k + 2]}, {}, rhop[k]};
+        apply_initials(segment.block->initials, state);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            pos[3 * k + static_cast<std::uint32_t>(axis)] = state.position[axis];
+            vel[3 * k + static_cast<std::uint32_t>(axis)] =
+                static_cast<float>(state.velocity[axis]);
+        }
+        rhop[k] = static_cast<float>(state.rhop);
+    }
 }
 
 void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream& stream,
@@ -288,10 +314,12 @@ void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream
 {
     const std::uint64_t begin = stream.begin(piece);
     const std::size_t count = stream.end(piece) - begin;
-    char* const buffer = piece_buffer(count * (24 + 4 + 4));
+    char* const buffer = piece_buffer(count * (24 + 4 + 4 + 12));
     auto* const pos = reinterpret_cast<double*>(buffer);
     auto* const rhop = reinterpret_cast<float*>(buffer + count * 24);
     auto* const idp = reinterpret_cast<std::uint32_t*>(buffer + count * 28);
+    auto* const vel = reinterpret_cast<float*>(buffer + count * 32);
+    bool has_vel = false;
     for (std::size_t k = 0; k < count; ++k) idp[k] = static_cast<std::uint32_t>(begin + k);
     stream.for_each_segment(piece,
                             [&](const ParticleSegment& segment)
@@ -307,10 +335,15 @@ void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream
                                 float* r = rhop + (segment.id - begin);
                                 for_each_density(particles, rhop0, segment,
                                                  [&](std::uint32_t k, float v) { r[k] = v; });
+                                if (segment.block->initials.empty()) return;
+                                if (!has_vel) std::fill_n(vel, 3 * count, 0.0F);
+                                has_vel = true;
+                                start_segment(segment, p, vel + 3 * (segment.id - begin), r);
                             });
     file.write_at(layout.idp.data + begin * 4, idp, count * 4);
     file.write_at(layout.posd.data + begin * 24, pos, count * 24);
     file.write_at(layout.rhop.data + begin * 4, rhop, count * 4);
+    if (has_vel) file.write_at(layout.vel.data + begin * 12, vel, count * 12);
 }
 
 } // namespace
@@ -328,9 +361,14 @@ void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConst
 
     file.reserve(layout.size);
     file.write_at(0, layout.start.data(), layout.start.size());
-    for (const ArrayPlace* array : {&layout.idp, &layout.posd, &layout.vel, &layout.rhop})
+    for (const ArrayPlace* array :
+         {&layout.idp, &layout.posd, &layout.vel, &layout.rhop, &layout.normals})
         file.write_at(array->data - array->definition.size(), array->definition.data(),
                       array->definition.size());
+
+    if (!particles.bound_normals.empty())
+        file.write_at(layout.normals.data, particles.bound_normals.data(),
+                      particles.bound_normals.size() * 12);
 
     const ParticleStream stream(particles, 0, particles.np, particles_a_piece);
     const auto rhop0 = static_cast<float>(constants.rhop0);

@@ -1,12 +1,13 @@
 // Every part of the file has a size that is known beforehand, so its pieces are written at their
-// places by several threads. Vel is zero everywhere, and a reserved file reads as zeros: it is
-// never written.
+// places by several threads. Vel is zero but where `<initials>` sets it, and a reserved file reads
+// as zeros: only pieces with such particles are written.
 
 #include "core/parallel.h"
 #include "files/particle_stream.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "particles/initials.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace fppg
 namespace
 {
 
-/// 31 bytes a particle, 51 with walls: one MiB or two.
+/// 27 bytes a particle, 12 more with velocities, 16 with normals and 20 with walls: one MiB or two.
 constexpr std::uint64_t particles_a_piece = 32768;
 constexpr std::uint64_t max_particles = 2147483647U;
 
@@ -27,21 +28,26 @@ struct Part
     std::uint64_t data = 0;
 };
 
+/// What the file says of a particle besides place, id, type and mk.
+struct Contents
+{
+    bool vel_and_rhop = false;
+    bool normals = false; ///< then Mk stands before Type
+    bool walls = false;
+    std::uint64_t mk_width = 1;
+};
+
 struct Layout
 {
-    Part points, vertices, idp, vel, rhop, type, mk, kind, normal, distance;
-    bool has_vel_and_rhop = false;
-    bool has_walls = false;
-    std::uint64_t mk_width = 1;
+    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance;
+    Contents has;
     std::uint64_t size = 0;
 };
 
-Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, bool has_walls, std::uint64_t mk_width)
+Layout lay_out(std::uint64_t n, const Contents& has)
 {
     Layout layout;
-    layout.has_vel_and_rhop = has_vel_and_rhop;
-    layout.has_walls = has_walls;
-    layout.mk_width = mk_width;
+    layout.has = has;
     // Binary data end with a line end, so all parts but the first begin with one.
     const auto place = [&](Part& part, std::string text, std::uint64_t width)
     {
@@ -54,21 +60,32 @@ Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, bool has_walls, std::uint
     place(layout.idp,
           fmt::format("\nPOINT_DATA {}\nSCALARS Idp unsigned_int\nLOOKUP_TABLE default\n", n), 4);
     const std::string fields =
-        fmt::format("\nFIELD FieldData {}", (has_vel_and_rhop ? 4 : 2) + (has_walls ? 3 : 0));
-    if (has_vel_and_rhop)
+        fmt::format("\nFIELD FieldData {}",
+                    2 + (has.vel_and_rhop ? 2 : 0) + (has.normals ? 2 : 0) + (has.walls ? 3 : 0));
+    const char* const mk_type = has.mk_width == 1 ? "unsigned_char" : "unsigned_short";
+    if (has.vel_and_rhop)
     {
         place(layout.vel, fmt::format("{}\nVel 3 {} float\n", fields, n), 12);
         place(layout.rhop, fmt::format("\nRhop 1 {} float\n", n), 4);
     }
-    place(layout.type,
-          fmt::format("{}\nType 1 {} unsigned_char\n", has_vel_and_rhop ? "" : fields, n), 1);
-    place(layout.mk,
-          fmt::format("\nMk 1 {} {}\n", n, mk_width == 1 ? "unsigned_char" : "unsigned_short"),
-          mk_width);
-    if (has_walls)
+    if (has.normals)
+    {
+        place(layout.mk, fmt::format("{}\nMk 1 {} {}\n", fields, n, mk_type), has.mk_width);
+        place(layout.type, fmt::format("\nType 1 {} unsigned_char\n", n), 1);
+        place(layout.normals, fmt::format("\nNormal 3 {} float\n", n), 12);
+        place(layout.sizes, fmt::format("\nNormalSize 1 {} float\n", n), 4);
+    }
+    else
+    {
+        place(layout.type,
+              fmt::format("{}\nType 1 {} unsigned_char\n", has.vel_and_rhop ? "" : fields, n), 1);
+        place(layout.mk, fmt::format("\nMk 1 {} {}\n", n, mk_type), has.mk_width);
+    }
+    if (has.walls)
     {
         place(layout.kind, fmt::format("\nKind 1 {} int\n", n), 4);
-        place(layout.normal, fmt::format("\nNormal 3 {} float\n", n), 12);
+        place(layout.wall_normal,
+              fmt::format("\n{} 3 {} float\n", has.normals ? "WallNormal" : "Normal", n), 12);
         place(layout.distance, fmt::format("\nDistance 1 {} float\n", n), 4);
     }
     layout.size += 1;
@@ -78,35 +95,78 @@ Layout lay_out(std::uint64_t n, bool has_vel_and_rhop, bool has_walls, std::uint
 /// Where the values of a piece stand in its buffer.
 struct PieceBuffer
 {
-    PieceBuffer(char* start, std::size_t n, bool has_walls)
+    PieceBuffer(char* start, std::size_t n, const Contents& has)
         : points(reinterpret_cast<std::uint32_t*>(start)),
           vertices(points + 3 * n),
           idp(vertices + 2 * n),
           rhop(idp + n),
-          kind(rhop + n),
-          normal(kind + (has_walls ? n : 0)),
-          distance(normal + (has_walls ? 3 * n : 0)),
-          mk16(reinterpret_cast<std::uint16_t*>(distance + (has_walls ? n : 0))),
+          vel(rhop + n),
+          normals(vel + (has.vel_and_rhop ? 3 * n : 0)),
+          sizes(normals + (has.normals ? 3 * n : 0)),
+          kind(sizes + (has.normals ? n : 0)),
+          wall_normal(kind + (has.walls ? n : 0)),
+          distance(wall_normal + (has.walls ? 3 * n : 0)),
+          mk16(reinterpret_cast<std::uint16_t*>(distance + (has.walls ? n : 0))),
           mk8(reinterpret_cast<std::uint8_t*>(mk16)),
           type(mk8 + 2 * n)
     {
     }
-    static std::size_t bytes_a_particle(bool has_walls)
+    static std::size_t bytes_a_particle(const Contents& has)
     {
-        return 12 + 8 + 4 + 4 + 2 + 1 + (has_walls ? 4 + 12 + 4 : 0);
+        return std::size_t{12 + 8 + 4 + 4 + 2 + 1} + (has.vel_and_rhop ? 12 : 0) +
+               (has.normals ? 16 : 0) + (has.walls ? 20 : 0);
     }
 
     std::uint32_t* points;
     std::uint32_t* vertices;
     std::uint32_t* idp;
     std::uint32_t* rhop;
-    std::uint32_t* kind;
-    std::uint32_t* normal;
+    std::uint32_t* vel;     ///< with vel_and_rhop
+    std::uint32_t* normals; ///< with normals, as sizes
+    std::uint32_t* sizes;
+    std::uint32_t* kind; ///< with walls, as wall_normal and distance
+    std::uint32_t* wall_normal;
     std::uint32_t* distance;
     std::uint16_t* mk16;
     std::uint8_t* mk8;
     std::uint8_t* type;
 };
+
+/// Runs `<initials>` on the particles of a segment.
+void start_segment(const PieceBuffer& buffer, std::size_t at, const Contents& has,
+                   const CaseParticles& particles, const ParticleSegment& segment)
+{
+    const auto start = [&](std::int64_t place, double x, double y, double z)
+    {
+        const std::size_t k = at + static_cast<std::size_t>(place);
+        InitialState state{{x, y, z}, {}, 0};
+        if (has.vel_and_rhop)
+            state.rhop = static_cast<double>(std::bit_cast<float>(big_endian(buffer.rhop[k])));
+        apply_initials(segment.block->initials, state);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const std::size_t i = 3 * k + static_cast<std::size_t>(axis);
+            buffer.points[i] = big_endian(static_cast<float>(state.position[axis]));
+            if (has.vel_and_rhop)
+                buffer.vel[i] = big_endian(static_cast<float>(state.velocity[axis]));
+        }
+        if (has.vel_and_rhop) buffer.rhop[k] = big_endian(static_cast<float>(state.rhop));
+    };
+    for_each_position(particles, segment, start);
+}
+
+/// Normals of `count` boundary particles from id `begin` on, and their lengths.
+void fill_normals(const PieceBuffer& buffer, const CaseParticles& particles, std::uint64_t begin,
+                  std::size_t count)
+{
+    for (std::size_t k = 0; k < count; ++k)
+    {
+        const std::array<float, 3>& n = particles.bound_normals[begin + k];
+        for (std::size_t i = 0; i < 3; ++i) buffer.normals[3 * k + i] = big_endian(n[i]);
+        const double length = norm({n[0], n[1], n[2]});
+        buffer.sizes[k] = big_endian(static_cast<float>(length));
+    }
+}
 
 /// Kind, normal and distance.
 void fill_walls(const PieceBuffer& buffer, std::size_t at, const FreeParticles& free,
@@ -117,16 +177,21 @@ void fill_walls(const PieceBuffer& buffer, std::size_t at, const FreeParticles& 
     {
         std::fill_n(buffer.kind + at, segment.count,
                     big_endian(static_cast<std::uint32_t>(FitKind::Volume)));
-        std::fill_n(buffer.normal + 3 * at, 3 * std::size_t{segment.count}, std::uint32_t{0});
+        std::fill_n(buffer.wall_normal + 3 * at, 3 * std::size_t{segment.count}, std::uint32_t{0});
         std::fill_n(buffer.distance + at, segment.count, big_endian(distance_of_nodes));
         return;
     }
+    Transform turn = motion_of(*segment.block);
+    turn.offset = {};
     for (std::size_t k = 0; k < segment.count; ++k)
     {
         const std::size_t from = run.free_begin() + segment.offset + k;
         buffer.kind[at + k] = big_endian(static_cast<std::uint32_t>(free.kinds[from]));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            buffer.normal[3 * (at + k) + axis] = big_endian(free.normals[from][axis]);
+        const std::array<float, 3>& n = free.normals[from];
+        const Vec3 normal = turn({n[0], n[1], n[2]});
+        for (int axis = 0; axis < 3; ++axis)
+            buffer.wall_normal[3 * (at + k) + static_cast<std::size_t>(axis)] =
+                big_endian(static_cast<float>(normal[axis]));
         buffer.distance[at + k] = big_endian(free.distances[from]);
     }
 }
@@ -142,16 +207,17 @@ void fill_segment(const PieceBuffer& buffer, std::size_t at, const Layout& layou
                           points[3 * k + 1] = big_endian(static_cast<float>(y));
                           points[3 * k + 2] = big_endian(static_cast<float>(z));
                       });
-    if (layout.has_vel_and_rhop)
+    if (layout.has.vel_and_rhop)
     {
         std::uint32_t* rhop = buffer.rhop + at;
         for_each_density(particles, rhop0, segment,
                          [&](std::uint32_t k, float v) { rhop[k] = big_endian(v); });
     }
-    if (layout.has_walls) fill_walls(buffer, at, particles.free, segment);
+    if (layout.has.walls) fill_walls(buffer, at, particles.free, segment);
     const ParticleBlock& block = *segment.block;
+    if (!block.initials.empty()) start_segment(buffer, at, layout.has, particles, segment);
     std::fill_n(buffer.type + at, segment.count, static_cast<std::uint8_t>(block.type));
-    if (layout.mk_width == 1)
+    if (layout.has.mk_width == 1)
         std::fill_n(buffer.mk8 + at, segment.count, static_cast<std::uint8_t>(block.mk));
     else
         std::fill_n(buffer.mk16 + at, segment.count, big_endian(block.mk));
@@ -163,29 +229,41 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
     const std::uint64_t begin = stream.begin(piece);
     const std::size_t count = stream.end(piece) - begin;
     const std::uint64_t place = begin - stream.first();
-    const PieceBuffer buffer(piece_buffer(count * PieceBuffer::bytes_a_particle(layout.has_walls)),
-                             count, layout.has_walls);
+    const Contents& has = layout.has;
+    const PieceBuffer buffer(piece_buffer(count * PieceBuffer::bytes_a_particle(has)), count, has);
     for (std::size_t k = 0; k < count; ++k)
     {
         buffer.vertices[2 * k] = big_endian(std::uint32_t{1});
         buffer.vertices[2 * k + 1] = big_endian(static_cast<std::uint32_t>(place + k));
         buffer.idp[k] = big_endian(static_cast<std::uint32_t>(begin + k));
     }
+    bool has_vel = false;
+    if (has.vel_and_rhop)
+        stream.for_each_segment(piece, [&](const ParticleSegment& segment)
+                                { has_vel = has_vel || !segment.block->initials.empty(); });
+    if (has_vel) std::fill_n(buffer.vel, 3 * count, 0U);
     stream.for_each_segment(
         piece, [&](const ParticleSegment& segment)
         { fill_segment(buffer, segment.id - begin, layout, particles, rhop0, segment); });
+    if (has.normals) fill_normals(buffer, particles, begin, count);
 
     const auto write = [&](const Part& part, const void* data, std::size_t width)
     { file.write_at(part.data + place * width, data, count * width); };
     write(layout.points, buffer.points, 12);
     write(layout.vertices, buffer.vertices, 8);
     write(layout.idp, buffer.idp, 4);
-    if (layout.has_vel_and_rhop) write(layout.rhop, buffer.rhop, 4);
+    if (has.vel_and_rhop) write(layout.rhop, buffer.rhop, 4);
+    if (has_vel) write(layout.vel, buffer.vel, 12);
+    if (has.normals)
+    {
+        write(layout.normals, buffer.normals, 12);
+        write(layout.sizes, buffer.sizes, 4);
+    }
     write(layout.type, buffer.type, 1);
-    write(layout.mk, buffer.mk8, layout.mk_width);
-    if (!layout.has_walls) return;
+    write(layout.mk, buffer.mk8, has.mk_width);
+    if (!has.walls) return;
     write(layout.kind, buffer.kind, 4);
-    write(layout.normal, buffer.normal, 12);
+    write(layout.wall_normal, buffer.wall_normal, 12);
     write(layout.distance, buffer.distance, 4);
 }
 
@@ -203,16 +281,18 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
             fmt::format("cannot write '{}': {} particles, but legacy VTK holds at most "
                         "{} (indices have 32 bits)",
                         file.path(), n, max_particles));
-    std::uint64_t mk_width = 1;
+    const bool has_normals = selection == VtkSelection::Bound && !particles.bound_normals.empty();
+    std::uint64_t mk_width = has_normals ? 2 : 1;
     for (const ParticleBlock& block : particles.blocks)
         if (block.mk > 255 && block.begin < last && block.begin + block.count > first) mk_width = 2;
 
-    const bool has_walls = particles.has_walls && selection != VtkSelection::Fluid;
-    const Layout layout = lay_out(n, selection != VtkSelection::Bound, has_walls, mk_width);
+    const Layout layout =
+        lay_out(n, {selection != VtkSelection::Bound, has_normals,
+                    particles.has_walls && selection != VtkSelection::Fluid, mk_width});
     file.reserve(layout.size);
-    for (const Part* part :
-         {&layout.points, &layout.vertices, &layout.idp, &layout.vel, &layout.rhop, &layout.type,
-          &layout.mk, &layout.kind, &layout.normal, &layout.distance})
+    for (const Part* part : {&layout.points, &layout.vertices, &layout.idp, &layout.vel,
+                             &layout.rhop, &layout.type, &layout.mk, &layout.normals, &layout.sizes,
+                             &layout.kind, &layout.wall_normal, &layout.distance})
         file.write_at(part->data - part->text.size(), part->text.data(), part->text.size());
     file.write_at(layout.size - 1, "\n", 1);
 

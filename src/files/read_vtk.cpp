@@ -49,7 +49,8 @@ std::uint64_t big_endian_at(const char* place, std::size_t width)
 class VtkWalk
 {
 public:
-    VtkArray points, mk, type, kind, normal, distance;
+    VtkArray points, mk, type, kind, normal, wall_normal, distance;
+    bool has_sizes = false; ///< an array NormalSize
 
     VtkWalk(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path)
     {
@@ -110,11 +111,13 @@ private:
     {
         if (!is_of_points_) return;
         if (name == "Normal" && components == 3) normal = array;
+        if (name == "WallNormal" && components == 3) wall_normal = array;
         if (components != 1) return;
         if (name == "Mk") mk = array;
         if (name == "Type") type = array;
         if (name == "Kind") kind = array;
         if (name == "Distance") distance = array;
+        if (name == "NormalSize") has_sizes = true;
     }
 
     void walk_part()
@@ -205,13 +208,15 @@ void expect_floats(const VtkWalk& walk, const char* name, const VtkArray& array,
 
 void copy_floats(const VtkWalk& walk, std::size_t n, ParticleCloud& cloud, int threads)
 {
-    if (!walk.normal.type.empty())
+    // Beside NormalSize, "Normal" is the way to the boundary's surface.
+    const VtkArray& normal = walk.has_sizes ? walk.wall_normal : walk.normal;
+    if (!normal.type.empty())
     {
-        expect_floats(walk, "Normal", walk.normal, n);
+        expect_floats(walk, walk.has_sizes ? "WallNormal" : "Normal", normal, n);
         cloud.normals.resize(n);
         const auto copy = [&](std::size_t i)
         {
-            const char* place = walk.normal.data.data() + 12 * i;
+            const char* place = normal.data.data() + 12 * i;
             cloud.normals[i] = {float_at(place), float_at(place + 4), float_at(place + 8)};
         };
         parallel_for(n, threads, copy, particles_a_chunk);

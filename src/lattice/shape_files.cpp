@@ -15,13 +15,15 @@ namespace fppg
 namespace
 {
 
-/// Two directions across an axis.
+/// Two directions across an axis. The corners of cylinders begin at the first one, which GenCase
+/// v5.4.354 takes from the first coordinate of the axis that is not zero (found with 12 axes).
 std::pair<Vec3, Vec3> across(const Vec3& axis)
 {
-    const Vec3 u = axis / norm(axis);
-    const Vec3 helper = std::fabs(u.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
-    const Vec3 v = cross(u, helper) / norm(cross(u, helper));
-    return {v, cross(u, v)};
+    Vec3 v{1, 1, 1};
+    const int k = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
+    v[k] = -(axis[(k + 1) % 3] + axis[(k + 2) % 3]) / axis[k];
+    v = v / norm(v);
+    return {v, cross(axis / norm(axis), v)};
 }
 
 class ShapeCollector

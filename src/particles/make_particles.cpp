@@ -6,6 +6,7 @@
 #include "particles/density.h"
 #include "particles/floating.h"
 #include "particles/free_particles.h"
+#include "particles/initials.h"
 
 #include <fmt/format.h>
 
@@ -53,6 +54,7 @@ public:
         compute_densities(def_, field_, type_of_mk_, free_begin_, out_, constants, threads_);
         orient_blocks();
         merge_free();
+        set_initials(def_, constants, out_);
         make_floatings();
         set_properties();
         warn(constants, warnings);
@@ -333,10 +335,37 @@ private:
                 if (std::find(f->mkbound.begin(), f->mkbound.end(), out_.blocks[b].mk_type) !=
                     f->mkbound.end())
                 {
-                    out_.floatings.push_back(floating_body(*f, out_, b, def_.mass_bound));
+                    out_.floatings.push_back(moved_body(*f, b));
                     break;
                 }
         }
+    }
+
+    /// The body of a block at its place after `<initials>`: as the body at its first place about
+    /// the point that the move brings to the given centre, then moved. What the definition gives
+    /// itself stays.
+    FloatingBody moved_body(FloatingDef f, std::size_t b) const
+    {
+        const Transform map = motion_of(out_.blocks[b]);
+        if (map.is_identity()) return floating_body(f, out_, b, def_.mass_bound);
+        const std::optional<Vec3> center = f.center;
+        const Vec3 back = center ? *center - map.offset : Vec3{};
+        if (center)
+            f.center = Vec3{} + back.x * map.linear[0] + back.y * map.linear[1] +
+                       back.z * map.linear[2]; // the transposed rotation is its inverse
+        FloatingBody body = floating_body(f, out_, b, def_.mass_bound);
+        body.center = center ? *center : map(body.center);
+        if (f.inertia) return body;
+        const std::array<Vec3, 3> still = body.inertia;
+        for (int i = 0; i < 3; ++i)
+        {
+            const Vec3& row = map.linear[static_cast<std::size_t>(i)];
+            const Vec3 left = row.x * still[0] + row.y * still[1] + row.z * still[2];
+            for (int j = 0; j < 3; ++j)
+                body.inertia[static_cast<std::size_t>(i)][j] =
+                    dot(left, map.linear[static_cast<std::size_t>(j)]);
+        }
+        return body;
     }
 
     void set_properties()

@@ -8,15 +8,19 @@
 #include <nlohmann/json.hpp>
 #endif
 
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
 #include <set>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 namespace
 {
@@ -540,6 +544,146 @@ TEST(FppgTemplates, WriteACaseThatRuns)
     ASSERT_EQ(run(folder, {"-templates"}).code, 0);
     const RunResult result = run(folder, {"FppgCaseTemplate", "out/Case"});
     EXPECT_EQ(result.code, 0) << result.output;
+}
+
+CaseText tank_with_normals(const std::string& file)
+{
+    CaseText text = tank();
+    const std::string list = text.mainlist;
+    text.mainlist =
+        "<setshapemode>actual | bound</setshapemode>" + list + R"(<shapeout file="wall" />)";
+    text.after_geometry = R"(<normals><norgeometry><geometryfile file=")" + file +
+                          R"(" /><svshapes v="true" /></norgeometry></normals>)";
+    return text;
+}
+
+TEST(FppgNormals, ComeFromTheShapeFileOfTheSameRun)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("[CaseName]_wall_Actual.vtk").text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case", "-save:all"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "Computing normals..."));
+    EXPECT_TRUE(contains(read_text(folder / "out/Case.bi4"), "BoundNor"));
+    EXPECT_TRUE(contains(read_text(folder / "out/Case_Bound.vtk"), "NormalSize 1"));
+    EXPECT_TRUE(fs::exists(folder / "out/Case_GeometryShapes.vtk"));
+}
+
+TEST(FppgNormals, ComeFromAFileBesideTheDefinitionToo)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("[CaseName]_wall_Actual.vtk").text());
+    ASSERT_EQ(run(folder, {"Case_Def", "out/Case"}).code, 0);
+    fs::copy_file(folder / "out/Case_wall_Actual.vtk", folder / "mine.vtk");
+    write_text(folder / "Other_Def.xml", tank_with_normals("mine.vtk").text());
+    const RunResult result = run(folder, {"Other_Def", "other/Case"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(read_text(folder / "out/Case.bi4") == read_text(folder / "other/Case.bi4"), true);
+}
+
+TEST(FppgNormals, NameTheShapeFilesThatThereAreWhenTheirsIsMissing)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", tank_with_normals("none.vtk").text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case"});
+    EXPECT_EQ(result.code, 4);
+    EXPECT_TRUE(contains(result.output,
+                         "<geometryfile file=\"none.vtk\">: no such shape file; "
+                         "this case writes Case_wall_Actual.vtk"))
+        << result.output;
+    EXPECT_FALSE(fs::exists(folder / "out/Case.bi4"));
+}
+
+/// The numbers of an array of Case.bi4; none without that array.
+template <typename T>
+std::vector<T> bi4_array(const std::string& bytes, const std::string& name)
+{
+    const std::string head =
+        "\nARRAY" + std::string(1, static_cast<char>(name.size())) + std::string(3, '\0') + name;
+    const std::size_t found = bytes.find(head);
+    if (found == std::string::npos) return {};
+    // Behind the name: hide, type, count, size of the data, data.
+    const char* const fields = bytes.data() + found + head.size();
+    std::uint32_t size = 0;
+    std::memcpy(&size, fields + 12, sizeof size);
+    std::vector<T> numbers(size / sizeof(T));
+    std::memcpy(numbers.data(), fields + 16, size);
+    return numbers;
+}
+
+/// Whether a coordinate is one of the lattice that goes through the origin.
+bool is_of_lattice(double x, double dp)
+{
+    return std::fabs(x - std::round(x / dp) * dp) < 1e-9;
+}
+
+TEST(FppgNormals, AreThoseOfEveryBoundaryParticleOfAFittedWallToo)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)"
+                    R"(<drawsphere radius="0.43"><point x="0.5" y="0.5" z="0.5" /></drawsphere>)"
+                    R"(<setmkbound mk="1" />)" +
+                    box_command(R"(x="0" y="0" z="-0.3")", R"(x="1" y="1" z="0.1")");
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="0" /></fppg>)"
+        R"(<normals><norsphere><center x="0.51" y="0.52" z="0.53" /><radius v="2" />)"
+        R"(<inside v="true" /><maxdisth v="100" /></norsphere></normals>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case", "-save:all"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string file = read_text(folder / "out/Case.bi4");
+    const auto places = bi4_array<double>(file, "Posd");
+    const auto normals = bi4_array<float>(file, "BoundNor");
+    ASSERT_EQ(normals.size(), places.size());
+    int off_lattice = 0;
+    for (std::size_t i = 0; i < places.size(); i += 3)
+    {
+        const std::array<double, 3> d{places[i] - 0.51, places[i + 1] - 0.52, places[i + 2] - 0.53};
+        const double q = std::hypot(d[0], d[1], d[2]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            ASSERT_NEAR(normals[i + axis], (2 / q - 1) * d[axis], 1e-5) << "particle " << i / 3;
+        if (!is_of_lattice(places[i], 0.1)) ++off_lattice;
+    }
+    EXPECT_GT(off_lattice, 200);
+    const std::string picture = read_text(folder / "out/Case_Bound.vtk");
+    for (const char* array : {"\nNormal 3 ", "\nNormalSize 1 ", "\nWallNormal 3 ", "\nKind 1 "})
+        EXPECT_TRUE(contains(picture, array)) << array;
+}
+
+TEST(FppgInitials, StartTheRelaxedFluidBesideAFittedWallToo)
+{
+    const TemporaryFolder folder;
+    CaseText text = tank();
+    text.mainlist += R"(<setmkbound mk="1" />)"
+                     R"(<drawsphere radius="0.23"><point x="0.5" y="0.5" z="0.3" /></drawsphere>)";
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="1" /><fluidband mkfluid="0" width="3" /></fppg>)"
+        R"(<initials><velocity mkfluid="0" x="1" y="2" z="3"><onlypos><posmin z="0.33" />)"
+        R"(</onlypos></velocity><densitygradient mkfluid="0"><pos1 x="0" y="0" z="0" rhop="1100" />)"
+        R"(<pos2 x="0" y="0" z="1" rhop="1000" /></densitygradient></initials>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string file = read_text(folder / "out/Case.bi4");
+    const auto places = bi4_array<double>(file, "Posd");
+    const auto velocities = bi4_array<float>(file, "Vel");
+    const auto densities = bi4_array<float>(file, "Rhop");
+    ASSERT_EQ(velocities.size(), places.size());
+    // Boundary particles come first and rest at 1000.
+    std::size_t i = 0;
+    for (; densities.at(i) == 1000; ++i) ASSERT_EQ(velocities[3 * i], 0);
+    int off_lattice = 0;
+    for (; i < densities.size(); ++i)
+    {
+        const double z = places[3 * i + 2];
+        const std::array<float, 3> fast{1, 2, 3};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            ASSERT_EQ(velocities[3 * i + axis], z >= 0.33 ? fast[axis] : 0) << "particle " << i;
+        ASSERT_NEAR(densities[i], 1100 - 100 * z, 1e-3) << "particle " << i;
+        if (z >= 0.33 && !is_of_lattice(z, 0.1)) ++off_lattice;
+    }
+    EXPECT_GT(off_lattice, 30);
 }
 
 TEST(FppgClean, WritesOnlyATidyDefinitionThatRunsTheSame)

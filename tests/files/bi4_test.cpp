@@ -226,6 +226,66 @@ TEST(WriteBi4, TakesDensitiesFromTheListWhereThereIsOne)
     for (std::size_t i = 0; i < 14; ++i) EXPECT_EQ(rhop[9 + i], static_cast<float>(2000 + i));
 }
 
+TEST(WriteBi4, RunsTheInitialsOfABlockAndLeavesTheOthers)
+{
+    CaseParticles particles = small_particles();
+    Transform up;
+    up.offset = {0, 0, 0.05};
+    PositionFilter high;
+    high.min.z = 0.5;
+    particles.blocks[3].initials = {{1, 1, {}, MoveParticles{up}},
+                                    {2, 1, {}, UniformDensity{1200}},
+                                    {3, 1, high, UniformVelocity{{1, 2, 3}}}};
+    const Bi4Reader file(bi4_of(particles, small_constants()));
+    const auto pos = file.root.items[0].array<double>(1);
+    const auto vel = file.root.items[0].array<float>(2);
+    const auto rhop = file.root.items[0].array<float>(3);
+    // Particle 9 stood at z = 0.4, particle 10 at 0.5.
+    EXPECT_NEAR(pos[3 * 9 + 2], 0.45, 1e-12);
+    EXPECT_NEAR(pos[3 * 10 + 2], 0.55, 1e-12);
+    EXPECT_EQ(vel[3 * 9 + 1], 0.0f);
+    EXPECT_EQ(vel[3 * 10 + 1], 2.0f);
+    EXPECT_EQ(rhop[9], 1200.0f);
+    EXPECT_EQ(rhop[17], 1000.0f);
+    EXPECT_EQ(vel[3 * 17 + 1], 0.0f);
+}
+
+TEST(WriteBi4, RunsTheInitialsOnParticlesOffTheLattice)
+{
+    CaseParticles particles = walled_particles();
+    PositionFilter far;
+    far.min.x = 2.15;
+    Transform up;
+    up.offset = {0, 0, 0.5};
+    particles.blocks[4].initials = {{1, 2, far, UniformVelocity{{1, 2, 3}}},
+                                    {2, 2, far, UniformDensity{1200}},
+                                    {3, 2, {}, MoveParticles{up}}};
+    const Bi4Reader file(bi4_of(particles, small_constants()));
+    const auto pos = file.root.items[0].array<double>(1);
+    const auto vel = file.root.items[0].array<float>(2);
+    const auto rhop = file.root.items[0].array<float>(3);
+    // The last three are those off the lattice, at x = 2.1, 2.2 and 2.3.
+    EXPECT_EQ(rhop[25], 1010.0f);
+    EXPECT_EQ(rhop[26], 1200.0f);
+    EXPECT_EQ(vel[3 * 25 + 1], 0.0f);
+    EXPECT_EQ(vel[3 * 27 + 1], 2.0f);
+    EXPECT_EQ(pos[3 * 25 + 2], 1.0);
+    EXPECT_EQ(pos[3 * 27], 2.3);
+}
+
+TEST(WriteBi4, AddsTheNormalsOfTheBoundaryAsAFifthArray)
+{
+    CaseParticles particles = small_particles();
+    for (int i = 0; i < 9; ++i) particles.bound_normals.push_back({0, 0.5f, static_cast<float>(i)});
+    const Bi4Reader file(bi4_of(particles, small_constants()));
+    const Bi4Item& part = file.root.items[0];
+    ASSERT_EQ(part.arrays.size(), 5U);
+    EXPECT_EQ(part.arrays[4].name, "BoundNor");
+    EXPECT_EQ(part.arrays[4].type, 22);
+    EXPECT_EQ(part.arrays[4].count, 9U);
+    EXPECT_EQ(part.array<float>(4)[3 * 8 + 2], 8.0f);
+}
+
 TEST(WriteBi4, KeepsTheYOfATwoDimensionalCaseExactly)
 {
     CaseConstants constants = small_constants();

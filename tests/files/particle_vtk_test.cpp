@@ -47,6 +47,34 @@ TEST(WriteParticlesVtk, LeavesVelocityAndDensityOutOfTheBoundary)
     EXPECT_EQ(bound.arrays.at("Type").back(), 2);
 }
 
+TEST(WriteParticlesVtk, ShowsTheNormalsOfTheBoundaryAndTheirSizes)
+{
+    CaseParticles particles = small_particles();
+    for (int i = 0; i < 9; ++i) particles.bound_normals.push_back({3, 0, static_cast<float>(i)});
+    const VtkFile bound(vtk_of(particles, VtkSelection::Bound));
+    EXPECT_EQ(bound.arrays.at("Normal")[3 * 4 + 2], 4);
+    EXPECT_EQ(bound.arrays.at("NormalSize")[4], 5);
+    EXPECT_EQ(bound.types.at("Mk"), "unsigned_short");
+    EXPECT_EQ(bound.arrays.at("Mk").back(), 15);
+    EXPECT_EQ(bound.arrays.at("Type").back(), 2);
+    EXPECT_EQ(VtkFile(vtk_of(particles, VtkSelection::All)).arrays.count("Normal"), 0U);
+}
+
+TEST(WriteParticlesVtk, ShowsParticlesAfterTheInitialsOfTheirBlock)
+{
+    CaseParticles particles = small_particles();
+    Transform aside;
+    aside.offset = {0.5, 0, 0};
+    particles.blocks[3].initials = {{1, 1, {}, UniformVelocity{{0, 0, 7}}},
+                                    {2, 1, {}, MoveParticles{aside}}};
+    const VtkFile fluid(vtk_of(particles, VtkSelection::Fluid));
+    EXPECT_FLOAT_EQ(fluid.points[0], static_cast<float>(-0.1 + 0.8 + 0.5));
+    EXPECT_EQ(fluid.arrays.at("Vel")[2], 7);
+    EXPECT_EQ(fluid.arrays.at("Vel").back(), 0);
+    EXPECT_EQ(fluid.arrays.at("Rhop")[0], 1001);
+    EXPECT_EQ(fluid.arrays.at("Rhop").back(), 1006);
+}
+
 TEST(WriteParticlesVtk, KeepsTheIdsOfTheFluid)
 {
     const VtkFile fluid(vtk_of(small_particles(), VtkSelection::Fluid));
@@ -99,6 +127,40 @@ TEST(WriteParticlesVtk, HasKindNormalAndDistanceWhereThereAreWalls)
     const VtkFile fluid(vtk_of(particles, VtkSelection::Fluid));
     EXPECT_EQ(fluid.arrays.count("Kind"), 0U);
     EXPECT_EQ(fluid.points.back(), 0.5F);
+}
+
+TEST(WriteParticlesVtk, NamesTheNormalsOfWallsApartFromThoseOfTheBoundary)
+{
+    CaseParticles particles = walled_particles();
+    for (int i = 0; i < 11; ++i) particles.bound_normals.push_back({3, 0, static_cast<float>(i)});
+    const VtkFile bound(vtk_of(particles, VtkSelection::Bound));
+    ASSERT_EQ(bound.arrays.at("Normal").size(), 33U);
+    EXPECT_EQ(bound.arrays.at("Normal")[3 * 4 + 2], 4);
+    EXPECT_EQ(bound.arrays.at("NormalSize")[4], 5);
+    ASSERT_EQ(bound.arrays.at("WallNormal").size(), 33U);
+    EXPECT_EQ(bound.arrays.at("WallNormal")[3 * 5 + 1], 1);
+    EXPECT_EQ(bound.arrays.at("Kind")[5], 1);
+    EXPECT_EQ(bound.arrays.at("Distance")[5], 1e-17F);
+    EXPECT_EQ(VtkFile(vtk_of(particles, VtkSelection::All)).arrays.at("Normal")[3 * 5 + 1], 1);
+}
+
+TEST(WriteParticlesVtk, MovesParticlesOffTheLatticeAndTurnsTheirNormals)
+{
+    CaseParticles particles = walled_particles();
+    Transform turn; // a quarter about z, then upwards
+    turn.linear = {Vec3{0, -1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}};
+    turn.offset = {0, 0, 1};
+    particles.blocks[1].initials = {{1, 11, {}, MoveParticles{turn}}};
+    for (const VtkSelection selection : {VtkSelection::All, VtkSelection::Bound})
+    {
+        const VtkFile file(vtk_of(particles, selection));
+        EXPECT_EQ(file.points[3 * 4], -0.25F);
+        EXPECT_EQ(file.points[3 * 4 + 1], 0.2F);
+        EXPECT_EQ(file.points[3 * 4 + 2], 1.41F);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 4], 0);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 4 + 1], 1);
+        EXPECT_EQ(file.arrays.at("Normal")[3 * 5], -1);
+    }
 }
 
 TEST(WriteParticlesVtk, HasNoArraysOfWallsInACaseWithoutThem)

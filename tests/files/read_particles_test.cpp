@@ -127,6 +127,13 @@ TEST(ReadParticles, FindsTheParticlesOffTheLatticeThatWereWritten)
     ASSERT_EQ(cloud.normals.size(), 28U);
     EXPECT_EQ(cloud.normals[25], particles.free.normals[2]);
     EXPECT_EQ(cloud.normals[0], (std::array<float, 3>{0, 0, 0}));
+    CaseParticles with_normals = particles;
+    with_normals.bound_normals.assign(11, {0, 0, 7});
+    OutputFile bound(folder / "Case_Bound.vtk");
+    write_particles_vtk(bound, with_normals, small_constants(), VtkSelection::Bound, 1);
+    bound.commit();
+    EXPECT_EQ(read_particles(folder / "Case_Bound.vtk", true, 2).normals.at(5),
+              particles.free.normals[1]);
     ASSERT_EQ(cloud.distances.size(), 28U);
     EXPECT_EQ(cloud.distances[26], 0.1F);
     EXPECT_EQ(cloud.distances[6], distance_of_nodes);

@@ -12,7 +12,7 @@ foreach(folder casedef shapes)
   set(${folder}_may_see core)
 endforeach()
 set(particles_may_see shapes core)
-foreach(folder lattice fit boolean files)
+foreach(folder lattice fit boolean normals files)
   set(${folder}_may_see casedef shapes particles core)
 endforeach()
 # Relaxation fills the holes that open as fitting does.
@@ -20,7 +20,7 @@ set(relax_may_see fit casedef shapes particles core)
 foreach(folder compare render)
   set(${folder}_may_see files particles shapes core)
 endforeach()
-set(app_may_see compare render lattice fit boolean relax files casedef shapes particles core)
+set(app_may_see compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.

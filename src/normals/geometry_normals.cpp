@@ -1,0 +1,184 @@
+#include "normals/geometry_normals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+std::vector<Box3> boxes_of(const std::vector<NormalFacet>& facets)
+{
+    std::vector<Box3> boxes(facets.size());
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        for (std::uint32_t i = 0; i < facets[f].size; ++i) boxes[f].add(facets[f].corners[i]);
+    return boxes;
+}
+
+Vec3 nearest_on_edge(const Vec3& p, const Vec3& a, const Vec3& b)
+{
+    const Vec3 along = b - a;
+    const double length = dot(along, along);
+    if (!(length > 0)) return a;
+    return a + std::clamp(dot(p - a, along) / length, 0.0, 1.0) * along;
+}
+
+/// Whether a point of the facet's plane is inside its outline, by the edges that a ray in the plane
+/// crosses; seen along the axis that the normal is nearest to.
+bool is_inside(const NormalFacet& facet, const Vec3& p)
+{
+    const Vec3 u{std::fabs(facet.unit.x), std::fabs(facet.unit.y), std::fabs(facet.unit.z)};
+    const int axis = u.x >= u.y && u.x >= u.z ? 0 : u.y >= u.z ? 1 : 2;
+    const int i = (axis + 1) % 3;
+    const int j = (axis + 2) % 3;
+    bool inside = false;
+    for (std::uint32_t k = 0, last = facet.size - 1; k < facet.size; last = k++)
+    {
+        const Vec3& a = facet.corners[k];
+        const Vec3& b = facet.corners[last];
+        if ((a[j] > p[j]) != (b[j] > p[j]) &&
+            p[i] < (b[i] - a[i]) * (p[j] - a[j]) / (b[j] - a[j]) + a[i])
+            inside = !inside;
+    }
+    return inside;
+}
+
+} // namespace
+
+std::vector<NormalFacet> normal_facets(const std::vector<ShapePolygons>& geometry)
+{
+    std::vector<NormalFacet> facets;
+    for (const ShapePolygons& shape : geometry)
+        for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+        {
+            const auto corner = [&](std::size_t i)
+            {
+                const Vec3& v = shape.vertices[polygon[i]];
+                return Vec3{static_cast<double>(static_cast<float>(v.x)),
+                            static_cast<double>(static_cast<float>(v.y)),
+                            static_cast<double>(static_cast<float>(v.z))};
+            };
+            const auto add = [&](std::initializer_list<std::size_t> places)
+            {
+                NormalFacet facet;
+                for (const std::size_t i : places) facet.corners[facet.size++] = corner(i);
+                const Vec3 n =
+                    cross(facet.corners[1] - facet.corners[0], facet.corners[2] - facet.corners[0]);
+                if (norm(n) > 0) facet.unit = n / norm(n);
+                facets.push_back(facet);
+            };
+            if (polygon.size() == 4)
+                add({0, 1, 2, 3});
+            else
+                for (std::size_t i = 2; i < polygon.size(); ++i) add({0, i - 1, i});
+        }
+    return facets;
+}
+
+GeometryQuery::GeometryQuery(std::vector<NormalFacet> facets, double reach, double dp, int threads)
+    : facets_(std::move(facets)),
+      reach_(reach),
+      tolerance_(1e-4 * dp),
+      tree_(boxes_of(facets_), threads)
+{
+}
+
+GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
+{
+    Answer answer;
+    thread_local std::vector<Facing> facing;
+    facing.clear();
+    double least = reach_;
+    double best = std::numeric_limits<double>::infinity();
+    std::uint32_t best_facet = UINT32_MAX;
+    Vec3 best_vector;
+    const Vec3 room{reach_, reach_, reach_};
+    tree_.for_each_overlap(
+        {particle - room, particle + room},
+        [&](std::uint32_t index)
+        {
+            const NormalFacet& facet = facets_[index];
+            const double d = dot(facet.corners[0] - particle, facet.unit);
+            if (!(d > 0 && d <= reach_)) return;
+            const Vec3 foot = particle + d * facet.unit;
+            if (is_inside(facet, foot))
+            {
+                ++answer.candidates;
+                facing.push_back({index, d});
+                least = std::min(least, d);
+                return;
+            }
+            double e_squared = std::numeric_limits<double>::infinity();
+            Vec3 nearest;
+            for (std::uint32_t k = 0, last = facet.size - 1; k < facet.size; last = k++)
+            {
+                const Vec3 q = nearest_on_edge(foot, facet.corners[last], facet.corners[k]);
+                const double squared = dot(q - foot, q - foot);
+                if (squared >= e_squared) continue;
+                e_squared = squared;
+                nearest = q;
+            }
+            const double e = std::sqrt(e_squared);
+            if (!(e <= reach_)) return;
+            ++answer.candidates;
+            if (e <= tolerance_)
+            {
+                facing.push_back({index, d});
+                least = std::min(least, d);
+                return;
+            }
+            const Vec3 vector = nearest - particle;
+            const double length = norm(vector);
+            if (length < best || (length == best && index < best_facet))
+            {
+                best = length;
+                best_facet = index;
+                best_vector = vector;
+            }
+        });
+    if (facing.empty())
+    {
+        answer.normal = best_vector;
+        return answer;
+    }
+    std::erase_if(facing, [&](const Facing& f) { return f.distance > least + tolerance_; });
+    answer.normal = join(facing);
+    return answer;
+}
+
+Vec3 GeometryQuery::join(std::vector<Facing>& facing) const
+{
+    std::sort(facing.begin(), facing.end(),
+              [](const Facing& a, const Facing& b) { return a.facet < b.facet; });
+    const auto unit = [this](const Facing& f) -> const Vec3& { return facets_[f.facet].unit; };
+    constexpr double same_direction = 1e-5;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < facing.size(); ++i)
+    {
+        bool is_new = true;
+        for (std::size_t k = 0; k < kept && is_new; ++k)
+        {
+            const Vec3 off = unit(facing[i]) - unit(facing[k]);
+            is_new = !(std::fabs(off.x) <= same_direction && std::fabs(off.y) <= same_direction &&
+                       std::fabs(off.z) <= same_direction);
+        }
+        if (is_new) facing[kept++] = facing[i];
+    }
+    const Vec3 first = facing[0].distance * unit(facing[0]);
+    if (kept == 1) return first;
+    Vec3 sum;
+    for (std::size_t i = 0; i < kept; ++i) sum = sum + facing[i].distance * unit(facing[i]);
+    const double length = norm(sum);
+    if (length == 0) return {};
+    const Vec3 w = sum / length;
+    double reach = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < kept; ++i)
+    {
+        const double along = dot(w, unit(facing[i]));
+        if (along > 0) reach = std::min(reach, facing[i].distance / along);
+    }
+    return reach > 1.5 * reach_ ? first : reach * w;
+}
+
+} // namespace fppg

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/particles.h"
+
+namespace fppg
+{
+
+/// A particle as `<initials>` finds and leaves it.
+struct InitialState
+{
+    Vec3 position;
+    Vec3 velocity;
+    double rhop = 0;
+};
+
+/// Runs the operations of a block on one of its particles; nothing in them is empty.
+void apply_initials(const std::vector<InitialOp>& initials, InitialState& state);
+
+/// All moves of a block in one.
+Transform motion_of(const ParticleBlock& block);
+
+/// Gives every block the operations of its mk, with all that they leave empty: gravity, rhop0,
+/// gamma and b of the case, and for densitydepth without posswl the highest against gravity of the
+/// particles that it selects, at their places then (found with GenCase v5.4.354: two fluids of
+/// different height, with and without a move before). An mk without particles has no effect. Sets
+/// the limits of the particles anew where a block moves.
+///
+/// throws  CaseError if a moved particle leaves the domain, as GenCase does: its places go from the
+///         first node to pointmax
+/// cost    O(runs); O(particles of the block) where it turns or the surface is to be found
+void set_initials(const CaseDef& def, const CaseConstants& constants, CaseParticles& particles);
+
+} // namespace fppg
