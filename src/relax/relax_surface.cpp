@@ -4,7 +4,9 @@
 #include "relax/surface_layer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <tuple>
 
 namespace fppg
 {

@@ -159,7 +159,6 @@ void expect_relaxed_solid(const Relaxed& relaxed, const Depth& depth)
     for (const Vec3& p : after) EXPECT_GE(depth(p), 0.39 * dp);
     const auto n = static_cast<double>(before.size());
     EXPECT_NEAR(static_cast<double>(after.size()), n, 0.01 * n);
-    EXPECT_LT(relaxed.part("surface").deviation, relaxed.part("surface").deviation_before);
     expect_marked_nodes(relaxed);
 }
 
@@ -212,10 +211,33 @@ TEST(RelaxWalls, KeepsASolidSphereWithinItsWall)
     const Relaxed relaxed(drawing);
     const auto depth = [](const Vec3& p) { return 1.1 - norm(p - center); };
     expect_relaxed_solid(relaxed, depth);
+    EXPECT_LT(relaxed.part("surface").deviation, 0.7 * relaxed.part("surface").deviation_before);
     for (const Vec3& p : relaxed.after.walls.particles.positions) EXPECT_NEAR(depth(p), 0, 1e-12);
     for (std::size_t i = 0; i < relaxed.after.walls.volume.size(); ++i)
         EXPECT_NEAR(relaxed.after.walls.volume.distances[i],
                     -depth(relaxed.after.walls.volume.positions[i]), 0.02 * dp);
+}
+
+/// How far a point of the box's surface is from all wall particles at most, dp.
+double widest_gap(const RunField& field, const Vec3& half, double angle)
+{
+    double widest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+            for (int i = 0; i <= 60; ++i)
+                for (int j = 0; j <= 60; ++j)
+                {
+                    Vec3 at;
+                    at[axis] = side * half[axis];
+                    at[(axis + 1) % 3] = (i / 30.0 - 1) * half[(axis + 1) % 3];
+                    at[(axis + 2) % 3] = (j / 30.0 - 1) * half[(axis + 2) % 3];
+                    at = rotate(at, angle);
+                    double nearest = 1e9;
+                    for (const Vec3& p : field.walls.particles.positions)
+                        nearest = std::min(nearest, norm(p - at));
+                    widest = std::max(widest, nearest / field.grid.dp);
+                }
+    return widest;
 }
 
 TEST(RelaxWalls, KeepsASlantedBoxWithinItsWall)
@@ -227,6 +249,9 @@ TEST(RelaxWalls, KeepsASlantedBoxWithinItsWall)
     for (Vec3& v : box.vertices) v = rotate(v, 0.4);
     drawing.draw(box);
     const Relaxed relaxed(drawing);
+    // Rows that fitting lays along the edges are as even as can be, but leave wider gaps where
+    // those of two edges meet.
+    EXPECT_LE(widest_gap(relaxed.after, half, 0.4), 0.75);
     expect_relaxed_solid(relaxed,
                          [&](const Vec3& p)
                          {
@@ -372,11 +397,11 @@ TEST(RelaxWalls, EndTheSurfaceByItsTolerance)
 TEST(RelaxWalls, ShowAllWallParticlesInTheirSnapshots)
 {
     Drawing drawing;
-    for (const std::uint16_t mkbound : {0, 1})
+    for (const std::uint16_t mkbound : {std::uint16_t{0}, std::uint16_t{1}})
     {
         FitSettings settings;
         settings.relax.band_dp = 0;
-        settings.relax.iterations = 12 + 3 * mkbound;
+        settings.relax.iterations = mkbound == 0 ? 12 : 15;
         settings.relax.snapshots = 5;
         drawing.def.fit.of_mk.emplace_back(static_cast<std::uint16_t>(wall_mk + mkbound), settings);
         drawing.bound(mkbound);
