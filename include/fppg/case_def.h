@@ -311,12 +311,17 @@ struct FloatingDef
 struct RelaxSettings
 {
     bool is_active = true;
-    std::optional<int> iterations; ///< 1 and more; empty: until `tolerance` is reached
-    double tolerance = 0.02;       ///< above 0, up to 1
-    double surface_h_dp = 0.8; ///< smoothing length for the particles on the surface, above 0 to 4
+    /// 1 and more; empty: on the surface until `tolerance` is met
+    std::optional<int> iterations;
+    /// The particles on the surface are even when the spread of their spacing (standard deviation
+    /// over mean) falls by less than this in 30 iterations; above 0, up to 1.
+    double tolerance = 0.001;
+    double surface_h_dp = 0.8; ///< smoothing length on the surface in dp, 0.5 to 2
     /// Particles inside the solid up to this far from its surface move, in dp; 0: none; may be
     /// infinite.
     double band_dp = 3;
+    /// The wall particles are written as a picture after every so many iterations; 0: never.
+    int snapshots = 0;
     bool operator==(const RelaxSettings&) const = default;
 };
 

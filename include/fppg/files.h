@@ -127,6 +127,12 @@ void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes
 /// throws  IoError if the file cannot be written, or from 2,147,483,648 numbers on
 void write_features_vtk(OutputFile& file, const FittedWalls& walls);
 
+/// Writes the particles of fitted walls as legacy binary VTK (POLYDATA, big-endian, POINTS float):
+/// VERTICES, POINT_DATA Mk (int, absolute) and Kind (int, as FitKind).
+///
+/// throws  IoError if the file cannot be written, or from 1,073,741,824 particles on
+void write_wall_particles_vtk(OutputFile& file, const WallParticles& particles);
+
 /// Numbers as a list of ranges, e.g. "10-11,20"; they are sorted first, repeated ones count once.
 std::string format_ranges(std::vector<int> numbers);
 

@@ -34,6 +34,10 @@ struct RelaxSurfaceOptions
     /// Called after every iteration. False ends the relaxation, and the state reached is kept;
     /// what it throws is passed on, and the particles stay as they were given.
     std::function<bool(const RelaxProgress&)> on_progress = {};
+    /// Called with the particles as they stand, on their facets, after every so many iterations; 0:
+    /// never. What it throws is passed on.
+    int snapshot_interval = 0;
+    std::function<void(int iteration, const WallParticles&)> on_snapshot = {};
     /// Where particles may be put into holes, by index of the body and position; empty:
     /// everywhere. Called from several threads.
     std::function<bool(std::size_t, const Vec3&)> may_insert = {};

@@ -29,6 +29,11 @@ struct RelaxStep
 /// kept.
 using RelaxObserver = std::function<bool(const RelaxStep&)>;
 
+/// Called with all wall particles as they stand, on their facets, after every so many iterations as
+/// RelaxSettings::snapshots says. Where several surfaces are relaxed one after the other, their
+/// iterations are counted on.
+using RelaxSnapshot = std::function<void(int iteration, const WallParticles&)>;
+
 /// What one relaxation did.
 struct RelaxedPart
 {
@@ -60,10 +65,14 @@ struct RelaxReport
 /// Nodes within 3 dp of a place where a wall was cut do not move, nor do those along a sheet that
 /// has nodes of the same mks on both sides.
 ///
-/// observe  may be empty; what it throws is passed on and leaves the field in a state of no use
-/// threads  number of threads; the result does not depend on it
-/// throws   GeometryError for options out of range
+/// In 2D the surface particles stay, they stand evenly along their section already; volumes and
+/// fluid move in their plane, beside the lines in which it meets the walls.
+///
+/// observe   may be empty; what it throws is passed on and leaves the field in a state of no use
+/// snapshot  may be empty; the same
+/// threads   number of threads; the result does not depend on it
+/// throws    GeometryError for options out of range
 void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
-                 RelaxReport& report);
+                 RelaxReport& report, const RelaxSnapshot& snapshot = {});
 
 } // namespace fppg

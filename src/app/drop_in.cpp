@@ -78,6 +78,26 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// How long the part of a relaxation that runs may last, from the mean time of its iterations.
+class TimeLeft
+{
+public:
+    /// To be called after every iteration, with the seconds since some start.
+    void note(const RelaxStep& step, double now)
+    {
+        // The first iteration of a part has its preparation with it and does not count.
+        if (step.iteration == 1) first_end_ = now;
+    }
+    double seconds(const RelaxStep& step, double now) const
+    {
+        const double mean = (now - first_end_) / std::max(1, step.iteration - 1);
+        return mean * (step.last_iteration - step.iteration);
+    }
+
+private:
+    double first_end_ = 0;
+};
+
 std::string full_name()
 {
     return fmt::format("fppg v{} (compatible with GenCase v5.4)", version);
@@ -207,42 +227,56 @@ private:
         if (field_.walls.bodies.empty()) return;
         log_fitted_walls();
         if (!relaxes()) return;
-        stage("Relax",
-              [this]
-              {
-                  const StopSignalsAsk stop;
-                  RelaxReport report;
-                  const Stopwatch time;
-                  double shown = 0;
-                  const bool is_terminal = isatty(STDERR_FILENO) != 0;
-                  relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp,s\n";
-                  const auto observe = [&](const RelaxStep& step)
-                  {
-                      relax_history_ +=
-                          fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.3f}\n", step.what,
-                                      step.iteration, step.particles, step.mean, step.deviation,
-                                      step.largest_step_dp, time.seconds());
-                      const double now = time.seconds();
-                      if (is_terminal && now > shown + 0.2)
-                      {
-                          shown = now;
-                          fmt::print(stderr,
-                                     "\rrelax {}: {} of at most {}, spread {:.3f}, largest step "
-                                     "{:.3f} dp ({:.0f} s)\x1b[K",
-                                     step.what, step.iteration, step.last_iteration, step.deviation,
-                                     step.largest_step_dp, now);
-                      }
-                      return !stop.is_asked();
-                  };
-                  relax_walls(def_, field_, threads_, observe, report);
-                  if (is_terminal) fmt::print(stderr, "\r\x1b[K");
-                  for (const RelaxedPart& part : report.parts) log_relaxed(part);
-                  for (std::string& w : report.warnings) warn(fmt::format("{}:{}", def_.file, w));
-                  if (report.is_stopped)
-                      warn(
-                          "The relaxation was stopped by the user; the files hold what it had "
-                          "reached.");
-              });
+        stage(
+            "Relax",
+            [this]
+            {
+                const StopSignalsAsk stop;
+                RelaxReport report;
+                const Stopwatch time;
+                double shown = 0;
+                int snapshots = 0;
+                TimeLeft left;
+                const bool is_terminal = isatty(STDERR_FILENO) != 0;
+                relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp,s\n";
+                const auto observe = [&](const RelaxStep& step)
+                {
+                    left.note(step, time.seconds());
+                    relax_history_ +=
+                        fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.3f}\n", step.what,
+                                    step.iteration, step.particles, step.mean, step.deviation,
+                                    step.largest_step_dp, time.seconds());
+                    const double now = time.seconds();
+                    if (is_terminal && now > shown + 0.2)
+                    {
+                        shown = now;
+                        fmt::print(stderr,
+                                   "\rrelax {}: {} of at most {}, spread {:.3f}, largest step "
+                                   "{:.3f} dp ({:.0f} s, at most {:.0f} s more)\x1b[K",
+                                   step.what, step.iteration, step.last_iteration, step.deviation,
+                                   step.largest_step_dp, now, left.seconds(step, now));
+                    }
+                    return !stop.is_asked();
+                };
+                const auto snapshot = [&](int iteration, const WallParticles& particles)
+                {
+                    OutputFile file(fmt::format("{}_Relax_{:04}.vtk", options_.output, iteration));
+                    write_wall_particles_vtk(file, particles);
+                    file.commit();
+                    ++snapshots;
+                };
+                relax_walls(def_, field_, threads_, observe, report, snapshot);
+                if (is_terminal) fmt::print(stderr, "\r\x1b[K");
+                for (const RelaxedPart& part : report.parts) log_relaxed(part);
+                if (snapshots > 0)
+                    log_.line(fmt::format("{}_Relax_*.vtk: {} pictures of the relaxation",
+                                          options_.output, snapshots));
+                for (std::string& w : report.warnings) warn(fmt::format("{}:{}", def_.file, w));
+                if (report.is_stopped)
+                    warn(
+                        "The relaxation was stopped by the user; the files hold what it had "
+                        "reached.");
+            });
     }
 
     bool relaxes() const

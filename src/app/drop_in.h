@@ -9,7 +9,8 @@ namespace fppg
 /// files and prints what callers read (the particle counts, the limits, the time).
 ///
 /// All files appear together at the end, each whole; a run that fails or is stopped leaves older
-/// ones as they were.
+/// ones as they were. Only the pictures of a relaxation that the case asks for appear while it
+/// runs.
 ///
 /// returns  the exit code
 /// throws   Error

@@ -172,7 +172,7 @@ private:
 
     RelaxSettings relax_of(const Element& e) const
     {
-        require_known(e, {"active", "iterations", "tolerance", "h", "band"}, {});
+        require_known(e, {"active", "iterations", "tolerance", "h", "band", "snapshots"}, {});
         RelaxSettings r;
         r.is_active = read_.flag_or(e, "active", true);
         if (e.find_attribute("iterations") != nullptr && !is_word(e, "iterations", "auto"))
@@ -183,13 +183,16 @@ private:
         r.tolerance = number_or(
             e, "tolerance", r.tolerance, [](double v) { return v > 0 && v <= 1; }, "above 0 to 1");
         r.surface_h_dp = number_or(
-            e, "h", r.surface_h_dp, [](double v) { return v > 0 && v <= 4; },
-            "above 0 to 4 (times dp)");
+            e, "h", r.surface_h_dp, [](double v) { return v >= 0.5 && v <= 2; },
+            "0.5 to 2 (times dp)");
         r.band_dp = is_word(e, "band", "all")
                         ? infinity
                         : number_or(
                               e, "band", r.band_dp, [](double v) { return v >= 0; },
                               "all or a width from 0 on (times dp)");
+        r.snapshots = static_cast<int>(number_or(
+            e, "snapshots", 0, [](double v) { return v >= 0 && v <= 1e6 && v == std::floor(v); },
+            "a whole number of iterations from 0 to 1000000"));
         return r;
     }
 

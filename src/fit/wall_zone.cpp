@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "fit/closed_part.h"
 #include "fit/near_nodes.h"
+#include "fit/wall_section.h"
 #include "fppg/error.h"
 #include "shapes/column_spans.h"
 #include "shapes/inside_by_vote.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -77,44 +79,15 @@ Wall whole_surface(const SurfaceMesh& mesh, const ClosedPart& part)
     return wall;
 }
 
-/// Corners on the plane count as below it, as in cut_column(); a mesh that only touches the plane
-/// with what is below it is cut there as well.
 Wall section_of(const SurfaceMesh& mesh, const ClosedPart& part, double plane_y)
 {
+    WallSection section = wall_section(mesh, plane_y);
     Wall wall;
-    for (const bool on_plane_is_above : {false, true})
-    {
-        const auto is_above = [&](const Vec3& p)
-        { return on_plane_is_above ? p.y >= plane_y : p.y > plane_y; };
-        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        {
-            Vec3 ends[2]; // where the outline goes down through the plane, and where up
-            int cuts = 0;
-            for (std::size_t s = 0; s < 3; ++s)
-            {
-                const Vec3& p = mesh.vertices[mesh.facets[f][s]];
-                const Vec3& q = mesh.vertices[mesh.facets[f][(s + 1) % 3]];
-                if (is_above(p) == is_above(q)) continue;
-                // From below to above, so that both facets of an edge find the same bits.
-                const Vec3& low = is_above(p) ? q : p;
-                const Vec3& high = is_above(p) ? p : q;
-                Vec3 cut = low + (high - low) * ((plane_y - low.y) / (high.y - low.y));
-                cut.y = plane_y;
-                ends[is_above(p) ? 0 : 1] = cut;
-                ++cuts;
-            }
-            if (cuts != 2 || ends[0] == ends[1]) continue;
-            const Vec3 along = ends[1] - ends[0];
-            const Vec3 side{-along.z, 0, along.x};
-            const double length = norm(along);
-            const Vec3 normal = side * ((dot(side, mesh.normals[f]) < 0 ? -1 : 1) / length);
-            wall.soup.vertices.insert(wall.soup.vertices.end(), {ends[0], ends[1], ends[1]});
-            wall.normals.push_back(normal);
-            wall.sizes.push_back(length);
-            wall.is_bounding.push_back(part.is_bounding[f]);
-        }
-        if (wall.soup.size() > 0) break;
-    }
+    wall.soup = std::move(section.soup);
+    wall.normals = std::move(section.normals);
+    wall.sizes = std::move(section.lengths);
+    for (const std::uint32_t facet : section.facets)
+        wall.is_bounding.push_back(part.is_bounding[facet]);
     if (wall.soup.size() == 0) return wall;
     // Divergence in the plane: half the sum of place times outward normal times length.
     const Vec3 from = wall.soup.vertices[0];

@@ -4,7 +4,9 @@
 #include "relax/surface_layer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <tuple>
 
 namespace fppg
 {
@@ -67,7 +69,7 @@ public:
         }
     }
 
-    void run()
+    void run(const WallParticles& given, const std::vector<char>& held)
     {
         LayerState state = look_around();
         report_.before = progress(0, state, 0);
@@ -84,6 +86,13 @@ public:
                 renew(least_distance, hole_radius);
             state = look_around();
             report_.after = progress(iteration, state, largest);
+            if (options_.snapshot_interval > 0 && iteration % options_.snapshot_interval == 0)
+            {
+                std::vector<char> held_now;
+                WallParticles now = gather(given, held, held_now);
+                now.held = std::move(held_now);
+                options_.on_snapshot(iteration, now);
+            }
             if (options_.on_progress && !options_.on_progress(report_.after)) break;
             deviations.push_back(report_.after.spacing_deviation);
             if (options_.iterations == 0 && is_settled(deviations)) break;
@@ -98,17 +107,15 @@ public:
         }
     }
 
-    /// Writes the particles back in their old order, new ones at the end of their body.
-    void write(WallParticles& particles, std::vector<char>& held)
+    /// The particles in their old order, new ones at the end of their body.
+    WallParticles gather(const WallParticles& given, const std::vector<char>& given_held,
+                         std::vector<char>& held) const
     {
-        const WallParticles given = std::move(particles);
-        const std::vector<char> given_held = std::move(held);
-        particles = {};
-        held = {};
+        WallParticles particles;
         for (std::size_t l = 0; l < layers_.size(); ++l)
         {
             const auto body = static_cast<std::uint32_t>(body_of_layer_[l]);
-            std::vector<LayerParticle> own = layers_[l].take_particles();
+            std::vector<LayerParticle> own = layers_[l].particles();
             std::sort(own.begin(), own.end(), comes_before);
             for (const LayerParticle& p : own)
             {
@@ -125,6 +132,7 @@ public:
                     held.push_back(p.is_new ? !p.is_moving : given_held[p.source]);
             }
         }
+        return particles;
     }
 
     RelaxSurfaceReport report() const { return report_; }
@@ -216,8 +224,10 @@ RelaxSurfaceReport relax_surface(const std::vector<FittedBody>& bodies, WallPart
         throw GeometryError("relaxation: h is " + std::to_string(options.h) +
                             " dp, expected 0.5 to 2");
     SurfaceRelaxation relaxation(bodies, particles, held, options, threads);
-    relaxation.run();
-    relaxation.write(particles, held);
+    relaxation.run(particles, held);
+    std::vector<char> held_now;
+    particles = relaxation.gather(particles, held, held_now);
+    held = std::move(held_now);
     return relaxation.report();
 }
 

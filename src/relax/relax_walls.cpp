@@ -1,6 +1,7 @@
 #include "fppg/relax_walls.h"
 
 #include "core/parallel.h"
+#include "fit/wall_section.h"
 #include "shapes/mesh_query.h"
 #include "shapes/point_grid.h"
 #include "shapes/round_surface.h"
@@ -100,36 +101,54 @@ private:
     std::vector<std::uint64_t> keys_;
 };
 
-/// The facets of all bodies as one mesh.
+/// The walls of all bodies as one: their facets, or in 2D the lines where they meet the plane.
 class AllWalls
 {
 public:
-    AllWalls(const std::vector<FittedBody>& bodies, int threads)
+    struct Closest
+    {
+        Vec3 point;
+        double distance = 0; ///< metres
+        std::size_t body = 0;
+        bool is_outside = false; ///< on the side where the facet looks
+    };
+
+    AllWalls(const std::vector<FittedBody>& bodies, const LatticeGrid& grid, int threads)
     {
         TriangleSoup soup;
         for (const FittedBody& body : bodies)
         {
-            first_.push_back(soup.vertices.size() / 3);
-            for (const auto& facet : body.mesh.facets)
-                for (const std::uint32_t v : facet) soup.vertices.push_back(body.mesh.vertices[v]);
+            first_.push_back(normals_.size());
+            WallSection section;
+            if (grid.is_2d)
+            {
+                section = wall_section(body.mesh, grid.origin.y);
+                soup.vertices.insert(soup.vertices.end(), section.soup.vertices.begin(),
+                                     section.soup.vertices.end());
+            }
+            else
+                for (const auto& facet : body.mesh.facets)
+                    for (const std::uint32_t v : facet)
+                        soup.vertices.push_back(body.mesh.vertices[v]);
+            const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
+            normals_.insert(normals_.end(), normals.begin(), normals.end());
         }
         if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
     }
 
-    ClosestPoint closest(const Vec3& p) const { return query_->closest_point(p); }
-    std::size_t body_of(std::uint32_t facet) const
+    bool is_empty() const { return !query_; }
+    Closest closest(const Vec3& p) const
     {
-        return static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), facet) -
-                                        first_.begin()) -
-               1;
+        const ClosestPoint near = query_->closest_point(p);
+        const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
+        return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
+                dot(p - near.point, normals_[near.facet]) > 0};
     }
-    std::uint32_t facet_in_body(std::uint32_t facet) const
-    {
-        return static_cast<std::uint32_t>(facet - first_[body_of(facet)]);
-    }
+    Vec3 closest_point(const Vec3& p) const { return query_->closest_point(p).point; }
 
 private:
-    std::vector<std::size_t> first_;
+    std::vector<std::size_t> first_; ///< facet or line of each body
+    std::vector<Vec3> normals_;      ///< of all facets or lines
     std::optional<MeshQuery> query_;
 };
 
@@ -148,8 +167,13 @@ class Relaxation
 {
 public:
     Relaxation(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
-               RelaxReport& report)
-        : def_(def), field_(field), threads_(threads), observe_(observe), report_(report)
+               RelaxReport& report, const RelaxSnapshot& snapshot)
+        : def_(def),
+          field_(field),
+          threads_(threads),
+          observe_(observe),
+          report_(report),
+          snapshot_(snapshot)
     {
     }
 
@@ -187,13 +211,13 @@ private:
             std::vector<char> is_meant;
             for (const std::size_t k : kind_of_body) is_meant.push_back(k == kind);
             if (kinds.size() == 1)
-                relax_surface_of(field_.walls.particles, kinds[kind]);
+                relax_surface_of(field_.walls.particles, {}, kinds[kind]);
             else
             {
                 WallParticles meant = take(is_meant, true);
-                WallParticles others = take(is_meant, false);
-                relax_surface_of(meant, kinds[kind]);
-                join(meant, others);
+                const WallParticles others = take(is_meant, false);
+                relax_surface_of(meant, others, kinds[kind]);
+                field_.walls.particles = join(meant, others);
             }
         }
     }
@@ -218,7 +242,7 @@ private:
     }
 
     /// Puts two sets together again by body.
-    void join(const WallParticles& a, const WallParticles& b)
+    static WallParticles join(const WallParticles& a, const WallParticles& b)
     {
         WallParticles out;
         std::size_t i = 0;
@@ -228,10 +252,11 @@ private:
                 append(out, a, i++);
             else
                 append(out, b, j++);
-        field_.walls.particles = std::move(out);
+        return out;
     }
 
-    void relax_surface_of(WallParticles& particles, const RelaxSettings& settings)
+    void relax_surface_of(WallParticles& particles, const WallParticles& others,
+                          const RelaxSettings& settings)
     {
         const double dp = field_.grid.dp;
         const FittedWalls& walls = field_.walls;
@@ -240,12 +265,16 @@ private:
         options.h = settings.surface_h_dp;
         options.iterations = settings.iterations.value_or(0);
         options.max_iterations = surface_iterations;
+        options.tolerance = settings.tolerance;
         options.on_progress = [&](const RelaxProgress& p)
         {
             return observe({"surface", p.iteration,
                             settings.iterations.value_or(surface_iterations), p.particles,
                             p.spacing_mean, p.spacing_deviation, p.largest_displacement});
         };
+        options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
+        options.on_snapshot = [&](int iteration, const WallParticles& now)
+        { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
         PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
         for (const Vec3& p : walls.cut) cut.add(p);
         if (!walls.cut.empty())
@@ -270,6 +299,7 @@ private:
                                  particles.facets[i]);
             },
             1024);
+        surface_iterations_done_ += done.after.iteration;
         RelaxedPart part;
         part.what = "surface";
         part.iterations = done.after.iteration;
@@ -324,7 +354,8 @@ private:
             regions.push_back(std::move(region));
         }
         if (regions.empty() || field_.walls.particles.size() == 0) return;
-        const AllWalls all(field_.walls.bodies, threads_);
+        const AllWalls all(field_.walls.bodies, field_.grid, threads_);
+        if (all.is_empty()) return;
         for (const Region& region : regions)
             if (!report_.is_stopped) relax_region(region, all);
     }
@@ -344,7 +375,7 @@ private:
         struct Candidate
         {
             Mover mover;
-            std::uint32_t body = 0;
+            std::size_t body = 0;
             bool is_outside = false;
             bool is_at_sides = false;
         };
@@ -366,14 +397,12 @@ private:
                             Candidate c;
                             c.mover = {{static_cast<std::uint32_t>(x), run.y, z}, run.mk};
                             const Vec3 p = place_of(c.mover.node, grid);
-                            const ClosestPoint near = all.closest(p);
+                            const AllWalls::Closest near = all.closest(p);
                             if (near.distance > band * grid.dp ||
                                 cut.has_nearer(p, reach_of_cuts_dp * grid.dp))
                                 continue;
-                            c.body = static_cast<std::uint32_t>(all.body_of(near.facet));
-                            const SurfaceMesh& mesh = walls.bodies[c.body].mesh;
-                            c.is_outside = dot(p - near.point,
-                                               mesh.normals[all.facet_in_body(near.facet)]) > 0;
+                            c.body = near.body;
+                            c.is_outside = near.is_outside;
                             c.is_at_sides = near.distance < reach_of_sides_dp * grid.dp;
                             slabs[x].push_back(c);
                         }
@@ -416,6 +445,8 @@ private:
     {
         const LatticeGrid& grid = field_.grid;
         const double reach = (2 * region.h_dp + 0.6) * grid.dp;
+        const bool is_endless = std::any_of(region.band.begin(), region.band.end(),
+                                            [](double band) { return std::isinf(band); });
         PointGrid moving(reach, movers.size());
         for (const Mover& m : movers) moving.add(place_of(m.node, grid));
         std::vector<std::vector<Vec3>> slabs(field_.slabs.size());
@@ -429,22 +460,24 @@ private:
                 for (const Run& run : field_.slabs[x])
                 {
                     if (region.band[run.mk] <= 0 && !region.beside[run.mk]) continue;
-                    blocks.for_each_stretch(
-                        static_cast<std::uint32_t>(x), run,
-                        [&](std::uint32_t begin, std::uint32_t end)
+                    const auto test = [&](std::uint32_t begin, std::uint32_t end)
+                    {
+                        for (std::uint32_t z = begin; z < end; ++z)
                         {
-                            for (std::uint32_t z = begin; z < end; ++z)
-                            {
-                                const NodeIndex node{static_cast<std::uint32_t>(x), run.y, z};
-                                while (mover != movers.end() && mover->node.x == x &&
-                                       std::tuple(mover->node.y, mover->node.z) <
-                                           std::tuple(node.y, node.z))
-                                    ++mover;
-                                if (mover != movers.end() && mover->node == node) continue;
-                                const Vec3 p = place_of(node, grid);
-                                if (moving.has_nearer(p, reach)) slabs[x].push_back(p);
-                            }
-                        });
+                            const NodeIndex node{static_cast<std::uint32_t>(x), run.y, z};
+                            while (mover != movers.end() && mover->node.x == x &&
+                                   std::tuple(mover->node.y, mover->node.z) <
+                                       std::tuple(node.y, node.z))
+                                ++mover;
+                            if (mover != movers.end() && mover->node == node) continue;
+                            const Vec3 p = place_of(node, grid);
+                            if (moving.has_nearer(p, reach)) slabs[x].push_back(p);
+                        }
+                    };
+                    if (is_endless)
+                        test(run.z_begin, run.z_end);
+                    else
+                        blocks.for_each_stretch(static_cast<std::uint32_t>(x), run, test);
                 }
             },
             1);
@@ -466,7 +499,8 @@ private:
         double widest = 0;
         for (const double band : region.band)
             if (std::isfinite(band)) widest = std::max(widest, band);
-        const auto side = static_cast<std::uint32_t>(std::ceil(widest)) + 1;
+        // Twice the side reaches from a wall particle over the band and the reach of forces.
+        const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
         const NearBlocks blocks(walls.particles.positions, grid, side, 1);
         const std::vector<Mover> movers = find_movers(region, all, blocks);
         if (movers.empty()) return;
@@ -479,7 +513,7 @@ private:
         VolumeSurroundings surroundings;
         surroundings.held = held;
         surroundings.walls = walls.particles.positions;
-        surroundings.closest = [&](const Vec3& p) { return all.closest(p).point; };
+        surroundings.closest = [&](const Vec3& p) { return all.closest_point(p); };
         RelaxVolumeOptions options;
         options.dp = grid.dp;
         options.h_dp = region.h_dp;
@@ -578,15 +612,17 @@ private:
     int threads_;
     const RelaxObserver& observe_;
     RelaxReport& report_;
+    const RelaxSnapshot& snapshot_;
+    int surface_iterations_done_ = 0;
 };
 
 } // namespace
 
 void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
-                 RelaxReport& report)
+                 RelaxReport& report, const RelaxSnapshot& snapshot)
 {
     if (field.walls.bodies.empty()) return;
-    Relaxation(def, field, threads, observe, report).run();
+    Relaxation(def, field, threads, observe, report, snapshot).run();
 }
 
 } // namespace fppg

@@ -56,7 +56,7 @@ public:
     std::size_t fill(double radius, const std::function<bool(const Vec3&)>& may_fill);
 
     /// Places with facets of the work mesh, in the order of the curve.
-    std::vector<LayerParticle> take_particles() { return std::move(particles_); }
+    const std::vector<LayerParticle>& particles() const { return particles_; }
     std::uint32_t mesh_facet(std::uint32_t facet) const { return work_.facets[facet].parent; }
     std::size_t size() const { return particles_.size(); }
     std::size_t projected() const { return projected_; }

@@ -411,6 +411,23 @@ TEST(FppgFiles, CopyPicturesThriceWithSave3vtk)
                                      "_Fluid_r01.vtk", "_Fluid_r02.vtk"}));
 }
 
+TEST(FppgFiles, HoldPicturesOfTheRelaxationThatTheCaseAsksFor)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />
+<drawsphere radius="0.6"><point x="0.5" y="0.5" z="0.5" /></drawsphere>)";
+    text.after_geometry = R"(<fppg><bodyfitted><relax iterations="25" snapshots="10" />
+</bodyfitted></fppg>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "Case_Relax_*.vtk: 2 pictures of the relaxation"));
+    EXPECT_TRUE(fs::exists(folder / "out/Case_Relax_0010.vtk"));
+    EXPECT_TRUE(fs::exists(folder / "out/Case_Relax_0020.vtk"));
+    EXPECT_FALSE(fs::exists(folder / "out/Case_Relax_0030.vtk"));
+}
+
 TEST(FppgFiles, KeepADefinitionThatIsAlsoTheOutput)
 {
     const TemporaryFolder folder;

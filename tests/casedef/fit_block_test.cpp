@@ -97,7 +97,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
 {
     const CaseDef def = read_block(
         R"(<bodyfitted mkbound="0-1,7" featureangle="45" density="cell" clearance="0.55" plates="one">
-<relax iterations="40" tolerance="0.1" h="1.2" band="2" /></bodyfitted>)");
+<relax iterations="40" tolerance="0.1" h="1.2" band="2" snapshots="10" /></bodyfitted>)");
     for (const int mkbound : {0, 1, 7})
     {
         const FitSettings& s = settings(def, mkbound);
@@ -105,7 +105,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
         EXPECT_EQ(s.density, FitDensity::Cell);
         EXPECT_EQ(s.clearance_dp, 0.55);
         EXPECT_TRUE(s.one_sheet);
-        EXPECT_EQ(s.relax, (RelaxSettings{true, 40, 0.1, 1.2, 2}));
+        EXPECT_EQ(s.relax, (RelaxSettings{true, 40, 0.1, 1.2, 2, 10}));
     }
     EXPECT_FALSE(is_fitted(def, 2));
 }
@@ -114,6 +114,7 @@ TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
 {
     const CaseDef def = read_block(
         R"(<bodyfitted density="area" clearance="auto" plates="both"><relax iterations="auto" /></bodyfitted>)");
+    EXPECT_EQ(settings(def, 0).relax.tolerance, 0.001);
     FitSettings plain;
     plain.line = settings(def, 0).line;
     EXPECT_EQ(settings(def, 0), plain);
@@ -330,7 +331,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoTolerance", R"(<fppg><bodyfitted><relax tolerance="0" /></bodyfitted></fppg>)",
                 "tolerance=\"0\" is 0, expected above 0 to 1"},
         Mistake{"NoH", R"(<fppg><bodyfitted><relax h="0" /></bodyfitted></fppg>)",
-                "h=\"0\" is 0, expected above 0 to 4"},
+                "h=\"0\" is 0, expected 0.5 to 2"},
+        Mistake{"HalfASnapshot",
+                R"(<fppg><bodyfitted><relax snapshots="0.5" /></bodyfitted></fppg>)",
+                "snapshots=\"0.5\" is 0.5, expected a whole number of iterations from 0"},
         Mistake{"NegativeBand", R"(<fppg><bodyfitted><relax band="-1" /></bodyfitted></fppg>)",
                 "band=\"-1\" is -1, expected all or a width from 0 on"},
         Mistake{"NoWidth", R"(<fppg><fluidband width="0" /></fppg>)",

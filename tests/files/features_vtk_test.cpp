@@ -110,6 +110,19 @@ TEST(WriteFeaturesVtk, WritesAFileWithoutCellsForWallsWithoutFeatures)
     EXPECT_TRUE(file.arrays.at("Mk").empty());
 }
 
+TEST(WriteWallParticlesVtk, HoldsPositionsMkAndKind)
+{
+    WallParticles particles;
+    particles.positions = {{1, 2, 3}, {4, 5, 6}};
+    particles.mk = {10, 300};
+    particles.kinds = {FitKind::Corner, FitKind::Surface};
+    const VtkFile file(written([&](OutputFile& out) { write_wall_particles_vtk(out, particles); }));
+    EXPECT_EQ(file.points, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(file.cells.at("VERTICES"), (std::vector{1, 0, 1, 1}));
+    EXPECT_EQ(file.arrays.at("Mk"), (std::vector<double>{10, 300}));
+    EXPECT_EQ(file.arrays.at("Kind"), (std::vector<double>{0, 2}));
+}
+
 } // namespace
 
 } // namespace fppg
