@@ -34,6 +34,42 @@ std::uint64_t node_count(const std::vector<Spans>& nodes)
     return n;
 }
 
+/// From the lowest y of some shapes to their highest, in dp from the plane of a 2D case.
+std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shapes,
+                                             const LatticeGrid& grid)
+{
+    Box3 bounds;
+    for (const ShapeMesh& shape : shapes)
+        for (const Vec3& v : shape.soup.vertices) bounds.add(v);
+    return {(bounds.min.y - grid.origin.y) / grid.dp, (bounds.max.y - grid.origin.y) / grid.dp};
+}
+
+/// Rounding of the place of a shape, dp.
+constexpr double plane_tolerance = 1e-9;
+
+bool lies_in_plane(const std::vector<ShapeMesh>& shapes, const LatticeGrid& grid)
+{
+    if (!grid.is_2d) return false;
+    const auto [low, high] = heights_over_plane(shapes, grid);
+    return low >= -plane_tolerance && high <= plane_tolerance;
+}
+
+/// In 2D, whether shapes have no line in common with the plane of the particles though the lattice
+/// has nodes for them: they lie in the plane, beside it by less than half a step, or touch it in
+/// points.
+bool lacks_section(const std::vector<ShapeMesh>& shapes, const std::vector<FittedDraw>& walls,
+                   const LatticeGrid& grid)
+{
+    if (!grid.is_2d) return false;
+    const bool is_empty = std::all_of(walls.begin(), walls.end(),
+                                      [](const FittedDraw& wall)
+                                      { return wall.particles.size() + wall.cut.size() == 0; });
+    const auto [low, high] = heights_over_plane(shapes, grid);
+    const bool is_beside = low > -0.5 && high < 0.5;
+    const bool touches = low <= plane_tolerance && high >= -plane_tolerance;
+    return is_empty && (is_beside || touches);
+}
+
 class Generator
 {
 public:
@@ -123,7 +159,8 @@ private:
 
     /// Draws a shape of a body-fitted mk by its true surface.
     ///
-    /// returns  false for what stays on the lattice: other mks, points, lines, wires, fills
+    /// returns  false for what stays on the lattice: other mks, points, lines, wires, fills, and in
+    ///          2D what lies in the plane of the particles
     bool draw_fitted(const DrawOp& op)
     {
         const FitSettings* settings =
@@ -136,8 +173,19 @@ private:
             const std::vector<ShapeMesh> shapes =
                 shape_meshes(op, file != nullptr ? &mesh(*file).soup : nullptr, grid().dp);
             if (shapes.empty()) return false;
-            for (const ShapeMesh& shape : shapes)
-                if (state().draw_points) add_wall(fit(shape, op, *settings), file);
+            std::vector<FittedDraw> walls;
+            if (state().draw_points && !lies_in_plane(shapes, grid()))
+                for (const ShapeMesh& shape : shapes) walls.push_back(fit(shape, op, *settings));
+            if (state().draw_points && lacks_section(shapes, walls, grid()))
+            {
+                report_.warnings.push_back(fmt::format(
+                    "{}: the shape lies within dp/2 of the plane y = {:g} of this 2D case or only "
+                    "touches it, so it has no section to put particles on; it is drawn on the "
+                    "lattice, not body-fitted",
+                    place(), grid().origin.y));
+                return false;
+            }
+            for (FittedDraw& wall : walls) add_wall(std::move(wall), file);
             if (file != nullptr && !file->advanced)
                 draw_points_and_lines(mesh(*file), file->transform);
         }
@@ -286,7 +334,15 @@ private:
         for (const ReadMesh& known : meshes_)
             if (known.name == op.file && known.reading == op.reading) return known.mesh;
         const std::string path = find_mesh_file(def_, op_->source, op.file);
-        MeshFile read = read_mesh_file(path, op.reading, threads_);
+        MeshFile read;
+        try
+        {
+            read = read_mesh_file(path, op.reading, threads_);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
         note_use(op.container, op.container);
         note_use(op.file, path);
         for (const std::string& w : read.warnings)

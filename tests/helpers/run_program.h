@@ -50,6 +50,11 @@ public:
     }
 
     void send(int signal) const { ::kill(id_, signal); }
+    /// What it has printed up to now.
+    std::string output_so_far() const
+    {
+        return std::filesystem::exists(output_) ? read_text(output_) : "";
+    }
 
     RunResult wait()
     {

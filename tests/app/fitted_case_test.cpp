@@ -1,0 +1,622 @@
+// Cases with body-fitted walls, run as users run them; FPPG_PROGRAM is the program's path.
+
+#include "fppg/element.h"
+#include "fppg/fit.h"
+#include "fppg/particles.h"
+#include "fppg/read_particles.h"
+
+#include "casedef/xml_document.h"
+#include "files/vtk_reader.h"
+#include "helpers/case_text.h"
+#include "helpers/run_program.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+#include <tuple>
+
+namespace
+{
+
+namespace fs = std::filesystem;
+using fppg::Element;
+using fppg::ParticleCloud;
+using fppg::ParticleType;
+using fppg::Vec3;
+using fppg::VtkFile;
+using fppg::test::box_command;
+using fppg::test::CaseText;
+using fppg::test::contents;
+using fppg::test::Process;
+using fppg::test::read_text;
+using fppg::test::RunResult;
+using fppg::test::TemporaryFolder;
+using fppg::test::write_text;
+using Arguments = std::vector<std::string>;
+
+constexpr std::uint16_t fluid_mk = 1;
+constexpr std::uint16_t bound_mk = 10; ///< of mkbound 0
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+RunResult run(const TemporaryFolder& folder, Arguments arguments)
+{
+    return Process(FPPG_PROGRAM, arguments, folder.path().string(),
+                   {{"SOURCE_DATE_EPOCH", "86400"}})
+        .wait();
+}
+
+/// Writes the case and runs it into out/Case with all files.
+RunResult run_case(const TemporaryFolder& folder, const CaseText& text, const Arguments& more = {})
+{
+    write_text(folder / "Case_Def.xml", text.text());
+    Arguments words{"Case_Def", "out/Case", "-save:all"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder, words);
+}
+
+ParticleCloud particles(const TemporaryFolder& folder, const std::string& name = "out/Case")
+{
+    return fppg::read_particles(folder / name, false, 1);
+}
+
+std::vector<Vec3> positions_of(const ParticleCloud& cloud, std::uint16_t mk)
+{
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        if (cloud.mk[i] == mk) out.push_back(cloud.positions[i]);
+    return out;
+}
+
+/// Whether a position is a node of the lattice through the origin with the spacing dp.
+bool is_node(const Vec3& p, double dp)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(p[axis] / dp - std::round(p[axis] / dp)) > 1e-7) return false;
+    return true;
+}
+
+double number(const Element& e, const char* name)
+{
+    const std::string* value = e.find_attribute(name);
+    return value != nullptr ? std::stod(*value) : std::nan("");
+}
+
+const Element& child(const Element& e, const char* name)
+{
+    const Element* found = e.find_child(name);
+    if (found == nullptr) throw std::runtime_error(std::string("no element ") + name);
+    return *found;
+}
+
+std::vector<Element> blocks(const TemporaryFolder& folder)
+{
+    const Element root = fppg::read_xml(folder / "out/Case.xml");
+    std::vector<Element> out;
+    for (const Element& e : child(child(root, "execution"), "particles").children)
+        if (e.find_attribute("begin") != nullptr) out.push_back(e);
+    return out;
+}
+
+const std::string full = R"(<setdrawmode mode="full" />)";
+
+std::string mkbound(int mk)
+{
+    return fmt::format(R"(<setmkbound mk="{}" />)", mk);
+}
+
+std::string sphere_command(double radius, const Vec3& at)
+{
+    return fmt::format(R"(<drawsphere radius="{}"><point x="{}" y="{}" z="{}" /></drawsphere>)",
+                       radius, at.x, at.y, at.z);
+}
+
+constexpr double sphere_radius = 0.23;
+const Vec3 sphere_center{0.51, 0.5, 0.45};
+
+/// A tank with water and a solid sphere of mkbound 1 under it.
+CaseText sphere_in_tank()
+{
+    CaseText out = fppg::test::tank();
+    out.dp = "0.05";
+    out.mainlist += mkbound(1) + sphere_command(sphere_radius, sphere_center);
+    return out;
+}
+
+std::string fit_block(const std::string& attributes, const std::string& inside = "")
+{
+    return "<fppg><bodyfitted " + attributes + ">" + inside + "</bodyfitted></fppg>";
+}
+
+// -- a sphere in a tank
+// ------------------------------------------------------------------------------
+
+class FittedSphere : public testing::Test
+{
+protected:
+    static void SetUpTestSuite()
+    {
+        folder_ = new TemporaryFolder;
+        result_ = run_case(*folder_, sphere_in_tank(), {"-fit"});
+    }
+    static void TearDownTestSuite() { delete folder_; }
+
+    static TemporaryFolder* folder_;
+    static RunResult result_;
+};
+
+TemporaryFolder* FittedSphere::folder_ = nullptr;
+RunResult FittedSphere::result_;
+
+TEST_F(FittedSphere, HasItsParticlesOffTheLatticeOnItsTrueSurface)
+{
+    ASSERT_EQ(result_.code, 0) << result_.output;
+    const VtkFile picture(read_text(*folder_ / "out/Case_All.vtk"));
+    const auto& kind = picture.arrays.at("Kind");
+    const ParticleCloud cloud = particles(*folder_);
+    ASSERT_EQ(kind.size(), cloud.positions.size());
+    std::size_t on_surface = 0;
+    for (std::size_t i = 0; i < kind.size(); ++i)
+    {
+        if (cloud.mk[i] != bound_mk + 1) continue;
+        const double away = norm(cloud.positions[i] - sphere_center);
+        if (kind[i] == static_cast<int>(fppg::FitKind::Surface))
+        {
+            ++on_surface;
+            EXPECT_NEAR(away, sphere_radius, 1e-9);
+        }
+        else
+            EXPECT_LT(away, sphere_radius - 0.49 * 0.05);
+    }
+    const double area = 4 * std::numbers::pi * sphere_radius * sphere_radius;
+    EXPECT_NEAR(static_cast<double>(on_surface) / (area / (0.05 * 0.05)), 1, 0.15);
+}
+
+TEST_F(FittedSphere, KeepsEveryParticleOnTheSurfaceOnTheLatticeWithoutFit)
+{
+    const TemporaryFolder other;
+    ASSERT_EQ(run_case(other, sphere_in_tank()).code, 0);
+    for (const Vec3& p : particles(other).positions) EXPECT_TRUE(is_node(p, 0.05));
+    std::size_t off = 0;
+    for (const Vec3& p : positions_of(particles(*folder_), bound_mk + 1)) off += !is_node(p, 0.05);
+    EXPECT_GT(off, 200u);
+}
+
+TEST_F(FittedSphere, HasBlocksInCaseXmlThatFitTheParticles)
+{
+    const ParticleCloud cloud = particles(*folder_);
+    double next = 0;
+    for (const Element& block : blocks(*folder_))
+    {
+        EXPECT_EQ(number(block, "begin"), next);
+        const double count = number(block, "count");
+        const auto mk = static_cast<std::uint16_t>(number(block, "mk"));
+        EXPECT_EQ(static_cast<double>(positions_of(cloud, mk).size()), count) << mk;
+        next += count;
+    }
+    EXPECT_EQ(next, static_cast<double>(cloud.positions.size()));
+    const Element root = fppg::read_xml(*folder_ / "out/Case.xml");
+    EXPECT_EQ(number(child(child(root, "execution"), "particles"), "np"), next);
+}
+
+TEST_F(FittedSphere, NumbersTheParticlesOfABlockByXThenYThenZ)
+{
+    const ParticleCloud cloud = particles(*folder_);
+    for (std::size_t i = 1; i < cloud.positions.size(); ++i)
+    {
+        const Vec3& a = cloud.positions[i - 1];
+        const Vec3& b = cloud.positions[i];
+        if (cloud.mk[i] != cloud.mk[i - 1]) continue;
+        EXPECT_LT(std::tie(a.x, a.y, a.z), std::tie(b.x, b.y, b.z)) << i;
+    }
+}
+
+TEST_F(FittedSphere, HasUnitNormalsThatPointOutwardsInThePicture)
+{
+    const VtkFile picture(read_text(*folder_ / "out/Case_All.vtk"));
+    const auto& normal = picture.arrays.at("Normal");
+    const auto& kind = picture.arrays.at("Kind");
+    const auto& mk = picture.arrays.at("Mk");
+    const auto& distance = picture.arrays.at("Distance");
+    for (std::size_t i = 0; i < kind.size(); ++i)
+    {
+        if (mk[i] != bound_mk + 1 || kind[i] != static_cast<int>(fppg::FitKind::Surface)) continue;
+        const Vec3 p{picture.points[3 * i], picture.points[3 * i + 1], picture.points[3 * i + 2]};
+        const Vec3 n{normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]};
+        EXPECT_NEAR(norm(n), 1, 1e-6);
+        EXPECT_GT(dot(n, p - sphere_center), 0.999 * sphere_radius);
+        EXPECT_NEAR(distance[i], 0, 1e-6);
+    }
+}
+
+TEST_F(FittedSphere, KeepsTheFluidHalfAStepAway)
+{
+    const ParticleCloud cloud = particles(*folder_);
+    const std::vector<Vec3> fluid = positions_of(cloud, fluid_mk);
+    EXPECT_GT(fluid.size(), 1000u);
+    for (const Vec3& p : fluid) EXPECT_GE(norm(p - sphere_center), sphere_radius + 0.49 * 0.05);
+}
+
+TEST_F(FittedSphere, WritesTheHistoryOfItsRelaxationUnlessRaw)
+{
+    const std::string history = read_text(*folder_ / "out/Case_Relax.csv");
+    EXPECT_TRUE(history.starts_with("what,iteration,particles,"));
+    EXPECT_GT(std::count(history.begin(), history.end(), '\n'), 10);
+    const TemporaryFolder other;
+    ASSERT_EQ(run_case(other, sphere_in_tank(), {"-fit:raw"}).code, 0);
+    EXPECT_FALSE(fs::exists(other / "out/Case_Relax.csv"));
+    EXPECT_TRUE(fs::exists(other / "out/Case_Features.vtk"));
+    for (const Vec3& p : positions_of(particles(other), bound_mk + 1))
+    {
+        if (is_node(p, 0.05)) continue;
+        EXPECT_NEAR(norm(p - sphere_center), sphere_radius, 1e-9);
+    }
+}
+
+// -- other shapes and settings
+// -----------------------------------------------------------------------
+
+TEST(FittedBox, HasItsTwelveEdgesInTheFeatureFile)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.mainlist = full + mkbound(0) +
+                    box_command(R"(x="0.11" y="0.1" z="0.13")", R"(x="0.6" y="0.5" z="0.4")");
+    ASSERT_EQ(run_case(folder, text, {"-fit"}).code, 0);
+    const VtkFile features(read_text(folder / "out/Case_Features.vtk"));
+    std::size_t lines = 0;
+    const std::vector<int>& cells = features.cells.at("LINES");
+    for (std::size_t i = 0; i < cells.size(); i += 1 + static_cast<std::size_t>(cells[i])) ++lines;
+    EXPECT_EQ(lines, 12u);
+    EXPECT_EQ(features.cells.at("VERTICES").size(), 2u * 8u);
+}
+
+/// All files but Case.out, which tells times and threads; of the history without its last column,
+/// the seconds.
+std::map<std::string, std::string> results(const fs::path& folder)
+{
+    auto out = contents(folder);
+    std::erase_if(out, [](const auto& file) { return file.first.ends_with(".out"); });
+    for (auto& [name, bytes] : out)
+    {
+        if (!name.ends_with("_Relax.csv")) continue;
+        std::istringstream lines(bytes);
+        std::string kept;
+        for (std::string line; std::getline(lines, line);)
+            kept += line.substr(0, line.rfind(',')) + '\n';
+        bytes = kept;
+    }
+    return out;
+}
+
+TEST(FittedCase, IsTheSameAsWithoutItsBlockWhenFittingIsOff)
+{
+    const TemporaryFolder with;
+    const TemporaryFolder without;
+    CaseText text = sphere_in_tank();
+    ASSERT_EQ(run_case(without, text).code, 0);
+    const std::string block = fit_block(R"(mkbound="1")");
+    text.after_geometry = block;
+    ASSERT_EQ(run_case(with, text, {"-fit:off"}).code, 0);
+    auto a = results(with.path() / "out");
+    auto b = results(without.path() / "out");
+    // The copy of the block in Case.xml is the one difference.
+    std::string& xml = a.at("Case.xml");
+    const std::size_t begin = xml.find("        <fppg>");
+    const std::string end = "</fppg>\n";
+    ASSERT_NE(begin, std::string::npos);
+    xml.erase(begin, xml.find(end) + end.size() - begin);
+    EXPECT_EQ(a.at("Case.xml"), b.at("Case.xml"));
+    EXPECT_EQ(a == b, true);
+}
+
+TEST(FittedCase, IsFittedByItsBlockAsByTheOption)
+{
+    const TemporaryFolder option;
+    const TemporaryFolder block;
+    CaseText text = sphere_in_tank();
+    ASSERT_EQ(run_case(option, text, {"-fit"}).code, 0);
+    text.after_geometry = fit_block("");
+    ASSERT_EQ(run_case(block, text).code, 0);
+    EXPECT_EQ(read_text(option / "out/Case.bi4") == read_text(block / "out/Case.bi4"), true);
+}
+
+TEST(FittedCase, HasTheSameFilesWithOneTwoAndEightThreads)
+{
+    const TemporaryFolder folder;
+    CaseText text = fppg::test::tank();
+    text.dp = "0.04";
+    text.mainlist = full + mkbound(1) + sphere_command(0.31, {0.47, 0.52, 0.41}) + mkbound(2) +
+                    box_command(R"(x="0.52" y="0.3" z="0.35")", R"(x="0.43" y="0.4" z="0.37")") +
+                    "<setmkvoid />" + sphere_command(0.2, {0.3, 0.3, 0.6}) + mkbound(0) +
+                    box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="1")",
+                                "bottom | left | right | front | back") +
+                    R"(<setmkfluid mk="0" /><fillbox x="0.9" y="0.9" z="0.1">
+<modefill>void</modefill><point x="0" y="0" z="0" /><size x="1" y="1" z="0.8" /></fillbox>)";
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="1-2"><relax iterations="15" /></bodyfitted>
+<fluidband width="3" /></fppg>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    for (const std::string threads : {"1", "2", "8"})
+    {
+        const RunResult result =
+            run(folder, {"Case_Def", threads + "/Case", "-save:all", "-threads:" + threads});
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_TRUE(contains(result.output, "Relaxed volume")) << result.output;
+    }
+    const auto one = results(folder / "1");
+    EXPECT_TRUE(one.contains("Case_Relax.csv") && one.contains("Case_Features.vtk") &&
+                one.contains("Case_Fluid.vtk"));
+    for (const char* threads : {"2", "8"})
+    {
+        const auto other = results(folder / threads);
+        EXPECT_EQ(other.size(), one.size());
+        for (const auto& [name, bytes] : one)
+            EXPECT_EQ(other.at(name) == bytes, true) << name << " with " << threads << " threads";
+    }
+}
+
+TEST(FittedCase, MayMoveAndFloat)
+{
+    const TemporaryFolder folder;
+    CaseText text = sphere_in_tank();
+    text.mainlist +=
+        mkbound(2) + box_command(R"(x="0.1" y="0.62" z="0.61")", R"(x="0.23" y="0.21" z="0.24")");
+    text.after_geometry =
+        R"(<floatings><floating mkbound="2" rhopbody="500" /></floatings>
+<motion><objreal ref="1"><begin mov="1" start="0" /><mvrect id="1" duration="2"><vel x="1" y="0" z="0" /></mvrect></objreal></motion>)" +
+        fit_block(R"(mkbound="1-2")");
+    const RunResult result = run_case(folder, text);
+    ASSERT_EQ(result.code, 0) << result.output;
+    const ParticleCloud cloud = particles(folder);
+    std::map<std::string, Element> by_name;
+    for (const Element& block : blocks(folder)) by_name[block.name] = block;
+    ASSERT_EQ(by_name.size(), 4u);
+    for (const auto& [name, mk, type] :
+         {std::tuple{"moving", bound_mk + 1, ParticleType::Moving},
+          std::tuple{"floating", bound_mk + 2, ParticleType::Floating}})
+    {
+        const Element& block = by_name.at(name);
+        const auto begin = static_cast<std::size_t>(number(block, "begin"));
+        const auto count = static_cast<std::size_t>(number(block, "count"));
+        EXPECT_EQ(number(block, "mk"), mk);
+        ASSERT_LE(begin + count, cloud.positions.size());
+        EXPECT_EQ(positions_of(cloud, static_cast<std::uint16_t>(mk)).size(), count);
+        std::size_t off = 0;
+        for (std::size_t i = begin; i < begin + count; ++i)
+        {
+            EXPECT_EQ(cloud.type[i], static_cast<int>(type));
+            off += !is_node(cloud.positions[i], 0.05);
+        }
+        EXPECT_GT(off, 50u) << name;
+    }
+    // Massbody = rhopbody * particles * dp^3, the rule of cases on the lattice.
+    const Element& floating = by_name.at("floating");
+    EXPECT_NEAR(number(child(floating, "massbody"), "value"),
+                500 * number(floating, "count") * std::pow(0.05, 3), 1e-6);
+}
+
+// -- Ctrl-C
+// ------------------------------------------------------------------------------------------
+
+/// A case whose relaxation takes minutes.
+CaseText long_relaxation()
+{
+    CaseText text = sphere_in_tank();
+    text.after_geometry = fit_block("", R"(<relax iterations="1000000" tolerance="1e-12" />)");
+    return text;
+}
+
+/// Starts the program and waits until it relaxes.
+Process relaxing(const TemporaryFolder& folder)
+{
+    write_text(folder / "Case_Def.xml", long_relaxation().text());
+    Process process(FPPG_PROGRAM, {"Case_Def", "out/Case", "-save:all"}, folder.path().string());
+    const auto begin = std::chrono::steady_clock::now();
+    while (!contains(process.output_so_far(), "[Relax]") &&
+           std::chrono::steady_clock::now() - begin < std::chrono::seconds(60))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    return process;
+}
+
+TEST(FittedCaseStopped, WritesWhatTheRelaxationHadReached)
+{
+    const TemporaryFolder folder;
+    Process process = relaxing(folder);
+    process.send(SIGINT);
+    const RunResult result = process.wait();
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "*** WARNING: The relaxation was stopped by the user"))
+        << result.output;
+    EXPECT_TRUE(contains(result.output, "Finished execution (code=0)")) << result.output;
+    for (const Vec3& p : positions_of(particles(folder), bound_mk + 1))
+        EXPECT_LE(norm(p - sphere_center), sphere_radius + 1e-9);
+    EXPECT_EQ(read_text(folder / "out/Case.out"), result.output);
+    EXPECT_FALSE(read_text(folder / "out/Case_Relax.csv").empty());
+}
+
+TEST(FittedCaseStopped, WritesNothingAfterASecondSignal)
+{
+    const TemporaryFolder folder;
+    Process process = relaxing(folder);
+    // Two signals of one kind may arrive as one; either kind counts the same.
+    process.send(SIGINT);
+    process.send(SIGTERM);
+    const RunResult result = process.wait();
+    EXPECT_EQ(result.code, 130) << result.output;
+    EXPECT_TRUE(contains(result.output, "Stopped by the user; no output file was changed"));
+    EXPECT_TRUE(contents(folder / "out").empty());
+}
+
+// -- 2D
+// ----------------------------------------------------------------------------------------------
+
+CaseText flat_case(const std::string& mainlist)
+{
+    CaseText text;
+    text.dp = "0.05";
+    text.pointmin = R"(<pointmin x="-0.5" y="0.2" z="-0.5" />)";
+    text.pointmax = R"(<pointmax x="1.5" y="0.2" z="1.5" />)";
+    text.mainlist = full + mkbound(0) + mainlist;
+    return text;
+}
+
+TEST(FittedCase2d, HasTheParticlesOfACircleEvenlyOnIt)
+{
+    const TemporaryFolder folder;
+    const Vec3 center{0.51, 0.2, 0.48};
+    const double radius = 0.33;
+    const RunResult result = run_case(folder, flat_case(sphere_command(radius, center)), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    std::vector<double> angles;
+    for (const Vec3& p : particles(folder).positions)
+    {
+        EXPECT_EQ(p.y, 0.2);
+        const double away = norm(p - center);
+        EXPECT_LE(away, radius + 1e-9);
+        if (away < radius - 1e-9) continue;
+        angles.push_back(std::atan2(p.z - center.z, p.x - center.x));
+    }
+    std::sort(angles.begin(), angles.end());
+    ASSERT_EQ(angles.size(), std::ceil(2 * std::numbers::pi * radius / 0.05));
+    const double even = 2 * std::numbers::pi / static_cast<double>(angles.size());
+    for (std::size_t i = 1; i < angles.size(); ++i)
+        EXPECT_NEAR(angles[i] - angles[i - 1], even, 0.02 * even);
+}
+
+TEST(FittedCase2d, DrawsWhatLiesInThePlaneOnTheLatticeAndSaysSo)
+{
+    for (const std::string shape :
+         {R"(<drawtriangle><point x="0.1" y="0.2" z="0.1" /><point x="0.9" y="0.2" z="0.1" />
+<point x="0.6" y="0.2" z="0.77" /></drawtriangle>)",
+          R"(<drawbox><boxfill>solid</boxfill><point x="0.1" y="0.2" z="0.1" />
+<size x="0.6" y="0" z="0.5" /></drawbox>)",
+          R"(<drawbox><boxfill>front</boxfill><point x="0.1" y="0.21" z="0.1" />
+<size x="0.6" y="0.3" z="0.5" /></drawbox>)"})
+    {
+        const TemporaryFolder folder;
+        const RunResult result = run_case(folder, flat_case(shape), {"-fit"});
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_TRUE(
+            contains(result.output, "lies within dp/2 of the plane y = 0.2 of this 2D case"))
+            << result.output;
+        const TemporaryFolder lattice;
+        ASSERT_EQ(run_case(lattice, flat_case(shape)).code, 0);
+        EXPECT_GT(particles(folder).positions.size(), 100u);
+        EXPECT_EQ(read_text(folder / "out/Case.bi4") == read_text(lattice / "out/Case.bi4"), true);
+    }
+}
+
+// -- meshes and plates
+// ------------------------------------------------------------------------------
+
+/// A box from (0.1, 0.1, 0.1) to (0.6, 0.6, 0.6) as an ASCII STL file, of 10 facets without its
+/// lid.
+std::string stl_box(bool has_lid)
+{
+    const auto corner = [](int i)
+    {
+        return fmt::format("vertex {} {} {}\n", (i & 1) != 0 ? 0.6 : 0.1, (i & 2) != 0 ? 0.6 : 0.1,
+                           (i & 4) != 0 ? 0.6 : 0.1);
+    };
+    const int quads[6][4] = {{4, 5, 7, 6}, {0, 2, 3, 1}, {0, 1, 5, 4},
+                             {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    std::string out = "solid box\n";
+    const auto add = [&](int a, int b, int c)
+    {
+        out += "facet normal 0 0 0\nouter loop\n" + corner(a) + corner(b) + corner(c) +
+               "endloop\nendfacet\n";
+    };
+    for (std::size_t q = has_lid ? 0 : 1; q < 6; ++q)
+    {
+        add(quads[q][0], quads[q][1], quads[q][2]);
+        add(quads[q][0], quads[q][2], quads[q][3]);
+    }
+    return out + "endsolid box\n";
+}
+
+CaseText mesh_case()
+{
+    CaseText text;
+    text.dp = "0.05";
+    text.mainlist = full + mkbound(0) + R"(<drawfilestl file="box.stl" autofill="true" />)";
+    return text;
+}
+
+/// Distance of a point to the surface of the box.
+double distance_to_box(const Vec3& p)
+{
+    const Vec3 d = p - Vec3{0.35, 0.35, 0.35};
+    return std::abs(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) - 0.25);
+}
+
+TEST(FittedMesh, OfABrokenFileIsRefusedWithItsPlaceAndOlderResultsStay)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "box.stl", stl_box(true));
+    ASSERT_EQ(run_case(folder, mesh_case(), {"-fit"}).code, 0);
+    const auto before = contents(folder / "out");
+    ASSERT_TRUE(before.contains("Case.bi4"));
+    std::string broken = stl_box(true);
+    broken.replace(broken.rfind("vertex"), 10, "vertex 0,6");
+    for (const std::string& bytes : {broken, std::string("this is no mesh")})
+    {
+        write_text(folder / "box.stl", bytes);
+        const RunResult result = run_case(folder, mesh_case(), {"-fit"});
+        EXPECT_EQ(result.code, 3) << result.output;
+        EXPECT_TRUE(contains(result.output, "*** Error: Case_Def.xml:7: <drawfilestl>: "))
+            << result.output;
+        EXPECT_TRUE(contains(result.output, "box.stl")) << result.output;
+        EXPECT_EQ(contents(folder / "out") == before, true);
+    }
+}
+
+TEST(FittedMesh, WithoutALidIsCoveredAndTheHoleIsTold)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "box.stl", stl_box(false));
+    const RunResult result = run_case(folder, mesh_case(), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "*** WARNING: Case_Def.xml:7: <drawfilestl>: box.stl: "))
+        << result.output;
+    EXPECT_TRUE(contains(result.output, "The surface is open: 4 edges")) << result.output;
+    std::size_t on_surface = 0;
+    for (const Vec3& p : particles(folder).positions) on_surface += distance_to_box(p) < 1e-7;
+    EXPECT_GT(on_surface, 450u);
+}
+
+TEST(FittedPlate, OfOneSheetHasHalfTheParticlesOfBoth)
+{
+    std::map<std::string, double> count;
+    for (const std::string plates : {"one", "both"})
+    {
+        const TemporaryFolder folder;
+        CaseText text;
+        text.dp = "0.05";
+        text.mainlist = full + mkbound(0) +
+                        box_command(R"(x="0.11" y="0.1" z="0.13")", R"(x="0.9" y="0.8" z="0.02")");
+        text.after_geometry = fit_block("plates=\"" + plates + "\"");
+        const RunResult result = run_case(folder, text);
+        ASSERT_EQ(result.code, 0) << result.output;
+        for (const Vec3& p : particles(folder).positions)
+        {
+            EXPECT_GE(p.z, 0.13 - 1e-9);
+            EXPECT_LE(p.z, 0.15 + 1e-9);
+        }
+        count[plates] = static_cast<double>(particles(folder).positions.size());
+    }
+    EXPECT_NEAR(count["one"] / count["both"], 0.5, 0.05);
+    EXPECT_NEAR(count["one"] * 0.05 * 0.05 / (0.9 * 0.8), 1, 0.2);
+}
+
+} // namespace
