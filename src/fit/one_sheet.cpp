@@ -17,7 +17,7 @@ namespace
 /// spacing along it.
 constexpr double reach_dp = 1.2;
 /// A corner of a plate lies this far from the nearest particle on its sides, dp.
-constexpr double rim_reach_dp = 1.6;
+constexpr double rim_reach_dp = 2;
 
 /// Smooth parts of a surface: facets joined by edges that are no features.
 struct SmoothParts
