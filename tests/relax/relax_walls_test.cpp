@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
-#include <tuple>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace fppg
 {
@@ -317,24 +321,30 @@ TEST(RelaxWalls, LeaveTheFreeSurfaceAtRest)
 
 TEST(RelaxWalls, PutNothingWhereABodyWasCutAway)
 {
-    Drawing drawing;
-    drawing.draw(SphereOp{center, 1.1, {}});
-    drawing.empty();
-    drawing.box({0, -2, -2}, {2, 4, 4});
-    const Relaxed relaxed(drawing);
     const auto farthest = [](const std::vector<Vec3>& points)
     {
         double x = -2;
         for (const Vec3& p : points) x = std::max(x, p.x);
         return x;
     };
-    const RunField& before = relaxed.before;
-    const RunField& after = relaxed.after;
-    EXPECT_LE(farthest(after.walls.particles.positions),
-              farthest(before.walls.particles.positions));
-    EXPECT_LE(farthest(volume_of(after, wall_mk)), farthest(volume_of(before, wall_mk)));
-    EXPECT_GT(after.walls.volume.size(), 100U);
-    EXPECT_TRUE(is_whole(after.walls));
+    for (const double band_dp : {3.0, std::numeric_limits<double>::infinity()})
+    {
+        Drawing drawing;
+        drawing.def.fit.all->relax.band_dp = band_dp;
+        drawing.draw(SphereOp{center, 1.1, {}});
+        drawing.empty();
+        drawing.box({0, -2, -2}, {2, 4, 4});
+        const Relaxed relaxed(drawing);
+        const RunField& before = relaxed.before;
+        const RunField& after = relaxed.after;
+        EXPECT_LE(farthest(after.walls.particles.positions),
+                  farthest(before.walls.particles.positions));
+        EXPECT_LE(farthest(volume_of(after, wall_mk)), farthest(volume_of(before, wall_mk)));
+        EXPECT_GT(after.walls.volume.size(), 100U);
+        EXPECT_TRUE(is_whole(after.walls));
+        for (const Vec3& p : volume_of(after, wall_mk))
+            EXPECT_GE(1.1 - norm(p - center), 0.39 * dp);
+    }
 }
 
 TEST(RelaxWalls, LeaveAnMkThatIsNotActiveAsItIs)
