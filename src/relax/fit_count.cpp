@@ -80,7 +80,8 @@ bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, doub
     {
         const Vec3 at = from + (band.dp * way) * direction;
         const double distance = norm(closest(at) - at) / band.dp;
-        if (distance < limit) return false;
+        // Nearer than this a wall is met, and steps would become ever shorter.
+        if (distance < std::max(limit, 1e-3)) return false;
         if (way >= length) return true;
         way = std::min(length, way + 0.9 * distance);
     }

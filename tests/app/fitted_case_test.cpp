@@ -517,6 +517,26 @@ TEST(FittedCase2d, DrawsWhatLiesInThePlaneOnTheLatticeAndSaysSo)
     }
 }
 
+TEST(FittedCase2d, HasTheSameParticlesHoweverFarABoxReachesBeyondThePlane)
+{
+    std::vector<std::size_t> counts;
+    for (const auto& [low, size] :
+         {std::pair{"-2", "4"}, std::pair{"0.1", "0.2"}, std::pair{"0.2", "0.6"}})
+    {
+        const TemporaryFolder folder;
+        const RunResult result =
+            run_case(folder,
+                     flat_case(box_command(fmt::format(R"(x="0.11" y="{}" z="0.12")", low),
+                                           fmt::format(R"(x="0.63" y="{}" z="0.53")", size))),
+                     {"-fit:raw"});
+        ASSERT_EQ(result.code, 0) << result.output;
+        counts.push_back(particles(folder).positions.size());
+    }
+    EXPECT_EQ(counts, std::vector<std::size_t>(3, counts[0]));
+    EXPECT_NEAR(static_cast<double>(counts[0]) * 0.05 * 0.05 / ((0.63 + 0.05) * (0.53 + 0.05)), 1,
+                0.05);
+}
+
 // -- meshes and plates
 // ------------------------------------------------------------------------------
 

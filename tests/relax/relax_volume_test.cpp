@@ -241,6 +241,21 @@ TEST(RelaxVolume, KeepsYInThePlane)
     EXPECT_GT(least_gap_dp(region), 0.5);
 }
 
+TEST(RelaxVolume, EndsWhereEveryParticleTouchesAWall)
+{
+    VolumeRegion region;
+    region.is_2d = true;
+    region.closest = [](const Vec3& p) { return p; };
+    region.depth = [&](const Vec3& p)
+    { return 0.9 - std::max(std::abs(p.x), std::abs(p.z)) + 0.55 * region.dp; };
+    region.fill({-0.9, 0, -0.9}, {0.91, 0, 0.91});
+    region.moving.resize(region.moving.size() / 2);
+    RelaxVolumeOptions options = region.options();
+    options.fit_count = true;
+    relax(region, options);
+    for (const Vec3& p : region.moving) EXPECT_TRUE(is_finite(p));
+}
+
 TEST(RelaxVolume, GivesTheSameBytesForAnyNumberOfThreads)
 {
     for (const bool fit_count : {false, true})
