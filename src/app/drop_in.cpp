@@ -238,14 +238,13 @@ private:
                 int snapshots = 0;
                 TimeLeft left;
                 const bool is_terminal = isatty(STDERR_FILENO) != 0;
-                relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp,s\n";
+                relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp\n";
                 const auto observe = [&](const RelaxStep& step)
                 {
                     left.note(step, time.seconds());
-                    relax_history_ +=
-                        fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.3f}\n", step.what,
-                                    step.iteration, step.particles, step.mean, step.deviation,
-                                    step.largest_step_dp, time.seconds());
+                    relax_history_ += fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what,
+                                                  step.iteration, step.particles, step.mean,
+                                                  step.deviation, step.largest_step_dp);
                     const double now = time.seconds();
                     if (is_terminal && now > shown + 0.2)
                     {
@@ -317,6 +316,11 @@ private:
 
     void log_relaxed(const RelaxedPart& part)
     {
+        if (part.mean == 0)
+        {
+            log_.line(fmt::format("Relaxed {}: no particle that may move", part.what));
+            return;
+        }
         const char* mean = part.what == "surface" ? "spacing" : "density";
         std::string text =
             fmt::format("Relaxed {}: {} particles, {} iterations, {} {:.4f}", part.what,
