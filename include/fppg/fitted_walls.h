@@ -67,6 +67,16 @@ struct WallParticles
     std::vector<char> held;            ///< 1: relaxation leaves it where it is
 
     std::size_t size() const { return positions.size(); }
+    /// Particle i of another set, behind the others.
+    void append(const WallParticles& from, std::size_t i)
+    {
+        positions.push_back(from.positions[i]);
+        kinds.push_back(from.kinds[i]);
+        bodies.push_back(from.bodies[i]);
+        facets.push_back(from.facets[i]);
+        mk.push_back(from.mk[i]);
+        held.push_back(from.held[i]);
+    }
 };
 
 /// Particles off the lattice near the walls that stand in for lattice nodes, one entry each in all
@@ -76,7 +86,7 @@ struct VolumeParticles
 {
     std::vector<Vec3> positions;
     std::vector<std::uint16_t> mk; ///< absolute, bound or fluid
-    std::vector<float> distances;  ///< metres to the nearest wall, negative inside
+    std::vector<float> distances;  ///< metres to the nearest wall, negative in a solid
 
     std::size_t size() const { return positions.size(); }
 };

@@ -42,9 +42,8 @@ struct RelaxedPart
     std::size_t particles = 0; ///< afterwards
     std::size_t inserted = 0;
     std::size_t removed = 0;
-    double mean_before = 0; ///< surfaces only: spacing in dp
-    double deviation_before = 0;
-    double mean = 0; ///< as in RelaxStep
+    double deviation_before = 0; ///< surfaces only
+    double mean = 0;             ///< as in RelaxStep
     double deviation = 0;
 };
 
@@ -54,6 +53,9 @@ struct RelaxReport
     std::vector<std::string> warnings; ///< whole sentences
     bool is_stopped = false;           ///< by the observer
 };
+
+/// Whether relax_walls() would move anything: not with -fit:raw, for example.
+bool relaxes(const CaseDef& def, const RunField& field);
 
 /// Relaxes the fitted walls of a field and the volume beside them, as the settings of their mks and
 /// the fluid bands of the case say: first all surfaces, then the inside of every solid mk, then the

@@ -94,4 +94,7 @@ struct MeshIntakeOptions
 SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
                          MeshReport& report);
 
+/// The facets with their corners written out, in the same order.
+TriangleSoup soup_of(const SurfaceMesh& mesh);
+
 } // namespace fppg

@@ -11,8 +11,11 @@
 #include "fppg/version.h"
 
 #include "app/case_template.h"
+#include "app/relax_stage.h"
 #include "app/run_log.h"
 #include "app/stop_signals.h"
+#include "app/stopwatch.h"
+#include "app/thousands.h"
 #include "app/threads.h"
 
 #include <fmt/chrono.h>
@@ -37,15 +40,6 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// 12345678 as 12,345,678.
-std::string thousands(std::uint64_t n)
-{
-    std::string text = std::to_string(n);
-    for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
-        text.insert(static_cast<std::size_t>(at), 1, ',');
-    return text;
-}
-
 /// The date that goes into the files: now, in local time, or SOURCE_DATE_EPOCH (seconds since 1970,
 /// UTC; reproducible-builds.org), so that two runs of a case give the same bytes.
 std::string date_of_run()
@@ -65,38 +59,6 @@ std::string date_of_run()
                         text));
     return fmt::format(form, fmt::gmtime(static_cast<std::time_t>(seconds)));
 }
-
-class Stopwatch
-{
-public:
-    double seconds() const
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// How long the part of a relaxation that runs may last, from the mean time of its iterations.
-class TimeLeft
-{
-public:
-    /// To be called after every iteration, with the seconds since some start.
-    void note(const RelaxStep& step, double now)
-    {
-        // The first iteration of a part has its preparation with it and does not count.
-        if (step.iteration == 1) first_end_ = now;
-    }
-    double seconds(const RelaxStep& step, double now) const
-    {
-        const double mean = (now - first_end_) / std::max(1, step.iteration - 1);
-        return mean * (step.last_iteration - step.iteration);
-    }
-
-private:
-    double first_end_ = 0;
-};
 
 std::string full_name()
 {
@@ -221,116 +183,19 @@ private:
         };
     }
 
-    /// Spreads the particles of fitted walls. Ctrl-C ends it early; what is reached is written.
+    /// Spreads the particles of fitted walls.
     void relax()
     {
         if (field_.walls.bodies.empty()) return;
-        log_fitted_walls();
-        if (!relaxes()) return;
-        stage(
-            "Relax",
-            [this]
-            {
-                const StopSignalsAsk stop;
-                RelaxReport report;
-                const Stopwatch time;
-                double shown = 0;
-                int snapshots = 0;
-                TimeLeft left;
-                const bool is_terminal = isatty(STDERR_FILENO) != 0;
-                relax_history_ = "what,iteration,particles,mean,deviation,largest_step_dp\n";
-                const auto observe = [&](const RelaxStep& step)
-                {
-                    left.note(step, time.seconds());
-                    relax_history_ += fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what,
-                                                  step.iteration, step.particles, step.mean,
-                                                  step.deviation, step.largest_step_dp);
-                    const double now = time.seconds();
-                    if (is_terminal && now > shown + 0.2)
-                    {
-                        shown = now;
-                        fmt::print(stderr,
-                                   "\rrelax {}: {} of at most {}, spread {:.3f}, largest step "
-                                   "{:.3f} dp ({:.0f} s, at most {:.0f} s more)\x1b[K",
-                                   step.what, step.iteration, step.last_iteration, step.deviation,
-                                   step.largest_step_dp, now, left.seconds(step, now));
-                    }
-                    return !stop.is_asked();
-                };
-                const auto snapshot = [&](int iteration, const WallParticles& particles)
-                {
-                    OutputFile file(fmt::format("{}_Relax_{:04}.vtk", options_.output, iteration));
-                    write_wall_particles_vtk(file, particles);
-                    file.commit();
-                    ++snapshots;
-                };
-                relax_walls(def_, field_, threads_, observe, report, snapshot);
-                if (is_terminal) fmt::print(stderr, "\r\x1b[K");
-                for (const RelaxedPart& part : report.parts) log_relaxed(part);
-                if (snapshots > 0)
-                    log_.line(fmt::format("{}_Relax_*.vtk: {} pictures of the relaxation",
-                                          options_.output, snapshots));
-                for (std::string& w : report.warnings) warn(fmt::format("{}:{}", def_.file, w));
-                if (report.is_stopped)
-                    warn(
-                        "The relaxation was stopped by the user; the files hold what it had "
-                        "reached.");
-            });
-    }
-
-    bool relaxes() const
-    {
-        const auto is_active = [this](const FittedBody& body)
-        {
-            const FitSettings* settings = fit_settings(def_.fit, body.mk);
-            return settings != nullptr && settings->relax.is_active;
-        };
-        const std::vector<FittedBody>& bodies = field_.walls.bodies;
-        return !def_.fluid_bands.empty() || std::any_of(bodies.begin(), bodies.end(), is_active);
-    }
-
-    void log_fitted_walls()
-    {
-        const FittedWalls& walls = field_.walls;
-        std::vector<std::array<std::uint64_t, 3>> counts(walls.bodies.size());
-        for (std::size_t i = 0; i < walls.particles.size(); ++i)
-            ++counts[walls.particles.bodies[i]][static_cast<std::size_t>(walls.particles.kinds[i])];
-        log_.line("Body-fitted walls:");
-        for (std::size_t b = 0; b < walls.bodies.size(); ++b)
-        {
-            const FittedBody& body = walls.bodies[b];
-            log_.line(fmt::format(
-                "  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface "
-                "particles",
-                body.name, body.line, body.mk, counts[b][0], counts[b][1], counts[b][2]));
-            const double volume = body.report.volume;
-            if (body.is_solid && volume > 0)
-                log_.line(
-                    fmt::format("    volume {:g}, area {:g}, clearance {:.3f} dp inside, "
-                                "{:.3f} dp outside",
-                                volume, body.report.area, body.clearance_inside / def_.grid.dp,
-                                body.clearance_outside / def_.grid.dp));
-        }
-        log_.line();
-    }
-
-    void log_relaxed(const RelaxedPart& part)
-    {
-        if (part.mean == 0)
-        {
-            log_.line(fmt::format("Relaxed {}: no particle that may move", part.what));
-            return;
-        }
-        const char* mean = part.what == "surface" ? "spacing" : "density";
-        std::string text =
-            fmt::format("Relaxed {}: {} particles, {} iterations, {} {:.4f}", part.what,
-                        thousands(part.particles), part.iterations, mean, part.mean);
-        text += fmt::format(", spread {:.4f}", part.deviation);
-        if (part.deviation_before > 0)
-            text += fmt::format(" (before: {:.4f})", part.deviation_before);
-        if (part.inserted + part.removed > 0)
-            text += fmt::format(", {} inserted, {} removed", part.inserted, part.removed);
-        log_.line(text);
+        log_fitted_walls(field_, log_);
+        if (!relaxes(def_, field_)) return;
+        stage("Relax",
+              [this]
+              {
+                  RelaxOutcome done = run_relaxation(def_, field_, options_.output, threads_, log_);
+                  relax_history_ = std::move(done.history);
+                  for (std::string& w : done.warnings) warn(std::move(w));
+              });
     }
 
     void prepare()

@@ -118,10 +118,7 @@ double thickness_behind(const SurfaceMesh& mesh, const MeshQuery& query, std::ui
 /// Looks for thin places at points spread evenly over the area.
 void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
 {
-    TriangleSoup soup;
-    for (const auto& facet : mesh.facets)
-        for (const std::uint32_t v : facet) soup.vertices.push_back(mesh.vertices[v]);
-    const MeshQuery query(std::move(soup), found.options.threads);
+    const MeshQuery query(soup_of(mesh), found.options.threads);
 
     std::vector<double> up_to(mesh.facets.size());
     double area = 0;

@@ -86,11 +86,7 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
 void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int threads,
                         SurfaceParticles& result)
 {
-    TriangleSoup soup;
-    soup.vertices.reserve(3 * mesh.facets.size());
-    for (const auto& facet : mesh.facets)
-        for (const std::uint32_t v : facet) soup.vertices.push_back(mesh.vertices[v]);
-    const MeshQuery query(std::move(soup), threads);
+    const MeshQuery query(soup_of(mesh), threads);
     const auto cells = find_crossed_cells(mesh, options.lattice_origin, options.dp, threads);
     std::vector<ClosestPoint> closest(cells.size());
     parallel_for(

@@ -2,6 +2,8 @@
 
 #include "fppg/error.h"
 
+#include "fit/plane_cut.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,16 +14,6 @@ namespace fppg
 {
 namespace
 {
-
-/// The line in which a facet meets the plane: from the edge at which the facet's boundary goes down
-/// through the plane to the one at which it comes up again. The next facet goes down where this one
-/// comes up.
-struct Piece
-{
-    std::uint32_t facet = 0;
-    std::uint32_t from_edge = 0;
-    std::uint32_t to_edge = 0;
-};
 
 /// A line of the section; segment k runs from point k to point k + 1, the last one of a closed
 /// chain to point 0.
@@ -41,48 +33,6 @@ double angle_between_deg(const Vec3& a, const Vec3& b)
     return std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-std::vector<Piece> cut_facets(const SurfaceMesh& mesh, double y)
-{
-    std::vector<char> has_below;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        if (mesh.shells[f] >= has_below.size()) has_below.resize(mesh.shells[f] + 1, 0);
-        for (const std::uint32_t v : mesh.facets[f])
-            if (mesh.vertices[v].y < y) has_below[mesh.shells[f]] = 1;
-    }
-    std::vector<Piece> pieces;
-    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        const bool level_is_above = has_below[mesh.shells[f]] != 0;
-        const auto is_above = [&](std::size_t corner)
-        {
-            const double height = mesh.vertices[mesh.facets[f][corner]].y;
-            return height > y || (height == y && level_is_above);
-        };
-        Piece piece{f, no_index, no_index};
-        for (std::size_t side = 0; side < 3; ++side)
-        {
-            const bool from = is_above(side);
-            const bool to = is_above((side + 1) % 3);
-            if (from && !to) piece.from_edge = mesh.facet_edges[f][side];
-            if (!from && to) piece.to_edge = mesh.facet_edges[f][side];
-        }
-        if (piece.from_edge != no_index) pieces.push_back(piece);
-    }
-    return pieces;
-}
-
-/// Where an edge that crosses the plane meets it; the same for all its facets.
-Vec3 crossing(const SurfaceMesh& mesh, std::uint32_t edge, double y)
-{
-    const Vec3& a = mesh.vertices[mesh.edges[edge][0]];
-    const Vec3& b = mesh.vertices[mesh.edges[edge][1]];
-    if (a.y == y) return a;
-    if (b.y == y) return b;
-    const double share = (y - a.y) / (b.y - a.y);
-    return {a.x + (b.x - a.x) * share, y, a.z + (b.z - a.z) * share};
-}
-
 /// For every piece the one that follows it and the one before, or no_index. Where an edge has more
 /// than two facets, pieces are paired in the order of their facets.
 struct Links
@@ -90,7 +40,7 @@ struct Links
     std::vector<std::uint32_t> next;
     std::vector<std::uint32_t> previous;
 
-    explicit Links(const std::vector<Piece>& pieces)
+    explicit Links(const std::vector<PlanePiece>& pieces)
         : next(pieces.size(), no_index), previous(pieces.size(), no_index)
     {
         using Entry = std::pair<std::uint32_t, std::uint32_t>; // edge, piece
@@ -150,7 +100,7 @@ public:
 private:
     void find_chains()
     {
-        const std::vector<Piece> pieces = cut_facets(mesh_, options_.y);
+        const std::vector<PlanePiece> pieces = cut_with_plane(mesh_, options_.y);
         const Links links(pieces);
         std::vector<char> is_used(pieces.size(), 0);
         for (std::uint32_t p = 0; p < pieces.size(); ++p)
@@ -161,7 +111,7 @@ private:
                 first = links.previous[first];
             const bool is_closed = links.previous[first] != no_index;
             if (is_closed) first = p;
-            std::vector<Piece> walked;
+            std::vector<PlanePiece> walked;
             for (std::uint32_t at = first; at != no_index && is_used[at] == 0; at = links.next[at])
             {
                 is_used[at] = 1;
@@ -172,15 +122,15 @@ private:
     }
 
     /// Segments so short that their ways are rounding are joined to their neighbours.
-    void add_chain(const std::vector<Piece>& pieces, bool is_closed)
+    void add_chain(const std::vector<PlanePiece>& pieces, bool is_closed)
     {
         const double shortest = 1e-6 * options_.dp;
         Chain chain;
         chain.is_closed = is_closed;
-        chain.points.push_back(crossing(mesh_, pieces.front().from_edge, options_.y));
-        for (const Piece& piece : pieces)
+        chain.points.push_back(plane_crossing(mesh_, pieces.front().from_edge, options_.y));
+        for (const PlanePiece& piece : pieces)
         {
-            const Vec3 p = crossing(mesh_, piece.to_edge, options_.y);
+            const Vec3 p = plane_crossing(mesh_, piece.to_edge, options_.y);
             if (norm(p - chain.points.back()) <= shortest) continue;
             chain.points.push_back(p);
             chain.facets.push_back(piece.facet);

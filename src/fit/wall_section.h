@@ -18,9 +18,7 @@ struct WallSection
     std::vector<std::uint32_t> facets; ///< of the mesh
 };
 
-/// Cuts every facet with the plane; y of all points is exactly that of the plane. Corners on the
-/// plane count as below it, as in cut_column(); a mesh that only touches the plane with what is
-/// below it is cut there as well. Facets that lie in the plane have no line.
+/// The pieces of cut_with_plane() as lines; y of all points is exactly that of the plane.
 WallSection wall_section(const SurfaceMesh& mesh, double plane_y);
 
 } // namespace fppg

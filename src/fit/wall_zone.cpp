@@ -70,9 +70,7 @@ struct Wall
 Wall whole_surface(const SurfaceMesh& mesh, const ClosedPart& part)
 {
     Wall wall;
-    wall.soup.vertices.reserve(3 * mesh.facets.size());
-    for (const auto& facet : mesh.facets)
-        for (const std::uint32_t v : facet) wall.soup.vertices.push_back(mesh.vertices[v]);
+    wall.soup = soup_of(mesh);
     wall.normals = mesh.normals;
     wall.sizes = mesh.areas;
     wall.is_bounding = part.is_bounding;

@@ -97,16 +97,6 @@ bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
                        });
 }
 
-void append(WallParticles& to, const WallParticles& from, std::size_t i)
-{
-    to.positions.push_back(from.positions[i]);
-    to.kinds.push_back(from.kinds[i]);
-    to.bodies.push_back(from.bodies[i]);
-    to.facets.push_back(from.facets[i]);
-    to.mk.push_back(from.mk[i]);
-    to.held.push_back(from.held[i]);
-}
-
 /// The slab's runs that belong to the zone of a wall.
 Spans zone_of(const std::vector<Run>& runs)
 {
@@ -115,15 +105,6 @@ Spans zone_of(const std::vector<Run>& runs)
         if ((r.mk & wall_zone_bit) != 0) out.push_back({r.y, r.z_begin, r.z_end});
     sort_and_join(out);
     return out;
-}
-
-TriangleSoup soup_of(const SurfaceMesh& mesh)
-{
-    TriangleSoup soup;
-    soup.vertices.reserve(3 * mesh.facets.size());
-    for (const auto& f : mesh.facets)
-        for (const std::uint32_t v : f) soup.vertices.push_back(mesh.vertices[v]);
-    return soup;
 }
 
 /// Inside by the sum of signed crossings along each axis, two of three. Used away from the surface.
@@ -289,12 +270,13 @@ void WallPainter::add(FittedDraw&& draw)
                  });
     walls.bodies.push_back(std::move(draw.body));
     const std::size_t first = walls.particles.size();
-    for (std::size_t i = 0; i < draw.particles.size(); ++i)
-    {
-        draw.particles.bodies[i] = body;
-        draw.particles.mk[i] = mk;
-        append(walls.particles, draw.particles, i);
-    }
+    std::fill(draw.particles.bodies.begin(), draw.particles.bodies.end(), body);
+    std::fill(draw.particles.mk.begin(), draw.particles.mk.end(), mk);
+    if (first == 0)
+        walls.particles = std::move(draw.particles);
+    else
+        for (std::size_t i = 0; i < draw.particles.size(); ++i)
+            walls.particles.append(draw.particles, i);
     walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
     walls.cut_bodies.resize(walls.cut.size(), body);
     is_cut_.resize(walls.particles.size(), 0);
@@ -413,13 +395,13 @@ void WallPainter::finish()
         walls.cut.push_back(all.positions[i]);
         walls.cut_bodies.push_back(all.bodies[i]);
     }
-    WallParticles left;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (!is_cut_[i]) append(left, all, i);
-    all = std::move(left);
-    is_cut_.clear();
     anchors_.clear();
     if (walls.cut.empty()) return;
+    WallParticles left;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (!is_cut_[i]) left.append(all, i);
+    all = std::move(left);
+    is_cut_.clear();
     const double reach = held_distance_dp * field_->grid.dp;
     PointGrid cut(reach, walls.cut.size());
     for (const Vec3& p : walls.cut) cut.add(p);

@@ -120,16 +120,10 @@ public:
         {
             first_.push_back(normals_.size());
             WallSection section;
-            if (grid.is_2d)
-            {
-                section = wall_section(body.mesh, grid.origin.y);
-                soup.vertices.insert(soup.vertices.end(), section.soup.vertices.begin(),
-                                     section.soup.vertices.end());
-            }
-            else
-                for (const auto& facet : body.mesh.facets)
-                    for (const std::uint32_t v : facet)
-                        soup.vertices.push_back(body.mesh.vertices[v]);
+            if (grid.is_2d) section = wall_section(body.mesh, grid.origin.y);
+            const TriangleSoup of_body = grid.is_2d ? section.soup : soup_of(body.mesh);
+            soup.vertices.insert(soup.vertices.end(), of_body.vertices.begin(),
+                                 of_body.vertices.end());
             const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
             normals_.insert(normals_.end(), normals.begin(), normals.end());
         }
@@ -222,22 +216,12 @@ private:
         }
     }
 
-    static void append(WallParticles& to, const WallParticles& from, std::size_t i)
-    {
-        to.positions.push_back(from.positions[i]);
-        to.kinds.push_back(from.kinds[i]);
-        to.bodies.push_back(from.bodies[i]);
-        to.facets.push_back(from.facets[i]);
-        to.mk.push_back(from.mk[i]);
-        to.held.push_back(from.held[i]);
-    }
-
     WallParticles take(const std::vector<char>& is_meant, bool meant) const
     {
         const WallParticles& all = field_.walls.particles;
         WallParticles out;
         for (std::size_t i = 0; i < all.size(); ++i)
-            if ((is_meant[all.bodies[i]] != 0) == meant) append(out, all, i);
+            if ((is_meant[all.bodies[i]] != 0) == meant) out.append(all, i);
         return out;
     }
 
@@ -249,9 +233,9 @@ private:
         std::size_t j = 0;
         while (i < a.size() || j < b.size())
             if (j == b.size() || (i < a.size() && a.bodies[i] < b.bodies[j]))
-                append(out, a, i++);
+                out.append(a, i++);
             else
-                append(out, b, j++);
+                out.append(b, j++);
         return out;
     }
 
@@ -306,7 +290,6 @@ private:
         part.particles = particles.size();
         part.inserted = done.inserted;
         part.removed = done.removed;
-        part.mean_before = done.before.spacing_mean;
         part.deviation_before = done.before.spacing_deviation;
         part.mean = done.after.spacing_mean;
         part.deviation = done.after.spacing_deviation;
@@ -618,10 +601,22 @@ private:
 
 } // namespace
 
+bool relaxes(const CaseDef& def, const RunField& field)
+{
+    const auto is_active = [&](const FittedBody& body)
+    {
+        const FitSettings* settings = fit_settings(def.fit, body.mk);
+        return settings != nullptr && settings->relax.is_active;
+    };
+    const std::vector<FittedBody>& bodies = field.walls.bodies;
+    return !bodies.empty() &&
+           (!def.fluid_bands.empty() || std::any_of(bodies.begin(), bodies.end(), is_active));
+}
+
 void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
                  RelaxReport& report, const RelaxSnapshot& snapshot)
 {
-    if (field.walls.bodies.empty()) return;
+    if (!relaxes(def, field)) return;
     Relaxation(def, field, threads, observe, report, snapshot).run();
 }
 

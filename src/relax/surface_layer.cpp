@@ -365,10 +365,7 @@ void SurfaceLayer::project(std::size_t i, bool is_restart)
 {
     if (!query_)
     {
-        TriangleSoup soup;
-        for (const auto& facet : body_->mesh.facets)
-            for (const std::uint32_t v : facet) soup.vertices.push_back(body_->mesh.vertices[v]);
-        query_ = std::make_unique<MeshQuery>(std::move(soup), threads_);
+        query_ = std::make_unique<MeshQuery>(soup_of(body_->mesh), threads_);
         find_patches();
     }
     const SurfacePlace& place = particles_[i].place;

@@ -11,6 +11,8 @@
 #include "fppg/relax.h"
 #include "fppg/shapes.h"
 
+#include <sys/resource.h>
+
 #include <bit>
 #include <chrono>
 #include <cstdio>
@@ -161,14 +163,17 @@ int main(int count, char** values)
     auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
     const double seconds = seconds_since(start);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    const double peak_mb = static_cast<double>(used.ru_maxrss) / 1000;
     double area = 0;
     for (const double a : mesh.areas) area += a;
     const auto n = static_cast<double>(particles.positions.size());
     std::printf(
         "%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
-        "(%.3f s of processor, %.2f us a particle)\n",
+        "(%.3f s of processor, %.2f us a particle), peak %.0f MB\n",
         mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
-        cpu_seconds, 1e6 * cpu_seconds / n);
+        cpu_seconds, 1e6 * cpu_seconds / n, peak_mb);
     if (iterations != nullptr)
     {
         fppg::RelaxSurfaceOptions relax_options;

@@ -1,0 +1,136 @@
+#include "app/relax_stage.h"
+
+#include "fppg/files.h"
+#include "fppg/relax_walls.h"
+
+#include "app/run_log.h"
+#include "app/stop_signals.h"
+#include "app/stopwatch.h"
+#include "app/thousands.h"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fppg
+{
+namespace
+{
+
+/// How long the part of a relaxation that runs may last, from the mean time of its iterations.
+class TimeLeft
+{
+public:
+    /// To be called after every iteration, with the seconds since some start.
+    void note(const RelaxStep& step, double now)
+    {
+        // The first iteration of a part has its preparation with it and does not count.
+        if (step.iteration == 1) first_end_ = now;
+    }
+    double seconds(const RelaxStep& step, double now) const
+    {
+        const double mean = (now - first_end_) / std::max(1, step.iteration - 1);
+        return mean * (step.last_iteration - step.iteration);
+    }
+
+private:
+    double first_end_ = 0;
+};
+
+void log_relaxed(const RelaxedPart& part, RunLog& log)
+{
+    if (part.mean == 0)
+    {
+        log.line(fmt::format("Relaxed {}: no particle that may move", part.what));
+        return;
+    }
+    const char* mean = part.what == "surface" ? "spacing" : "density";
+    std::string text =
+        fmt::format("Relaxed {}: {} particles, {} iterations, {} {:.4f}, spread {:.4f}", part.what,
+                    thousands(part.particles), part.iterations, mean, part.mean, part.deviation);
+    if (part.deviation_before > 0) text += fmt::format(" (before: {:.4f})", part.deviation_before);
+    if (part.inserted + part.removed > 0)
+        text += fmt::format(", {} inserted, {} removed", part.inserted, part.removed);
+    log.line(text);
+}
+
+} // namespace
+
+void log_fitted_walls(const RunField& field, RunLog& log)
+{
+    const FittedWalls& walls = field.walls;
+    const double dp = field.grid.dp;
+    std::vector<std::array<std::uint64_t, 3>> counts(walls.bodies.size());
+    for (std::size_t i = 0; i < walls.particles.size(); ++i)
+        ++counts[walls.particles.bodies[i]][static_cast<std::size_t>(walls.particles.kinds[i])];
+    log.line("Body-fitted walls:");
+    for (std::size_t b = 0; b < walls.bodies.size(); ++b)
+    {
+        const FittedBody& body = walls.bodies[b];
+        log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
+                             body.name, body.line, body.mk, counts[b][0], counts[b][1],
+                             counts[b][2]));
+        if (body.is_solid && body.report.volume > 0)
+            log.line(fmt::format(
+                "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",
+                body.report.volume, body.report.area, body.clearance_inside / dp,
+                body.clearance_outside / dp));
+    }
+    log.line();
+}
+
+RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::string& output,
+                            int threads, RunLog& log)
+{
+    const StopSignalsAsk stop;
+    RelaxOutcome done;
+    RelaxReport report;
+    const Stopwatch time;
+    double shown = 0;
+    int snapshots = 0;
+    TimeLeft left;
+    const bool is_terminal = isatty(STDERR_FILENO) != 0;
+    done.history = "what,iteration,particles,mean,deviation,largest_step_dp\n";
+    const auto observe = [&](const RelaxStep& step)
+    {
+        const double now = time.seconds();
+        left.note(step, now);
+        done.history +=
+            fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
+                        step.particles, step.mean, step.deviation, step.largest_step_dp);
+        if (is_terminal && now > shown + 0.2)
+        {
+            shown = now;
+            fmt::print(
+                stderr,
+                "\rrelax {}: {} of at most {}, spread {:.3f}, largest step {:.3f} dp ({:.0f} "
+                "s, at most {:.0f} s more)\x1b[K",
+                step.what, step.iteration, step.last_iteration, step.deviation,
+                step.largest_step_dp, now, left.seconds(step, now));
+        }
+        return !stop.is_asked();
+    };
+    const auto snapshot = [&](int iteration, const WallParticles& particles)
+    {
+        OutputFile file(fmt::format("{}_Relax_{:04}.vtk", output, iteration));
+        write_wall_particles_vtk(file, particles);
+        file.commit();
+        ++snapshots;
+    };
+    relax_walls(def, field, threads, observe, report, snapshot);
+    if (is_terminal) fmt::print(stderr, "\r\x1b[K");
+    for (const RelaxedPart& part : report.parts) log_relaxed(part, log);
+    if (snapshots > 0)
+        log.line(fmt::format("{}_Relax_*.vtk: {} pictures of the relaxation", output, snapshots));
+    for (const std::string& w : report.warnings)
+        done.warnings.push_back(fmt::format("{}:{}", def.file, w));
+    if (report.is_stopped)
+        done.warnings.emplace_back(
+            "The relaxation was stopped by the user; the files hold what it had reached.");
+    return done;
+}
+
+} // namespace fppg
