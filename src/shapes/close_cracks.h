@@ -1,0 +1,13 @@
+#pragma once
+
+#include "fppg/surface_mesh.h"
+
+namespace fppg
+{
+
+/// Joins the corners of a mesh whose facets do not meet: where a quarter of all edges are open, and
+/// moving corners together by a small distance leaves a tenth of that open at most. The smallest of
+/// three distances that does is taken, if it is below a tenth of the mean side. Keeps the edge map.
+void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report);
+
+} // namespace fppg
