@@ -6,19 +6,15 @@
                                                     that are there
 """
 
-import glob
 import hashlib
-import json
 import math
-import os
-import subprocess
 import sys
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools"))
 sys.dont_write_bytecode = True
-from particle_files import read_bi4, read_blocks  # noqa: E402 (found by the path above)
+from case_check import check, differences  # noqa: E402 (leaves no file beside it)
+from particle_files import read_bi4, read_blocks  # noqa: E402 (case_check adds its path)
 
 
 def summarise(case):
@@ -56,49 +52,18 @@ def summarise(case):
     }
 
 
-def differences(found, expected, place=""):
-    """Yields a line for every value that differs; numbers to nine digits, densities to float32."""
-    if isinstance(expected, dict) and isinstance(found, dict):
-        for key in expected:
-            if key != "recorded_with":
-                yield from differences(found.get(key), expected[key], f"{place}/{key}")
-    elif isinstance(expected, list) and isinstance(found, list) and len(found) == len(expected):
-        for i, (a, b) in enumerate(zip(found, expected)):
-            yield from differences(a, b, f"{place}/{i}")
-    elif isinstance(expected, float) and isinstance(found, (int, float)):
+def is_same(found, expected, place):
+    """Numbers to nine digits, densities to float32."""
+    if isinstance(expected, float) and isinstance(found, (int, float)):
         tolerance = 1e-6 if place.endswith("rhop_max") else 1e-9
-        if not math.isclose(found, expected, rel_tol=tolerance, abs_tol=1e-9):
-            yield f"{place}: expected {expected}, found {found}"
-    elif found != expected:
-        yield f"{place}: expected {expected}, found {found}"
+        return math.isclose(found, expected, rel_tol=tolerance, abs_tol=1e-9)
+    return found == expected
 
 
-def main(arguments):
-    if len(arguments) == 2 and arguments[0] == "--summary":
-        print(json.dumps(summarise(arguments[1]), indent=1))
-        return 0
-    if len(arguments) != 3:
-        sys.exit(__doc__)
-    program, folder, work = (os.path.abspath(a) for a in arguments)
-    definition, = glob.glob(os.path.join(glob.escape(folder), "*_Def.xml"))
-    name = os.path.basename(definition)[:-len("_Def.xml")]
-    out = os.path.join(work, name)
-    for old in glob.glob(glob.escape(out) + "*"):
-        os.remove(old)
-    run = subprocess.run([program, name + "_Def", out, "-save:all"], cwd=folder,
-                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    if run.returncode != 0:
-        print(run.stdout)
-        print(f"{name}: the program stopped with {run.returncode}")
-        return 1
-    with open(os.path.join(folder, "expected.json"), encoding="utf-8") as file:
-        expected = json.load(file)
-    lines = list(differences(summarise(out), expected))
-    for line in lines:
-        print(f"{name}{line}")
-    print(f"{name}: {len(lines)} differences from {expected['recorded_with']}")
-    return 1 if lines else 0
+def faults(case, _, expected):
+    """Yields a line for every value that differs from the recorded one."""
+    yield from differences(summarise(case), expected, is_same)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(check(sys.argv[1:], __doc__, summarise, "expected.json", faults))
