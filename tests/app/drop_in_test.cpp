@@ -1,7 +1,7 @@
 // The program as its callers start it; FPPG_PROGRAM is its path.
 
 #include "helpers/case_text.h"
-#include "helpers/run_program.h"
+#include "helpers/run_fppg.h"
 
 #include <gtest/gtest.h>
 #ifdef FPPG_JSON
@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -19,39 +18,17 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <thread>
 #include <vector>
 
 namespace
 {
 
 namespace fs = std::filesystem;
-using fppg::test::box_command;
-using fppg::test::CaseText;
-using fppg::test::contents;
-using fppg::test::Process;
-using fppg::test::read_text;
-using fppg::test::RunResult;
-using fppg::test::tank;
-using fppg::test::TemporaryFolder;
-using fppg::test::write_text;
-using Arguments = std::vector<std::string>;
-
-RunResult run(const TemporaryFolder& folder, const Arguments& arguments,
-              const std::string& program = FPPG_PROGRAM)
-{
-    return Process(program, arguments, folder.path().string(), {{"SOURCE_DATE_EPOCH", "86400"}})
-        .wait();
-}
+using namespace fppg::test;
 
 RunResult shell(const TemporaryFolder& folder, const std::string& command)
 {
     return Process("/bin/sh", {"-c", command, FPPG_PROGRAM}, folder.path().string()).wait();
-}
-
-bool contains(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
 }
 
 /// Names of temporary files below a folder.
@@ -282,14 +259,6 @@ TEST(FppgLog, WarnsOfACaseWithoutParticles)
 
 // -- what it writes
 // ---------------------------------------------------------------------------------------
-
-/// All files but Case.out, which tells times and threads.
-std::map<std::string, std::string> results(const fs::path& folder)
-{
-    auto out = contents(folder);
-    std::erase_if(out, [](const auto& file) { return file.first.ends_with(".out"); });
-    return out;
-}
 
 TEST(FppgFiles, AreTheSameWithOneTwoAndEightThreads)
 {
@@ -725,9 +694,7 @@ RunResult stopped(const TemporaryFolder& folder, int signal, const std::function
 {
     Process process(FPPG_PROGRAM, {"Case_Def", "out/Case", "-save:all", "-dp:0.003"},
                     folder.path().string());
-    const auto begin = std::chrono::steady_clock::now();
-    while (!is_time() && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60))
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    wait_until(is_time);
     process.send(signal);
     return process.wait();
 }

@@ -8,7 +8,7 @@
 #include "casedef/xml_document.h"
 #include "files/vtk_reader.h"
 #include "helpers/case_text.h"
-#include "helpers/run_program.h"
+#include "helpers/run_fppg.h"
 
 #include <gtest/gtest.h>
 
@@ -30,30 +30,10 @@ using fppg::ParticleCloud;
 using fppg::ParticleType;
 using fppg::Vec3;
 using fppg::VtkFile;
-using fppg::test::box_command;
-using fppg::test::CaseText;
-using fppg::test::contents;
-using fppg::test::Process;
-using fppg::test::read_text;
-using fppg::test::RunResult;
-using fppg::test::TemporaryFolder;
-using fppg::test::write_text;
-using Arguments = std::vector<std::string>;
+using namespace fppg::test;
 
 constexpr std::uint16_t fluid_mk = 1;
 constexpr std::uint16_t bound_mk = 10; ///< of mkbound 0
-
-bool contains(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
-}
-
-RunResult run(const TemporaryFolder& folder, Arguments arguments)
-{
-    return Process(FPPG_PROGRAM, arguments, folder.path().string(),
-                   {{"SOURCE_DATE_EPOCH", "86400"}})
-        .wait();
-}
 
 /// Writes the case and runs it into out/Case with all files.
 RunResult run_case(const TemporaryFolder& folder, const CaseText& text, const Arguments& more = {})
@@ -126,7 +106,7 @@ const Vec3 sphere_center{0.51, 0.5, 0.45};
 /// A tank with water and a solid sphere of mkbound 1 under it.
 CaseText sphere_in_tank()
 {
-    CaseText out = fppg::test::tank();
+    CaseText out = tank();
     out.dp = "0.05";
     out.mainlist += mkbound(1) + sphere_command(sphere_radius, sphere_center);
     return out;
@@ -280,14 +260,6 @@ TEST(FittedBox, HasItsTwelveEdgesInTheFeatureFile)
     EXPECT_EQ(features.cells.at("VERTICES").size(), 2u * 8u);
 }
 
-/// All files but Case.out, which tells times and threads.
-std::map<std::string, std::string> results(const fs::path& folder)
-{
-    auto out = contents(folder);
-    std::erase_if(out, [](const auto& file) { return file.first.ends_with(".out"); });
-    return out;
-}
-
 TEST(FittedCase, IsTheSameAsWithoutItsBlockWhenFittingIsOff)
 {
     const TemporaryFolder with;
@@ -323,7 +295,7 @@ TEST(FittedCase, IsFittedByItsBlockAsByTheOption)
 TEST(FittedCase, HasTheSameFilesWithOneTwoAndEightThreads)
 {
     const TemporaryFolder folder;
-    CaseText text = fppg::test::tank();
+    CaseText text = tank();
     text.dp = "0.04";
     text.mainlist = full + mkbound(1) + sphere_command(0.31, {0.47, 0.52, 0.41}) + mkbound(2) +
                     box_command(R"(x="0.52" y="0.3" z="0.35")", R"(x="0.43" y="0.4" z="0.37")") +
@@ -411,10 +383,7 @@ Process relaxing(const TemporaryFolder& folder)
 {
     write_text(folder / "Case_Def.xml", long_relaxation().text());
     Process process(FPPG_PROGRAM, {"Case_Def", "out/Case", "-save:all"}, folder.path().string());
-    const auto begin = std::chrono::steady_clock::now();
-    while (!contains(process.output_so_far(), "[Relax]") &&
-           std::chrono::steady_clock::now() - begin < std::chrono::seconds(60))
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    wait_until([&] { return contains(process.output_so_far(), "[Relax]"); });
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     return process;
 }
