@@ -1,71 +1,22 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
-#include "casedef/figures.h"
+#include "helpers/drawing.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
 namespace fppg
 {
 namespace
 {
 
-constexpr double dp = 0.1;
-constexpr std::uint16_t fluid_mk = 1;
-constexpr std::uint16_t wall_mk = 10;
+using test::Drawing;
 
-/// A case of 41 nodes a side round the origin whose boundary mks are body-fitted.
-struct Drawing
-{
-    Drawing()
-    {
-        def.grid.origin = {-2, -2, -2};
-        def.grid.dp = dp;
-        def.grid.n = {41, 41, 41};
-        def.mk_bound_first = wall_mk;
-        def.fit.all = FitSettings{};
-        bound(0);
-    }
-
-    void bound(std::uint16_t mkbound)
-    {
-        state.mk = {MkKind::Bound, static_cast<std::uint16_t>(wall_mk + mkbound), mkbound};
-    }
-    void fluid() { state.mk = {MkKind::Fluid, fluid_mk, 0}; }
-    void empty() { state.mk = {}; }
-
-    void draw(DrawVariant what)
-    {
-        DrawOp op;
-        op.source = {7, "test"};
-        op.state = std::make_shared<const DrawState>(state);
-        op.what = std::move(what);
-        def.ops.push_back(std::move(op));
-    }
-    void box(const Vec3& low, const Vec3& size)
-    {
-        draw(make_box(low, size, {true, true, true, true, true, true}, true, {}, dp)[0]);
-    }
-    void fill(const Vec3& seed)
-    {
-        FillOp op;
-        op.seed = seed;
-        op.filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
-        draw(op);
-    }
-
-    RunField run(int threads = 1) const
-    {
-        LatticeReport report;
-        return generate_lattice(def, threads, {}, report);
-    }
-
-    CaseDef def;
-    DrawState state;
-};
+constexpr double dp = Drawing::dp;
+constexpr std::uint16_t fluid_mk = Drawing::fluid_mk;
+constexpr std::uint16_t wall_mk = Drawing::wall_mk;
 
 /// Calls visit(position, mk with the bit of the zone) for every node that has a run.
 template <typename Visit>
@@ -88,7 +39,6 @@ TEST(FittedWalls, StopAFillAsTheirShapeDoes)
         drawing.state.mode = DrawMode::Face;
         const Vec3 center{0.03, -0.02, 0.01};
         drawing.draw(SphereOp{center, radius, {}});
-        drawing.fluid();
         drawing.fill(center);
         std::size_t n = 0;
         for_each_node(drawing.run(),
@@ -283,7 +233,6 @@ TEST(FittedWalls, AreTheSameForAnyNumberOfThreads)
     drawing.draw(CylinderOp{{0, -1.3, 0.1}, {0.2, 1.3, 0.2}, 0.6, {true, true, true}, {}});
     drawing.empty();
     drawing.box({0.3, -2, -2}, {2, 4, 4});
-    drawing.fluid();
     drawing.fill({-1.9, -1.9, -1.9});
     const RunField one = drawing.run(1);
     const RunField eight = drawing.run(8);

@@ -1,6 +1,7 @@
 #include "fppg/relax_walls.h"
 
 #include "casedef/figures.h"
+#include "helpers/drawing.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,65 +19,12 @@ namespace fppg
 namespace
 {
 
-constexpr double dp = 0.1;
-constexpr std::uint16_t fluid_mk = 1;
-constexpr std::uint16_t wall_mk = 10;
+using test::Drawing;
+
+constexpr double dp = Drawing::dp;
+constexpr std::uint16_t fluid_mk = Drawing::fluid_mk;
+constexpr std::uint16_t wall_mk = Drawing::wall_mk;
 constexpr Vec3 center{0.03, -0.02, 0.01};
-
-/// A case of 41 nodes a side round the origin whose boundary mks are body-fitted.
-struct Drawing
-{
-    explicit Drawing(bool is_2d = false)
-    {
-        def.grid.origin = {-2, is_2d ? 0.0 : -2.0, -2};
-        def.grid.dp = dp;
-        def.grid.n = {41, is_2d ? 1U : 41U, 41};
-        def.grid.is_2d = is_2d;
-        def.mk_bound_first = wall_mk;
-        def.fit.all = FitSettings{};
-        bound(0);
-    }
-
-    void bound(std::uint16_t mkbound)
-    {
-        state.mk = {MkKind::Bound, static_cast<std::uint16_t>(wall_mk + mkbound), mkbound};
-    }
-    void fluid() { state.mk = {MkKind::Fluid, fluid_mk, 0}; }
-    void empty() { state.mk = {}; }
-
-    void draw(DrawVariant what)
-    {
-        DrawOp op;
-        op.source = {7, "test"};
-        op.state = std::make_shared<const DrawState>(state);
-        op.what = std::move(what);
-        def.ops.push_back(std::move(op));
-    }
-    void box(const Vec3& low, const Vec3& size)
-    {
-        draw(make_box(low, size, {true, true, true, true, true, true}, true, {}, dp)[0]);
-    }
-    /// Fills what is void with fluid up to a height.
-    void fill(const Vec3& seed, double level)
-    {
-        fluid();
-        FillOp op;
-        op.seed = seed;
-        op.filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
-        op.region = BoxRegion{{-3, -3, -3}, {3, 3, level}};
-        draw(op);
-    }
-    void fluid_band() { def.fluid_bands.emplace_back(); }
-
-    RunField run() const
-    {
-        LatticeReport report;
-        return generate_lattice(def, 1, {}, report);
-    }
-
-    CaseDef def;
-    DrawState state;
-};
 
 struct Relaxed
 {
