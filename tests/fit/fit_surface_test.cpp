@@ -2,6 +2,7 @@
 
 #include "fit/fit_shapes.h"
 #include "fit/neighbour_grid.h"
+#include "helpers/surface_cover.h"
 #include "shapes/mesh_query.h"
 
 #include <gtest/gtest.h>
@@ -23,18 +24,6 @@ struct Named
     double dp;
 };
 
-TriangleSoup cut_off_wedge()
-{
-    TriangleSoup soup;
-    const std::array<Vec3, 3> front{Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{2, 0, 0.5}};
-    const Vec3 back{0, 1.3, 0};
-    add_facet(soup, front[0], front[1], front[2]);
-    add_facet(soup, front[2] + back, front[1] + back, front[0] + back);
-    for (std::size_t i = 0; i < 3; ++i)
-        add_quad(soup, front[(i + 1) % 3], front[i], front[i] + back, front[(i + 1) % 3] + back);
-    return soup;
-}
-
 std::vector<Named> shapes()
 {
     return {{"sphere of small facets", sphere(5), 0.03},
@@ -46,41 +35,12 @@ std::vector<Named> shapes()
             {"coarse gear", gear(14, 0.8, 1, 0.3), 0.06},
             {"thin plate", box({0, 0, 0}, {1, 1, 0.012}), 0.03},
             {"strips of 1.5 dp", box({0, 0, 0}, {2, 0.03, 0.045}), 0.02},
-            {"wedge", cut_off_wedge(), 0.03}};
+            {"wedge", wedge(), 0.03}};
 }
 
-/// The largest distance from points sampled on the surface to the nearest particle, in dp.
-double farthest_point(const SurfaceMesh& mesh, const SurfaceParticles& particles, double dp)
+double farthest_point(const FitInput& input, const SurfaceParticles& particles)
 {
-    NeighbourGrid grid;
-    grid.start(2 * dp);
-    for (const Vec3& p : particles.positions) grid.add(p);
-    double farthest = 0;
-    double due = 0;
-    unsigned count = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-        const Vec3& b = mesh.vertices[mesh.facets[f][1]];
-        const Vec3& c = mesh.vertices[mesh.facets[f][2]];
-        for (due += 12 * mesh.areas[f] / (dp * dp); due >= 1; due -= 1)
-        {
-            ++count;
-            double u = std::fmod(0.7548776662466927 * count, 1.0);
-            double v = std::fmod(0.5698402909980532 * count, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            double nearest = 4 * dp * dp;
-            grid.for_each_near(a + (b - a) * u + (c - a) * v, 2 * dp,
-                               [&](std::uint32_t, const Vec3&, double squared)
-                               { nearest = std::min(nearest, squared); });
-            farthest = std::max(farthest, nearest);
-        }
-    }
-    return std::sqrt(farthest) / dp;
+    return farthest_point_dp(input.mesh, particles.positions, input.options.dp, 12);
 }
 
 /// The smallest distance of a surface particle to any other on its side of the body, in dp.
@@ -111,7 +71,7 @@ TEST(FitSurface, LeavesNoPointOfTheSurfaceFarFromAParticle)
     for (const Named& shape : shapes())
     {
         const FitInput input(shape.soup, shape.dp);
-        EXPECT_LE(farthest_point(input.mesh, input.fit(), shape.dp), 0.92) << shape.name;
+        EXPECT_LE(farthest_point(input, input.fit()), 0.92) << shape.name;
     }
 }
 
@@ -249,7 +209,7 @@ TEST(FitSurface, TakesAHeapOfTinyLooseFacets)
     const FitInput input(heap, 0.3);
     const SurfaceParticles particles = input.fit();
     EXPECT_GT(particles.positions.size(), 40u);
-    EXPECT_LE(farthest_point(input.mesh, particles, 0.3), 0.92);
+    EXPECT_LE(farthest_point(input, particles), 0.92);
 }
 
 TEST(FitSurface, CellDensityPutsOneParticleOnEveryCrossedCell)

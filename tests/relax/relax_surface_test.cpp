@@ -3,6 +3,7 @@
 #include "fit/fit_shapes.h"
 #include "fit/neighbour_grid.h"
 #include "fppg/error.h"
+#include "helpers/surface_cover.h"
 #include "shapes/mesh_query.h"
 
 #include <gtest/gtest.h>
@@ -34,18 +35,6 @@ TriangleSoup cylinder(int sides, double radius, double height)
         add_facet(soup, a + up, b + up, up);
         add_quad(soup, a, b, b + up, a + up);
     }
-    return soup;
-}
-
-TriangleSoup wedge()
-{
-    TriangleSoup soup;
-    const std::array<Vec3, 3> front{Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{2, 0, 0.5}};
-    const Vec3 back{0, 1.3, 0};
-    add_facet(soup, front[0], front[1], front[2]);
-    add_facet(soup, front[2] + back, front[1] + back, front[0] + back);
-    for (std::size_t i = 0; i < 3; ++i)
-        add_quad(soup, front[(i + 1) % 3], front[i], front[i] + back, front[(i + 1) % 3] + back);
     return soup;
 }
 
@@ -106,35 +95,7 @@ std::vector<Named> shapes()
 
 double farthest_point(const Walls& walls)
 {
-    const double dp = walls.options.dp;
-    NeighbourGrid grid;
-    grid.start(2 * dp);
-    for (const Vec3& p : walls.particles.positions) grid.add(p);
-    double farthest = 0;
-    double due = 0;
-    unsigned count = 0;
-    const SurfaceMesh& mesh = walls.bodies[0].mesh;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        for (due += 30 * mesh.areas[f] / (dp * dp); due >= 1; due -= 1)
-        {
-            ++count;
-            double u = std::fmod(0.7548776662466927 * count, 1.0);
-            double v = std::fmod(0.5698402909980532 * count, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            const Vec3& b = mesh.vertices[mesh.facets[f][1]];
-            const Vec3& c = mesh.vertices[mesh.facets[f][2]];
-            double nearest = 4 * dp * dp;
-            grid.for_each_near(a + (b - a) * u + (c - a) * v, 2 * dp,
-                               [&](std::uint32_t, const Vec3&, double squared)
-                               { nearest = std::min(nearest, squared); });
-            farthest = std::max(farthest, nearest);
-        }
-    return std::sqrt(farthest) / dp;
+    return farthest_point_dp(walls.bodies[0].mesh, walls.particles.positions, walls.options.dp, 30);
 }
 
 /// How far a particle is from the plane of its facet and beyond its sides, in dp.
