@@ -44,6 +44,33 @@ RelaxVolumeReport relax(VolumeRegion& region, const RelaxVolumeOptions& options,
     return relax_volume(region.moving, region.surroundings(), options, threads);
 }
 
+/// The options of a region where particles may be added and taken away.
+RelaxVolumeOptions counting_options(const VolumeRegion& region)
+{
+    RelaxVolumeOptions options = region.options();
+    options.fit_count = true;
+    return options;
+}
+
+struct EvenBounds
+{
+    double std_before;   ///< at least, as given
+    double mean_off_one; ///< at most
+    double gap_dp;       ///< at least
+};
+
+/// Relaxes a region whose particles are uneven and holds them against bounds afterwards.
+void expect_relaxed_evenly(VolumeRegion& region, const RelaxVolumeOptions& options,
+                           const EvenBounds& bounds)
+{
+    EXPECT_GT(evenness(region).std, bounds.std_before);
+    relax(region, options);
+    const Evenness after = evenness(region);
+    EXPECT_LT(after.std, 0.02);
+    EXPECT_NEAR(after.mean, 1, bounds.mean_off_one);
+    EXPECT_GT(least_gap_dp(region), bounds.gap_dp);
+}
+
 /// Lattice nodes that miss a box by uneven amounts: 0.6 dp at one side, 0.4 at the other.
 VolumeRegion shifted_box()
 {
@@ -61,27 +88,15 @@ VolumeRegion tank()
 TEST(RelaxVolume, SpreadsParticlesEvenlyInASphere)
 {
     VolumeRegion region = ball(1);
-    const Evenness before = evenness(region);
-    relax(region, region.options());
-    const Evenness after = evenness(region);
-    EXPECT_GT(before.std, 0.03);
-    EXPECT_LT(after.std, 0.02);
-    EXPECT_NEAR(after.mean, 1, 0.03);
-    EXPECT_GT(least_gap_dp(region), 0.6);
+    expect_relaxed_evenly(region, region.options(),
+                          {.std_before = 0.03, .mean_off_one = 0.03, .gap_dp = 0.6});
 }
 
 TEST(RelaxVolume, FitsTheCountInABoxThatTheLatticeMisses)
 {
     VolumeRegion region = shifted_box();
-    const Evenness before = evenness(region);
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    relax(region, options);
-    const Evenness after = evenness(region);
-    EXPECT_GT(before.std, 0.07);
-    EXPECT_LT(after.std, 0.02);
-    EXPECT_NEAR(after.mean, 1, 0.02);
-    EXPECT_GT(least_gap_dp(region), 0.6);
+    expect_relaxed_evenly(region, counting_options(region),
+                          {.std_before = 0.07, .mean_off_one = 0.02, .gap_dp = 0.6});
     const double counted = static_cast<double>(region.moving.size() + region.held.size()) +
                            0.5 * static_cast<double>(region.walls.size());
     EXPECT_NEAR(counted * 0.001, 1.6 * 1.4 * 1.2, 0.02 * 1.6 * 1.4 * 1.2);
@@ -97,16 +112,9 @@ TEST(RelaxVolume, SpreadsParticlesEvenlyBetweenTheFittedTeethOfAGear)
     region.depth = [&](const Vec3& p)
     { return (winding_number(soup, p) > 0.5 ? 1 : -1) * query.closest_point(p).distance; };
     region.fill({-1.13, -1.14, 0.03}, {1.2, 1.2, 0.9});
-    const Evenness before = evenness(region);
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    relax(region, options);
-    const Evenness after = evenness(region);
-    EXPECT_GT(before.std, 0.06);
-    EXPECT_LT(after.std, 0.02);
-    EXPECT_NEAR(after.mean, 1, 0.03);
+    expect_relaxed_evenly(region, counting_options(region),
+                          {.std_before = 0.06, .mean_off_one = 0.03, .gap_dp = 0.6});
     EXPECT_GE(least_depth_dp(region), 0.4 - 1e-5);
-    EXPECT_GT(least_gap_dp(region), 0.6);
 }
 
 TEST(RelaxVolume, SpreadsParticlesEvenlyWithAWiderKernel)
@@ -114,9 +122,8 @@ TEST(RelaxVolume, SpreadsParticlesEvenlyWithAWiderKernel)
     for (const double h : {0.8, 1.3, 1.6})
     {
         VolumeRegion region = ball(1);
-        RelaxVolumeOptions options = region.options();
+        RelaxVolumeOptions options = counting_options(region);
         options.h_dp = h;
-        options.fit_count = true;
         relax(region, options);
         EXPECT_LT(evenness(region).std, 0.02) << h;
         EXPECT_NEAR(evenness(region).mean, 1, 0.03) << h;
@@ -129,9 +136,7 @@ TEST(RelaxVolume, KeepsALatticeWhoseWallsLieOnNodes)
     VolumeRegion region = box_region({1.5, 1.4, 1.2}, {0.1, 0.1, 0.1});
     const std::size_t n = region.moving.size();
     EXPECT_LT(evenness(region).std, 0.01);
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    const RelaxVolumeReport report = relax(region, options);
+    const RelaxVolumeReport report = relax(region, counting_options(region));
     EXPECT_LT(report.removed + report.inserted, n / 50);
     EXPECT_LT(evenness(region).std, 0.01);
     EXPECT_NEAR(evenness(region).mean, 1.0095, 0.01); // the sum over the lattice
@@ -141,9 +146,7 @@ TEST(RelaxVolume, SaysWhichParticleEachOneCameFrom)
 {
     VolumeRegion region = shifted_box();
     const auto before = region.moving;
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    const RelaxVolumeReport report = relax(region, options);
+    const RelaxVolumeReport report = relax(region, counting_options(region));
     ASSERT_EQ(report.sources.size(), region.moving.size());
     EXPECT_GT(report.removed, 0U);
     EXPECT_GT(report.inserted, 0U);
@@ -207,8 +210,7 @@ TEST(RelaxVolume, LeavesTheFreeSurfaceWhereItWas)
 TEST(RelaxVolume, FitsTheCountUnderAFreeSurface)
 {
     VolumeRegion region = tank();
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
+    RelaxVolumeOptions options = counting_options(region);
     options.iterations = 40;
     const auto before = region.moving;
     relax(region, options);
@@ -228,17 +230,10 @@ TEST(RelaxVolume, FitsTheCountUnderAFreeSurface)
 TEST(RelaxVolume, KeepsYInThePlane)
 {
     VolumeRegion region = box_region({2, 0, 1.5}, {0.06, 0, 0.08}, true);
-    const Evenness before = evenness(region);
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    relax(region, options);
-    const Evenness after = evenness(region);
+    expect_relaxed_evenly(region, counting_options(region),
+                          {.std_before = 0.05, .mean_off_one = 0.03, .gap_dp = 0.5});
     for (const Vec3& p : region.moving) EXPECT_EQ(p.y, 0);
-    EXPECT_GT(before.std, 0.05);
-    EXPECT_LT(after.std, 0.02);
-    EXPECT_NEAR(after.mean, 1, 0.03);
     EXPECT_GE(least_depth_dp(region), 0.4 - 1e-5);
-    EXPECT_GT(least_gap_dp(region), 0.5);
 }
 
 TEST(RelaxVolume, EndsWhereEveryParticleTouchesAWall)
@@ -250,9 +245,7 @@ TEST(RelaxVolume, EndsWhereEveryParticleTouchesAWall)
     { return 0.9 - std::max(std::abs(p.x), std::abs(p.z)) + 0.55 * region.dp; };
     region.fill({-0.9, 0, -0.9}, {0.91, 0, 0.91});
     region.moving.resize(region.moving.size() / 2);
-    RelaxVolumeOptions options = region.options();
-    options.fit_count = true;
-    relax(region, options);
+    relax(region, counting_options(region));
     for (const Vec3& p : region.moving) EXPECT_TRUE(is_finite(p));
 }
 
