@@ -5,15 +5,44 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fppg
 {
 
 /// The point of all walls that is nearest to a given one; metres. Called from several threads at
-/// once.
-using ClosestWallPoint = std::function<Vec3(const Vec3&)>;
+/// once. Made from f(point), or from f(point, within), which may rely on a wall being no farther
+/// than `within`, metres, and so has less to search. Empty unless made from one of these.
+class ClosestWallPoint
+{
+public:
+    ClosestWallPoint() = default;
+    template <typename F>
+    requires std::is_invocable_r_v<Vec3, const F&, const Vec3&, double> ClosestWallPoint(F find)
+        : find_(std::move(find))
+    {
+    }
+    template <typename F>
+    requires(std::is_invocable_r_v<Vec3, const F&, const Vec3&> &&
+             !std::is_invocable_v<const F&, const Vec3&, double>) ClosestWallPoint(F find)
+        : find_([find = std::move(find)](const Vec3& point, double) { return find(point); })
+    {
+    }
+
+    explicit operator bool() const { return static_cast<bool>(find_); }
+    Vec3 operator()(const Vec3& point,
+                    double within = std::numeric_limits<double>::infinity()) const
+    {
+        return find_(point, within);
+    }
+
+private:
+    std::function<Vec3(const Vec3&, double)> find_;
+};
 
 /// What surrounds the volume particles that move. Particles of other regions, beyond a wall, do not
 /// belong here: a continuum stands for them.

@@ -1,9 +1,12 @@
 #include "relax/fit_count.h"
 
 #include "core/parallel.h"
-#include "relax/continuum.h"
 #include "relax/kernel.h"
+#include "relax/volume_forces.h"
 
+#include <algorithm>
+
+#include <limits>
 #include <numbers>
 
 namespace fppg
@@ -32,20 +35,21 @@ double share_beyond(double radius, double h, bool is_2d)
     return sum;
 }
 
-/// The Shepard sum over the cubic lattice, which the bulk beyond the band keeps; points beyond a
-/// radius are taken as even.
-double lattice_sum(double radius, double h, double alpha, double cut_off, bool is_2d)
+/// The Shepard sum over the cubic lattice, which the bulk beyond the band keeps. Over the whole
+/// support: lists end where the lattice has nodes, and how many of these are within hangs on
+/// nothing.
+double lattice_sum(double h, double alpha, bool is_2d)
 {
-    const int reach = static_cast<int>(radius);
+    const int reach = static_cast<int>(2 * h);
     double sum = 0;
     for (int x = -reach; x <= reach; ++x)
         for (int y = is_2d ? 0 : -reach; y <= (is_2d ? 0 : reach); ++y)
             for (int z = -reach; z <= reach; ++z)
             {
                 const double r = std::sqrt(x * x + y * y + z * z);
-                if (r <= radius) sum += wendland(r / h);
+                sum += wendland(r / h);
             }
-    return alpha * sum + cut_off;
+    return alpha * sum;
 }
 
 /// How far the Shepard sum of a particle is from that of the lattice, `even`, at h 1.3 times as
@@ -53,22 +57,12 @@ double lattice_sum(double radius, double h, double alpha, double cut_off, bool i
 /// arranged. What lies beyond the reach of the lists, `cut_off`, is taken as even. Near to a free
 /// surface, where the sum tells nothing, it is 0.
 double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-                 const HalfSpace& beyond, double alpha, double h, double cut_off, double even)
+                 const VolumeForces& wide, double cut_off, double even)
 {
-    double sum = 1;
-    for (const std::uint32_t j : near)
-    {
-        if (j < band.moving && band.is_held[j] != 0) return 0;
-        const float x = band.points.x[j] - band.points.x[i];
-        const float y = band.points.y[j] - band.points.y[i];
-        const float z = band.points.z[j] - band.points.z[i];
-        sum += wendland(static_cast<double>(std::sqrt(x * x + y * y + z * z)) / h);
-    }
-    sum = alpha * sum + cut_off;
-    for_each_wall(band, i,
-                  [&](const Plane&, float distance)
-                  { sum += beyond.share(double{distance} + behind_wall); });
-    return sum - even;
+    const bool is_by_held =
+        std::any_of(near.begin(), near.end(),
+                    [&](std::uint32_t j) { return j < band.moving && band.is_held[j] != 0; });
+    return is_by_held ? 0 : wide.on(band, i, near).shepard + cut_off - even;
 }
 
 /// Whether a straight way of a given length ends and stays off all walls.
@@ -76,14 +70,17 @@ bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, doub
                  double limit, const ClosestWallPoint& closest)
 {
     if (!closest) return true;
+    double within = std::numeric_limits<double>::infinity();
     for (double way = 0;;)
     {
         const Vec3 at = from + (band.dp * way) * direction;
-        const double distance = norm(closest(at) - at) / band.dp;
+        const Vec3 nearest = closest(at, within);
+        const double distance = norm(nearest - at) / band.dp;
         // Nearer than this a wall is met, and steps would become ever shorter.
         if (distance < std::max(limit, 1e-3)) return false;
         if (way >= length) return true;
         way = std::min(length, way + 0.9 * distance);
+        within = norm(nearest - (from + (band.dp * way) * direction));
     }
 }
 
@@ -146,34 +143,35 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
 {
     constexpr double wider = 1.3;
     const double h = wider * options.h_dp;
-    const HalfSpace beyond(h, options.is_2d);
+    const VolumeForces wide(h, options.is_2d);
     const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     const double cut_off = share_beyond(list_radius(options.h_dp), h, options.is_2d);
-    const double even = lattice_sum(list_radius(options.h_dp), h, alpha, cut_off, options.is_2d);
-    std::vector<float> excess(list.rows(), 0.0f);
+    const double even = lattice_sum(h, alpha, options.is_2d);
+    std::vector<float> excess(band.moving, 0.0f);
     parallel_for(
         list.rows(), threads,
         [&](std::size_t row)
         {
             const std::uint32_t i = list.point(row);
             if (i >= band.moving || band.is_held[i] != 0) return;
-            excess[row] = static_cast<float>(
-                excess_at(band, i, list.neighbours(row), beyond, alpha, h, cut_off, even));
+            excess[i] =
+                static_cast<float>(excess_at(band, i, list.neighbours(row), wide, cut_off, even));
         },
         chunk_size);
     CountChange change;
     change.is_removed.assign(band.moving, 0);
     double sum = 0;
-    std::size_t highest = 0;
-    std::size_t lowest = 0;
+    std::size_t highest = list.rows();
+    std::size_t lowest = list.rows();
     std::size_t length = 0;
     for (std::size_t row = 0; row < list.rows(); ++row)
     {
-        if (excess[row] == 0) continue;
+        const std::uint32_t at = list.point(row);
+        if (at >= band.moving || excess[at] == 0) continue;
         ++length;
-        sum += static_cast<double>(excess[row]);
-        if (excess[row] > excess[highest]) highest = row;
-        if (excess[row] < excess[lowest]) lowest = row;
+        sum += static_cast<double>(excess[at]);
+        if (highest == list.rows() || excess[at] > excess[list.point(highest)]) highest = row;
+        if (lowest == list.rows() || excess[at] < excess[list.point(lowest)]) lowest = row;
         if (std::abs(sum) < 0.5) continue;
         if (length > even_stretch)
             sum = 0;
@@ -191,7 +189,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
             sum += 1;
         }
         length = 0;
-        highest = lowest = row + 1 < list.rows() ? row + 1 : row;
+        highest = lowest = list.rows();
     }
     return change;
 }

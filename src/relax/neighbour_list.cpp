@@ -1,8 +1,12 @@
 #include "relax/neighbour_list.h"
 
+#include "core/raw_array.h"
+#include "relax/lanes.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <utility>
 
 namespace fppg
@@ -63,14 +67,13 @@ struct Keyed
 
 /// Sorts by key, equal keys in the order in which they come. Least significant digits first; every
 /// block of items counts its digits, so that all know where theirs go.
-void sort_by_key(std::vector<Keyed>& items, std::uint64_t largest_key, int threads)
+void sort_by_key(RawArray<Keyed>& items, std::size_t n, std::uint64_t largest_key, int threads)
 {
     constexpr unsigned digit_bits = 10;
     constexpr std::size_t digits = 1 << digit_bits;
-    const std::size_t n = items.size();
     const std::size_t blocks = std::clamp<std::size_t>(n / points_a_block, 1, 64);
     const auto begin_of = [&](std::size_t block) { return n * block / blocks; };
-    std::vector<Keyed> other(n);
+    RawArray<Keyed> other(n);
     std::vector<std::array<std::uint32_t, digits>> counts(blocks);
     for (unsigned shift = 0; shift < 64 && largest_key >> shift != 0; shift += digit_bits)
     {
@@ -95,7 +98,34 @@ void sort_by_key(std::vector<Keyed>& items, std::uint64_t largest_key, int threa
     }
 }
 
-std::vector<Keyed> sorted_keys(const PointArrays& points, float cell, int threads)
+struct Range
+{
+    float low = std::numeric_limits<float>::infinity();
+    float high = -std::numeric_limits<float>::infinity();
+
+    void add(const Range& other)
+    {
+        low = std::min(low, other.low);
+        high = std::max(high, other.high);
+    }
+};
+
+Range range_of(const std::vector<float>& values, int threads)
+{
+    std::vector<Range> blocks((values.size() + points_a_block - 1) / points_a_block);
+    parallel_for(blocks.size(), threads,
+                 [&](std::size_t b)
+                 {
+                     const std::size_t end = std::min(values.size(), (b + 1) * points_a_block);
+                     for (std::size_t i = b * points_a_block; i < end; ++i)
+                         blocks[b].add({values[i], values[i]});
+                 });
+    Range all;
+    for (const Range& block : blocks) all.add(block);
+    return all;
+}
+
+RawArray<Keyed> sorted_keys(const PointArrays& points, float cell, int threads)
 {
     std::array<CellAxis, 3> axes;
     float extent = 0;
@@ -103,16 +133,17 @@ std::vector<Keyed> sorted_keys(const PointArrays& points, float cell, int thread
     {
         const std::vector<float>& v = a == 0 ? points.x : a == 1 ? points.y : points.z;
         if (v.empty()) continue;
-        const auto [low, high] = std::minmax_element(v.begin(), v.end());
-        axes[a].min = *low;
-        extent = std::max(extent, *high - *low);
+        const Range range = range_of(v, threads);
+        axes[a].min = range.low;
+        extent = std::max(extent, range.high - range.low);
     }
     // Larger cells serve as well, only slower.
     const float side = std::max(cell, extent / static_cast<float>(most_cells - 1));
     for (CellAxis& axis : axes) axis.scale = 1 / side;
-    std::vector<Keyed> keys(points.size());
+    const std::size_t n = points.size();
+    RawArray<Keyed> keys(n);
     parallel_for(
-        keys.size(), threads,
+        n, threads,
         [&](std::size_t i)
         {
             keys[i] = {spread(axes[0].key(points.x[i])) | spread(axes[1].key(points.y[i])) << 1 |
@@ -121,36 +152,159 @@ std::vector<Keyed> sorted_keys(const PointArrays& points, float cell, int thread
         },
         points_a_block);
     const std::uint64_t along = std::bit_width(static_cast<std::uint32_t>(extent / side));
-    sort_by_key(keys, (std::uint64_t{1} << std::min<std::uint64_t>(3 * along, 63)) - 1, threads);
+    sort_by_key(keys, n, (std::uint64_t{1} << std::min<std::uint64_t>(3 * along, 63)) - 1, threads);
     return keys;
 }
+
+/// Points among which neighbours are looked for; behind them is room for eight more.
+struct Candidates
+{
+    const float* x;
+    const float* y;
+    const float* z;
+    const std::uint32_t* indices;
+    std::size_t count;
+};
+
+struct Search
+{
+    float x, y, z;
+    std::uint32_t itself; ///< the index that does not count
+    float squared;        ///< of the reach
+};
+
+/// Writes the indices of the candidates within reach, in their order; returns how many. Up to
+/// eight more may be overwritten behind them.
+std::size_t find_within_plain(const Candidates& candidates, const Search& search,
+                              std::uint32_t* found)
+{
+    std::size_t count = 0;
+    // Written in any case and counted where it is near: no branch to foretell.
+    for (std::size_t k = 0; k < candidates.count; ++k)
+    {
+        const float dx = candidates.x[k] - search.x;
+        const float dy = candidates.y[k] - search.y;
+        const float dz = candidates.z[k] - search.z;
+        found[count] = candidates.indices[k];
+        count += static_cast<std::size_t>(dx * dx + dy * dy + dz * dz <= search.squared) &
+                 static_cast<std::size_t>(candidates.indices[k] != search.itself);
+    }
+    return count;
+}
+
+#if defined(__x86_64__)
+
+/// For every set of eight lanes their numbers, a byte each.
+struct LaneOrders
+{
+    std::array<std::uint64_t, 256> of{};
+
+    constexpr LaneOrders()
+    {
+        for (std::size_t set = 0; set < of.size(); ++set)
+            for (unsigned lane = 0, count = 0; lane < lane_count; ++lane)
+                if ((set >> lane & 1) != 0) of[set] |= std::uint64_t{lane} << (8 * count++);
+    }
+};
+constexpr LaneOrders lane_orders;
+
+/// The same, eight at a time.
+FPPG_AVX2 std::size_t find_within_avx2(const Candidates& candidates, const Search& search,
+                                       std::uint32_t* found)
+{
+    const __m256 x = _mm256_set1_ps(search.x);
+    const __m256 y = _mm256_set1_ps(search.y);
+    const __m256 z = _mm256_set1_ps(search.z);
+    const __m256 reach = _mm256_set1_ps(search.squared);
+    const __m256i itself = _mm256_set1_epi32(static_cast<int>(search.itself));
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < candidates.count; k += lane_count)
+    {
+        const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(candidates.x + k), x);
+        const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(candidates.y + k), y);
+        const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(candidates.z + k), z);
+        const __m256 squared = _mm256_add_ps(
+            _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
+        const __m256i indices =
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(candidates.indices + k));
+        const __m256 is_itself = _mm256_castsi256_ps(_mm256_cmpeq_epi32(indices, itself));
+        const __m256 is_near =
+            _mm256_andnot_ps(is_itself, _mm256_cmp_ps(squared, reach, _CMP_LE_OQ));
+        auto set = static_cast<unsigned>(_mm256_movemask_ps(is_near));
+        if (candidates.count - k < lane_count) set &= (1u << (candidates.count - k)) - 1;
+        if (set == 0) continue;
+        const __m256i order =
+            _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_orders.of[set])));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(found + count),
+                            _mm256_permutevar8x32_epi32(indices, order));
+        count += static_cast<std::size_t>(std::popcount(set));
+    }
+    return count;
+}
+
+#else
+
+constexpr auto find_within_avx2 = find_within_plain;
+
+#endif
 
 } // namespace
 
 std::vector<std::uint32_t> morton_order(const PointArrays& points, float cell, int threads)
 {
-    const std::vector<Keyed> keys = sorted_keys(points, cell, threads);
-    std::vector<std::uint32_t> order(keys.size());
-    for (std::size_t k = 0; k < keys.size(); ++k) order[k] = keys[k].index;
+    const RawArray<Keyed> keys = sorted_keys(points, cell, threads);
+    std::vector<std::uint32_t> order(points.size());
+    parallel_for(
+        order.size(), threads, [&](std::size_t k) { order[k] = keys[k].index; }, points_a_block);
     return order;
 }
 
 void NeighbourList::sort_into_cells(const PointArrays& points, int threads)
 {
-    built_at_ = points;
     // A cell is a little larger than the reach, so that rounding moves no neighbour two cells off.
-    const std::vector<Keyed> keys = sorted_keys(points, reach_ * 1.0001f, threads);
-    order_.resize(keys.size());
-    cell_keys_.clear();
-    cell_begin_.clear();
-    for (std::uint32_t k = 0; k < keys.size(); ++k)
+    const RawArray<Keyed> keys = sorted_keys(points, reach_ * 1.0001f, threads);
+    const std::size_t n = points.size();
+    order_.resize(n);
+    built_at_.resize(n);
+    const auto is_first_of_cell = [&](std::size_t k)
+    { return k == 0 || keys[k].key != keys[k - 1].key; };
+    const std::size_t blocks = (n + points_a_block - 1) / points_a_block;
+    std::vector<std::uint32_t> cells(blocks + 1, 0); // first of each block's
+    const auto for_block = [&](std::size_t b, const auto& visit)
     {
-        order_[k] = keys[k].index;
-        if (k > 0 && keys[k].key == keys[k - 1].key) continue;
-        cell_keys_.push_back(keys[k].key);
-        cell_begin_.push_back(k);
-    }
-    cell_begin_.push_back(static_cast<std::uint32_t>(keys.size()));
+        const std::size_t end = std::min(n, (b + 1) * points_a_block);
+        for (std::size_t k = b * points_a_block; k < end; ++k) visit(k);
+    };
+    parallel_for(blocks, threads,
+                 [&](std::size_t b)
+                 {
+                     for_block(b,
+                               [&](std::size_t k)
+                               {
+                                   const std::uint32_t i = keys[k].index;
+                                   order_[k] = i;
+                                   built_at_.x[k] = points.x[i];
+                                   built_at_.y[k] = points.y[i];
+                                   built_at_.z[k] = points.z[i];
+                                   cells[b + 1] += is_first_of_cell(k);
+                               });
+                 });
+    for (std::size_t b = 0; b < blocks; ++b) cells[b + 1] += cells[b];
+    cell_keys_.resize(cells[blocks]);
+    cell_begin_.resize(cells[blocks] + 1);
+    parallel_for(blocks, threads,
+                 [&](std::size_t b)
+                 {
+                     std::size_t cell = cells[b];
+                     for_block(b,
+                               [&](std::size_t k)
+                               {
+                                   if (!is_first_of_cell(k)) return;
+                                   cell_keys_[cell] = keys[k].key;
+                                   cell_begin_[cell++] = static_cast<std::uint32_t>(k);
+                               });
+                 });
+    cell_begin_.back() = static_cast<std::uint32_t>(n);
     make_block_table();
 }
 
@@ -208,9 +362,29 @@ NeighbourList::Scratch& NeighbourList::scratch_of_thread()
     return scratch;
 }
 
-void NeighbourList::gather(std::size_t cell, const PointArrays& points, Scratch& scratch) const
+void NeighbourList::copy_rows(std::size_t begin, std::size_t end, Scratch& scratch) const
 {
-    scratch.indices.clear();
+    const std::size_t first = scratch.count;
+    scratch.count += end - begin;
+    if (scratch.indices.size() < scratch.count + lane_count)
+    {
+        for (auto* v : {&scratch.x, &scratch.y, &scratch.z})
+            v->resize(2 * scratch.count + lane_count);
+        scratch.indices.resize(2 * scratch.count + lane_count);
+    }
+    for (std::size_t row = begin; row < end; ++row)
+    {
+        const std::size_t k = first + (row - begin);
+        scratch.x[k] = built_at_.x[row];
+        scratch.y[k] = built_at_.y[row];
+        scratch.z[k] = built_at_.z[row];
+        scratch.indices[k] = order_[row];
+    }
+}
+
+void NeighbourList::gather(std::size_t cell, Scratch& scratch) const
+{
+    scratch.count = 0;
     const std::uint64_t own = cell_keys_[cell];
     const std::array<std::int64_t, 3> at{gathered(own), gathered(own >> 1), gathered(own >> 2)};
     std::array<std::int64_t, 3> low;
@@ -234,55 +408,23 @@ void NeighbourList::gather(std::size_t cell, const PointArrays& points, Scratch&
                     const std::size_t c =
                         block->first_cell +
                         static_cast<std::size_t>(std::popcount(block->mask & (bit - 1)));
-                    for (std::uint32_t row = cell_begin_[c]; row < cell_begin_[c + 1]; ++row)
-                        scratch.indices.push_back(order_[row]);
+                    copy_rows(cell_begin_[c], cell_begin_[c + 1], scratch);
                 }
     };
     for (std::int64_t k = low[2] >> 2; k <= high[2] >> 2; ++k)
         for (std::int64_t j = low[1] >> 2; j <= high[1] >> 2; ++j)
             for (std::int64_t i = low[0] >> 2; i <= high[0] >> 2; ++i) visit_block(i, j, k);
-    const std::size_t n = scratch.indices.size();
-    if (scratch.x.size() < n)
-        for (auto* v : {&scratch.x, &scratch.y, &scratch.z, &scratch.squared}) v->resize(2 * n);
-    if (scratch.found.capacity() < n) scratch.found.reserve(2 * n);
-    for (std::size_t k = 0; k < n; ++k)
-    {
-        scratch.x[k] = points.x[scratch.indices[k]];
-        scratch.y[k] = points.y[scratch.indices[k]];
-        scratch.z[k] = points.z[scratch.indices[k]];
-    }
 }
 
-void NeighbourList::find_near(std::uint32_t i, const PointArrays& points, Scratch& scratch) const
+void NeighbourList::find_near(std::size_t row, Scratch& scratch) const
 {
-    const std::size_t n = scratch.indices.size();
-    const float x = points.x[i];
-    const float y = points.y[i];
-    const float z = points.z[i];
-    const float* xs = scratch.x.data();
-    const float* ys = scratch.y.data();
-    const float* zs = scratch.z.data();
-    float* squared = scratch.squared.data();
-#pragma omp simd
-    for (std::size_t k = 0; k < n; ++k)
-    {
-        const float dx = xs[k] - x;
-        const float dy = ys[k] - y;
-        const float dz = zs[k] - z;
-        squared[k] = dx * dx + dy * dy + dz * dz;
-    }
-    const float limit = reach_ * reach_;
-    scratch.found.resize(n);
-    std::uint32_t* found = scratch.found.data();
-    const std::uint32_t* indices = scratch.indices.data();
-    std::size_t count = 0;
-    // Written in any case and counted where it is near: no branch to foretell.
-    for (std::size_t k = 0; k < n; ++k)
-    {
-        found[count] = indices[k];
-        count += static_cast<std::size_t>(squared[k] <= limit) & (indices[k] != i);
-    }
-    scratch.found.resize(count);
+    scratch.found.resize(scratch.count + lane_count);
+    const Candidates candidates{scratch.x.data(), scratch.y.data(), scratch.z.data(),
+                                scratch.indices.data(), scratch.count};
+    const Search search{built_at_.x[row], built_at_.y[row], built_at_.z[row], order_[row],
+                        reach_ * reach_};
+    const auto find = is_avx2_there() ? find_within_avx2 : find_within_plain;
+    scratch.found.resize(find(candidates, search, scratch.found.data()));
 }
 
 bool NeighbourList::is_outdated(const PointArrays& points, int threads) const
@@ -297,12 +439,12 @@ bool NeighbourList::is_outdated(const PointArrays& points, int threads) const
                  {
                      float largest = 0;
                      const std::size_t end = std::min(n, (b + 1) * points_a_block);
-#pragma omp simd reduction(max : largest)
-                     for (std::size_t i = b * points_a_block; i < end; ++i)
+                     for (std::size_t row = b * points_a_block; row < end; ++row)
                      {
-                         const float dx = points.x[i] - built_at_.x[i];
-                         const float dy = points.y[i] - built_at_.y[i];
-                         const float dz = points.z[i] - built_at_.z[i];
+                         const std::uint32_t i = order_[row];
+                         const float dx = points.x[i] - built_at_.x[row];
+                         const float dy = points.y[i] - built_at_.y[row];
+                         const float dz = points.z[i] - built_at_.z[row];
                          largest = std::max(largest, dx * dx + dy * dy + dz * dz);
                      }
                      is_far[b] = largest > limit;

@@ -55,7 +55,7 @@ public:
         lists_.resize((order_.size() + rows_a_chunk - 1) / rows_a_chunk);
         ends_.resize(order_.size());
         parallel_for(lists_.size(), threads,
-                     [&](std::size_t chunk) { fill_chunk(chunk, points, is_active, keep); });
+                     [&](std::size_t chunk) { fill_chunk(chunk, is_active, keep); });
         forget_cells();
     }
 
@@ -65,12 +65,14 @@ public:
     std::size_t rows() const { return order_.size(); }
     /// The point that a row belongs to.
     std::uint32_t point(std::size_t row) const { return order_[row]; }
-    /// Its neighbours; empty if it is not active.
+    /// Its neighbours; empty if it is not active. Behind them so many more indices can be read.
     std::span<const std::uint32_t> neighbours(std::size_t row) const
     {
         const std::uint32_t begin = row % rows_a_chunk == 0 ? 0 : ends_[row - 1];
         return {lists_[row / rows_a_chunk].data() + begin, ends_[row] - begin};
     }
+
+    static constexpr std::size_t readable_behind = 7;
 
     /// Rows that make a good chunk for parallel_for(): their lists lie together.
     static constexpr std::size_t rows_a_chunk = 1024;
@@ -79,8 +81,9 @@ private:
     /// What one thread needs while it fills chunks.
     struct Scratch
     {
-        std::vector<float> x, y, z, squared; ///< of the points around a cell
+        std::vector<float> x, y, z; ///< of the points around a cell
         std::vector<std::uint32_t> indices;
+        std::size_t count = 0; ///< of these; room for eight more is behind them
         std::vector<std::uint32_t> found;
         std::vector<std::uint32_t> list;
     };
@@ -99,13 +102,13 @@ private:
     std::size_t cell_of_row(std::size_t row) const;
     static Scratch& scratch_of_thread();
     /// Copies the points of a cell and the 26 around it.
-    void gather(std::size_t cell, const PointArrays& points, Scratch& scratch) const;
-    /// Finds those of the copied points that are within reach of point i, which is not counted.
-    void find_near(std::uint32_t i, const PointArrays& points, Scratch& scratch) const;
+    void gather(std::size_t cell, Scratch& scratch) const;
+    void copy_rows(std::size_t begin, std::size_t end, Scratch& scratch) const;
+    /// Finds those of the copied points that are within reach of a row's, which is not counted.
+    void find_near(std::size_t row, Scratch& scratch) const;
 
     template <typename IsActive, typename Keep>
-    void fill_chunk(std::size_t chunk, const PointArrays& points, const IsActive& is_active,
-                    const Keep& keep)
+    void fill_chunk(std::size_t chunk, const IsActive& is_active, const Keep& keep)
     {
         Scratch& scratch = scratch_of_thread();
         scratch.list.clear();
@@ -123,14 +126,15 @@ private:
             const std::uint32_t i = order_[row];
             if (is_active(i))
             {
-                if (!is_gathered) gather(cell, points, scratch);
+                if (!is_gathered) gather(cell, scratch);
                 is_gathered = true;
-                find_near(i, points, scratch);
+                find_near(row, scratch);
                 for (const std::uint32_t j : scratch.found)
                     if (keep(i, j)) scratch.list.push_back(j);
             }
             ends_[row] = static_cast<std::uint32_t>(scratch.list.size());
         }
+        scratch.list.resize(scratch.list.size() + readable_behind, 0);
         lists_[chunk].assign(scratch.list.begin(), scratch.list.end());
     }
 
@@ -139,7 +143,7 @@ private:
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> ends_;               ///< per row, within its chunk's list
     std::vector<std::vector<std::uint32_t>> lists_; ///< per chunk
-    PointArrays built_at_;
+    PointArrays built_at_;                          ///< where the points of the rows were
     // Only while the lists are made:
     std::vector<std::uint64_t> cell_keys_;
     std::vector<std::uint32_t> cell_begin_;

@@ -1,10 +1,12 @@
 #include "fppg/relax.h"
 
+#include "core/parallel_sort.h"
 #include "fppg/error.h"
 #include "relax/surface_layer.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -47,23 +49,26 @@ public:
     SurfaceRelaxation(const std::vector<FittedBody>& bodies, const WallParticles& particles,
                       const std::vector<char>& held, const RelaxSurfaceOptions& options,
                       int threads)
-        : bodies_(bodies), options_(options)
+        : bodies_(bodies), options_(options), threads_(threads)
     {
         const auto members = split_by_body(particles, bodies.size());
         for (std::size_t b = 0; b < bodies.size(); ++b)
         {
             if (members[b].empty()) continue;
             std::vector<LayerParticle> own;
-            own.reserve(members[b].size());
-            for (const std::uint32_t i : members[b])
-            {
-                LayerParticle p;
-                p.place = {particles.positions[i], particles.facets[i]};
-                p.source = i;
-                p.kind = particles.kinds[i];
-                p.is_moving = p.kind == FitKind::Surface && (held.empty() || !held[i]);
-                own.push_back(p);
-            }
+            own.resize(members[b].size());
+            parallel_for(
+                own.size(), threads,
+                [&](std::size_t k)
+                {
+                    const std::uint32_t i = members[b][k];
+                    LayerParticle& p = own[k];
+                    p.place = {particles.positions[i], particles.facets[i]};
+                    p.source = i;
+                    p.kind = particles.kinds[i];
+                    p.is_moving = p.kind == FitKind::Surface && (held.empty() || !held[i]);
+                },
+                NeighbourList::rows_a_chunk);
             layers_.emplace_back(bodies[b], std::move(own), options.dp, options.h, threads);
             body_of_layer_.push_back(b);
         }
@@ -115,10 +120,15 @@ public:
         for (std::size_t l = 0; l < layers_.size(); ++l)
         {
             const auto body = static_cast<std::uint32_t>(body_of_layer_[l]);
-            std::vector<LayerParticle> own = layers_[l].particles();
-            std::sort(own.begin(), own.end(), comes_before);
-            for (const LayerParticle& p : own)
+            const std::vector<LayerParticle>& own = layers_[l].particles();
+            std::vector<std::uint32_t> order(own.size());
+            std::iota(order.begin(), order.end(), 0u);
+            parallel_sort(order, threads_,
+                          [&](std::uint32_t a, std::uint32_t b)
+                          { return comes_before(own[a], own[b]); });
+            for (const std::uint32_t i : order)
             {
+                const LayerParticle& p = own[i];
                 const bool is_fixed = !p.is_moving && !p.is_new;
                 const bool has_source = p.source != no_index;
                 particles.positions.push_back(is_fixed ? given.positions[p.source]
@@ -206,6 +216,7 @@ private:
 
     const std::vector<FittedBody>& bodies_;
     const RelaxSurfaceOptions& options_;
+    int threads_;
     std::vector<SurfaceLayer> layers_;
     std::vector<std::size_t> body_of_layer_;
     RelaxSurfaceReport report_;

@@ -2,11 +2,10 @@
 
 #include "core/parallel.h"
 #include "fppg/error.h"
-#include "relax/continuum.h"
 #include "relax/fit_count.h"
 #include "relax/free_surface.h"
-#include "relax/kernel.h"
 #include "relax/volume_band.h"
+#include "relax/volume_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +24,6 @@ namespace
 
 constexpr float momentum = 0.9f;
 constexpr float longest_step = 0.1f;
-constexpr float push_reach = 0.8f;
-constexpr float push_strength = 5.6f; ///< in units of the kernel's factor, a dp
 constexpr int most_iterations = 100;
 /// The count is fitted at these iterations: when forces have evened out what they can.
 constexpr int first_count_change = 5;
@@ -69,85 +66,6 @@ void check(const RelaxVolumeOptions& o, std::span<const Vec3> positions,
                     "relaxation of volume particles: ({}, {}, {}) is no position", p.x, p.y, p.z));
 }
 
-/// The forces of equation 15 and the Shepard sums, with what is the same for all particles.
-struct Forces
-{
-    Forces(double h, bool is_2d)
-        : beyond(h, is_2d), alpha(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h))
-    {
-        inverse_h = static_cast<float>(1 / h);
-        slope = static_cast<float>(5 * alpha / (h * h));
-        push = static_cast<float>(push_strength * alpha);
-    }
-
-    HalfSpace beyond;
-    double alpha;
-    float inverse_h;
-    float slope;
-    float push;
-
-    /// Offsets of neighbours, read one by one so that the sums can be vectorised.
-    struct Offsets
-    {
-        std::vector<float> x, y, z;
-    };
-
-    struct Result
-    {
-        float x, y, z;
-        double shepard;
-    };
-
-    /// The force on particle i and its Shepard sum.
-    Result on(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-              Offsets& offsets) const
-    {
-        const std::size_t n = near.size();
-        if (offsets.x.size() < n)
-            for (auto* v : {&offsets.x, &offsets.y, &offsets.z}) v->resize(2 * n);
-        float* const dx = offsets.x.data();
-        float* const dy = offsets.y.data();
-        float* const dz = offsets.z.data();
-        const PointArrays& points = band.points;
-        for (std::size_t k = 0; k < n; ++k)
-        {
-            const std::uint32_t j = near[k];
-            dx[k] = points.x[i] - points.x[j];
-            dy[k] = points.y[i] - points.y[j];
-            dz[k] = points.z[i] - points.z[j];
-        }
-        float fx = 0, fy = 0, fz = 0, sum = 0;
-#pragma omp simd reduction(+ : fx, fy, fz, sum)
-        for (std::size_t k = 0; k < n; ++k)
-        {
-            const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
-            const float r = std::sqrt(squared);
-            const float q = r * inverse_h;
-            const float s = std::max(0.0f, 1 - 0.5f * q);
-            const float s3 = s * s * s;
-            const float closeness = std::max(0.0f, 1 - r * (1 / push_reach));
-            const float size = slope * s3 + push * closeness;
-            fx += size * dx[k];
-            fy += size * dy[k];
-            fz += size * dz[k];
-            sum += s3 * s * (2 * q + 1);
-        }
-        double shepard = alpha * (1 + static_cast<double>(sum));
-        for_each_wall(band, i,
-                      [&](const Plane& plane, float distance)
-                      {
-                          const double way = double{distance} + behind_wall;
-                          if (way >= beyond.reach()) return;
-                          const auto size = static_cast<float>(beyond.force(way));
-                          fx -= size * plane.x;
-                          fy -= size * plane.y;
-                          fz -= size * plane.z;
-                          shepard += beyond.share(way);
-                      });
-        return {fx, fy, fz, shepard};
-    }
-};
-
 ChunkSums add_up(const std::vector<ChunkSums>& chunks)
 {
     ChunkSums total;
@@ -177,17 +95,16 @@ ChunkSums sum_over_chunks(std::size_t n, int threads, const Body& body)
 }
 
 /// Adds the forces to the velocities, of which `kept` remains.
-ChunkSums accelerate(Band& band, const NeighbourList& list, const Forces& forces, float step_length,
-                     float kept, int threads)
+ChunkSums accelerate(Band& band, const NeighbourList& list, const VolumeForces& forces,
+                     float step_length, float kept, int threads)
 {
     return sum_over_chunks(list.rows(), threads,
                            [&](std::size_t row, ChunkSums& sums)
                            {
                                const std::uint32_t i = list.point(row);
                                if (i >= band.moving || band.is_held[i] != 0) return;
-                               thread_local Forces::Offsets offsets;
-                               const Forces::Result f =
-                                   forces.on(band, i, list.neighbours(row), offsets);
+                               const VolumeForces::Result f =
+                                   forces.on(band, i, list.neighbours(row));
                                sums.shepard += f.shepard;
                                sums.shepard_squared += (f.shepard - 1) * (f.shepard - 1);
                                ++sums.count;
@@ -222,7 +139,8 @@ public:
     Vec3 allowed_step(Band& band, std::size_t i, Vec3 step) const
     {
         const Vec3 start = band.place(i);
-        const WallPlanes nearest = find_nearest_wall(start, (2 * limit_ + 1) * band.dp, closest_);
+        const WallPlanes nearest = find_nearest_wall(start, (2 * limit_ + 1) * band.dp, closest_,
+                                                     band.wall_within(i) * band.dp);
         renew_nearest_wall(band, i, nearest);
         const double distance = nearest.distance / band.dp;
         const double limit = std::min(limit_, distance);
@@ -230,7 +148,7 @@ public:
         for (int attempt = 0; attempt < 3; ++attempt)
         {
             const Vec3 end = band.place_after(i, step);
-            const Vec3 to_wall = (closest_(end) - end) / band.dp;
+            const Vec3 to_wall = (closest_(end, norm(nearest.nearest - end)) - end) / band.dp;
             const double left = norm(to_wall);
             if (left >= limit && norm(step) < distance) return step;
             if (!(left > 0)) break;
@@ -336,7 +254,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     build_list(list, band, options.h_dp, threads);
     report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
 
-    const Forces forces(options.h_dp, options.is_2d);
+    const VolumeForces forces(options.h_dp, options.is_2d);
     const WallGuard guard(surroundings.closest, options);
     const double wall_reach = 2 * options.h_dp - behind_wall;
     const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
@@ -376,6 +294,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
             break;
         if (options.iterations == 0 && has_settled(spreads)) break;
     }
+    list = NeighbourList(0, 0); // its memory is needed for the result
     give_back(band, options, positions, report);
     return report;
 }

@@ -138,7 +138,10 @@ public:
         return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
                 dot(p - near.point, normals_[near.facet]) > 0};
     }
-    Vec3 closest_point(const Vec3& p) const { return query_->closest_point(p).point; }
+    Vec3 closest_point(const Vec3& p, double within) const
+    {
+        return query_->closest_point(p, within).point;
+    }
 
 private:
     std::vector<std::size_t> first_; ///< facet or line of each body
@@ -496,7 +499,8 @@ private:
         VolumeSurroundings surroundings;
         surroundings.held = held;
         surroundings.walls = walls.particles.positions;
-        surroundings.closest = [&](const Vec3& p) { return all.closest_point(p); };
+        surroundings.closest = [&](const Vec3& p, double within)
+        { return all.closest_point(p, within); };
         RelaxVolumeOptions options;
         options.dp = grid.dp;
         options.h_dp = region.h_dp;

@@ -1,6 +1,7 @@
 #include "relax/surface_forces.h"
 
 #include "relax/kernel.h"
+#include "relax/lanes.h"
 
 #include <cmath>
 
@@ -16,6 +17,57 @@ constexpr float push_strength = 4;
 constexpr float least_distance = 1e-4f;
 constexpr float no_neighbour = 1e30f;
 
+FPPG_LANES void compute_rows(const NeighbourList& list, std::size_t begin, std::size_t end,
+                             const PointArrays& points, const SurfaceForces& of,
+                             PointArrays& forces, std::vector<float>& nearest_squared)
+{
+    const float* xs = points.x.data();
+    const float* ys = points.y.data();
+    const float* zs = points.z.data();
+    const float half_inverse_h = of.half_inverse_h();
+    const float factor = of.factor();
+    const Lanes none{};
+    for (std::size_t row = begin; row < end; ++row)
+    {
+        const auto neighbours = list.neighbours(row);
+        const std::uint32_t i = list.point(row);
+        Lanes x{}, y{}, z{};
+        Lanes nearest = lanes_of(no_neighbour);
+        NeighbourLanes(xs, ys, zs, i)
+            .for_each(neighbours.data(), neighbours.size(),
+                      [&](const NeighbourLanes::Offsets& o)
+                      {
+                          const Lanes r = square_root(o.squared);
+                          const Lanes s = larger(none, 1 - r * half_inverse_h);
+                          const Lanes t = larger(none, 1 - r * (1 / push_reach));
+                          const Lanes f = factor * (s * s * s) +
+                                          push_strength * t / larger(r, lanes_of(least_distance));
+                          x += f * o.x;
+                          y += f * o.y;
+                          z += f * o.z;
+                          nearest = smaller(nearest, o.squared);
+                      });
+        forces.x[i] = sum_of(x);
+        forces.y[i] = sum_of(y);
+        forces.z[i] = sum_of(z);
+        nearest_squared[i] = smallest_of(nearest);
+    }
+}
+
+void compute_plain(const NeighbourList& list, std::size_t begin, std::size_t end,
+                   const PointArrays& points, const SurfaceForces& of, PointArrays& forces,
+                   std::vector<float>& nearest_squared)
+{
+    compute_rows(list, begin, end, points, of, forces, nearest_squared);
+}
+
+FPPG_AVX2 void compute_avx2(const NeighbourList& list, std::size_t begin, std::size_t end,
+                            const PointArrays& points, const SurfaceForces& of, PointArrays& forces,
+                            std::vector<float>& nearest_squared)
+{
+    compute_rows(list, begin, end, points, of, forces, nearest_squared);
+}
+
 } // namespace
 
 SurfaceForces::SurfaceForces(float h) : half_inverse_h_(0.5f / h), factor_(5 / (h * h)) {}
@@ -24,48 +76,8 @@ void SurfaceForces::compute(const NeighbourList& list, std::size_t begin, std::s
                             const PointArrays& points, PointArrays& forces,
                             std::vector<float>& nearest_squared) const
 {
-    const float* xs = points.x.data();
-    const float* ys = points.y.data();
-    const float* zs = points.z.data();
-    const float half_inverse_h = half_inverse_h_;
-    const float factor = factor_;
-    for (std::size_t row = begin; row < end; ++row)
-    {
-        const auto neighbours = list.neighbours(row);
-        const std::uint32_t* indices = neighbours.data();
-        const std::size_t n = neighbours.size();
-        const std::uint32_t i = list.point(row);
-        const float x = xs[i];
-        const float y = ys[i];
-        const float z = zs[i];
-        float fx = 0;
-        float fy = 0;
-        float fz = 0;
-        float nearest = no_neighbour;
-#pragma omp simd reduction(+ : fx, fy, fz) reduction(min : nearest)
-        for (std::size_t k = 0; k < n; ++k)
-        {
-            const std::uint32_t j = indices[k];
-            const float dx = x - xs[j];
-            const float dy = y - ys[j];
-            const float dz = z - zs[j];
-            const float squared = dx * dx + dy * dy + dz * dz;
-            const float r = std::sqrt(squared);
-            const float s = 1 - r * half_inverse_h;
-            const float t = 1 - r * (1 / push_reach);
-            const float kernel = s > 0 ? factor * s * s * s : 0;
-            const float push = t > 0 ? push_strength * t : 0;
-            const float f = kernel + push / (r > least_distance ? r : least_distance);
-            fx += f * dx;
-            fy += f * dy;
-            fz += f * dz;
-            nearest = squared < nearest ? squared : nearest;
-        }
-        forces.x[i] = fx;
-        forces.y[i] = fy;
-        forces.z[i] = fz;
-        nearest_squared[i] = nearest;
-    }
+    (is_avx2_there() ? compute_avx2 : compute_plain)(list, begin, end, points, *this, forces,
+                                                     nearest_squared);
 }
 
 double stiffest_mode(double h)

@@ -20,6 +20,10 @@ public:
                  const PointArrays& points, PointArrays& forces,
                  std::vector<float>& nearest_squared) const;
 
+    float half_inverse_h() const { return half_inverse_h_; }
+    /// Of the kernel's force.
+    float factor() const { return factor_; }
+
 private:
     float half_inverse_h_;
     float factor_;

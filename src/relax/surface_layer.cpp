@@ -1,9 +1,11 @@
 #include "relax/surface_layer.h"
 
 #include "core/parallel.h"
+#include "core/raw_array.h"
 #include "shapes/mesh_query.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace fppg
 {
@@ -38,13 +40,18 @@ void set_vector(PointArrays& v, std::size_t i, const Vec3& value)
     v.z[i] = static_cast<float>(value.z);
 }
 
+/// Keeps the values that an order names, in that order, which is at most as long as they are.
 template <typename T>
-std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::uint32_t>& order)
+void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order, int threads)
 {
-    std::vector<T> result;
-    result.reserve(order.size());
-    for (const std::uint32_t i : order) result.push_back(values[i]);
-    return result;
+    const std::size_t n = order.size();
+    RawArray<T> sorted(n);
+    parallel_for(
+        n, threads, [&](std::size_t k) { std::construct_at(&sorted[k], values[order[k]]); },
+        chunk_size);
+    values.resize(n);
+    parallel_for(
+        n, threads, [&](std::size_t k) { values[k] = sorted[k]; }, chunk_size);
 }
 
 std::size_t chunks_of(std::size_t n)
@@ -176,11 +183,19 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
             on_features.push_back(feature_at(body, p.kind, p.place));
             p.place.facet = work_.first_piece[p.place.facet];
         }
-        else if (p.is_moving)
-            p.place = place_on_facet(work_, p.place.facet, p.place.position);
-        else
-            p.place.facet = work_.locate(p.place.facet, p.place.position);
     }
+    parallel_for(
+        particles_.size(), threads_,
+        [&](std::size_t i)
+        {
+            LayerParticle& p = particles_[i];
+            if (p.kind != FitKind::Surface) return;
+            if (p.is_moving)
+                p.place = place_on_facet(work_, p.place.facet, p.place.position);
+            else
+                p.place.facet = work_.locate(p.place.facet, p.place.position);
+        },
+        chunk_size);
     sites_ = make_feature_sites(body.mesh, work_, on_features);
     velocities_.resize(particles_.size());
     sort();
@@ -193,11 +208,14 @@ void SurfaceLayer::sort()
 {
     const std::size_t n = particles_.size();
     points_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) set_vector(points_, i, local(particles_[i].place.position));
+    parallel_for(
+        n, threads_,
+        [&](std::size_t i) { set_vector(points_, i, local(particles_[i].place.position)); },
+        chunk_size);
     const auto order = morton_order(points_, 2, threads_);
-    particles_ = reordered(particles_, order);
+    reorder(particles_, order, threads_);
     for (PointArrays* v : {&points_, &velocities_})
-        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) *axis = reordered(*axis, order);
+        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) reorder(*axis, order, threads_);
     forces_.resize(n);
     nearest_squared_.resize(n);
     is_listed_ = false;
@@ -213,20 +231,25 @@ Vec3 SurfaceLayer::normal_of(const LayerParticle& particle) const
 
 void SurfaceLayer::build_list()
 {
-    PointArrays normals;
-    normals.resize(particles_.size());
+    struct Normal
+    {
+        float x, y, z;
+    };
+    RawArray<Normal> normals(particles_.size());
     parallel_for(
         particles_.size(), threads_,
         [&](std::size_t i)
         {
             if (i + prefetch_ahead < particles_.size()) prefetch_facet(i + prefetch_ahead);
-            set_vector(normals, i, normal_of(particles_[i]));
+            const Vec3 normal = normal_of(particles_[i]);
+            normals[i] = {static_cast<float>(normal.x), static_cast<float>(normal.y),
+                          static_cast<float>(normal.z)};
         },
         chunk_size);
     const auto is_own_sheet = [&](std::uint32_t i, std::uint32_t j)
     {
         const float cosine =
-            normals.x[i] * normals.x[j] + normals.y[i] * normals.y[j] + normals.z[i] * normals.z[j];
+            normals[i].x * normals[j].x + normals[i].y * normals[j].y + normals[i].z * normals[j].z;
         return cosine >= opposing;
     };
     list_.build(
@@ -419,9 +442,9 @@ std::size_t SurfaceLayer::thin(double least)
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < particles_.size(); ++i)
         if (!is_out[i]) kept.push_back(i);
-    particles_ = reordered(particles_, kept);
+    reorder(particles_, kept, threads_);
     for (PointArrays* v : {&points_, &velocities_})
-        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) *axis = reordered(*axis, kept);
+        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) reorder(*axis, kept, threads_);
     sort();
     return count;
 }

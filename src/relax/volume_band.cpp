@@ -90,11 +90,11 @@ void set_nearest_wall(Band& band, std::size_t i, const WallPlanes& found)
 
 /// Looks for all walls near a particle. Returns those that meet the nearest.
 MeetingWalls look_for_walls(Band& band, std::size_t i, std::span<const std::uint32_t> near,
-                            double reach, const ClosestWallPoint& closest)
+                            double reach, const ClosestWallPoint& closest, double within)
 {
     MeetingWalls meeting;
     const Vec3 place = band.place(i);
-    WallPlanes found = find_nearest_wall(place, reach * band.dp, closest);
+    WallPlanes found = find_nearest_wall(place, reach * band.dp, closest, within);
     if (renew_nearest_wall(band, i, found))
         return band.meetings[i] == no_meeting ? meeting : band.meeting_walls[band.meetings[i]];
     if (found.count > 0 && !is_alone(band, i, near, found.planes[0]))
@@ -164,15 +164,22 @@ void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_fi
                  const ClosestWallPoint& closest, int threads)
 {
     if (!closest) return;
+    constexpr std::uint32_t none = 0xFFFFFFFF;
     const std::size_t chunks = (list.rows() + chunk_size - 1) / chunk_size;
     // Particles that come to where walls meet are given a place for them after the loop, in order.
     std::vector<std::vector<std::pair<std::uint32_t, MeetingWalls>>> newly_met(chunks);
-    const auto look = [&](std::size_t row, std::size_t chunk)
+    // A wall that was near to the last particle of the chunk cannot be much farther from the next.
+    const auto look = [&](std::size_t row, std::size_t chunk, std::uint32_t& last)
     {
         const std::uint32_t i = list.point(row);
         if (i >= band.moving || band.is_held[i] != 0) return;
         if (!is_first && !has_old_walls(band, i, static_cast<float>(reach))) return;
-        const MeetingWalls meeting = look_for_walls(band, i, list.neighbours(row), reach, closest);
+        double within = band.wall_within(i);
+        if (is_first && last != none)
+            within = band.wall_within(last) + norm(band.place(i) - band.place(last)) / band.dp;
+        last = i;
+        const MeetingWalls meeting =
+            look_for_walls(band, i, list.neighbours(row), reach, closest, within * band.dp);
         if (band.meetings[i] != no_meeting)
             band.meeting_walls[band.meetings[i]] = meeting;
         else if (meeting.count > 0)
@@ -182,7 +189,9 @@ void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_fi
                  [&](std::size_t chunk)
                  {
                      const std::size_t end = std::min(list.rows(), (chunk + 1) * chunk_size);
-                     for (std::size_t row = chunk * chunk_size; row < end; ++row) look(row, chunk);
+                     std::uint32_t last = none;
+                     for (std::size_t row = chunk * chunk_size; row < end; ++row)
+                         look(row, chunk, last);
                  });
     for (const auto& chunk : newly_met)
         for (const auto& [i, meeting] : chunk)

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ inline constexpr std::uint32_t no_meeting = 0xFFFFFFFF;
 inline constexpr double list_skin = 0.6;
 inline double list_radius(double h)
 {
-    return 2 * h + 0.1;
+    return 2 * h;
 }
 
 /// A wall as a plane.
@@ -75,6 +76,13 @@ struct Band
         return origin + dp * Vec3{points.x[i] + static_cast<float>(step.x),
                                   points.y[i] + static_cast<float>(step.y),
                                   points.z[i] + static_cast<float>(step.z)};
+    }
+    /// A wall is no farther than this; of an inserted particle nothing is known at first.
+    double wall_within(std::size_t i) const
+    {
+        constexpr double rounding_room = 1e-3;
+        if (!(wall_distances[i] > 0)) return std::numeric_limits<double>::infinity();
+        return double{wall_distances[i]} + double{moved_by(i)} + rounding_room;
     }
     float moved_by(std::size_t i) const
     {

@@ -29,12 +29,13 @@ Vec3 farther_off(const Vec3& from, const Vec3& nearest, double reach)
 
 } // namespace
 
-WallPlanes find_nearest_wall(const Vec3& point, double reach, const ClosestWallPoint& closest)
+WallPlanes find_nearest_wall(const Vec3& point, double reach, const ClosestWallPoint& closest,
+                             double within)
 {
     WallPlanes found;
     found.distance = std::numeric_limits<double>::infinity();
     if (!closest) return found;
-    found.nearest = closest(point);
+    found.nearest = closest(point, within);
     found.distance = norm(found.nearest - point);
     if (found.distance > 0 && found.distance < reach)
         found.planes[static_cast<std::size_t>(found.count++)] = {
@@ -51,7 +52,7 @@ void add_further_walls(WallPlanes& found, const Vec3& point, double reach,
     for (int probe = 0; probe < 5 && found.count > 0 && found.count < 3; ++probe)
     {
         from = farther_off(from, nearest, reach);
-        nearest = closest(from);
+        nearest = closest(from, norm(nearest - from));
         const double distance = norm(nearest - from);
         if (!(distance > 0) || distance >= reach * (1 - 1e-6)) return;
         const Vec3 normal = (nearest - from) / distance;

@@ -4,6 +4,7 @@
 #include "fppg/vec.h"
 
 #include <array>
+#include <limits>
 
 namespace fppg
 {
@@ -29,8 +30,10 @@ struct WallPlanes
 
 /// Finds the nearest wall, if it is within reach.
 ///
-/// reach  metres
-WallPlanes find_nearest_wall(const Vec3& point, double reach, const ClosestWallPoint& closest);
+/// reach   metres
+/// within  the caller knows of a wall so near, metres
+WallPlanes find_nearest_wall(const Vec3& point, double reach, const ClosestWallPoint& closest,
+                             double within = std::numeric_limits<double>::infinity());
 
 /// Adds the walls that meet the nearest one, up to three in all: those that are nearest to places
 /// farther off the walls found before. In the corner of a box these are its other sides.

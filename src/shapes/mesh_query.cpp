@@ -162,7 +162,7 @@ const TriangleSoup& MeshQuery::soup() const
     return scene_->soup;
 }
 
-ClosestPoint MeshQuery::closest_point(const Vec3& point) const
+ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
 {
     const Vec3 unit = scene_->to_unit(point);
     Scene::Nearest nearest{scene_.get(), point, (1 + norm(unit)) * rounding_room, {}};
@@ -174,7 +174,8 @@ ClosestPoint MeshQuery::closest_point(const Vec3& point) const
     query.y = static_cast<float>(unit.y);
     query.z = static_cast<float>(unit.z);
     query.time = 0;
-    query.radius = std::numeric_limits<float>::infinity();
+    query.radius =
+        static_cast<float>(within / scene_->scale * (1 + rounding_room) + nearest.reach);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_->scene.get(), &query, &context, Scene::meet_point, &nearest);

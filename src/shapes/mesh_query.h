@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -42,7 +43,11 @@ public:
 
     /// The nearest point of all facets. A point on an edge has the same bits whichever of the
     /// facets at that edge it is computed from.
-    ClosestPoint closest_point(const Vec3& point) const;
+    ///
+    /// within  metres; a point of the mesh is known to be so near, which saves half of the search.
+    ///         Where none is, the facet is the largest number and the distance infinite
+    ClosestPoint closest_point(const Vec3& point,
+                               double within = std::numeric_limits<double>::infinity()) const;
 
     /// All crossings of the half line from `origin` towards larger coordinates along `axis` (0, 1
     /// or 2), sorted by position, then facet. Edges and vertices count as in inside_spans(): for

@@ -1,0 +1,83 @@
+#include "relax/volume_forces.h"
+
+#include "relax/kernel.h"
+#include "relax/lanes.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+using PairFactors = VolumeForces::PairFactors;
+using PairSums = VolumeForces::PairSums;
+
+constexpr float push_reach = 0.8f;
+constexpr float push_strength = 5.6f; ///< in units of the kernel's factor, a dp
+
+FPPG_LANES PairSums sum_pairs(const PointArrays& points, std::uint32_t i,
+                              std::span<const std::uint32_t> near, const PairFactors& factors)
+{
+    Lanes x{}, y{}, z{}, weight{};
+    const Lanes none{};
+    NeighbourLanes(points.x.data(), points.y.data(), points.z.data(), i)
+        .for_each(near.data(), near.size(),
+                  [&](const NeighbourLanes::Offsets& o)
+                  {
+                      const Lanes r = square_root(o.squared);
+                      const Lanes half_q = r * factors.half_inverse_h;
+                      const Lanes s = larger(none, 1 - half_q);
+                      const Lanes s3 = s * s * s;
+                      const Lanes closeness = larger(none, 1 - r * (1 / push_reach));
+                      const Lanes size = factors.slope * s3 + factors.push * closeness;
+                      x += size * o.x;
+                      y += size * o.y;
+                      z += size * o.z;
+                      weight += s3 * s * (4 * half_q + 1);
+                  });
+    return {sum_of(x), sum_of(y), sum_of(z), sum_of(weight)};
+}
+
+PairSums sum_pairs_plain(const PointArrays& points, std::uint32_t i,
+                         std::span<const std::uint32_t> near, const PairFactors& factors)
+{
+    return sum_pairs(points, i, near, factors);
+}
+
+FPPG_AVX2 PairSums sum_pairs_avx2(const PointArrays& points, std::uint32_t i,
+                                  std::span<const std::uint32_t> near, const PairFactors& factors)
+{
+    return sum_pairs(points, i, near, factors);
+}
+
+} // namespace
+
+VolumeForces::VolumeForces(double h, bool is_2d)
+    : beyond_(h, is_2d),
+      alpha_(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h)),
+      factors_{static_cast<float>(0.5 / h), static_cast<float>(5 * alpha_ / (h * h)),
+               static_cast<float>(double{push_strength} * alpha_)},
+      sum_pairs_(is_avx2_there() ? sum_pairs_avx2 : sum_pairs_plain)
+{
+}
+
+VolumeForces::Result VolumeForces::on(const Band& band, std::uint32_t i,
+                                      std::span<const std::uint32_t> near) const
+{
+    const PairSums pairs = sum_pairs_(band.points, i, near, factors_);
+    Result result{pairs.x, pairs.y, pairs.z, alpha_ * (1 + static_cast<double>(pairs.weight))};
+    for_each_wall(band, i,
+                  [&](const Plane& plane, float distance)
+                  {
+                      const double way = double{distance} + behind_wall;
+                      if (way >= beyond_.reach()) return;
+                      const auto size = static_cast<float>(beyond_.force(way));
+                      result.x -= size * plane.x;
+                      result.y -= size * plane.y;
+                      result.z -= size * plane.z;
+                      result.shepard += beyond_.share(way);
+                  });
+    return result;
+}
+
+} // namespace fppg
