@@ -55,17 +55,17 @@ void add_ring(const Vec3& center, const Vec3& first, const Vec3& second, double 
     }
 }
 
+/// The ring at the top pole has a radius of rounding size and so one point, that at the bottom pole
+/// has radius 0 and none.
 void add_shell(const Vec3& center, double radius, double dp, std::vector<Vec3>& out)
 {
     const int m = 2 * static_cast<int>(std::ceil(std::numbers::pi * radius / (2 * dp)));
-    for (int k = m - 1; k >= 1; --k)
+    for (int k = 1; k <= m; ++k)
     {
         const double polar = std::numbers::pi / m * k;
-        Vec3 middle = center;
-        middle.z += radius * std::cos(polar);
+        const Vec3 middle{center.x, center.y, center.z - radius * std::cos(polar)};
         add_ring(middle, {1, 0, 0}, {0, 1, 0}, radius * std::sin(polar), dp, out);
     }
-    out.push_back({center.x, center.y, center.z + radius});
 }
 
 void add_sphere(const Vec3& center, double radius, DrawMode mode, double dp, std::vector<Vec3>& out)
@@ -94,6 +94,7 @@ struct CylinderParts
 {
     std::array<bool, 3> faces{};
     bool has_inside = false;
+    bool has_axis = false; ///< the points on the axis of inner discs too
 };
 
 void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderParts& parts,
@@ -111,7 +112,7 @@ void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderP
         const bool is_end = d == 0 || d == discs;
         const bool has_cover = (d == 0 && parts.faces[0]) || (d == discs && parts.faces[1]);
         const Vec3 center = p0 + step * static_cast<double>(d);
-        if (has_cover) out.push_back(center);
+        if (has_cover || parts.has_axis) out.push_back(center);
         for (int k = 1; k <= rings; ++k)
             if (has_cover || (k == rings ? parts.faces[2] : parts.has_inside && !is_end))
                 add_ring(center, first, second, radius / rings * k, dp, out);
@@ -261,13 +262,13 @@ std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
         const Vec3 away = axis * (layer * dp);
         add_cylinder(op.is_visible[0] ? op.p0 - away : op.p0,
                      op.is_visible[1] ? op.p1 + away : op.p1, op.radius + layer * dp,
-                     {op.is_visible, false}, dp, out);
+                     {op.is_visible, false, false}, dp, out);
     }
     if (!op.layers_dp.empty()) return out;
     const bool fills =
         mode != DrawMode::Face && std::all_of(op.is_visible.begin(), op.is_visible.end(),
                                               [](bool visible) { return visible; });
-    CylinderParts parts{op.is_visible, fills};
+    CylinderParts parts{op.is_visible, fills, fills && mode == DrawMode::Full};
     if (fills && mode == DrawMode::Solid) parts.faces = {false, false, false};
     add_cylinder(op.p0, op.p1, op.radius, parts, dp, out);
     return out;

@@ -46,14 +46,15 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid);
 
 /// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
 /// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
-/// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on,
-/// and the top pole; its bottom pole is left out, as GenCase leaves it out. Up to R = 0.75 dp the
-/// centre alone. Layers are shells of radius R + layer * dp.
+/// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on.
+/// The top pole is one of them, the bottom pole is left out, as GenCase leaves it out. Up to R =
+/// 0.75 dp the centre alone. Layers are shells of radius R + layer * dp.
 std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp);
 
 /// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with
 /// n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end discs, the tube is the ring
-/// k = n of every disc; solid mode takes the inner rings of the inner discs. Layers move the tube
+/// k = n of every disc; solid mode takes the inner rings of the inner discs without the axis, full
+/// mode everything. Layers move the tube
 /// and the visible covers outwards by layer * dp.
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp);
 
