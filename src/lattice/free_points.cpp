@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "lattice/plane_shapes.h"
+#include "lattice/planes.h"
 #include "lattice/snap.h"
 
 #include <fmt/format.h>
@@ -150,7 +151,7 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
     const auto& [a, b, c] = corners;
     Vec3 normal = cross(b - a, c - a);
     if (norm(normal) == 0) return {};
-    normal = normal * (1 / norm(normal));
+    normal = normal / norm(normal);
     const double level = dot(normal, grid.origin) - dot(normal, a);
     const Vec3 foot = grid.origin - normal * level;
 
@@ -160,8 +161,17 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
     if (flat > 1e-12) u = {normal.z / flat, 0, -normal.x / flat};
     if (u.x < 0 || (u.x == 0 && u.z < 0)) u = u * -1.0;
     const bool is_turned = normal.x + normal.y + normal.z < 0;
-    const Vec3 v = cross(is_turned ? normal * -1.0 : normal, u);
+    Vec3 v = cross(is_turned ? normal * -1.0 : normal, u);
+    v = v / norm(v);
 
+    // Planes through the sides, square to the triangle.
+    std::array<Plane, 3> sides;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        const Vec3 inward = cross(normal, corners[(k + 1) % 3] - corners[k]);
+        sides[k].normal = inward / norm(inward);
+        sides[k].offset = -dot(sides[k].normal, corners[k]);
+    }
     const auto limits = [&](const Vec3& axis)
     {
         std::array<double, 3> at{};
@@ -179,9 +189,9 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
         for (double j = 0; j <= v_end - v_begin; ++j)
         {
             const Vec3 p = column + v * (grid.dp * j);
-            const auto is_behind = [&](const Vec3& from, const Vec3& to)
-            { return dot(cross(to - from, p - from), normal) >= 0; };
-            if (is_behind(a, b) && is_behind(b, c) && is_behind(c, a)) out.push_back(p);
+            if (std::all_of(sides.begin(), sides.end(),
+                            [&](const Plane& side) { return side.value(p) >= 0; }))
+                out.push_back(p);
         }
     }
     return out;
