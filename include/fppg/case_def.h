@@ -76,6 +76,7 @@ struct DrawState
     DrawConstants constants;
     std::vector<ClipPlane> clips;
     bool box_limit_full = false; ///< setboxlimitmode full
+    bool off_lattice = false;    ///< setfrdrawmode: particles at their true places
     bool draw_points = true;     ///< setactive drawpoints
     bool draw_shapes = true;     ///< setactive drawshapes
     bool normal_invert = false;  ///< setnormalinvert

@@ -79,14 +79,16 @@ struct WallParticles
     }
 };
 
-/// Particles off the lattice near the walls that stand in for lattice nodes, one entry each in all
-/// arrays. The nodes carry the wall_zone_bit on their mk, so that a water column still counts them;
-/// where they were taken out of the field altogether, the column ends below them.
+/// Particles off the lattice that stand in for lattice nodes, near the walls or where
+/// `setfrdrawmode` draws them, one entry each in all arrays. The nodes carry the wall_zone_bit on
+/// their mk, so that a water column still counts them; where they were taken out of the field
+/// altogether, the column ends below them.
 struct VolumeParticles
 {
     std::vector<Vec3> positions;
     std::vector<std::uint16_t> mk; ///< absolute, bound or fluid
-    std::vector<float> distances;  ///< metres to the nearest wall, negative in a solid
+    std::vector<float> distances;  ///< metres to the nearest wall, negative in a solid;
+                                   ///< distance_of_nodes where setfrdrawmode draws them
 
     std::size_t size() const { return positions.size(); }
 };
@@ -101,6 +103,9 @@ struct FittedWalls
     /// sheet, and their bodies: no particle may be put there again.
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
+
+    /// Whether particles stand off the lattice and nodes may carry the wall_zone_bit.
+    bool is_empty() const { return bodies.empty() && volume.size() == 0; }
 };
 
 } // namespace fppg

@@ -143,6 +143,8 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         std::holds_alternative<EllipsoidOp>(what);
     if (std::holds_alternative<MeshFileOp>(what))
         read_.fail_unsupported(e, "setmknextauto for mesh files");
+    if (is_drawn && state_.off_lattice)
+        read_.fail_unsupported(e, "setmknextauto together with setfrdrawmode");
     if (!is_drawn)
         add_whole(e, std::move(what)); // points and fills do not count
     else if (const auto* lines = std::get_if<LinesOp>(&what))

@@ -77,10 +77,7 @@ bool ProgramRunner::run_state_command(const Element& e)
         state_.box_limit_full = mode == "full";
     }
     else if (name == "setfrdrawmode")
-    {
-        if (read_.flag_or(e, "auto", false))
-            read_.fail_unsupported(e, "auto=\"true\" (free particles)");
-    }
+        state_.off_lattice = read_.flag_or(e, "auto", false);
     else if (name == "setnormalinvert")
         state_.normal_invert = read_.flag_or(e, "invert", true);
     else if (name == "setactive")

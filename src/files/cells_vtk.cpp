@@ -317,7 +317,7 @@ RunField without_zones(const RunField& field, int threads)
 void write_cells_vtk(OutputFile& file, const RunField& field,
                      const std::vector<ParticleType>& type_of_mk, int threads)
 {
-    if (!field.walls.bodies.empty())
+    if (!field.walls.is_empty())
     {
         write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
         return;

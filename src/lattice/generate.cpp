@@ -8,6 +8,8 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/flood.h"
+#include "lattice/free_painter.h"
+#include "lattice/free_points.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
@@ -74,7 +76,11 @@ class Generator
 {
 public:
     Generator(const CaseDef& def, int threads, LatticeReport& report)
-        : def_(def), threads_(threads), report_(report), walls_(field_, threads)
+        : def_(def),
+          threads_(threads),
+          report_(report),
+          walls_(field_, threads),
+          free_(field_, threads)
     {
         field_.grid = def.grid;
         field_.slabs.resize(def.grid.n[0]);
@@ -88,6 +94,7 @@ public:
 
     RunField take()
     {
+        free_.finish();
         walls_.finish();
         return std::move(field_);
     }
@@ -238,10 +245,56 @@ private:
                      });
     }
 
-    void draw(const PointsOp& op) { paint_region(points_region(op.points, grid())); }
+    bool is_off_lattice() const { return state().off_lattice; }
+
+    /// Particles at their true places, for setfrdrawmode.
+    template <typename MakePoints>
+    void draw_free(const MakePoints& make_points)
+    {
+        if (!state().draw_points) return;
+        std::vector<Vec3> points;
+        try
+        {
+            points = make_points();
+        }
+        catch (const GeometryError& e)
+        {
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: {}", op_->source.command, e.what()));
+        }
+        paint_nodes(free_.draw(points, state().clips, state().mk.mk));
+    }
+
+    void draw_free_lines(const std::vector<std::pair<Vec3, Vec3>>& segments)
+    {
+        draw_free(
+            [&]
+            {
+                std::vector<Vec3> points;
+                for (const auto& [from, to] : segments)
+                {
+                    const std::vector<Vec3> line = free_line(from, to, grid().dp);
+                    points.insert(points.end(), line.begin(), line.end());
+                }
+                return points;
+            });
+    }
+
+    void draw(const PointsOp& op)
+    {
+        if (is_off_lattice())
+            draw_free([&] { return op.points; });
+        else
+            paint_region(points_region(op.points, grid()));
+    }
 
     void draw(const LinesOp& op)
     {
+        if (is_off_lattice())
+        {
+            draw_free_lines(op.segments);
+            return;
+        }
         std::vector<std::pair<Node, Node>> segments;
         for (const auto& [from, to] : op.segments)
             segments.emplace_back(snap(from, grid()), snap(to, grid()));
@@ -258,8 +311,45 @@ private:
                                       state().constants.triangle_limits));
     }
 
+    /// A figure off the lattice: a solid box is a grid of points in every mode but wire; of other
+    /// solids the inside stands on the lattice, below the faces.
+    void draw_free_figure(const FigureOp& op)
+    {
+        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
+        if (op.solid == SolidKind::Box)
+        {
+            const auto corner = [&](std::size_t i) { return op.vertices[op.solid_vertices[i]]; };
+            draw_free(
+                [&] {
+                    return free_block(corner(0), {corner(1), corner(3), corner(4)}, grid().dp);
+                });
+            return;
+        }
+        if (fills) paint_region(solid_of(op));
+        if (!fills || state().mode == DrawMode::Full)
+            draw_free([&] { return free_faces(op, grid()); });
+    }
+
+    void draw_free_wire(const FigureOp& op)
+    {
+        std::vector<std::pair<Vec3, Vec3>> segments;
+        for (const FigureFace& face : op.faces)
+            for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
+                segments.emplace_back(op.vertices[face.vertices[i]],
+                                      op.vertices[face.vertices[(i + 1) % face.vertices.size()]]);
+        draw_free_lines(segments);
+    }
+
     void draw(const FigureOp& op)
     {
+        if (is_off_lattice() && op.part_count == 0)
+        {
+            if (state().mode == DrawMode::Wire && op.solid != SolidKind::Box)
+                draw_free_wire(op);
+            else
+                draw_free_figure(op);
+            return;
+        }
         if (state().mode == DrawMode::Wire)
         {
             std::vector<std::pair<Node, Node>> segments;
@@ -325,9 +415,29 @@ private:
                             state().constants.triangle_limits);
     }
 
-    void draw(const SphereOp& op) { paint_region(sphere_region(op, state(), grid())); }
-    void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
-    void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
+    void draw(const SphereOp& op)
+    {
+        if (is_off_lattice())
+            draw_free([&] { return free_sphere(op, state().mode, grid().dp); });
+        else
+            paint_region(sphere_region(op, state(), grid()));
+    }
+    void draw(const CylinderOp& op)
+    {
+        if (is_off_lattice())
+            draw_free([&] { return free_cylinder(op, state().mode, grid().dp); });
+        else
+            paint_region(cylinder_region(op, state(), grid()));
+    }
+    void draw(const EllipsoidOp& op)
+    {
+        if (is_off_lattice())
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: an ellipsoid is not possible with setfrdrawmode "
+                                        "(GenCase refuses it too)",
+                                        op_->source.command));
+        paint_region(ellipsoid_region(op, state(), grid()));
+    }
 
     const MeshFile& mesh(const MeshFileOp& op)
     {
@@ -382,6 +492,31 @@ private:
         return moved;
     }
 
+    /// The triangles and quads of a file, or their sides, off the lattice.
+    void draw_free_mesh(const MeshFile& file, const Transform& transform)
+    {
+        FigureOp figure;
+        figure.vertices = moved_soup(file.soup, transform).vertices;
+        auto quad = file.quads.begin();
+        for (std::size_t t = 0; t < file.soup.size(); ++t)
+        {
+            const auto first = static_cast<std::uint32_t>(3 * t);
+            FigureFace face;
+            face.vertices = {first, first + 1, first + 2};
+            if (quad != file.quads.end() && *quad == t)
+            {
+                ++quad;
+                ++t;
+                face.vertices.push_back(first + 5);
+            }
+            figure.faces.push_back(std::move(face));
+        }
+        if (state().mode == DrawMode::Wire)
+            draw_free_wire(figure);
+        else
+            draw_free([&] { return free_faces(figure, grid()); });
+    }
+
     /// The sides of all triangles and quads, as lines.
     void draw_wire(const MeshFile& file, const Transform& transform)
     {
@@ -408,6 +543,14 @@ private:
         const MeshFile& file = mesh(op);
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
+        if (!op.advanced && is_off_lattice())
+        {
+            draw_free_mesh(file, op.transform);
+            const TriangleSoup moved = moved_soup(source, op.transform);
+            if (op.fill_inside) paint_region(region_of(inside_spans(moved, grid(), threads_)));
+            if (op.autofill) autofill(moved, file, op.transform);
+            return;
+        }
         if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(file, op.transform);
@@ -595,6 +738,7 @@ private:
     {
         for (auto& slab : field_.slabs) slab.clear();
         walls_.reset();
+        free_.reset();
     }
 
     void draw(const ShapeOutOp&) {}
@@ -604,6 +748,7 @@ private:
     LatticeReport& report_;
     RunField field_;
     WallPainter walls_;
+    FreePainter free_;
     const DrawOp* op_ = nullptr;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();

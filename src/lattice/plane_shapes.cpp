@@ -404,6 +404,28 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
     return region;
 }
 
+std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
+                                                       const FigureFace& face,
+                                                       const std::vector<Node>& nodes,
+                                                       const LatticeGrid& grid)
+{
+    std::vector<std::array<std::size_t, 3>> out;
+    for (const auto& t : face.triangles) out.push_back({t[0], t[1], t[2]});
+    if (!face.triangles.empty()) return out;
+    if (face.cut.empty())
+    {
+        for (std::size_t i = 2; i < face.vertices.size(); ++i)
+            out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
+        return out;
+    }
+    for (auto t : cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid))
+    {
+        if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
+        out.push_back({t[0] + face.cut_offset, t[1] + face.cut_offset, t[2] + face.cut_offset});
+    }
+    return out;
+}
+
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible)
 {
@@ -413,21 +435,8 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
     for (const FigureFace& face : figure.faces)
     {
         if (only_visible && !face.is_visible) continue;
-        for (const auto& t : face.triangles) out.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
-        if (!face.triangles.empty()) continue;
-        if (face.cut.empty())
-        {
-            for (std::size_t i = 2; i < face.vertices.size(); ++i)
-                out.push_back({nodes[face.vertices[0]], nodes[face.vertices[i - 1]],
-                               nodes[face.vertices[i]]});
-            continue;
-        }
-        for (auto t : cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid))
-        {
-            if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
-            out.push_back({nodes[t[0] + face.cut_offset], nodes[t[1] + face.cut_offset],
-                           nodes[t[2] + face.cut_offset]});
-        }
+        for (const auto& t : face_triangles(figure, face, nodes, grid))
+            out.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
     }
     return out;
 }

@@ -85,7 +85,7 @@ private:
                 type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
                     ParticleType::Floating;
             }
-        if (!out_.has_walls) return;
+        if (field_.walls.is_empty()) return;
         for (std::size_t mk = 0; mk < wall_zone_bit; ++mk)
             type_of_mk_[mk | wall_zone_bit] = type_of_mk_[mk];
     }
@@ -95,7 +95,7 @@ private:
         std::vector<char> used(65536, 0);
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab) used[r.mk] = 1;
-        if (out_.has_walls)
+        if (!field_.walls.is_empty())
         {
             std::fill(used.begin() + wall_zone_bit, used.end(), 0);
             free_of_mk_ = count_free_particles(field_.walls);
@@ -143,7 +143,7 @@ private:
                 run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
                 out_.blocks[b].count += nodes[x * n + b];
             }
-        if (out_.has_walls)
+        if (!field_.walls.is_empty())
             for (ParticleBlock& block : out_.blocks) block.count += free_of_mk_[block.mk];
         std::uint64_t all = 0;
         for (const ParticleBlock& block : out_.blocks) all += block.count;
@@ -205,7 +205,7 @@ private:
     void sort_free()
     {
         free_begin_.assign(out_.blocks.size() + 1, 0);
-        if (!out_.has_walls) return;
+        if (field_.walls.is_empty()) return;
         std::vector<PositionOrder> orders;
         for (const ParticleBlock& block : out_.blocks) orders.push_back(order_of(block.mk));
         out_.free = sort_free_particles(field_.walls, out_.blocks, orders, threads_, free_begin_);
@@ -213,7 +213,7 @@ private:
 
     void merge_free()
     {
-        if (!out_.has_walls) return;
+        if (field_.walls.is_empty()) return;
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
             merge_free_particles(out_, out_.blocks[b], order_of(out_.blocks[b].mk), free_begin_[b],
                                  free_begin_[b + 1]);

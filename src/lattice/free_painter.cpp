@@ -1,0 +1,211 @@
+#include "lattice/free_painter.h"
+
+#include "fppg/particles.h"
+
+#include "core/parallel.h"
+#include "lattice/snap.h"
+#include "shapes/point_grid.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace fppg
+{
+namespace
+{
+
+/// Two particles, or a particle and a node, are never nearer, dp.
+constexpr double nearest_dp = 0.75;
+/// Distance from the plane of a 2D case up to which particles are moved into it, dp.
+constexpr double plane_distance_dp = 0.1;
+
+bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double last =
+            grid.origin[axis] + (grid.n[static_cast<std::size_t>(axis)] - 1) * grid.dp;
+        if (!(p[axis] >= grid.origin[axis] && p[axis] <= last + nearest_dp * grid.dp)) return false;
+    }
+    return true;
+}
+
+bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p)
+{
+    return std::all_of(clips.begin(), clips.end(),
+                       [&](const ClipPlane& clip)
+                       { return dot(p - clip.point, clip.normal) <= 0; });
+}
+
+/// Calls body(x, y, z) for the nodes of a particle that lie in the lattice.
+template <typename Body>
+void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
+{
+    const Node nearest = snap(p, grid);
+    const double reach = nearest_dp * grid.dp;
+    for (std::int64_t x = nearest.x - 1; x <= nearest.x + 1; ++x)
+        for (std::int64_t y = nearest.y - 1; y <= nearest.y + 1; ++y)
+            for (std::int64_t z = nearest.z - 1; z <= nearest.z + 1; ++z)
+            {
+                const Node n{x, y, z};
+                if (!is_inside(n, grid)) continue;
+                const Vec3 away = position(n, grid) - p;
+                if (n == nearest || dot(away, away) < reach * reach)
+                    body(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                         static_cast<std::uint32_t>(z));
+            }
+}
+
+std::uint16_t mk_at(const std::vector<Run>& runs, std::uint32_t y, std::uint32_t z)
+{
+    const auto after =
+        std::upper_bound(runs.begin(), runs.end(), std::pair(y, z),
+                         [](const std::pair<std::uint32_t, std::uint32_t>& at, const Run& r)
+                         { return at.first < r.y || (at.first == r.y && at.second < r.z_begin); });
+    if (after == runs.begin()) return 0;
+    const Run& run = *std::prev(after);
+    return run.y == y && z < run.z_end ? run.mk : std::uint16_t{0};
+}
+
+} // namespace
+
+std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
+                                     const std::vector<ClipPlane>& clips, std::uint16_t mk)
+{
+    const LatticeGrid& grid = field_->grid;
+    std::vector<Spans> nodes(field_->slabs.size());
+    for (Vec3 p : points)
+    {
+        if (grid.is_2d)
+        {
+            if (!(std::abs(p.y - grid.origin.y) <= plane_distance_dp * grid.dp)) continue;
+            p.y = grid.origin.y;
+        }
+        if (!is_in_domain(p, grid) || !is_kept_by(clips, p)) continue;
+        for_each_node(p, grid,
+                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                      {
+                          nodes[x].push_back({y, z, z + 1});
+                          if (mk != 0) claims_.push_back({x, y, z, mk});
+                      });
+        if (mk == 0) continue;
+        positions_.push_back(p);
+        mk_.push_back(mk);
+    }
+    parallel_for(
+        nodes.size(), threads_, [&](std::size_t x) { sort_and_join(nodes[x]); }, 16);
+    return nodes;
+}
+
+void FreePainter::reset()
+{
+    positions_.clear();
+    mk_.clear();
+    claims_.clear();
+}
+
+/// By node, of each the last one.
+void FreePainter::sort_claims()
+{
+    const auto place = [](const Claim& c) { return std::tuple(c.x, c.y, c.z); };
+    std::stable_sort(claims_.begin(), claims_.end(),
+                     [&](const Claim& a, const Claim& b) { return place(a) < place(b); });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < claims_.size(); ++i)
+        if (i + 1 == claims_.size() || place(claims_[i]) != place(claims_[i + 1]))
+            claims_[kept++] = claims_[i];
+    claims_.resize(kept);
+}
+
+std::uint16_t FreePainter::claimed_mk(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
+{
+    const auto found = std::lower_bound(claims_.begin(), claims_.end(), std::tuple(x, y, z),
+                                        [](const Claim& c, const auto& at)
+                                        { return std::tuple(c.x, c.y, c.z) < at; });
+    return found->mk;
+}
+
+bool FreePainter::keeps_nodes(std::size_t particle) const
+{
+    bool keeps = true;
+    for_each_node(positions_[particle], field_->grid,
+                  [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                  {
+                      const std::uint16_t mk = mk_at(field_->slabs[x], y, z);
+                      keeps = keeps && (mk == mk_[particle] || mk == claimed_mk(x, y, z));
+                  });
+    return keeps;
+}
+
+void FreePainter::finish()
+{
+    if (positions_.empty()) return;
+    const LatticeGrid& grid = field_->grid;
+    sort_claims();
+    std::vector<char> stays(positions_.size());
+    parallel_for(
+        positions_.size(), threads_, [&](std::size_t i) { stays[i] = keeps_nodes(i); }, 1024);
+
+    const double reach = nearest_dp * grid.dp;
+    PointGrid points(reach, positions_.size());
+    for (const Vec3& p : positions_) points.add(p);
+    std::vector<char> is_last(positions_.size(), 0);
+    parallel_for(
+        positions_.size(), threads_,
+        [&](std::size_t i)
+        {
+            if (!stays[i]) return;
+            bool last = true;
+            points.for_each_near(positions_[i], reach,
+                                 [&](std::uint32_t other, double squared)
+                                 {
+                                     if (other > i && stays[other] && squared < reach * reach)
+                                         last = false;
+                                 });
+            is_last[i] = last;
+        },
+        1024);
+
+    // Nodes of particles that do not stay are empty, those of the others are hidden.
+    std::vector<Spans> empty(field_->slabs.size());
+    for (const Claim& c : claims_)
+        if (mk_at(field_->slabs[c.x], c.y, c.z) == c.mk) empty[c.x].push_back({c.y, c.z, c.z + 1});
+    std::vector<std::vector<Run>> hidden(field_->slabs.size());
+    VolumeParticles& out = field_->walls.volume;
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+    {
+        if (!is_last[i]) continue;
+        for_each_node(positions_[i], grid,
+                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+                          hidden[x].push_back({y, z, z + 1, mk_at(field_->slabs[x], y, z)});
+                      });
+        out.positions.push_back(positions_[i]);
+        out.mk.push_back(mk_[i]);
+        out.distances.push_back(distance_of_nodes);
+    }
+    parallel_for(
+        field_->slabs.size(), threads_,
+        [&](std::size_t x)
+        {
+            std::vector<Run>& slab = field_->slabs[x];
+            sort_and_join(empty[x]);
+            paint(slab, empty[x], 0);
+            std::sort(
+                hidden[x].begin(), hidden[x].end(),
+                [](const Run& a, const Run& b)
+                { return std::tuple(a.mk, a.y, a.z_begin) < std::tuple(b.mk, b.y, b.z_begin); });
+            for (auto run = hidden[x].begin(); run != hidden[x].end();)
+            {
+                const std::uint16_t mk = run->mk;
+                Spans spans;
+                for (; run != hidden[x].end() && run->mk == mk; ++run)
+                    spans.push_back({run->y, run->z_begin, run->z_end});
+                sort_and_join(spans);
+                paint(slab, spans, static_cast<std::uint16_t>(mk | wall_zone_bit));
+            }
+        },
+        16);
+    reset();
+}
+
+} // namespace fppg

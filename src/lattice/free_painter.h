@@ -1,0 +1,68 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/lattice.h"
+
+#include "lattice/spans.h"
+
+#include <vector>
+
+namespace fppg
+{
+
+/// The particles that `setfrdrawmode auto="true"` puts off the lattice, while a field is drawn.
+///
+/// Rules found by experiment with GenCase v5.4.354, lattice -0.5 + 0.1 i:
+/// - a particle claims its nearest node and all nodes nearer than 0.75 dp: they take its mk, so
+///   fills and redraws see them, and give no particles of their own. A fill of void nodes around
+///   a point at (0.13, 0.1, 0.1) leaves out x = 0.1 and 0.2, around one at (0.15, 0.15, 0.15) only
+///   (0.2, 0.2, 0.2)
+/// - nothing is removed while drawing. At the end a particle stays when each of its nodes carries
+///   its mk or the mk of the last particle that claimed the node: a node painted over with another
+///   mk and back again, or redrawn 0 -> 1 -> 0, leaves it; a redraw with another mk turns its nodes
+///   into lattice particles
+/// - of those that stay, one is removed when a later one is nearer than 0.75 dp. A removed one
+///   still removes others: of seven points 0.06 apart at dp 0.1 the last stays
+/// - void points only empty their nodes
+/// - particles count from the first node of the lattice to 0.75 dp beyond the last (1.475 yes,
+///   1.47500000001 no with the last at 1.4); in 2D within 0.1 dp of the plane, into which they are
+///   moved
+class FreePainter
+{
+public:
+    FreePainter(RunField& field, int threads) : field_(&field), threads_(threads) {}
+
+    /// Keeps the points that lie in the domain and within the clips.
+    ///
+    /// mk       absolute; 0: void
+    /// returns  their nodes, one entry a slab, to be painted with mk
+    std::vector<Spans> draw(const std::vector<Vec3>& points, const std::vector<ClipPlane>& clips,
+                            std::uint16_t mk);
+
+    /// Forgets everything.
+    void reset();
+
+    /// Puts the particles that stay into the field; their nodes get the wall_zone_bit.
+    void finish();
+
+private:
+    struct Claim
+    {
+        std::uint32_t x = 0;
+        std::uint32_t y = 0;
+        std::uint32_t z = 0;
+        std::uint16_t mk = 0;
+    };
+
+    void sort_claims();
+    std::uint16_t claimed_mk(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
+    bool keeps_nodes(std::size_t particle) const;
+
+    RunField* field_;
+    int threads_;
+    std::vector<Vec3> positions_;
+    std::vector<std::uint16_t> mk_;
+    std::vector<Claim> claims_; ///< in order of drawing
+};
+
+} // namespace fppg

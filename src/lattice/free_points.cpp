@@ -1,0 +1,287 @@
+#include "lattice/free_points.h"
+
+#include "fppg/error.h"
+
+#include "lattice/plane_shapes.h"
+#include "lattice/planes.h"
+#include "lattice/snap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr double nearest_dp = 0.75;
+
+/// Equal intervals of at most dp; a length that is a multiple but for rounding keeps its number.
+int interval_count(double length, double dp)
+{
+    return static_cast<int>(std::ceil(length / dp - 1e-6));
+}
+
+/// One of n intervals of a vector, in GenCase's arithmetic.
+Vec3 interval(const Vec3& whole, int n)
+{
+    const double length = norm(whole);
+    return n == 0 || length == 0 ? Vec3{} : whole * (length / n / length);
+}
+
+void check_spacing(const std::vector<Vec3>& steps, double dp)
+{
+    double least = HUGE_VAL;
+    for (const Vec3& step : steps) least = std::min(least, norm(step));
+    if (least < nearest_dp * dp * (1 - 1e-9))
+        throw GeometryError(fmt::format(
+            "its particles would be {:g} dp apart, setfrdrawmode needs at least 0.75 dp (sides "
+            "between 1 and 1.5 dp, 2 and 2.25 dp or below 0.75 dp are not possible)",
+            least / dp));
+}
+
+/// Points of a ring that starts at `first` (a unit vector) and turns towards `second`.
+void add_ring(const Vec3& center, const Vec3& first, const Vec3& second, double radius, double dp,
+              std::vector<Vec3>& out)
+{
+    const int n = static_cast<int>(std::ceil(2 * std::numbers::pi * radius / dp));
+    for (int i = 0; i < n; ++i)
+    {
+        const double angle = 2 * std::numbers::pi / n * i;
+        out.push_back(center + first * (radius * std::cos(angle)) +
+                      second * (radius * std::sin(angle)));
+    }
+}
+
+/// The ring at the top pole has a radius of rounding size and so one point, that at the bottom pole
+/// has radius 0 and none.
+void add_shell(const Vec3& center, double radius, double dp, std::vector<Vec3>& out)
+{
+    const int m = 2 * static_cast<int>(std::ceil(std::numbers::pi * radius / (2 * dp)));
+    for (int k = 1; k <= m; ++k)
+    {
+        const double polar = std::numbers::pi / m * k;
+        const Vec3 middle{center.x, center.y, center.z - radius * std::cos(polar)};
+        add_ring(middle, {1, 0, 0}, {0, 1, 0}, radius * std::sin(polar), dp, out);
+    }
+}
+
+void add_sphere(const Vec3& center, double radius, DrawMode mode, double dp, std::vector<Vec3>& out)
+{
+    if (radius <= nearest_dp * dp)
+    {
+        out.push_back(center);
+        return;
+    }
+    const int n = interval_count(radius, dp);
+    const int first = mode == DrawMode::Face ? n : 1;
+    const int last = mode == DrawMode::Solid ? n - 1 : n;
+    for (int k = first; k <= last; ++k) add_shell(center, radius / n * k, dp, out);
+}
+
+/// Where the rings of a cylinder start, square to its axis (13 axes along coordinates and
+/// diagonals, and 42 oblique ones in GenCase).
+Vec3 ring_start(const Vec3& axis)
+{
+    if (axis.x == 0 && axis.y == 0) return {axis.z > 0 ? 1.0 : -1.0, 0, 0};
+    const Vec3 start = axis.x == 0 ? Vec3{0, -axis.z, axis.y} : Vec3{-axis.z, 0, axis.x};
+    return start * (1 / norm(start));
+}
+
+struct CylinderParts
+{
+    std::array<bool, 3> faces{};
+    bool has_inside = false;
+    bool has_axis = false; ///< the points on the axis of inner discs too
+};
+
+void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderParts& parts,
+                  double dp, std::vector<Vec3>& out)
+{
+    const Vec3 whole = p1 - p0;
+    const Vec3 axis = whole * (1 / norm(whole));
+    const int discs = std::max(1, interval_count(norm(whole), dp));
+    const int rings = std::max(1, interval_count(radius, dp));
+    const Vec3 step = interval(whole, discs);
+    const Vec3 first = ring_start(axis);
+    const Vec3 second = cross(axis, first);
+    for (int d = 0; d <= discs; ++d)
+    {
+        const bool is_end = d == 0 || d == discs;
+        const bool has_cover = (d == 0 && parts.faces[0]) || (d == discs && parts.faces[1]);
+        const Vec3 center = p0 + step * static_cast<double>(d);
+        if (has_cover || parts.has_axis) out.push_back(center);
+        for (int k = 1; k <= rings; ++k)
+            if (has_cover || (k == rings ? parts.faces[2] : parts.has_inside && !is_end))
+                add_ring(center, first, second, radius / rings * k, dp, out);
+    }
+}
+
+} // namespace
+
+std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp)
+{
+    std::vector<Vec3> out;
+    const int n = static_cast<int>(std::floor(norm(to - from) / dp + 0.5));
+    const Vec3 step = interval(to - from, n);
+    for (int i = 0; n > 0 && i <= n; ++i) out.push_back(from + step * static_cast<double>(i));
+    return out;
+}
+
+std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
+                                     double dp)
+{
+    const int n = interval_count(norm(first - corner), dp);
+    const int m = interval_count(norm(last - corner), dp);
+    const Vec3 u = interval(first - corner, n);
+    const Vec3 v = interval(last - corner, m);
+    check_spacing({u, v, u + v, u - v}, dp);
+    std::vector<Vec3> out;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= m; ++j)
+            out.push_back(corner + u * static_cast<double>(i) + v * static_cast<double>(j));
+    return out;
+}
+
+std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid)
+{
+    const auto& [a, b, c] = corners;
+    Vec3 normal = cross(b - a, c - a);
+    if (norm(normal) == 0) return {};
+    normal = normal / norm(normal);
+    const double level = dot(normal, grid.origin) - dot(normal, a);
+    const Vec3 foot = grid.origin - normal * level;
+
+    // The sign of both axes decides how positions are rounded.
+    Vec3 u{1, 0, 0};
+    const double flat = std::sqrt(normal.z * normal.z + normal.x * normal.x);
+    if (flat > 1e-12) u = {normal.z / flat, 0, -normal.x / flat};
+    if (u.x < 0 || (u.x == 0 && u.z < 0)) u = u * -1.0;
+    const bool is_turned = normal.x + normal.y + normal.z < 0;
+    Vec3 v = cross(is_turned ? normal * -1.0 : normal, u);
+    v = v / norm(v);
+
+    // Planes through the sides, square to the triangle.
+    std::array<Plane, 3> sides;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        const Vec3 inward = cross(normal, corners[(k + 1) % 3] - corners[k]);
+        sides[k].normal = inward / norm(inward);
+        sides[k].offset = -dot(sides[k].normal, corners[k]);
+    }
+    const auto limits = [&](const Vec3& axis)
+    {
+        std::array<double, 3> at{};
+        for (std::size_t k = 0; k < 3; ++k) at[k] = dot(corners[k] - grid.origin, axis) / grid.dp;
+        const auto [low, high] = std::minmax_element(at.begin(), at.end());
+        return std::pair(std::floor(*low), std::ceil(*high));
+    };
+    const auto [u_begin, u_end] = limits(u);
+    const auto [v_begin, v_end] = limits(v);
+    const Vec3 start = foot + u * (grid.dp * u_begin) + v * (grid.dp * v_begin);
+    std::vector<Vec3> out;
+    for (double i = 0; i <= u_end - u_begin; ++i)
+    {
+        const Vec3 column = start + u * (grid.dp * i);
+        for (double j = 0; j <= v_end - v_begin; ++j)
+        {
+            const Vec3 p = column + v * (grid.dp * j);
+            if (std::all_of(sides.begin(), sides.end(),
+                            [&](const Plane& side) { return side.value(p) >= 0; }))
+                out.push_back(p);
+        }
+    }
+    return out;
+}
+
+std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
+{
+    if (corners.size() == 3) return free_triangle({corners[0], corners[1], corners[2]}, grid);
+    const Vec3 fourth = corners[0] + (corners[2] - corners[1]);
+    if (norm(fourth - corners[3]) <= 0.05 * grid.dp)
+        return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
+    std::vector<Vec3> out = free_triangle({corners[0], corners[1], corners[2]}, grid);
+    const std::vector<Vec3> other = free_triangle({corners[0], corners[2], corners[3]}, grid);
+    out.insert(out.end(), other.begin(), other.end());
+    return out;
+}
+
+std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp)
+{
+    std::array<int, 3> n{};
+    std::array<Vec3, 3> step;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        n[k] = interval_count(norm(neighbours[k] - corner), dp);
+        step[k] = interval(neighbours[k] - corner, n[k]);
+    }
+    check_spacing({step[0], step[1], step[2]}, dp);
+    std::vector<Vec3> out;
+    for (int i = 0; i <= n[0]; ++i)
+        for (int j = 0; j <= n[1]; ++j)
+            for (int k = 0; k <= n[2]; ++k)
+                out.push_back(corner + step[0] * static_cast<double>(i) +
+                              step[1] * static_cast<double>(j) + step[2] * static_cast<double>(k));
+    return out;
+}
+
+std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
+{
+    std::vector<Vec3> out;
+    const auto add = [&](const std::vector<Vec3>& corners)
+    {
+        const std::vector<Vec3> points = free_polygon(corners, grid);
+        out.insert(out.end(), points.begin(), points.end());
+    };
+    std::vector<Node> nodes;
+    for (const Vec3& v : figure.vertices) nodes.push_back(snap(v, grid));
+    for (const FigureFace& face : figure.faces)
+    {
+        if (!face.is_visible) continue;
+        if (face.triangles.empty() && face.cut.empty() && face.vertices.size() <= 4)
+        {
+            std::vector<Vec3> corners;
+            for (const std::uint32_t v : face.vertices) corners.push_back(figure.vertices[v]);
+            add(corners);
+            continue;
+        }
+        for (const auto& t : face_triangles(figure, face, nodes, grid))
+            add({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
+    }
+    return out;
+}
+
+std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp)
+{
+    std::vector<Vec3> out;
+    for (const double layer : op.layers_dp)
+        add_sphere(op.center, op.radius + layer * dp, DrawMode::Face, dp, out);
+    if (op.layers_dp.empty()) add_sphere(op.center, op.radius, mode, dp, out);
+    return out;
+}
+
+std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
+{
+    std::vector<Vec3> out;
+    const Vec3 axis = (op.p1 - op.p0) * (1 / norm(op.p1 - op.p0));
+    for (const double layer : op.layers_dp)
+    {
+        const Vec3 away = axis * (layer * dp);
+        add_cylinder(op.is_visible[0] ? op.p0 - away : op.p0,
+                     op.is_visible[1] ? op.p1 + away : op.p1, op.radius + layer * dp,
+                     {op.is_visible, false, false}, dp, out);
+    }
+    if (!op.layers_dp.empty()) return out;
+    const bool fills =
+        mode != DrawMode::Face && std::all_of(op.is_visible.begin(), op.is_visible.end(),
+                                              [](bool visible) { return visible; });
+    CylinderParts parts{op.is_visible, fills, fills && mode == DrawMode::Full};
+    if (fills && mode == DrawMode::Solid) parts.faces = {false, false, false};
+    add_cylinder(op.p0, op.p1, op.radius, parts, dp, out);
+    return out;
+}
+
+} // namespace fppg

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/lattice.h"
+
+#include <array>
+#include <vector>
+
+namespace fppg
+{
+
+/// The places of particles that `setfrdrawmode auto="true"` draws off the lattice, in GenCase's
+/// order of drawing, before clips and the limits of the domain.
+///
+/// Found by experiment with GenCase v5.4.354; the arithmetic is the one that gives its positions
+/// to the last bit (lines and quads 24 of 24 random ones), since particles of nearly the same x
+/// change places in the ids otherwise.
+
+/// A segment in floor(L / dp + 0.5) equal intervals, both ends included; nothing when it is
+/// shorter than dp / 2.
+std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp);
+
+/// A parallelogram in ceil(L / dp) equal intervals a side, all sides included.
+///
+/// throws  GeometryError when neighbours would be nearer than 0.75 dp ("too sharp"), which GenCase
+///         refuses too
+std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
+                                     double dp);
+
+/// Points of a square grid in the plane of the triangle that lie in it or on its sides. The grid
+/// has the spacing dp and goes through the foot of the lattice's origin on the plane; one of its
+/// axes has no y.
+std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid);
+
+/// Three corners as free_triangle(), four as free_parallelogram() or, where the fourth is more
+/// than 0.05 dp away from making one, as the triangles (0, 1, 2) and (0, 2, 3).
+std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid);
+
+/// A parallelepiped by a corner and its three neighbours, ceil(L / dp) equal intervals an edge.
+///
+/// throws  GeometryError as free_parallelogram()
+std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp);
+
+/// The faces of a figure that are not hidden, one after the other.
+std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid);
+
+/// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
+/// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
+/// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on.
+/// The top pole is one of them, the bottom pole is left out, as GenCase leaves it out. Up to R =
+/// 0.75 dp the centre alone. Layers are shells of radius R + layer * dp.
+std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp);
+
+/// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with
+/// n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end discs, the tube is the ring
+/// k = n of every disc; solid mode takes the inner rings of the inner discs without the axis, full
+/// mode everything. Layers move the tube
+/// and the visible covers outwards by layer * dp.
+std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp);
+
+} // namespace fppg

@@ -1,0 +1,98 @@
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/lattice.h"
+
+#include "helpers/case_text.h"
+
+#include <gtest/gtest.h>
+
+namespace fppg
+{
+namespace
+{
+
+/// The field of a case (dp 0.1, first node at -0.5) that draws `commands` with mkbound 0 under
+/// setfrdrawmode.
+RunField field_of(const std::string& commands, int threads = 2)
+{
+    const test::TemporaryFolder folder;
+    test::CaseText text;
+    text.mainlist =
+        "<setdrawmode mode=\"full\" /><setfrdrawmode auto=\"true\" />"
+        "<setmkbound mk=\"0\" />" +
+        commands;
+    test::write_text(folder / "Case_Def.xml", text.text());
+    LatticeReport report;
+    return generate_lattice(read_case(folder / "Case_Def.xml", {}), threads, {}, report);
+}
+
+std::uint64_t node_particles(const RunField& field)
+{
+    std::uint64_t n = 0;
+    for (const auto& slab : field.slabs)
+        for (const Run& run : slab)
+            if ((run.mk & wall_zone_bit) == 0) n += run.z_end - run.z_begin;
+    return n;
+}
+
+std::string point(double x)
+{
+    return "<drawpoint x=\"" + std::to_string(x) + "\" y=\"0.1\" z=\"0.1\" />";
+}
+
+// The numbers are those of GenCase v5.4.354.
+TEST(FreeDraw, KeepsTheTruePlaceOfAPoint)
+{
+    const RunField field = field_of(point(0.13));
+    ASSERT_EQ(field.walls.volume.size(), 1u);
+    EXPECT_DOUBLE_EQ(field.walls.volume.positions[0].x, 0.13);
+    EXPECT_EQ(node_particles(field), 0u);
+}
+
+TEST(FreeDraw, LeavesTheLastOfPointsThatAreTooNear)
+{
+    const RunField field = field_of(point(0.1) + point(0.16) + point(0.22));
+    ASSERT_EQ(field.walls.volume.size(), 1u);
+    EXPECT_DOUBLE_EQ(field.walls.volume.positions[0].x, 0.22);
+}
+
+TEST(FreeDraw, GivesWayToALaterNodeOfAnotherMkOnly)
+{
+    const std::string lattice = "<setfrdrawmode auto=\"false\" />";
+    const RunField other = field_of(point(0.13) + lattice + "<setmkbound mk=\"1\" />" + point(0.1));
+    EXPECT_EQ(other.walls.volume.size(), 0u);
+    EXPECT_EQ(node_particles(other), 1u);
+    const RunField same = field_of(point(0.13) + lattice + point(0.1));
+    EXPECT_EQ(same.walls.volume.size(), 1u);
+    EXPECT_EQ(node_particles(same), 0u);
+}
+
+TEST(FreeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
+{
+    const RunField field =
+        field_of(point(0.13) + "<setmkbound mk=\"1\" />" + point(0.23) +
+                 "<setfrdrawmode auto=\"false\" /><setmkbound mk=\"2\" />" + point(0.2));
+    EXPECT_EQ(field.walls.volume.size(), 0u);
+    EXPECT_EQ(node_particles(field), 1u);
+}
+
+TEST(FreeDraw, RefusesABoxWhoseParticlesWouldBeTooNear)
+{
+    EXPECT_THROW(field_of(R"(<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" />)"
+                          R"(<size x="0.21" y="0.1" z="0.1" /></drawbox>)"),
+                 CaseError);
+}
+
+TEST(FreeDraw, IsTheSameWithOneAndEightThreads)
+{
+    const std::string sphere =
+        R"(<drawsphere radius="0.37"><point x="0.31" y="0.52" z="0.47" /></drawsphere>)";
+    const RunField one = field_of(sphere, 1);
+    const RunField eight = field_of(sphere, 8);
+    EXPECT_GT(one.walls.volume.size(), 200u);
+    EXPECT_EQ(one.walls.volume.positions, eight.walls.volume.positions);
+    EXPECT_EQ(one.slabs, eight.slabs);
+}
+
+} // namespace
+} // namespace fppg
