@@ -6,6 +6,7 @@
 #include "casedef/initials.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
+#include "casedef/patterns.h"
 #include "casedef/program.h"
 #include "casedef/variable_commands.h"
 #include "casedef/xml_document.h"
@@ -55,7 +56,9 @@ public:
         apply_formulas();
         set_case_variables();
 
-        ProgramRunner program(def_, commands_, read_);
+        PatternTable patterns;
+        if (const Element* e = casedef.find_child("patterns")) patterns = read_patterns(*e, read_);
+        ProgramRunner program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
         evaluate_parameters();

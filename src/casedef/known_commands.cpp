@@ -75,6 +75,10 @@ constexpr auto built = std::to_array<std::string_view>({"abort",
                                                         "setdrawmode",
                                                         "setfrdrawmode",
                                                         "setlinebegin",
+                                                        "setmkbackbound",
+                                                        "setmkbackclear",
+                                                        "setmkbackfluid",
+                                                        "setmkbackvoid",
                                                         "setmkbound",
                                                         "setmkfluid",
                                                         "setmknextauto",
@@ -82,6 +86,7 @@ constexpr auto built = std::to_array<std::string_view>({"abort",
                                                         "setmknextfluid",
                                                         "setmkvoid",
                                                         "setnormalinvert",
+                                                        "setpattern",
                                                         "setshapemode",
                                                         "setvar",
                                                         "setvarstr",
@@ -92,8 +97,7 @@ constexpr auto built = std::to_array<std::string_view>({"abort",
                                                         "varssave"});
 
 constexpr auto planned = std::to_array<std::string_view>(
-    {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout", "setmkbackbound",
-     "setmkbackclear", "setmkbackfluid", "setmkbackvoid", "setpattern"});
+    {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout"});
 
 } // namespace
 

@@ -17,8 +17,9 @@ constexpr std::size_t max_commands = 10'000'000;
 
 } // namespace
 
-ProgramRunner::ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read)
-    : def_(def), variables_(variables), read_(read)
+ProgramRunner::ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read,
+                             PatternTable patterns)
+    : def_(def), variables_(variables), read_(read), patterns_(std::move(patterns))
 {
 }
 

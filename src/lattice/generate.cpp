@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
+#include "lattice/draw_pattern.h"
 #include "lattice/flood.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
@@ -139,14 +140,33 @@ private:
                      [&](std::size_t x) { paint_slab(x, nodes[x], keeps_walls); });
     }
 
-    /// Stops with a message where the machine would start to swap or kill the process.
+    /// Paints through the pattern.
     void paint_slab(std::size_t x, const Spans& spans, bool keeps_walls = false)
+    {
+        if (!state().pattern || std::holds_alternative<RedrawNearOp>(op_->what))
+        {
+            paint_slab(x, spans, state().mk, keeps_walls);
+            return;
+        }
+        const PatternSplit split =
+            split_by_pattern(*state().pattern, spans, static_cast<std::uint32_t>(x));
+        paint_slab(x, split.drawn, state().mk, keeps_walls);
+        const bool is_fill = std::holds_alternative<FillOp>(op_->what);
+        if (state().mk_back || is_fill)
+        {
+            const MkValue back = state().mk_back.value_or(MkValue{});
+            paint_slab(x, split.left_out, back, keeps_walls && back.kind == MkKind::Bound);
+        }
+    }
+
+    /// Stops with a message where the machine would start to swap or kill the process.
+    void paint_slab(std::size_t x, const Spans& spans, const MkValue& mk, bool keeps_walls)
     {
         std::vector<Run>& slab = field_.slabs[x];
         const std::size_t before = slab.size();
-        const Spans zone = walls_.paint_over(x, spans, state().mk.mk, keeps_walls);
-        paint(slab, spans, state().mk.mk);
-        if (!zone.empty()) paint(slab, zone, state().mk.mk | wall_zone_bit);
+        const Spans zone = walls_.paint_over(x, spans, mk.mk, keeps_walls);
+        paint(slab, spans, mk.mk);
+        if (!zone.empty()) paint(slab, zone, mk.mk | wall_zone_bit);
         const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
         if (runs > run_limit_ && runs < UINT64_MAX / 2)
             throw CaseError(
@@ -173,6 +193,12 @@ private:
             const std::vector<ShapeMesh> shapes =
                 shape_meshes(op, file != nullptr ? &mesh(*file).soup : nullptr, grid().dp);
             if (shapes.empty()) return false;
+            if (state().pattern && state().draw_points)
+                throw GeometryError(
+                    "setpattern leaves nodes of the lattice out, which body-fitted particles "
+                    "cannot "
+                    "follow; draw this shape with a mk that is not body-fitted, or without a "
+                    "pattern");
             std::vector<FittedDraw> walls;
             if (state().draw_points && !lies_in_plane(shapes, grid()))
                 for (const ShapeMesh& shape : shapes) walls.push_back(fit(shape, op, *settings));
