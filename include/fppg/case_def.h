@@ -194,6 +194,8 @@ struct MeshFileOp
     std::string container; ///< the VTM file that names it, or empty
     MeshReading reading;   ///< what the file is, and which of its shapes are drawn
     Transform transform;   ///< scale, rotation and move of the command, then the current matrix
+    /// `<clipdomain>`: the surface is cut at the domain grown by so many metres on all sides.
+    std::optional<double> clip_resize;
     bool autofill = false;
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
@@ -201,6 +203,18 @@ struct MeshFileOp
     double depth_min = 0;     ///< metres
     double depth_max = 0;     ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
+};
+
+/// `drawwave`: the water below a solitary wave, from the bottom of a box up to
+/// z0 + depth + h_max / cosh^2(sqrt(3 h_max / (4 depth^3)) (x - x0)) and not beyond the box.
+struct WaveOp
+{
+    Vec3 corner;      ///< lowest corner of the box, before snapping
+    Vec3 size;        ///< of the box, not negative
+    double depth = 0; ///< metres, above 0
+    double h_max = 0; ///< height of the crest above still water, metres
+    double x0 = 0;    ///< of the crest
+    double z0 = 0;    ///< of the bed
 };
 
 /// Which nodes a fill may enter (rules F2, F3). `enters[k]` is for kind k; a number narrows it.
@@ -268,8 +282,9 @@ struct ShapeOutOp
     std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
 };
 
-using DrawVariant = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
-                                 MeshFileOp, FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp>;
+using DrawVariant =
+    std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, MeshFileOp, WaveOp,
+                 FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp>;
 
 /// One executed command.
 struct DrawOp

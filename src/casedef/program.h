@@ -66,6 +66,7 @@ private:
                                              MkKind kind) const;
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     void draw_box(const Element& e);
+    void draw_wave(const Element& e);
     void draw_mesh_file(const Element& e);
     void draw_vtm_file(const Element& e, MeshFileOp op);
     void draw_bathymetry(const Element& e);

@@ -132,7 +132,6 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     op.depth_min = 0;
     op.depth_max = 2 * def_.grid.dp;
     op.reverse = read_.flag_or(e, "reverse", false);
-    if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
     if (const Element* depth = e.find_child("depth"))
     {
         const auto low = read_.number_if(*depth, "depthmin");
@@ -168,7 +167,8 @@ void ProgramRunner::draw_mesh_file(const Element& e)
             op.fill_inside = true;
         }
     }
-    if (e.find_child("clipdomain") != nullptr) read_.fail_unsupported(e, "<clipdomain>");
+    if (const Element* clip = e.find_child("clipdomain"))
+        op.clip_resize = read_.number_or(*clip, "resize", 0);
     if (const Element* select = e.find_child("polyselec"))
     {
         if (op.reading.format != MeshFormat::Vtk)

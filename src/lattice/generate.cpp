@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
+#include "lattice/domain_clip.h"
 #include "lattice/draw_pattern.h"
 #include "lattice/flood.h"
 #include "lattice/plane_shapes.h"
@@ -15,6 +16,7 @@
 #include "lattice/shape_mesh.h"
 #include "lattice/solids.h"
 #include "lattice/wall_painter.h"
+#include "lattice/wave_region.h"
 
 #include <fmt/format.h>
 
@@ -187,6 +189,20 @@ private:
             state().mk.kind == MkKind::Bound ? fit_settings(def_.fit, state().mk.mk) : nullptr;
         if (settings == nullptr || state().mode == DrawMode::Wire) return false;
         const auto* file = std::get_if<MeshFileOp>(&op.what);
+        if (std::holds_alternative<WaveOp>(op.what))
+            throw GeometryError(
+                fmt::format("{}: it has no surface for body-fitted particles; draw it "
+                            "with a mk that is not body-fitted",
+                            place()));
+        if (file != nullptr && file->clip_resize && !file->advanced)
+            throw GeometryError(fmt::format(
+                "{}: <clipdomain> opens the surface, which body-fitted particles cannot "
+                "follow; they end at the domain without it",
+                place()));
+        if (file != nullptr && file->advanced && file->autofill)
+            throw GeometryError(fmt::format(
+                "{}: advanced and autofill together are not possible for a body-fitted mk",
+                place()));
         if (file != nullptr && mesh(*file).soup.vertices.empty()) return false;
         try
         {
@@ -288,18 +304,8 @@ private:
     {
         if (state().mode == DrawMode::Wire)
         {
-            std::vector<std::pair<Node, Node>> segments;
-            const auto add = [&](std::uint32_t a, std::uint32_t b)
-            { segments.emplace_back(snap(op.vertices[a], grid()), snap(op.vertices[b], grid())); };
-            for (const FigureFace& face : op.faces)
-                for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
-                    add(face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]);
-            // The wire of a solid box shows the cut between its two prisms (rule S4).
-            if (op.solid == SolidKind::Box)
-            {
-                add(op.solid_vertices[1], op.solid_vertices[3]);
-                add(op.solid_vertices[5], op.solid_vertices[7]);
-            }
+            std::vector<std::pair<Node, Node>> segments = wire_of(op);
+            if (op.part_count > 0) segments = {segments.at(op.part)};
             paint_region(lines_region(segments, grid(), state().constants.line));
             return;
         }
@@ -312,6 +318,30 @@ private:
         if (state().mode == DrawMode::Full || !fills)
             draw_triangles(snapped_triangles(op, grid(), true));
         if (fills) paint_region(solid_of(op));
+    }
+
+    /// The sides of the visible triangles and quads, in this order: so the wire of a solid box
+    /// shows the cut between its two prisms (rule S4).
+    std::vector<std::pair<Node, Node>> wire_of(const FigureOp& op) const
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        FigureOp one = op;
+        for (const FigureFace& face : op.faces)
+        {
+            if (!face.is_visible) continue;
+            if (face.triangles.empty() && face.cut.empty())
+            {
+                const std::vector<std::uint32_t>& v = face.vertices;
+                for (std::size_t i = 0; i < v.size(); ++i)
+                    segments.emplace_back(snap(op.vertices[v[i]], grid()),
+                                          snap(op.vertices[v[(i + 1) % v.size()]], grid()));
+                continue;
+            }
+            one.faces = {face};
+            for (const SnappedTriangle& t : snapped_triangles(one, grid(), true))
+                segments.insert(segments.end(), {{t.a, t.b}, {t.b, t.c}, {t.c, t.a}});
+        }
+        return segments;
     }
 
     /// One part of a figure, for setmknextauto.
@@ -354,6 +384,8 @@ private:
     void draw(const SphereOp& op) { paint_region(sphere_region(op, state(), grid())); }
     void draw(const CylinderOp& op) { paint_region(cylinder_region(op, state(), grid())); }
     void draw(const EllipsoidOp& op) { paint_region(ellipsoid_region(op, state(), grid())); }
+
+    void draw(const WaveOp& op) { paint_region(wave_region(op, grid())); }
 
     const MeshFile& mesh(const MeshFileOp& op)
     {
@@ -431,7 +463,49 @@ private:
 
     void draw(const MeshFileOp& op)
     {
+        // GenCase does not heed <clipdomain> with advanced.
+        if (!op.clip_resize || op.advanced)
+            draw_mesh(op, mesh(op));
+        else
+            draw_clipped(op);
+    }
+
+    /// Draws what `<clipdomain>` leaves of a file: its triangles cut at the grown domain.
+    void draw_clipped(const MeshFileOp& op)
+    {
+        if (op.fill_inside)
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: fppg:fill=\"inside\" is not possible together with "
+                                        "<clipdomain>, which opens the surface",
+                                        op_->source.command));
+        Box3 box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            box.min[axis] = def_.case_pos_min[axis] - *op.clip_resize;
+            box.max[axis] = def_.case_pos_max[axis] + *op.clip_resize;
+            if (box.min[axis] >= box.max[axis])
+                throw CaseError(
+                    def_.file, op_->source.line,
+                    fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
+                                "along {}",
+                                op_->source.command, *op.clip_resize, "xyz"[axis]));
+        }
         const MeshFile& file = mesh(op);
+        MeshFile cut;
+        cut.soup = clip_to_box(moved_soup(file.soup, op.transform), box);
+        for (const Vec3& p : file.points) cut.points.push_back(op.transform(p));
+        for (const std::vector<Vec3>& line : file.lines)
+        {
+            cut.lines.emplace_back();
+            for (const Vec3& p : line) cut.lines.back().push_back(op.transform(p));
+        }
+        MeshFileOp moved = op;
+        moved.transform = {};
+        draw_mesh(moved, cut);
+    }
+
+    void draw_mesh(const MeshFileOp& op, const MeshFile& file)
+    {
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
         if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
@@ -456,6 +530,7 @@ private:
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
+            if (op.autofill) autofill(moved, file, op.transform);
             return;
         }
         if (op.fill_inside)

@@ -127,5 +127,68 @@ TEST(Patterns, AreRefusedForBodyFittedShapes)
               std::string::npos);
 }
 
+// -- beaches, extrusions, waves
+// -------------------------------------------------------------------------
+
+std::string beach(const std::string& y, const std::string& mask)
+{
+    std::string out = "<drawbeach" + mask + ">";
+    for (const auto& [x, z] : {std::pair{"0", "0.6"}, {"0", "0"}, {"0.5", "0"}, {"0.9", "0.3"}})
+        out += std::string("<point x=\"") + x + "\" y=\"" + y + "\" z=\"" + z + "\" />";
+    return out + "</drawbeach>";
+}
+
+TEST(Beach, IsFilledWhenItsPointsRunTheRightWayRound)
+{
+    EXPECT_EQ(nodes_of(beach("-0.3", "")), (Counts{{10, 192}}));
+    EXPECT_EQ(nodes_of(beach("0.3", "")), (Counts{{10, 146}}));
+}
+
+TEST(Beach, HidesTheFacesOfItsMask)
+{
+    EXPECT_EQ(nodes_of(beach("-0.3", R"( mask="1 | 2")")), (Counts{{10, 100}}));
+}
+
+std::string extrusion(const std::string& closed, const std::string& layers)
+{
+    return "<drawextrude closed=\"" + closed +
+           R"("><point x="0" y="0" z="1" /><point x="0" y="0" z="0" />)"
+           R"(<point x="1" y="0" z="0" /><extrude x="0" y="0.2" z="0" /><layers vdp=")" +
+           layers + R"(" /></drawextrude>)";
+}
+
+TEST(Extrusion, HasLayersBesideItsPolyline)
+{
+    EXPECT_EQ(nodes_of(extrusion("false", "-1")), (Counts{{10, 69}}));
+    EXPECT_EQ(nodes_of(extrusion("false", "0,1*")), (Counts{{10, 120}}));
+    EXPECT_EQ(nodes_of(extrusion("true", "1")), (Counts{{10, 63}}));
+}
+
+const std::string wave =
+    R"(<drawwave depth="0.4" hmaxwave="0.2" x0="0.5" z0="0"><point x="-0.3" y="0.1" z="0.1" />)"
+    R"(<size x="1.5" y="0.1" z="0.7" /></drawwave>)";
+
+TEST(Wave, FillsItsBoxUpToTheSurface)
+{
+    EXPECT_EQ(nodes_of(wave), (Counts{{10, 150}}));
+}
+
+TEST(Wave, IsRefusedUnderATransformAndForABodyFittedMk)
+{
+    EXPECT_THROW(nodes_of(R"(<move x="1" y="0" z="0" />)" + wave), CaseError);
+    EXPECT_NE(error_when_fitted(wave).find("<drawwave>: it has no surface"), std::string::npos);
+}
+
+// -- clips
+// --------------------------------------------------------------------------------------------
+
+TEST(Clipbox, IsTurnedByItsAngles)
+{
+    EXPECT_EQ(nodes_of(R"(<clipbox><point x="0.2" y="0.2" z="0.2" />
+<size x="0.7" y="0.6" z="0.5" /><angles x="0" y="0" z="30" /></clipbox>)" +
+                       all_nodes),
+              (Counts{{10, 215}}));
+}
+
 } // namespace
 } // namespace fppg
