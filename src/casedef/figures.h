@@ -48,7 +48,8 @@ FigureOp make_polygon(const std::vector<Vec3>& points);
 FigureOp make_beach(const std::vector<Vec3>& points);
 /// The polyline whose swept quads lie `distance` beside those of the given one, on the side of
 /// direction x extrude; corners lie where the shifted sides meet, open ends straight beside the old
-/// ones (rule S8, found by experiment with GenCase v5.4.354).
+/// ones (rule S8, found by experiment with GenCase v5.4.354; where the polyline does not lie in a
+/// plane across `extrude`, GenCase puts the layers elsewhere by about dp).
 std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
                                    bool is_closed, double distance);
 /// Quads that a polyline sweeps along `extrude`.

@@ -132,6 +132,7 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     op.depth_min = 0;
     op.depth_max = 2 * def_.grid.dp;
     op.reverse = read_.flag_or(e, "reverse", false);
+    if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
     if (const Element* depth = e.find_child("depth"))
     {
         const auto low = read_.number_if(*depth, "depthmin");

@@ -251,7 +251,7 @@ bool ProgramRunner::run_transform(const Element& e)
     return true;
 }
 
-/// The angles of a clipbox turn it about its `<point>`, about y, x and z in this order,
+/// The angles of a clipbox turn it about its lowest corner, about y, x and z in this order,
 /// right-handed (found by experiment with GenCase v5.4.354: of the orders, signs and centres tried
 /// only this one fits). clipdomain as a command changes nothing there, which is all that it does
 /// here.
@@ -316,11 +316,16 @@ bool ProgramRunner::run_clip(const Element& e)
         Transform turned = matrix_;
         if (const Element* c = e.find_child("angles"))
         {
+            // Where GenCase puts a turned box that the matrix moves or scales is not known.
+            if (!matrix_.is_identity())
+                read_.fail(*c,
+                           "angles are not possible under a move, rotation or scale, expected "
+                           "<matrixreset> before");
             Transform rotation;
             const Vec3 angles = read_.vec3(*c);
             for (const int axis : {1, 0, 2})
                 rotation = rotation_about_axis(axis, radians(angles[axis])) * rotation;
-            turned = matrix_ * around(box.corner0, rotation);
+            turned = around(low, rotation);
         }
         const auto side = [&](BoxSide which, const Vec3& at, const Vec3& outward)
         {

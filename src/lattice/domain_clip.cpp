@@ -5,9 +5,9 @@
 namespace fppg
 {
 
-TriangleSoup clip_to_box(const TriangleSoup& soup, const Box3& box)
+FigureOp clip_to_box(const TriangleSoup& soup, const Box3& box)
 {
-    TriangleSoup out;
+    FigureOp out;
     std::vector<Vec3> polygon;
     std::vector<Vec3> kept;
     for (std::size_t t = 0; t < soup.size(); ++t)
@@ -37,8 +37,15 @@ TriangleSoup clip_to_box(const TriangleSoup& soup, const Box3& box)
             }
             polygon.swap(kept);
         }
-        for (std::size_t i = 2; i < polygon.size(); ++i)
-            out.vertices.insert(out.vertices.end(), {polygon[0], polygon[i - 1], polygon[i]});
+        if (polygon.size() < 3) continue;
+        FigureFace face;
+        for (const Vec3& p : polygon)
+        {
+            face.vertices.push_back(static_cast<std::uint32_t>(out.vertices.size()));
+            out.vertices.push_back(p);
+        }
+        if (polygon.size() > 4) face.cut = face.vertices;
+        out.faces.push_back(std::move(face));
     }
     return out;
 }

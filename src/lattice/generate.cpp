@@ -199,10 +199,6 @@ private:
                 "{}: <clipdomain> opens the surface, which body-fitted particles cannot "
                 "follow; they end at the domain without it",
                 place()));
-        if (file != nullptr && file->advanced && file->autofill)
-            throw GeometryError(fmt::format(
-                "{}: advanced and autofill together are not possible for a body-fitted mk",
-                place()));
         if (file != nullptr && mesh(*file).soup.vertices.empty()) return false;
         try
         {
@@ -491,17 +487,17 @@ private:
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
         }
         const MeshFile& file = mesh(op);
-        MeshFile cut;
-        cut.soup = clip_to_box(moved_soup(file.soup, op.transform), box);
-        for (const Vec3& p : file.points) cut.points.push_back(op.transform(p));
-        for (const std::vector<Vec3>& line : file.lines)
-        {
-            cut.lines.emplace_back();
-            for (const Vec3& p : line) cut.lines.back().push_back(op.transform(p));
-        }
-        MeshFileOp moved = op;
-        moved.transform = {};
-        draw_mesh(moved, cut);
+        draw_points_and_lines(file, op.transform);
+        const FigureOp cut = clip_to_box(moved_soup(file.soup, op.transform), box);
+        draw(cut);
+        if (!op.autofill) return;
+        TriangleSoup soup;
+        for (const FigureFace& face : cut.faces)
+            for (std::size_t i = 2; i < face.vertices.size(); ++i)
+                for (const std::uint32_t v :
+                     {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
+                    soup.vertices.push_back(cut.vertices[v]);
+        autofill(soup, file, op.transform);
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
@@ -530,7 +526,6 @@ private:
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
-            if (op.autofill) autofill(moved, file, op.transform);
             return;
         }
         if (op.fill_inside)

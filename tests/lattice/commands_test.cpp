@@ -3,6 +3,7 @@
 #include "fppg/lattice.h"
 
 #include "helpers/case_text.h"
+#include "lattice/domain_clip.h"
 
 #include <gtest/gtest.h>
 
@@ -177,6 +178,19 @@ TEST(Wave, IsRefusedUnderATransformAndForABodyFittedMk)
 {
     EXPECT_THROW(nodes_of(R"(<move x="1" y="0" z="0" />)" + wave), CaseError);
     EXPECT_NE(error_when_fitted(wave).find("<drawwave>: it has no surface"), std::string::npos);
+}
+
+// -- surfaces cut at the domain
+// -----------------------------------------------------------------------
+
+TEST(ClipToBox, CutsATriangleIntoTheQuadInside)
+{
+    TriangleSoup soup;
+    soup.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+    const FigureOp cut = clip_to_box(soup, {{-1, -1, -1}, {1, 3, 1}});
+    ASSERT_EQ(cut.faces.size(), 1u);
+    EXPECT_EQ(cut.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 2, 0}}));
+    EXPECT_TRUE(clip_to_box(soup, {{3, 3, 3}, {4, 4, 4}}).faces.empty());
 }
 
 // -- clips
