@@ -49,7 +49,7 @@ FigureOp make_beach(const std::vector<Vec3>& points);
 /// The polyline whose swept quads lie `distance` beside those of the given one, on the side of
 /// direction x extrude; corners lie where the shifted sides meet, open ends straight beside the old
 /// ones (rule S8, found by experiment with GenCase v5.4.354; where the polyline does not lie in a
-/// plane across `extrude`, GenCase puts the layers elsewhere by about dp).
+/// plane across `extrude`, GenCase puts the layers elsewhere).
 std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
                                    bool is_closed, double distance);
 /// Quads that a polyline sweeps along `extrude`.
