@@ -6,6 +6,7 @@
 #include "casedef/initials.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
+#include "casedef/patterns.h"
 #include "casedef/program.h"
 #include "casedef/variable_commands.h"
 #include "casedef/xml_document.h"
@@ -55,7 +56,9 @@ public:
         apply_formulas();
         set_case_variables();
 
-        ProgramRunner program(def_, commands_, read_);
+        PatternTable patterns;
+        if (const Element* e = casedef.find_child("patterns")) patterns = read_patterns(*e, read_);
+        ProgramRunner program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
         evaluate_parameters();
@@ -71,6 +74,11 @@ public:
         if (const Element* e = casedef.find_child("vres"))
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
         read_fit(root, read_, options_.fit, def_);
+        if (!def_.fit.is_empty() &&
+            (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))
+            read_.fail(casedef,
+                       "<lattice> with two particles a node is not possible together with "
+                       "body-fitted walls");
         apply_overrides(def_.casedef);
         for (const Variable& v : variables_.exported())
         {
@@ -147,8 +155,6 @@ private:
         {
             c.lattice_bound = read_.integer(*lattice, "bound", 0, 1000, false);
             c.lattice_fluid = read_.integer(*lattice, "fluid", 0, 1000, false);
-            if (c.lattice_bound != 1 || c.lattice_fluid != 1)
-                read_.fail_unsupported(*lattice, "a lattice other than 1");
         }
         c.gravity = read_.child_vec3(e, "gravity");
         c.rhop0 = read_.child_value(e, "rhop0");
@@ -300,8 +306,8 @@ private:
                  : c.hdp ? *c.hdp * dp
                          : c.coef_h.value_or(1) * std::sqrt(def_.grid.is_2d ? 2.0 : 3.0) * dp;
         const double mass = c.rhop0 * (def_.grid.is_2d ? dp * dp : dp * dp * dp);
-        def_.mass_bound = c.mass_bound.value_or(mass);
-        def_.mass_fluid = c.mass_fluid.value_or(mass);
+        def_.mass_bound = c.mass_bound.value_or(c.lattice_bound == 1 ? mass : mass / 2);
+        def_.mass_fluid = c.mass_fluid.value_or(c.lattice_fluid == 1 ? mass : mass / 2);
     }
 
     void set_case_variables()

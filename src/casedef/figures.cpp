@@ -156,6 +156,40 @@ FigureOp make_polygon(const std::vector<Vec3>& points)
     return polygon;
 }
 
+FigureOp make_beach(const std::vector<Vec3>& points)
+{
+    std::vector<Vec3> both = points;
+    for (Vec3& p : both) p.y = 0;
+    both.insert(both.end(), points.begin(), points.end());
+    return make_prism(both);
+}
+
+std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
+                                   bool is_closed, double distance)
+{
+    const std::size_t n = points.size();
+    // The side from each point to the next.
+    std::vector<Vec3> normals(n);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        const Vec3 normal = cross(points[(i + 1) % n] - points[i], extrude);
+        const double length = norm(normal);
+        if (length > 0) normals[i] = normal / length;
+    }
+    std::vector<Vec3> out = points;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        const bool is_first = !is_closed && i == 0;
+        const bool is_last = !is_closed && i + 1 == n;
+        const Vec3& before = is_first ? normals[i] : normals[(i + n - 1) % n];
+        const Vec3& after = is_last ? before : normals[i];
+        const double sum = 1 + dot(before, after);
+        // A side that turns back on itself has no corner.
+        if (sum > 1e-9) out[i] = points[i] + (before + after) * (distance / sum);
+    }
+    return out;
+}
+
 FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed)
 {
     FigureOp out;
@@ -172,12 +206,27 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
 {
+    if (mode == DrawMode::Wire)
+    {
+        std::uint32_t sides = 0;
+        for (const FigureFace& f : figure.faces)
+        {
+            if (!f.is_visible) continue;
+            if (!f.triangles.empty())
+                sides += 3 * static_cast<std::uint32_t>(f.triangles.size());
+            else
+                sides += f.cut.empty() ? static_cast<std::uint32_t>(f.vertices.size())
+                                       : 3 * (static_cast<std::uint32_t>(f.cut.size()) - 2);
+        }
+        return sides;
+    }
     const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
-    std::uint32_t count = 0;
-    if (fills && figure.solid == SolidKind::Box)
-        count = 4;
-    else if (fills)
-        count = 1;
+    std::uint32_t count = fills ? 1 : 0;
+    if (fills && (figure.solid == SolidKind::Box || figure.solid == SolidKind::Prism))
+    {
+        const auto corners = static_cast<std::uint32_t>(figure.solid_vertices.size() / 2);
+        count = corners - 2 + 2 * (corners - 3);
+    }
     if (fills && mode == DrawMode::Solid) return count;
     for (const FigureFace& f : figure.faces)
     {

@@ -43,12 +43,23 @@ FigureOp make_fan(const std::vector<Vec3>& points);
 FigureOp make_strip(const std::vector<Vec3>& points);
 /// One polygon, cut by least perimeter.
 FigureOp make_polygon(const std::vector<Vec3>& points);
+/// The prism between the plane y = 0 and the points of a closed polygon. Faces: the polygon in the
+/// plane y = 0, the given one, sides in the order of the points (rule S9).
+FigureOp make_beach(const std::vector<Vec3>& points);
+/// The polyline whose swept quads lie `distance` beside those of the given one, on the side of
+/// direction x extrude; corners lie where the shifted sides meet, open ends straight beside the old
+/// ones (rule S8, found by experiment with GenCase v5.4.354; where the polyline does not lie in a
+/// plane across `extrude`, GenCase puts the layers elsewhere).
+std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
+                                   bool is_closed, double distance);
 /// Quads that a polyline sweeps along `extrude`.
 FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed);
 
-/// The parts that setmknextauto tells apart in a draw mode other than wire: those of the inside (a
-/// box has four: two prisms and the faces between them), then triangles, and quads as one (found by
-/// experiment with GenCase v5.4.354 on boxes, prisms, pyramids, quads, strips and polygons).
+/// The parts that setmknextauto tells apart: those of the inside (a box has four: two prisms and
+/// the faces between them; a prism of n corners n - 2 prisms and 2 (n - 3) faces between them),
+/// then triangles, and quads as one; in wire mode the sides of those triangles and quads, one by
+/// one (found by experiment with GenCase v5.4.354 on boxes, prisms, pyramids, quads, strips,
+/// polygons and extrusions).
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
 
 /// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).

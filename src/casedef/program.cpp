@@ -17,8 +17,9 @@ constexpr std::size_t max_commands = 10'000'000;
 
 } // namespace
 
-ProgramRunner::ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read)
-    : def_(def), variables_(variables), read_(read)
+ProgramRunner::ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read,
+                             PatternTable patterns)
+    : def_(def), variables_(variables), read_(read), patterns_(std::move(patterns))
 {
 }
 
@@ -151,20 +152,11 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         for (const auto& segment : lines->segments) add_part(LinesOp{{segment}});
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
-        if (state_.mode == DrawMode::Wire)
-            read_.fail_unsupported(e, "setmknextauto in draw mode wire");
-        if (figure->solid == SolidKind::Prism && figure->solid_vertices.size() > 6 &&
-            state_.mode != DrawMode::Face)
-            read_.fail_unsupported(e, "setmknextauto for a solid prism of more than three corners");
         figure->part_count = count_parts(*figure, state_.mode);
         for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
     }
     else
-    {
-        if (e.find_child("layers") != nullptr)
-            read_.fail_unsupported(e, "setmknextauto with layers");
-        add_part(std::move(what));
-    }
+        add_part(std::move(what)); // all layers of a round shape are one part
 }
 
 void ProgramRunner::shape_out(const Element& e)

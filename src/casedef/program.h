@@ -3,9 +3,11 @@
 #include "fppg/case_def.h"
 
 #include "casedef/attributes.h"
+#include "casedef/patterns.h"
 #include "casedef/variable_commands.h"
 
 #include <map>
+#include <tuple>
 
 namespace fppg
 {
@@ -16,16 +18,21 @@ namespace fppg
 /// - every transform multiplies the current matrix on the right: the one written last acts first.
 /// Points
 ///   of draws, fills, clips and redraws all go through it
-/// - statesave and stateload keep mk, matrix, draw mode, draw constants, box limit mode and what is
-///   active, but not the clips; loading from an empty stack does nothing
-/// - resetdraw forgets what was drawn and the whole state, matrix and clips included
+/// - statesave and stateload do what mksave, matrixsave, dpctessave and their loads do, on the same
+///   stacks, and keep draw mode, box limit mode and what is active besides, but not the
+///   clips; loading from an empty stack does nothing
+/// - mksave and mkload keep mk, mkback and pattern
+/// - resetdraw forgets what was drawn and the whole state, matrix, clips and stacks included, but
+///   not the pattern
 /// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is
 /// no
 ///   bound one; setmknextfluid likewise
 class ProgramRunner
 {
 public:
-    ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read);
+    /// patterns  by their names in small letters
+    ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read,
+                  PatternTable patterns);
 
     /// Runs `<mainlist>` of `<commands>`; fills ops, list_log and warnings of the case.
     void run(const Element& commands);
@@ -41,6 +48,7 @@ private:
     bool run_draw(const Element& e);
     bool run_fill_or_redraw(const Element& e);
 
+    MkValue mk_value(const Element& e, MkKind kind, int mk_type) const;
     void set_mk(const Element& e, MkKind kind, int mk_type);
     void add(const Element& e, DrawVariant what);
     void add_whole(const Element& e, DrawVariant what);
@@ -58,6 +66,7 @@ private:
                                              MkKind kind) const;
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     void draw_box(const Element& e);
+    void draw_wave(const Element& e);
     void draw_mesh_file(const Element& e);
     void draw_vtm_file(const Element& e, MeshFileOp op);
     void draw_bathymetry(const Element& e);
@@ -65,23 +74,20 @@ private:
     void read_depth(const Element& e, MeshFileOp& op) const;
     void shape_out(const Element& e);
 
-    struct Saved
-    {
-        DrawState state;
-        Transform matrix;
-    };
-
     CaseDef& def_;
     VariableCommands& variables_;
     const AttributeReader& read_;
+    PatternTable patterns_;
     std::map<std::string, const Element*> lists_;
     DrawState state_;
     std::shared_ptr<const DrawState> shared_state_; ///< of state_, empty after a change
     Transform matrix_;
     Vec3 line_begin_;
-    std::vector<Saved> saved_states_;
+    std::vector<DrawState> saved_states_; ///< without mks, pattern, constants, clips
     std::vector<Transform> saved_matrices_;
-    std::vector<MkValue> saved_mks_;
+    /// mk, mk_back, pattern
+    std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
+        saved_mks_;
     std::vector<DrawConstants> saved_constants_;
     std::array<bool, 2> shape_forms_{true, false};        ///< actual, dp
     std::array<bool, 3> shape_kinds_{false, true, false}; ///< void, bound, fluid

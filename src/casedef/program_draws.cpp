@@ -149,6 +149,28 @@ void ProgramRunner::draw_box(const Element& e)
     }
 }
 
+/// GenCase changes the size of the box in ways of its own where the current matrix moves or turns
+/// it (found by experiment with v5.4.354), so that none is possible here.
+void ProgramRunner::draw_wave(const Element& e)
+{
+    if (!matrix_.is_identity())
+        read_.fail(e,
+                   "a move, rotation or scale is not possible for it, expected <matrixreset> "
+                   "before it");
+    WaveOp op;
+    op.corner = read_.child_vec3(e, "point");
+    op.size = read_.child_vec3(e, "size");
+    if (op.size.x < 0 || op.size.y < 0 || op.size.z < 0)
+        read_.fail(*e.find_child("size"), "negative values are not possible here");
+    op.depth = read_.number(e, "depth");
+    op.h_max = read_.number(e, "hmaxwave");
+    if (!(op.depth > 0)) read_.fail(e, fmt::format("depth={:g}, expected more than 0", op.depth));
+    if (!(op.h_max >= 0)) read_.fail(e, fmt::format("hmaxwave={:g}, expected 0 or more", op.h_max));
+    op.x0 = read_.number(e, "x0");
+    op.z0 = read_.number(e, "z0");
+    add(e, op);
+}
+
 bool ProgramRunner::run_draw(const Element& e)
 {
     const std::string& name = e.name;
@@ -211,6 +233,15 @@ bool ProgramRunner::run_draw(const Element& e)
         hide_faces(op, mask_of(e));
         add(e, std::move(op));
     }
+    else if (name == "drawbeach")
+    {
+        FigureOp op = make_beach(read_.points(e));
+        if (op.vertices.size() < 6)
+            read_.fail(e,
+                       fmt::format("has {} points, expected at least 3", op.vertices.size() / 2));
+        hide_faces(op, mask_of(e));
+        add_figure(e, std::move(op));
+    }
     else if (name == "drawpyramid")
     {
         FigureOp op = make_pyramid(transformed_points(e, 4, many));
@@ -219,9 +250,14 @@ bool ProgramRunner::run_draw(const Element& e)
     }
     else if (name == "drawextrude")
     {
-        if (e.find_child("layers") != nullptr) read_.fail_unsupported(e, "<layers>");
-        add_figure(e, make_extrusion(read_.points(e), read_.child_vec3(e, "extrude"),
-                                     read_.flag_or(e, "closed", false)));
+        const Vec3 extrude = read_.child_vec3(e, "extrude");
+        const bool is_closed = read_.flag_or(e, "closed", false);
+        const std::vector<double> layers = layers_of(e);
+        for (const double layer : layers)
+            add_figure(e, make_extrusion(shifted_polyline(read_.points(e), extrude, is_closed,
+                                                          layer * def_.grid.dp),
+                                         extrude, is_closed));
+        if (layers.empty()) add_figure(e, make_extrusion(read_.points(e), extrude, is_closed));
     }
     else if (name == "drawsphere")
     {
@@ -256,6 +292,8 @@ bool ProgramRunner::run_draw(const Element& e)
         if (state_.mode != DrawMode::Wire) // draws nothing in wire mode
             add(e, EllipsoidOp{points[0], points[1], read_.number(e, "radius")});
     }
+    else if (name == "drawwave")
+        draw_wave(e);
     else if (name == "drawbathymetry")
         draw_bathymetry(e);
     else if (name.starts_with("drawfile"))

@@ -168,7 +168,8 @@ void ProgramRunner::draw_mesh_file(const Element& e)
             op.fill_inside = true;
         }
     }
-    if (e.find_child("clipdomain") != nullptr) read_.fail_unsupported(e, "<clipdomain>");
+    if (const Element* clip = e.find_child("clipdomain"))
+        op.clip_resize = read_.number_or(*clip, "resize", 0);
     if (const Element* select = e.find_child("polyselec"))
     {
         if (op.reading.format != MeshFormat::Vtk)

@@ -12,7 +12,7 @@
 namespace fppg
 {
 
-void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
+MkValue ProgramRunner::mk_value(const Element& e, MkKind kind, int mk_type) const
 {
     const int count = kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
     if (kind != MkKind::Void && (mk_type < 0 || mk_type >= count))
@@ -25,7 +25,12 @@ void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
     value.mk_type = static_cast<std::uint16_t>(mk_type);
     if (kind == MkKind::Bound) value.mk = static_cast<std::uint16_t>(mk_type + def_.mk_bound_first);
     if (kind == MkKind::Fluid) value.mk = static_cast<std::uint16_t>(mk_type + def_.mk_fluid_first);
-    state_.mk = value;
+    return value;
+}
+
+void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
+{
+    state_.mk = mk_value(e, kind, mk_type);
     shared_state_.reset();
 }
 
@@ -42,6 +47,12 @@ bool ProgramRunner::run_state_command(const Element& e)
         if (stack.empty()) return;
         target = stack.back();
         stack.pop_back();
+    };
+    const auto pop_mk = [&]
+    {
+        std::tuple all{state_.mk, state_.mk_back, state_.pattern};
+        pop(saved_mks_, all);
+        std::tie(state_.mk, state_.mk_back, state_.pattern) = std::move(all);
     };
     if (name == "setmkvoid")
         set_mk(e, MkKind::Void, 0);
@@ -107,27 +118,56 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "dpctesreset")
         state_.constants = {};
     else if (name == "mksave")
-        saved_mks_.push_back(state_.mk);
+        saved_mks_.emplace_back(state_.mk, state_.mk_back, state_.pattern);
     else if (name == "mkload")
-        pop(saved_mks_, state_.mk);
+        pop_mk();
+    else if (name == "setmkbackvoid")
+        state_.mk_back = MkValue{};
+    else if (name == "setmkbackfluid" || name == "setmkbackbound")
+        state_.mk_back = mk_value(e, name == "setmkbackfluid" ? MkKind::Fluid : MkKind::Bound,
+                                  read_.integer(e, "mk", 0, 65000, false));
+    else if (name == "setmkbackclear")
+        state_.mk_back.reset();
+    else if (name == "setpattern")
+    {
+        const auto found = patterns_.find(small_letters(read_.text(e, "name")));
+        if (found == patterns_.end())
+            read_.fail(e, fmt::format("there is no pattern named '{}' in <patterns>",
+                                      read_.text(e, "name")));
+        state_.pattern = found->second;
+    }
     else if (name == "statesave")
-        saved_states_.push_back({state_, matrix_});
+    {
+        saved_states_.push_back(state_);
+        saved_matrices_.push_back(matrix_);
+        saved_mks_.emplace_back(state_.mk, state_.mk_back, state_.pattern);
+        saved_constants_.push_back(state_.constants);
+    }
     else if (name == "stateload")
     {
-        if (!saved_states_.empty())
-        {
-            std::vector<ClipPlane> clips = std::move(state_.clips);
-            state_ = saved_states_.back().state;
-            state_.clips = std::move(clips);
-            matrix_ = saved_states_.back().matrix;
-            saved_states_.pop_back();
-        }
+        DrawState loaded = state_;
+        pop(saved_states_, loaded);
+        loaded.clips = std::move(state_.clips);
+        loaded.mk = state_.mk;
+        loaded.mk_back = state_.mk_back;
+        loaded.pattern = state_.pattern;
+        loaded.constants = state_.constants;
+        state_ = std::move(loaded);
+        pop_mk();
+        pop(saved_constants_, state_.constants);
+        pop(saved_matrices_, matrix_);
     }
     else if (name == "resetdraw")
     {
         add(e, ResetOp{});
+        auto pattern = std::move(state_.pattern);
         state_ = {};
+        state_.pattern = std::move(pattern);
         matrix_ = {};
+        saved_states_.clear();
+        saved_matrices_.clear();
+        saved_mks_.clear();
+        saved_constants_.clear();
     }
     else if (name == "setshapemode")
     {
@@ -208,11 +248,17 @@ bool ProgramRunner::run_transform(const Element& e)
     return true;
 }
 
+/// The angles of a clipbox turn it about its lowest corner, about y, x and z in this order,
+/// right-handed (found by experiment with GenCase v5.4.354: of the orders, signs and centres tried
+/// only this one fits). clipdomain as a command changes nothing there, which is all that it does
+/// here.
 bool ProgramRunner::run_clip(const Element& e)
 {
     const std::string& name = e.name;
     if (name == "clipreset")
         state_.clips.clear();
+    else if (name == "clipdomain")
+        return true;
     else if (name == "clipplane")
     {
         ClipPlane plane;
@@ -236,7 +282,6 @@ bool ProgramRunner::run_clip(const Element& e)
     }
     else if (name == "clipbox")
     {
-        if (e.find_child("angles") != nullptr) read_.fail_unsupported(e, "<angles>");
         std::array<bool, 6> faces{true, true, true, true, true, true};
         if (const Element* which = e.find_child("boxfaces"))
         {
@@ -265,13 +310,27 @@ bool ProgramRunner::run_clip(const Element& e)
             low[axis] = std::min(box.corner0[axis], box.corner1[axis]);
             high[axis] = std::max(box.corner0[axis], box.corner1[axis]);
         }
+        Transform turned = matrix_;
+        if (const Element* c = e.find_child("angles"))
+        {
+            // Where GenCase puts a turned box that the matrix moves or scales is not known.
+            if (!matrix_.is_identity())
+                read_.fail(*c,
+                           "angles are not possible under a move, rotation or scale, expected "
+                           "<matrixreset> before");
+            Transform rotation;
+            const Vec3 angles = read_.vec3(*c);
+            for (const int axis : {1, 0, 2})
+                rotation = rotation_about_axis(axis, radians(angles[axis])) * rotation;
+            turned = around(low, rotation);
+        }
         const auto side = [&](BoxSide which, const Vec3& at, const Vec3& outward)
         {
             if (!faces[which]) return;
-            if (matrix_.is_identity())
+            if (turned.is_identity())
                 state_.clips.push_back({at, outward});
             else
-                state_.clips.push_back({matrix_(at), matrix_(at + outward) - matrix_(at)});
+                state_.clips.push_back({turned(at), turned(at + outward) - turned(at)});
         };
         side(BoxBottom, low, {0, 0, -1});
         side(BoxTop, high, {0, 0, 1});

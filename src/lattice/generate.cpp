@@ -7,6 +7,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
+#include "lattice/domain_clip.h"
+#include "lattice/draw_pattern.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
 #include "lattice/free_points.h"
@@ -16,6 +18,7 @@
 #include "lattice/shape_mesh.h"
 #include "lattice/solids.h"
 #include "lattice/wall_painter.h"
+#include "lattice/wave_region.h"
 
 #include <fmt/format.h>
 
@@ -146,14 +149,33 @@ private:
                      [&](std::size_t x) { paint_slab(x, nodes[x], keeps_walls); });
     }
 
-    /// Stops with a message where the machine would start to swap or kill the process.
+    /// Paints through the pattern.
     void paint_slab(std::size_t x, const Spans& spans, bool keeps_walls = false)
+    {
+        if (!state().pattern || std::holds_alternative<RedrawNearOp>(op_->what))
+        {
+            paint_slab(x, spans, state().mk, keeps_walls);
+            return;
+        }
+        const PatternSplit split =
+            split_by_pattern(*state().pattern, spans, static_cast<std::uint32_t>(x));
+        paint_slab(x, split.drawn, state().mk, keeps_walls);
+        const bool is_fill = std::holds_alternative<FillOp>(op_->what);
+        if (state().mk_back || is_fill)
+        {
+            const MkValue back = state().mk_back.value_or(MkValue{});
+            paint_slab(x, split.left_out, back, keeps_walls && back.kind == MkKind::Bound);
+        }
+    }
+
+    /// Stops with a message where the machine would start to swap or kill the process.
+    void paint_slab(std::size_t x, const Spans& spans, const MkValue& mk, bool keeps_walls)
     {
         std::vector<Run>& slab = field_.slabs[x];
         const std::size_t before = slab.size();
-        const Spans zone = walls_.paint_over(x, spans, state().mk.mk, keeps_walls);
-        paint(slab, spans, state().mk.mk);
-        if (!zone.empty()) paint(slab, zone, state().mk.mk | wall_zone_bit);
+        const Spans zone = walls_.paint_over(x, spans, mk.mk, keeps_walls);
+        paint(slab, spans, mk.mk);
+        if (!zone.empty()) paint(slab, zone, mk.mk | wall_zone_bit);
         const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
         if (runs > run_limit_ && runs < UINT64_MAX / 2)
             throw CaseError(
@@ -174,12 +196,28 @@ private:
             state().mk.kind == MkKind::Bound ? fit_settings(def_.fit, state().mk.mk) : nullptr;
         if (settings == nullptr || state().mode == DrawMode::Wire) return false;
         const auto* file = std::get_if<MeshFileOp>(&op.what);
+        if (std::holds_alternative<WaveOp>(op.what))
+            throw GeometryError(
+                fmt::format("{}: it has no surface for body-fitted particles; draw it "
+                            "with a mk that is not body-fitted",
+                            place()));
+        if (file != nullptr && file->clip_resize && !file->advanced)
+            throw GeometryError(fmt::format(
+                "{}: <clipdomain> opens the surface, which body-fitted particles cannot "
+                "follow; they end at the domain without it",
+                place()));
         if (file != nullptr && mesh(*file).soup.vertices.empty()) return false;
         try
         {
             const std::vector<ShapeMesh> shapes =
                 shape_meshes(op, file != nullptr ? &mesh(*file).soup : nullptr, grid().dp);
             if (shapes.empty()) return false;
+            if (state().pattern && state().draw_points)
+                throw GeometryError(
+                    "setpattern leaves nodes of the lattice out, which body-fitted particles "
+                    "cannot "
+                    "follow; draw this shape with a mk that is not body-fitted, or without a "
+                    "pattern");
             std::vector<FittedDraw> walls;
             if (state().draw_points && !lies_in_plane(shapes, grid()))
                 for (const ShapeMesh& shape : shapes) walls.push_back(fit(shape, op, *settings));
@@ -352,18 +390,8 @@ private:
         }
         if (state().mode == DrawMode::Wire)
         {
-            std::vector<std::pair<Node, Node>> segments;
-            const auto add = [&](std::uint32_t a, std::uint32_t b)
-            { segments.emplace_back(snap(op.vertices[a], grid()), snap(op.vertices[b], grid())); };
-            for (const FigureFace& face : op.faces)
-                for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
-                    add(face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]);
-            // The wire of a solid box shows the cut between its two prisms (rule S4).
-            if (op.solid == SolidKind::Box)
-            {
-                add(op.solid_vertices[1], op.solid_vertices[3]);
-                add(op.solid_vertices[5], op.solid_vertices[7]);
-            }
+            std::vector<std::pair<Node, Node>> segments = wire_of(op);
+            if (op.part_count > 0) segments = {segments.at(op.part)};
             paint_region(lines_region(segments, grid(), state().constants.line));
             return;
         }
@@ -376,6 +404,30 @@ private:
         if (state().mode == DrawMode::Full || !fills)
             draw_triangles(snapped_triangles(op, grid(), true));
         if (fills) paint_region(solid_of(op));
+    }
+
+    /// The sides of the visible triangles and quads, in this order: so the wire of a solid box
+    /// shows the cut between its two prisms (rule S4).
+    std::vector<std::pair<Node, Node>> wire_of(const FigureOp& op) const
+    {
+        std::vector<std::pair<Node, Node>> segments;
+        FigureOp one = op;
+        for (const FigureFace& face : op.faces)
+        {
+            if (!face.is_visible) continue;
+            if (face.triangles.empty() && face.cut.empty())
+            {
+                const std::vector<std::uint32_t>& v = face.vertices;
+                for (std::size_t i = 0; i < v.size(); ++i)
+                    segments.emplace_back(snap(op.vertices[v[i]], grid()),
+                                          snap(op.vertices[v[(i + 1) % v.size()]], grid()));
+                continue;
+            }
+            one.faces = {face};
+            for (const SnappedTriangle& t : snapped_triangles(one, grid(), true))
+                segments.insert(segments.end(), {{t.a, t.b}, {t.b, t.c}, {t.c, t.a}});
+        }
+        return segments;
     }
 
     /// One part of a figure, for setmknextauto.
@@ -438,6 +490,8 @@ private:
                                         op_->source.command));
         paint_region(ellipsoid_region(op, state(), grid()));
     }
+
+    void draw(const WaveOp& op) { paint_region(wave_region(op, grid())); }
 
     const MeshFile& mesh(const MeshFileOp& op)
     {
@@ -540,7 +594,49 @@ private:
 
     void draw(const MeshFileOp& op)
     {
+        // GenCase does not heed <clipdomain> with advanced.
+        if (!op.clip_resize || op.advanced)
+            draw_mesh(op, mesh(op));
+        else
+            draw_clipped(op);
+    }
+
+    /// Draws what `<clipdomain>` leaves of a file: its triangles cut at the grown domain.
+    void draw_clipped(const MeshFileOp& op)
+    {
+        if (op.fill_inside)
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: fppg:fill=\"inside\" is not possible together with "
+                                        "<clipdomain>, which opens the surface",
+                                        op_->source.command));
+        Box3 box;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            box.min[axis] = def_.case_pos_min[axis] - *op.clip_resize;
+            box.max[axis] = def_.case_pos_max[axis] + *op.clip_resize;
+            if (box.min[axis] >= box.max[axis])
+                throw CaseError(
+                    def_.file, op_->source.line,
+                    fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
+                                "along {}",
+                                op_->source.command, *op.clip_resize, "xyz"[axis]));
+        }
         const MeshFile& file = mesh(op);
+        draw_points_and_lines(file, op.transform);
+        const FigureOp cut = clip_to_box(moved_soup(file.soup, op.transform), box);
+        draw(cut);
+        if (!op.autofill) return;
+        TriangleSoup soup;
+        for (const FigureFace& face : cut.faces)
+            for (std::size_t i = 2; i < face.vertices.size(); ++i)
+                for (const std::uint32_t v :
+                     {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
+                    soup.vertices.push_back(cut.vertices[v]);
+        autofill(soup, file, op.transform);
+    }
+
+    void draw_mesh(const MeshFileOp& op, const MeshFile& file)
+    {
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
         if (!op.advanced && is_off_lattice())

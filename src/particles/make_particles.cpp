@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "particles/density.h"
+#include "particles/double_particles.h"
 #include "particles/floating.h"
 #include "particles/free_particles.h"
 #include "particles/initials.h"
@@ -54,6 +55,7 @@ public:
         compute_densities(def_, field_, type_of_mk_, free_begin_, out_, constants, threads_);
         orient_blocks();
         merge_free();
+        if (double_particles(def_, out_)) set_limits();
         set_initials(def_, constants, out_);
         make_floatings();
         set_properties();
@@ -229,6 +231,7 @@ private:
         for (const ParticleBlock& block : out_.blocks)
             for (const ParticleRun& r : block.runs)
             {
+                if (r.is_free()) continue;
                 low = {std::min(low[0], r.x), std::min(low[1], r.y), std::min(low[2], r.z)};
                 high = {std::max(high[0], r.x), std::max(high[1], r.y),
                         std::max(high[2], r.z + r.count - 1)};

@@ -188,7 +188,6 @@ INSTANTIATE_TEST_SUITE_P(
                     "<drawpoint>: attribute if=\"#1 +\""),
         in_mainlist("BadFlag", R"(<setactive drawpoints="maybe" />)",
                     "<setactive>: attribute drawpoints=\"maybe\" is not a valid boolean"),
-        in_mainlist("PlannedCommand", R"(<drawbeach />)", "<drawbeach>: not supported yet"),
         Mistake{"EndlessLists",
                 [](CaseText& text)
                 {
@@ -489,9 +488,7 @@ TEST(ReadCase, ReadsTheGridOfABathymetry)
 TEST(ReadCase, SaysOfPlannedCommandsThatTheyAreNotSupportedYet)
 {
     int planned = 0;
-    for (const char* name :
-         {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout", "setmkbackbound",
-          "setmkbackclear", "setmkbackfluid", "setmkbackvoid", "setpattern"})
+    for (const char* name : {"cellsout", "clipdomain", "drawbeach", "drawwave", "pointsmkout"})
     {
         if (command_support(name) != CommandSupport::Planned) continue;
         ++planned;
@@ -535,6 +532,59 @@ TEST(State, ComesBackFromItsStackWithoutTheClips)
         EXPECT_EQ(op.state->clips.size(), 1u);
         expect_near(std::get<PointsOp>(op.what).points[0], {1, 0, 0});
     }
+}
+
+CaseText with_patterns(const std::string& patterns, const std::string& commands)
+{
+    CaseText text;
+    text.after_geometry = "<patterns>" + patterns + "</patterns>";
+    text.mainlist = commands;
+    return text;
+}
+
+/// A pattern of 2 x 1 x 2 nodes with these attributes and children besides.
+std::string pattern_2x1x2(const std::string& cells, const std::string& more = "")
+{
+    return "<pattern name=\"P\" pattern=\"" + cells + R"("><size x="2" y="1" z="2" />)" + more +
+           "</pattern>";
+}
+
+TEST(State, TakesAPatternByItsNameAndKeepsItOverAReset)
+{
+    const CaseDef def =
+        read(with_patterns(pattern_2x1x2("6", R"(<gap x="1" y="0" z="0" />)"),
+                           R"(<setpattern name="p" /><setmkbackfluid mk="3" /><resetdraw />
+<setmkbound mk="0" /><drawpoint x="0" y="0" z="0" />)"));
+    const DrawState& state = *def.ops.back().state;
+    ASSERT_TRUE(state.pattern);
+    EXPECT_EQ(state.pattern->cells, (std::vector<char>{0, 1, 1, 0}));
+    EXPECT_EQ(state.pattern->gap, (std::array<std::uint32_t, 3>{1, 0, 0}));
+    EXPECT_FALSE(state.mk_back.has_value());
+}
+
+TEST(State, KeepsPatternAndMkBackOnTheStackOfMks)
+{
+    const CaseDef def = read(with_patterns(pattern_2x1x2("X--X"), R"(<setmkbound mk="0" /><mksave />
+<setpattern name="P" /><setmkbackfluid mk="3" /><statesave /><mkload />
+<drawpoint x="0" y="0" z="0" /><mkload /><drawpoint x="0" y="0" z="0" />)"));
+    EXPECT_TRUE(def.ops.at(0).state->pattern);
+    EXPECT_EQ(def.ops.at(0).state->mk_back, (MkValue{MkKind::Fluid, 4, 3}));
+    EXPECT_FALSE(def.ops.at(1).state->pattern);
+    EXPECT_FALSE(def.ops.at(1).state->mk_back.has_value());
+}
+
+TEST(ReadCase, RefusesPatternsThatCannotBe)
+{
+    for (const std::string& wrong :
+         {pattern_2x1x2("X-X"), pattern_2x1x2("X- X"), pattern_2x1x2("X--G"), pattern_2x1x2("f9"),
+          pattern_2x1x2("X--X") + pattern_2x1x2("X--X"),
+          pattern_2x1x2("X--X", R"(<gap x="2" y="0" z="0" />)"),
+          pattern_2x1x2("X--X", R"(<scale x="0" y="1" z="1" />)"),
+          pattern_2x1x2("X--X", R"(<border x="-1" y="0" z="0" />)")})
+        EXPECT_NE(error_of(with_patterns(wrong, "")).find("<"), std::string::npos) << wrong;
+    EXPECT_NE(error_of(with_patterns(pattern_2x1x2("X--X"), R"(<setpattern name="q" />)"))
+                  .find("there is no pattern named 'q'"),
+              std::string::npos);
 }
 
 TEST(State, HasStacksOfMksAndDrawConstants)

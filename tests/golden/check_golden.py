@@ -9,7 +9,8 @@ CASE_FOLDER is nodes/NAME or fields/NAME and holds NAME_Def.xml, the files it us
 NAME.expected.csv.gz (one line a particle) and NAME.expected.json.
 
 nodes/   type, mk and lattice node of every particle, in id order: equal, no tolerance. A position
-         stands within 1e-6 dp of its node. Cases without nodes (setfrdrawmode): see compare_places().
+         stands within 1e-6 dp of its node. Where the record has particles off the lattice, all positions
+         are compared in id order, within 1e-6 dp; with setfrdrawmode see compare_places().
 fields/  the particles of equal id: mk equal; positions within 1e-7 dp + 1e-9 m, velocities within
          1e-6 relative + 1e-5 m/s, densities within 2e-6 rhop0 (both are float32 in the
          file), normals within 1e-4 dp. Constants in Case.bi4 within 1e-9 relative; numbers in Case.xml, of which GenCase
@@ -79,6 +80,13 @@ def compare_nodes(case, rows, expected, known):
     """Yields a line for every kind of difference."""
     _, arrays, types, mks = particles_of(case)
     origin, dp = np.array(expected["lattice_origin"]), expected["dp"]
+    if any(not r["i"] for r in rows):
+        # Two particles a node: every place is compared, in id order.
+        if [(r["type"], int(r["mk"])) for r in rows] != list(zip(types, mks)):
+            yield "types or mks differ"
+        elif np.abs(arrays["Posd"] - [[float(r[a]) for a in "xyz"] for r in rows]).max() > 1e-6 * dp:
+            yield "positions differ"
+        return
     steps = (arrays["Posd"] - origin) / dp
     nodes = np.rint(steps).astype(int)
     if len(steps) and np.abs(steps - nodes).max() > 1e-6:
@@ -271,7 +279,9 @@ def main(arguments):
         lines = list(compare_fields(case, rows, expected, read_known_normals(known_file, name)))
     else:
         known = read_known(known_file, name)
-        if any(r["i"] == "" for r in rows):
+        with open(os.path.join(folder, name + "_Def.xml"), encoding="utf-8") as file:
+            is_free = "setfrdrawmode" in file.read()
+        if is_free and any(r["i"] == "" for r in rows):
             lines = list(compare_places(case, rows, expected))
         else:
             lines = list(compare_nodes(case, rows, expected, known))

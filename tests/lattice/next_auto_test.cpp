@@ -63,5 +63,32 @@ TEST(MkNextAuto, CountsSegmentsOfLinesButNoPoints)
               (std::map<int, int>{{2, 5}, {3, 6}, {4, 1}}));
 }
 
+TEST(MkNextAuto, NumbersTheSidesOfAWire)
+{
+    const std::string triangle =
+        R"(<drawtriangle><point x="0" y="0" z="0" /><point x="0.5" y="0" z="0" /><point x="0" y="0.5" z="0.4" /></drawtriangle>)";
+    EXPECT_EQ(nodes_of_parts("wire", triangle + point),
+              (std::map<int, int>{{2, 4}, {3, 7}, {4, 8}, {5, 1}}));
+}
+
+TEST(MkNextAuto, NumbersThePrismsThatASolidPrismIsCutInto)
+{
+    std::string prism = "<drawprism>";
+    for (const char* z : {"0", "0.6"})
+        for (const auto& [x, y] :
+             {std::pair{"0", "0"}, {"0.6", "0.1"}, {"0.7", "0.5"}, {"0.1", "0.6"}})
+            prism += std::string("<point x=\"") + x + "\" y=\"" + y + "\" z=\"" + z + "\" />";
+    prism += "</drawprism>";
+    EXPECT_EQ(nodes_of_parts("solid", prism + point),
+              (std::map<int, int>{{2, 50}, {4, 75}, {5, 30}, {6, 1}}));
+}
+
+TEST(MkNextAuto, TakesAllLayersOfASphereAsOne)
+{
+    EXPECT_EQ(nodes_of_parts("full", R"(<drawsphere radius="0.3"><point x="0.2" y="0.2" z="0.2" />
+<layers vdp="0,1" /></drawsphere>)" + point),
+              (std::map<int, int>{{2, 380}, {3, 1}}));
+}
+
 } // namespace
 } // namespace fppg

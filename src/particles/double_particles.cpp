@@ -1,0 +1,169 @@
+#include "particles/double_particles.h"
+
+#include "fppg/error.h"
+
+#include <algorithm>
+
+namespace fppg
+{
+namespace
+{
+
+class Doubler
+{
+public:
+    explicit Doubler(CaseParticles& particles) : all_(particles), shift_(Vec3{1, 1, 1})
+    {
+        shift_ = shift_ * (all_.grid.dp / 4);
+        if (all_.grid.is_2d) shift_.y = 0;
+        fluid_begin_ = all_.np - all_.n_fluid;
+    }
+
+    /// Takes over the particles of a block, two for one where `doubles`.
+    void take(ParticleBlock& block, bool doubles)
+    {
+        std::vector<ParticleRun> runs;
+        std::uint64_t id = block.begin;
+        const std::uint64_t free_begin = free_.size();
+        for (const ParticleRun& r : block.runs)
+        {
+            for (std::uint32_t i = 0; i < r.count; ++i, ++id)
+            {
+                const float density = density_of(block, r, i, id);
+                if (block.type == ParticleType::Fluid && !all_.rhop.empty())
+                    rhop_.insert(rhop_.end(), doubles ? 2 : 1, density);
+                if (r.is_free())
+                    add(r.free_begin() + i, doubles, density);
+                else if (doubles)
+                    add_pair(node(block, r, i), density);
+            }
+            if (doubles) continue;
+            runs.push_back(r);
+            if (r.is_free()) set_begin(runs.back(), free_.size() - r.count);
+        }
+        if (doubles) add_runs(runs, free_begin);
+        block.runs = std::move(runs);
+        block.begin = np_;
+        if (doubles) block.count *= 2;
+        np_ += block.count;
+    }
+
+    void finish()
+    {
+        all_.free = std::move(free_);
+        if (!all_.rhop.empty()) all_.rhop = std::move(rhop_);
+        all_.np = np_;
+        all_.n_fixed = all_.n_moving = all_.n_floating = all_.n_fluid = 0;
+        for (const ParticleBlock& block : all_.blocks)
+        {
+            if (block.type == ParticleType::Fixed) all_.n_fixed += block.count;
+            if (block.type == ParticleType::Moving) all_.n_moving += block.count;
+            if (block.type == ParticleType::Floating) all_.n_floating += block.count;
+            if (block.type == ParticleType::Fluid) all_.n_fluid += block.count;
+        }
+    }
+
+private:
+    Vec3 node(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i) const
+    {
+        const double z =
+            block.run_descending ? static_cast<double>(r.z) - i : static_cast<double>(r.z) + i;
+        return all_.grid.origin +
+               Vec3{static_cast<double>(r.x), static_cast<double>(r.y), z} * all_.grid.dp;
+    }
+
+    float density_of(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i,
+                     std::uint64_t id) const
+    {
+        if (r.is_free()) return all_.free.rhop[r.free_begin() + i];
+        if (block.type != ParticleType::Fluid) return rhop0;
+        if (!all_.rhop.empty()) return all_.rhop[id - fluid_begin_];
+        if (all_.rhop_of_depth.empty()) return rhop0;
+        return all_.rhop_of_depth[r.depth + (block.run_descending ? i : r.count - 1 - i)];
+    }
+
+    void add(const Vec3& position, float density)
+    {
+        free_.positions.push_back(position);
+        free_.kinds.push_back(FitKind::Volume);
+        free_.normals.push_back({});
+        free_.distances.push_back(distance_of_nodes);
+        free_.rhop.push_back(density);
+    }
+
+    void add_pair(const Vec3& position, float density)
+    {
+        add(position - shift_, density);
+        add(position + shift_, density);
+    }
+
+    void add(std::uint64_t from, bool doubles, float density)
+    {
+        const FreeParticles& old = all_.free;
+        if (doubles)
+            add_pair(old.positions[from], density);
+        else
+            add(old.positions[from], density);
+        for (std::size_t i = free_.size() - (doubles ? 2 : 1); i < free_.size(); ++i)
+        {
+            free_.kinds[i] = old.kinds[from];
+            free_.normals[i] = old.normals[from];
+            free_.distances[i] = old.distances[from];
+        }
+    }
+
+    static void set_begin(ParticleRun& run, std::uint64_t begin)
+    {
+        run.y = static_cast<std::uint32_t>(begin);
+        run.z = static_cast<std::uint32_t>(begin >> 32U);
+    }
+
+    void add_runs(std::vector<ParticleRun>& runs, std::uint64_t begin) const
+    {
+        while (begin < free_.size())
+        {
+            ParticleRun run;
+            run.x = ParticleRun::off_lattice;
+            set_begin(run, begin);
+            run.count = static_cast<std::uint32_t>(
+                std::min<std::uint64_t>(free_.size() - begin, 1U << 30U));
+            begin += run.count;
+            runs.push_back(run);
+        }
+    }
+
+public:
+    float rhop0 = 0; ///< of particles that are no fluid
+
+private:
+    CaseParticles& all_;
+    Vec3 shift_;
+    std::uint64_t fluid_begin_ = 0;
+    std::uint64_t np_ = 0;
+    FreeParticles free_;
+    std::vector<float> rhop_;
+};
+
+} // namespace
+
+bool double_particles(const CaseDef& def, CaseParticles& particles)
+{
+    const ConstantsDef& constants = def.constants;
+    const auto doubles = [&](const ParticleBlock& block)
+    {
+        return (block.type == ParticleType::Fluid ? constants.lattice_fluid
+                                                  : constants.lattice_bound) != 1;
+    };
+    if (std::none_of(particles.blocks.begin(), particles.blocks.end(), doubles)) return false;
+    if (particles.np * 2 >= UINT32_MAX)
+        throw CaseError(def.file, 0,
+                        "<lattice> makes two particles of one, which are more than the file format "
+                        "holds (4,294,967,294); a larger dp gives fewer");
+    Doubler doubler(particles);
+    doubler.rhop0 = static_cast<float>(constants.rhop0);
+    for (ParticleBlock& block : particles.blocks) doubler.take(block, doubles(block));
+    doubler.finish();
+    return true;
+}
+
+} // namespace fppg
