@@ -42,6 +42,7 @@ private:
     bool run_fill_or_redraw(const Element& e);
 
     void set_mk(const Element& e, MkKind kind, int mk_type);
+    int mk_number(const Element& e) const;
     void add(const Element& e, DrawVariant what);
     void add_whole(const Element& e, DrawVariant what);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
@@ -64,6 +65,7 @@ private:
     Transform file_transform(const Element& e) const;
     void read_depth(const Element& e, MeshFileOp& op) const;
     void shape_out(const Element& e);
+    void cells_out(const Element& e);
 
     struct Saved
     {
