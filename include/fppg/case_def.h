@@ -273,19 +273,44 @@ struct ResetOp
 {
 };
 
+enum class ShapeFormat : std::uint8_t
+{
+    Vtk,
+    Vtp,
+    Vtu,
+    Stl,
+};
+
 /// `shapeout`: writes the shapes drawn since the last one.
 struct ShapeOutOp
 {
     std::string file; ///< may be empty
+    ShapeFormat format = ShapeFormat::Vtk;
+    /// savenormal: length in dp of the lines that a second file shows the normals by; 0: none.
+    double normal_dp = 0;
     bool reset = true;
     bool actual = true;                            ///< write them as drawn
     bool snapped = false;                          ///< write them with vertices on the lattice
     std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
 };
 
+/// `cellsout`: writes the cells of the nodes as they are now.
+struct CellsOutOp
+{
+    std::string file;                ///< may be empty
+    std::optional<std::uint16_t> mk; ///< absolute; empty: all
+    std::string suffix;              ///< of the file name: "_mkbound5", "_mkfluid5" or nothing
+};
+
+/// `pointsmkout`: writes the nodes of the current mk that have a face neighbour of another one.
+struct PointsMkOutOp
+{
+    std::string file; ///< may be empty
+};
+
 using DrawVariant =
     std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, MeshFileOp, WaveOp,
-                 FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp>;
+                 FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp, CellsOutOp, PointsMkOutOp>;
 
 /// One executed command.
 struct DrawOp
@@ -390,6 +415,22 @@ struct FluidBand
     double width_dp = 3; ///< fluid this near to a fitted wall moves, in dp; above 0, finite
 };
 
+/// `<fppg><floatings exact="true">`: floating bodies whose mass, centre and inertia are those of
+/// their true shape instead of those of their particles.
+struct ExactFloatings
+{
+    bool all = false;
+    std::vector<std::uint16_t> mk; ///< absolute
+    int line = 0;                  ///< of the element; 0: there is none
+};
+
+/// A file that the case names and the solver reads: of a motion, of properties, of mesh data.
+struct DataFileUse
+{
+    std::string name; ///< as the definition writes it
+    int line = 0;
+};
+
 /// A user variable, for `<uservars>`.
 struct UserVariable
 {
@@ -426,6 +467,8 @@ struct CaseDef
     std::vector<InitialOp> initials;    ///< in the order of the file
     NormalsDef normals;
     std::vector<FloatingDef> floatings;
+    ExactFloatings exact_floatings;
+    std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
     Element properties;             ///< `<properties>` of the definition, or empty name
     Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound

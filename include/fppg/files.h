@@ -5,6 +5,7 @@
 #include "fppg/particles.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,17 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
 void write_cells_vtk(OutputFile& file, const RunField& field,
                      const std::vector<ParticleType>& type_of_mk, int threads);
 
+/// Writes the cells of `cellsout`: the same faces, of one mk where it is given, with CELL_DATA Mk
+/// and ObjId (int; the number of the face among those of all mks).
+///
+/// returns  the number of faces; without any the file stays empty
+std::uint64_t write_shown_cells_vtk(OutputFile& file, const RunField& field,
+                                    std::optional<std::uint16_t> mk, int threads);
+
+/// Writes points as legacy binary VTK (POINTS float, VERTICES); without any the origin alone, as
+/// GenCase v5.4.354 does in `pointsmkout`.
+void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points);
+
 /// Polygons of one drawn object, for shape files.
 struct ShapePolygons
 {
@@ -117,6 +129,16 @@ struct ShapePolygons
 /// Writes shapes as legacy binary VTK: points of all objects in order, then VERTICES, LINES and
 /// POLYGONS (a part that is empty is left out), with CELL_DATA Mk and ObjId (int).
 void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// The same cells as VTK XML, .vtp (PolyData) or .vtu (UnstructuredGrid): version 1.0, appended raw
+/// little-endian data with UInt64 sizes, Mk and ObjId Int32, points Float32.
+void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes);
+
+/// The faces as binary STL, polygons cut from their first corner; lines and points are left out.
+///
+/// returns  the number of facets
+std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons>& shapes);
 
 /// Writes the feature lines and singular points of all fitted bodies as legacy binary VTK
 /// (POLYDATA, big-endian, POINTS float: the mesh vertices that they use): VERTICES, one a singular

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,16 @@ struct MeshFileUse
     int line = 0;     ///< of the first draw that uses it
 };
 
+/// What `cellsout` or `pointsmkout` asks for, as the nodes were then.
+struct NodeFile
+{
+    std::string name;      ///< behind the case name: "_name_MkCells.vtk", "_name_mk10.vtk"
+    bool is_cells = false; ///< else points
+    RunField cells;        ///< of all mks
+    std::optional<std::uint16_t> mk; ///< the only one to write
+    std::vector<Vec3> points;        ///< by z, then y, then x
+};
+
 /// What the lattice stage says besides the nodes.
 struct LatticeReport
 {
@@ -78,6 +89,7 @@ struct LatticeReport
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<MeshFileUse> mesh_files; ///< in order of use, each once
+    std::vector<NodeFile> node_files;    ///< in the order of the commands; of one name the last
 };
 
 /// Called before every draw with the number of draws done and of all.
@@ -94,11 +106,14 @@ RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress
                           LatticeReport& report);
 
 struct ShapePolygons;
+enum class ShapeFormat : std::uint8_t;
 
 /// One shape file that `shapeout` asks for.
 struct ShapeFile
 {
-    std::string name; ///< behind the case name: "_name_Actual.vtk", "_name_Dp.vtk"
+    std::string name; ///< behind the case name: "_name_Actual.vtk", "_name_Dp.vtp"
+    ShapeFormat format{};
+    bool has_normals = false; ///< the lines of savenormal stand in front of the shapes
     std::vector<ShapePolygons> shapes;
 };
 

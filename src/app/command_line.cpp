@@ -116,6 +116,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     }
     else if (name == "-fit")
         options.fit = fit_choice_of(value, colon != std::string::npos);
+    else if (name == "-strict" || name == "--strict")
+        options.strict = flag_of(name, value);
     else if (name == "-threads" || name == "-ompthreads")
     {
         options.threads = number_of<int>(name, value, "a number of threads, 0 for all");
@@ -188,7 +190,7 @@ std::string help_text()
         "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
-        "Options (GenCase's own, but for -fit and vtkfeatures):\n"
+        "Options (GenCase's own, but for -fit, -strict and vtkfeatures):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -fit                   body-fitted walls: every boundary mk gets its particles on its "
@@ -196,6 +198,7 @@ std::string help_text()
         "                         mks that <fppg> in the definition names keep their settings\n"
         "  -fit:raw               the same without relaxation\n"
         "  -fit:off               no body-fitted walls, whatever <fppg> says\n"
+        "  -strict                warnings where GenCase says nothing are errors (exit code 3)\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
         "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
         "each:\n"

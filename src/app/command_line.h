@@ -41,6 +41,7 @@ struct DropInOptions
     bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
     bool create_folders = true;
+    bool strict = false; ///< warnings where GenCase is silent are errors
 };
 
 /// Reads arguments in GenCase's form: `in out`, `in a*b` (the star stands for the input's name), or

@@ -11,6 +11,8 @@
 #include "fppg/version.h"
 
 #include "app/case_template.h"
+#include "app/floating_log.h"
+#include "app/motion_check.h"
 #include "app/relax_stage.h"
 #include "app/run_log.h"
 #include "app/stop_signals.h"
@@ -162,8 +164,9 @@ private:
                   LatticeReport report;
                   field_ = generate_lattice(def_, threads_, draw_progress(), report);
                   mesh_files_ = std::move(report.mesh_files);
-                  for (std::string& w : def_.warnings) warn(std::move(w));
-                  for (std::string& w : report.warnings) warn(std::move(w));
+                  node_files_ = std::move(report.node_files);
+                  for (std::string& w : def_.warnings) warn_of_slip(std::move(w));
+                  for (std::string& w : report.warnings) warn_of_slip(std::move(w));
                   log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
                                         report.triangles_ignored));
               });
@@ -206,8 +209,15 @@ private:
                   std::vector<std::string> warnings;
                   particles_ = make_particles(def_, field_, threads_, constants_, warnings);
                   print_blocks();
+                  settle_floatings(def_, particles_, log_);
                   for (std::string& w : warnings) warn(std::move(w));
+                  for (std::string& w : check_motion(def_, particles_)) warn_of_slip(std::move(w));
               });
+        if (options_.strict && !slips_.empty())
+            throw CaseError(fmt::format(
+                "-strict: {} warning{} count as errors, nothing is "
+                "written:\n  {}",
+                slips_.size(), slips_.size() == 1 ? "" : "s", fmt::join(slips_, "\n  ")));
     }
 
     void print_blocks()
@@ -294,8 +304,10 @@ private:
                   files_.reserve(1024);
                   const FileOrigin origin{full_name(), date_of_run(), def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
+                  copy_data_files();
                   copy_meshes();
                   save_shapes(vtk_out);
+                  save_node_files();
                   make_normals();
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
@@ -364,6 +376,27 @@ private:
         }
     }
 
+    /// Files that the solver reads go beside the result too, as with GenCase.
+    void copy_data_files()
+    {
+        for (const DataFileUse& use : def_.data_files)
+        {
+            std::error_code ignored;
+            const fs::path beside = fs::path(options_.input).parent_path() / use.name;
+            const fs::path source = fs::exists(use.name, ignored) ? fs::path(use.name) : beside;
+            const bool is_known =
+                std::any_of(mesh_files_.begin(), mesh_files_.end(),
+                            [&](const MeshFileUse& m) { return m.name == use.name; });
+            if (fs::is_regular_file(source, ignored))
+            {
+                if (!is_known) mesh_files_.push_back({use.name, source.string(), use.line});
+            }
+            else
+                warn(fmt::format("{}:{}: file '{}' was not found to be copied beside the result.",
+                                 def_.file, use.line, use.name));
+        }
+    }
+
     template <typename Body>
     void timed(const std::string& ending, const char* note, const Body& body)
     {
@@ -373,13 +406,54 @@ private:
         log_.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
     }
 
+    static void write_shape_file(OutputFile& f, const ShapeFile& shape_file)
+    {
+        switch (shape_file.format)
+        {
+            case ShapeFormat::Vtk:
+                write_shapes_vtk(f, shape_file.shapes);
+                break;
+            case ShapeFormat::Vtp:
+                write_shapes_vtp(f, shape_file.shapes);
+                break;
+            case ShapeFormat::Vtu:
+                write_shapes_vtu(f, shape_file.shapes);
+                break;
+            case ShapeFormat::Stl:
+                write_shapes_stl(f, shape_file.shapes);
+                break;
+        }
+    }
+
+    /// What cellsout and pointsmkout ask for; cells of an mk without any give no file.
+    void save_node_files()
+    {
+        for (const NodeFile& node_file : node_files_)
+        {
+            std::uint64_t faces = 1;
+            timed(node_file.name, "",
+                  [&](OutputFile& f)
+                  {
+                      if (node_file.is_cells)
+                          faces = write_shown_cells_vtk(f, node_file.cells, node_file.mk, threads_);
+                      else
+                          write_points_vtk(f, node_file.points);
+                  });
+            if (faces > 0) continue;
+            files_.pop_back();
+            log_.line(fmt::format("{}{} is empty and not saved", options_.output, node_file.name));
+        }
+        node_files_.clear();
+    }
+
     void save_shapes(std::vector<VtkOutEntry>& vtk_out)
     {
         shape_files_ = collect_shape_files(def_);
         for (const ShapeFile& shape_file : shape_files_)
         {
-            timed(shape_file.name, "",
-                  [&](OutputFile& f) { write_shapes_vtk(f, shape_file.shapes); });
+            timed(shape_file.name, "", [&](OutputFile& f) { write_shape_file(f, shape_file); });
+            // GenCase lists neither.
+            if (shape_file.format == ShapeFormat::Stl || shape_file.has_normals) continue;
             std::vector<int> mk;
             std::vector<int> mk_bound;
             std::vector<int> mk_fluid;
@@ -468,6 +542,13 @@ private:
         warnings_.push_back(std::move(text));
     }
 
+    /// A warning where GenCase says nothing; with -strict an error.
+    void warn_of_slip(std::string text)
+    {
+        slips_.push_back(text);
+        warn(std::move(text));
+    }
+
     void print_warnings()
     {
         if (warnings_.empty()) return;
@@ -528,6 +609,8 @@ private:
     std::vector<OutputFile> files_;
     std::vector<MeshFileUse> mesh_files_;
     std::vector<ShapeFile> shape_files_; ///< until the normals are made
+    std::vector<NodeFile> node_files_;
+    std::vector<std::string> slips_; ///< those of the warnings that -strict takes for errors
     std::vector<std::string> warnings_;
 };
 

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 namespace fppg
@@ -72,7 +73,12 @@ public:
         if (const Element* e = casedef.find_child("normals"))
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
         if (const Element* e = casedef.find_child("vres"))
-            if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+            if (read_.flag_or(*e, "active", true))
+                read_.fail(*e,
+                           "variable resolution is not supported yet; GenCase makes a case of its "
+                           "own of every zone (CASE_vres00.bi4, CASE_vres01.bi4, ...) from it. "
+                           "active=\"false\" makes one case of a single resolution");
+        note_data_files(casedef);
         read_fit(root, read_, options_.fit, def_);
         if (!def_.fit.is_empty() &&
             (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))
@@ -128,9 +134,22 @@ private:
         {
             if (e.name != "parameters") continue;
             for (Element& parameter : e.children)
+            {
+                if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_'))
+                    continue;
+                if (parameter.name == "parameter")
+                {
+                    read_.text(parameter, "key");
+                    read_.text(parameter, "value");
+                }
+                else if (parameter.name != "simulationdomain")
+                    read_.fail(parameter,
+                               "is not known in <parameters>, expected parameter or "
+                               "simulationdomain");
                 for (Element::Attribute& a : parameter.attributes)
                     if (a.name == "value" && a.value.starts_with('#'))
                         a.value = fmt::format("{}", read_.number(parameter, a.name));
+            }
         }
     }
 
@@ -342,7 +361,14 @@ private:
         {
             if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
             if (e.name != "floating")
-                read_.fail(e, "is not known in <floatings>, expected floating");
+            {
+                // GenCase passes over it without a word.
+                def_.warnings.push_back(fmt::format(
+                    "{}:{}: <{}>: is not known in <floatings> and has no effect, expected "
+                    "floating",
+                    def_.file, e.line, e.name));
+                continue;
+            }
             FloatingDef f;
             f.line = e.line;
             f.mkbound = read_.number_list(e, "mkbound");
@@ -406,18 +432,94 @@ private:
         f.inertia = rows;
     }
 
+    /// The file is XML; `path` leads from its root to the element whose properties are taken.
+    void add_property_file(const Element& e)
+    {
+        const std::string name = read_.text(e, "file");
+        const std::string path = read_.text(e, "path");
+        std::string found = name;
+        std::error_code ignored;
+        if (!std::filesystem::exists(found, ignored))
+            found = (std::filesystem::path(def_.file).parent_path() / name).string();
+        if (!std::filesystem::exists(found, ignored))
+            throw IoError(
+                fmt::format("{}:{}: <{} file=\"{}\">: there is no such file, neither in "
+                            "the working directory nor beside the definition",
+                            def_.file, e.line, e.name, name));
+        const Element root = read_xml(found);
+        const Element* at = nullptr;
+        for (std::size_t begin = 0; begin <= path.size();)
+        {
+            const std::size_t end = std::min(path.find('.', begin), path.size());
+            const std::string step = path.substr(begin, end - begin);
+            if (begin == 0)
+                at = step == root.name ? &root : nullptr;
+            else
+                at = at->find_child(step);
+            if (at == nullptr)
+                read_.fail(e, fmt::format("{} has no element {}, expected the path of one with "
+                                          "<property> elements in it",
+                                          found, path));
+            begin = end + 1;
+        }
+        for (const Element& c : at->children)
+            if (c.kind == Element::Kind::Tag && c.name == "property") add_property(c);
+    }
+
+    /// A property given in parts is one; no part may repeat a value.
+    void add_property(const Element& e)
+    {
+        const std::string& name = read_.text(e, "name");
+        for (Element& known : def_.properties.children)
+        {
+            if (known.name != "property" || *known.find_attribute("name") != name) continue;
+            for (const Element::Attribute& a : e.attributes)
+            {
+                if (a.name == "name") continue;
+                if (known.find_attribute(a.name) != nullptr)
+                    read_.fail(e,
+                               fmt::format("the property {} has a value {} already", name, a.name));
+                known.attributes.push_back(a);
+            }
+            known.children.insert(known.children.end(), e.children.begin(), e.children.end());
+            return;
+        }
+        def_.properties.children.push_back(e);
+    }
+
     void read_properties(const Element& e)
     {
         def_.properties = e;
+        def_.properties.children.clear();
         for (const Element& c : e.children)
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
-            if (c.name == "propertyfile") read_.fail_unsupported(c);
+            if (c.name == "property")
+                add_property(c);
+            else if (c.name == "propertyfile")
+                add_property_file(c);
+            else if (c.name == "links")
+                def_.properties.children.push_back(c);
+            else
+                read_.fail(c,
+                           "is not known in <properties>, expected links, property or "
+                           "propertyfile");
             if (c.name != "links") continue;
             for (const Element& link : c.children)
             {
                 if (link.kind != Element::Kind::Tag || link.name.starts_with('_')) continue;
-                if (link.name != "link") read_.fail(link, "is not known in <links>, expected link");
+                if (link.name != "link")
+                {
+                    // GenCase passes over it without a word.
+                    def_.warnings.push_back(
+                        fmt::format("{}:{}: <{}>: is not known in <links> and has no effect, "
+                                    "expected link",
+                                    def_.file, link.line, link.name));
+                    continue;
+                }
+                if (link.find_attribute("mkbound") == nullptr &&
+                    link.find_attribute("mkfluid") == nullptr)
+                    read_.fail(link, "attribute 'mkbound' or 'mkfluid' is missing");
                 for (const char* type : {"mkbound", "mkfluid"})
                 {
                     if (link.find_attribute(type) == nullptr) continue;
@@ -428,6 +530,52 @@ private:
                                                          read_.text(link, "property"));
                 }
             }
+        }
+        for (const Element& links : def_.properties.children)
+            for (const Element& link : links.children)
+                if (links.name == "links" && link.name == "link") require_properties(link);
+    }
+
+    /// Every name of "A+B" must be that of a property.
+    void require_properties(const Element& link) const
+    {
+        const std::string& names = read_.text(link, "property");
+        for (std::size_t begin = 0; begin <= names.size();)
+        {
+            const std::size_t end = std::min(names.find('+', begin), names.size());
+            const std::string name = names.substr(begin, end - begin);
+            const auto& all = def_.properties.children;
+            if (std::none_of(all.begin(), all.end(),
+                             [&](const Element& p)
+                             { return p.name == "property" && *p.find_attribute("name") == name; }))
+                read_.fail(link, fmt::format("there is no property named \"{}\"; expected a "
+                                             "<property name=\"{}\"> in <properties> or its files",
+                                             name, name));
+            begin = end + 1;
+        }
+    }
+
+    /// The files that the solver reads, for the copy beside the result: those of motions, of the
+    /// velocities and forces of floatings, of properties, and mesh data as text.
+    void note_data_files(const Element& e)
+    {
+        for (const char* section : {"motion", "floatings", "properties", "initials"})
+            if (const Element* found = e.find_child(section)) note_files_in(*found);
+    }
+
+    void note_files_in(const Element& e)
+    {
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+            const std::string* name = c.find_attribute(c.name == "file" ? "name" : "file");
+            const bool is_binary =
+                name != nullptr && c.name == "meshdata" && !name->ends_with(".csv");
+            if (name != nullptr && !name->empty() && !is_binary &&
+                std::none_of(def_.data_files.begin(), def_.data_files.end(),
+                             [&](const DataFileUse& use) { return use.name == *name; }))
+                def_.data_files.push_back({*name, c.line});
+            note_files_in(c);
         }
     }
 

@@ -31,18 +31,33 @@ public:
 
     void read_block(const Element& block) const
     {
-        require_known(block, {}, {"bodyfitted", "fluidband"});
+        require_known(block, {}, {"bodyfitted", "fluidband", "floatings"});
         for (const Element& e : block.children)
         {
             if (is_remark(e)) continue;
             if (e.name == "bodyfitted")
                 read_body_fitted(e);
+            else if (e.name == "floatings")
+                read_exact_floatings(e);
             else
                 read_fluid_band(e);
         }
     }
 
 private:
+    void read_exact_floatings(const Element& e) const
+    {
+        require_known(e, {"exact", "mkbound"}, {});
+        if (!read_.flag_or(e, "exact", true)) return;
+        ExactFloatings& exact = def_.exact_floatings;
+        exact.line = e.line;
+        const std::vector<std::uint16_t> mks = mks_of(e, MkKind::Bound);
+        if (e.find_attribute("mkbound") == nullptr)
+            exact.all = true;
+        else
+            exact.mk.insert(exact.mk.end(), mks.begin(), mks.end());
+    }
+
     static bool is_remark(const Element& e)
     {
         return e.kind != Element::Kind::Tag || e.name.starts_with('_');

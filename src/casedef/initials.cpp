@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace fppg
@@ -41,12 +42,12 @@ public:
         else if (e.name == "velmesh" || e.name == "densitymesh")
             op.what = mesh(e);
         else if (e.name == "moverandom")
-            read_.fail_unsupported(e);
+            op.what = random_move(e);
         else
             read_.fail(e,
                        "is not known in <initials>, expected velocity, velwave, velmesh, "
-                       "densityuniform, densitygradient, densitydepth, densitymesh, move or "
-                       "rotateaxis");
+                       "densityuniform, densitygradient, densitydepth, densitymesh, move, "
+                       "moverandom or rotateaxis");
         const bool moves = std::holds_alternative<MoveParticles>(op.what);
         op.mk = mk(e, moves);
         op.only = read_only_pos(e, read_);
@@ -174,15 +175,17 @@ private:
         const bool has_direction = norm(direction) > 0;
         if (has_direction) direction = direction / norm(direction);
         const Element& file = read_.child(e, "meshdata");
-        const MeshData data = read_mesh_data(find_file(file));
         // Only speeds say whether they have a direction of their own; densities never do.
         const bool wants_vector = is_velocity && !magnitude(file);
+        if (is_velocity && !wants_vector && !has_direction)
+            read_.fail(e, "a <direction> other than zero is missing in it, speeds need one");
+        const MeshData data = read_mesh_data(find_file(file), !is_velocity   ? "Rhop"
+                                                              : wants_vector ? "Vel"
+                                                                             : "VelDir");
         if (data.is_vector != wants_vector)
             read_.fail(file, fmt::format("the file holds {} a node, expected {}",
                                          data.is_vector ? "three numbers" : "one number",
                                          wants_vector ? "three (magnitude is false)" : "one"));
-        if (is_velocity && !wants_vector && !has_direction)
-            read_.fail(e, "a <direction> other than zero is missing in it, speeds need one");
         MeshValues mesh = data.mesh;
         for (int axis = 0; axis < 3; ++axis)
             mesh.origin[axis] += read_.number_or(file, std::string("set") + "xyz"[axis], 0);
@@ -237,6 +240,30 @@ private:
     {
         require_known_children(e, {}, read_);
         return MoveParticles{translation(read_.vec3(e))};
+    }
+
+    InitialVariant random_move(const Element& e) const
+    {
+        require_known_children(e, {}, read_);
+        RandomMove move;
+        // Whatever its size, a seed is taken modulo 2^32, as strange ones are by GenCase.
+        const double seed = std::trunc(read_.number(e, "randomseed"));
+        if (!(std::fabs(seed) < 9e15))
+            read_.fail(e, fmt::format("attribute randomseed=\"{}\" is out of range, expected a "
+                                      "whole number",
+                                      read_.text(e, "randomseed")));
+        move.seed = static_cast<std::uint32_t>(static_cast<std::int64_t>(seed));
+        const double all = read_.number_or(e, "dpxyz", 0);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double width = read_.number_or(e, std::string("dp") + "xyz"[axis], all);
+            if (!(width >= 0))
+                read_.fail(e, fmt::format("a displacement of {:g} dp along {} is invalid, expected "
+                                          "0 or more",
+                                          width, "xyz"[axis]));
+            move.width[axis] = def_.grid.is_2d && axis == 1 ? 0 : width * def_.grid.dp;
+        }
+        return move;
     }
 
     InitialVariant turn(const Element& e) const

@@ -61,12 +61,10 @@ void ProgramRunner::count_command(const Element& e)
 
 void ProgramRunner::run_command(const Element& e)
 {
-    const CommandSupport support = command_support(e.name);
-    if (support == CommandSupport::Unknown)
+    if (!is_known_command(e.name))
         read_.fail(e, "is not a command, see the templates for what can stand in a list");
     if (!read_.is_active(e)) return;
     count_command(e);
-    if (support == CommandSupport::Planned) read_.fail_unsupported(e);
     if (!run_state_command(e) && !run_transform(e) && !run_clip(e) &&
         !variables_.run(e, def_.list_log) && !run_flow_command(e) && !run_draw(e) &&
         !run_fill_or_redraw(e))
@@ -101,6 +99,10 @@ bool ProgramRunner::run_flow_command(const Element& e)
                                     read_.interpolated(e, read_.text_or(e, "text", "(no text)"))));
     else if (name == "shapeout")
         shape_out(e);
+    else if (name == "cellsout")
+        cells_out(e);
+    else if (name == "pointsmkout")
+        add_whole(e, PointsMkOutOp{read_.text(e, "file")});
     else if (name == "debugout")
         return true; // a picture for GenCase's own debugging, written at a debug level only
     else
@@ -159,14 +161,39 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         add_part(std::move(what)); // all layers of a round shape are one part
 }
 
+void ProgramRunner::cells_out(const Element& e)
+{
+    CellsOutOp op;
+    op.file = read_.text(e, "file");
+    for (const char* name : {"mkbound", "mkfluid"})
+    {
+        if (e.find_attribute(name) == nullptr) continue;
+        const int number = read_.integer(e, name, 0, 65000, false);
+        const bool is_bound = name == std::string_view("mkbound");
+        op.mk = static_cast<std::uint16_t>(number +
+                                           (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
+        op.suffix = fmt::format("_{}{}", name, number);
+        break; // mkbound comes first, as with GenCase
+    }
+    add_whole(e, std::move(op));
+}
+
 void ProgramRunner::shape_out(const Element& e)
 {
     std::string format = read_.text_or(e, "format", "vtk");
     for (char& c : format) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    if (format != "vtk") read_.fail_unsupported(e, fmt::format("format=\"{}\"", format));
-    if (e.find_attribute("savenormal") != nullptr) read_.fail_unsupported(e, "savenormal");
     ShapeOutOp op;
     op.file = read_.interpolated(e, read_.text(e, "file"));
+    if (format == "vtp")
+        op.format = ShapeFormat::Vtp;
+    else if (format == "vtu")
+        op.format = ShapeFormat::Vtu;
+    else if (format == "stl")
+        op.format = ShapeFormat::Stl;
+    else if (format != "vtk")
+        read_.fail(e, fmt::format("format=\"{}\" is invalid, expected vtk, vtp, vtu or stl",
+                                  read_.text(e, "format")));
+    op.normal_dp = read_.number_or(e, "savenormal", 0);
     op.reset = read_.flag_or(e, "reset", true);
     op.actual = shape_forms_[0];
     op.snapped = shape_forms_[1];

@@ -50,6 +50,7 @@ private:
 
     MkValue mk_value(const Element& e, MkKind kind, int mk_type) const;
     void set_mk(const Element& e, MkKind kind, int mk_type);
+    int mk_number(const Element& e) const;
     void add(const Element& e, DrawVariant what);
     void add_whole(const Element& e, DrawVariant what);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
@@ -73,6 +74,7 @@ private:
     Transform file_transform(const Element& e) const;
     void read_depth(const Element& e, MeshFileOp& op) const;
     void shape_out(const Element& e);
+    void cells_out(const Element& e);
 
     CaseDef& def_;
     VariableCommands& variables_;

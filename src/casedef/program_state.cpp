@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fppg
 {
@@ -34,6 +35,20 @@ void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
     shared_state_.reset();
 }
 
+int ProgramRunner::mk_number(const Element& e) const
+{
+    // GenCase v5.4.354 takes mk="1.0" here, and only here.
+    const std::string& text = read_.text(e, "mk");
+    if (text.find('.') == std::string::npos || text.find('#') != std::string::npos)
+        return read_.integer(e, "mk", 0, 65000, false);
+    const double number = read_.number(e, "mk");
+    if (!(number >= 0 && number <= 65000) || number != std::floor(number))
+        read_.fail(e, fmt::format("attribute mk=\"{}\" is not a valid integer number, expected 0 "
+                                  "to 65000",
+                                  text));
+    return static_cast<int>(number);
+}
+
 bool ProgramRunner::run_state_command(const Element& e)
 {
     const std::string& name = e.name;
@@ -57,8 +72,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     if (name == "setmkvoid")
         set_mk(e, MkKind::Void, 0);
     else if (name == "setmkfluid" || name == "setmkbound")
-        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound,
-               read_.integer(e, "mk", 0, 65000, false));
+        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound, mk_number(e));
     else if (name == "setmknextfluid")
         next_mk(MkKind::Fluid);
     else if (name == "setmknextbound")

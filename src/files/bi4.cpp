@@ -297,7 +297,10 @@ void start_segment(const ParticleSegment& segment, double* pos, float* vel, floa
 {
     for (std::uint32_t k = 0; k < segment.count; ++k)
     {
-        InitialState state{{pos[3 * k], pos[3 * k + 1], pos[3 * k + 2]}, {}, rhop[k]};
+        InitialState state{{pos[3 * k], pos[3 * k + 1], pos[3 * k + 2]},
+                           {},
+                           rhop[k],
+                           segment.id + k - segment.block->begin};
         apply_initials(segment.block->initials, state);
         for (int axis = 0; axis < 3; ++axis)
         {

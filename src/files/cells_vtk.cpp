@@ -312,19 +312,25 @@ RunField without_zones(const RunField& field, int threads)
     return out;
 }
 
-} // namespace
-
-void write_cells_vtk(OutputFile& file, const RunField& field,
-                     const std::vector<ParticleType>& type_of_mk, int threads)
+/// A face and its number among those of all mks.
+struct NumberedFace
 {
-    if (!field.walls.is_empty())
-    {
-        write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
-        return;
-    }
+    const Faces* faces;
+    const Rectangle* rectangle;
+    std::uint64_t number;
+};
+
+/// Writes points and polygons of the faces that `is_shown` takes, then the values of cells that
+/// `write_values` writes by the function it is given. Returns the number of faces.
+template <typename IsShown, typename WriteValues>
+std::uint64_t write_faces(OutputFile& file, const RunField& field, int threads, bool may_be_empty,
+                          const IsShown& is_shown, const WriteValues& write_values)
+{
     const std::vector<Faces> all = all_faces(field, threads);
     std::uint64_t n = 0;
-    for (const Faces& faces : all) n += faces.rectangles.size();
+    for (const Faces& faces : all)
+        for (const Rectangle& r : faces.rectangles) n += is_shown(r) ? 1U : 0U;
+    if (n == 0 && !may_be_empty) return 0;
     constexpr std::uint64_t max_rectangles = 536870911;
     if (n > max_rectangles)
         throw IoError(
@@ -337,10 +343,13 @@ void write_cells_vtk(OutputFile& file, const RunField& field,
     {
         constexpr std::size_t bytes_at_a_time = 1 << 20;
         std::string bytes;
+        std::uint64_t number = 0;
         for (const Faces& faces : all)
             for (const Rectangle& r : faces.rectangles)
             {
-                body(faces, r, bytes);
+                const NumberedFace face{&faces, &r, number++};
+                if (!is_shown(r)) continue;
+                body(face, bytes);
                 if (bytes.size() < bytes_at_a_time) continue;
                 file.append(bytes);
                 bytes.clear();
@@ -349,28 +358,65 @@ void write_cells_vtk(OutputFile& file, const RunField& field,
     };
     file.append(fmt::format("{}POINTS {} float\n", vtk_head, 4 * n));
     write_for_each(
-        [&](const Faces& faces, const Rectangle& r, std::string& bytes)
+        [&](const NumberedFace& face, std::string& bytes)
         {
-            for (const Vec3& corner : corners(field.grid, faces, r))
+            for (const Vec3& corner : corners(field.grid, *face.faces, *face.rectangle))
                 for (int axis = 0; axis < 3; ++axis)
                     append_big_endian(bytes, static_cast<float>(corner[axis]));
         });
     file.append(fmt::format("\nPOLYGONS {} {}\n", n, 5 * n));
     std::uint32_t vertex = 0;
     write_for_each(
-        [&](const Faces&, const Rectangle&, std::string& bytes)
+        [&](const NumberedFace&, std::string& bytes)
         {
             append_big_endian(bytes, std::uint32_t{4});
             for (int i = 0; i < 4; ++i) append_big_endian(bytes, vertex++);
         });
-    file.append(
-        fmt::format("\nCELL_DATA {}\nSCALARS Mk unsigned_short\nLOOKUP_TABLE default\n", n));
-    write_for_each([&](const Faces&, const Rectangle& r, std::string& bytes)
-                   { append_big_endian(bytes, r.strip.mk); });
-    file.append(fmt::format("\nFIELD FieldData 1\nType 1 {} unsigned_char\n", n));
-    write_for_each([&](const Faces&, const Rectangle& r, std::string& bytes)
-                   { bytes += static_cast<char>(type_of_mk[r.strip.mk]); });
+    write_values(n, write_for_each);
     file.append("\n");
+    return n;
+}
+
+} // namespace
+
+void write_cells_vtk(OutputFile& file, const RunField& field,
+                     const std::vector<ParticleType>& type_of_mk, int threads)
+{
+    if (!field.walls.is_empty())
+    {
+        write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
+        return;
+    }
+    write_faces(
+        file, field, threads, true, [](const Rectangle&) { return true; },
+        [&](std::uint64_t n, const auto& write_for_each)
+        {
+            file.append(fmt::format(
+                "\nCELL_DATA {}\nSCALARS Mk unsigned_short\nLOOKUP_TABLE default\n", n));
+            write_for_each([&](const NumberedFace& face, std::string& bytes)
+                           { append_big_endian(bytes, face.rectangle->strip.mk); });
+            file.append(fmt::format("\nFIELD FieldData 1\nType 1 {} unsigned_char\n", n));
+            write_for_each([&](const NumberedFace& face, std::string& bytes)
+                           { bytes += static_cast<char>(type_of_mk[face.rectangle->strip.mk]); });
+        });
+}
+
+std::uint64_t write_shown_cells_vtk(OutputFile& file, const RunField& field,
+                                    std::optional<std::uint16_t> mk, int threads)
+{
+    return write_faces(
+        file, field, threads, false, [&](const Rectangle& r) { return !mk || r.strip.mk == *mk; },
+        [&](std::uint64_t n, const auto& write_for_each)
+        {
+            file.append(fmt::format("\nCELL_DATA {}\nSCALARS Mk int\nLOOKUP_TABLE default\n", n));
+            write_for_each(
+                [&](const NumberedFace& face, std::string& bytes) {
+                    append_big_endian(bytes, static_cast<std::uint32_t>(face.rectangle->strip.mk));
+                });
+            file.append(fmt::format("\nFIELD FieldData 1\nObjId 1 {} int\n", n));
+            write_for_each([&](const NumberedFace& face, std::string& bytes)
+                           { append_big_endian(bytes, static_cast<std::uint32_t>(face.number)); });
+        });
 }
 
 } // namespace fppg

@@ -139,7 +139,10 @@ void start_segment(const PieceBuffer& buffer, std::size_t at, const Contents& ha
     const auto start = [&](std::int64_t place, double x, double y, double z)
     {
         const std::size_t k = at + static_cast<std::size_t>(place);
-        InitialState state{{x, y, z}, {}, 0};
+        InitialState state{{x, y, z},
+                           {},
+                           0,
+                           segment.id + static_cast<std::uint64_t>(place) - segment.block->begin};
         if (has.vel_and_rhop)
             state.rhop = static_cast<double>(std::bit_cast<float>(big_endian(buffer.rhop[k])));
         apply_initials(segment.block->initials, state);

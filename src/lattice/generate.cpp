@@ -8,10 +8,12 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/domain_clip.h"
+#include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
 #include "lattice/free_points.h"
+#include "lattice/node_files.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
 #include "lattice/round_shapes.h"
@@ -82,6 +84,7 @@ public:
         : def_(def),
           threads_(threads),
           report_(report),
+          checks_(def, report.warnings),
           walls_(field_, threads),
           free_(field_, threads)
     {
@@ -92,6 +95,10 @@ public:
     void run(const DrawOp& op)
     {
         op_ = &op;
+        if (const auto* file = std::get_if<MeshFileOp>(&op.what))
+            check_mesh(mesh(*file), file->transform);
+        else
+            checks_.check_shape(op, bounds_of(op, grid().dp));
         if (!draw_fitted(op)) std::visit([this](const auto& what) { draw(what); }, op.what);
     }
 
@@ -665,7 +672,11 @@ private:
             4096);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
-        if (op.advanced || op.fill_inside || op.autofill) moved = moved_soup(source, op.transform);
+        if (op.advanced || op.fill_inside || op.autofill)
+        {
+            moved = moved_soup(source, op.transform);
+            checks_.check_closed(*op_, moved);
+        }
         if (op.advanced)
         {
             paint_region(depth_region(moved, op, grid(), threads_));
@@ -679,6 +690,16 @@ private:
         }
         draw_triangles(std::move(triangles));
         if (op.autofill) autofill(moved, file, op.transform);
+    }
+
+    void check_mesh(const MeshFile& file, const Transform& transform)
+    {
+        Box3 bounds;
+        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const std::vector<Vec3>& line : file.lines)
+            for (const Vec3& p : line) bounds.add(transform(p));
+        for (const Vec3& v : file.soup.vertices) bounds.add(transform(v));
+        checks_.check_shape(*op_, bounds);
     }
 
     static SlabRegion region_of(SpanSet set)
@@ -739,7 +760,9 @@ private:
                      });
         const std::uint64_t n_wrong = node_count(wrong);
         const std::uint64_t n_missing = node_count(missing);
-        if (n_wrong + n_missing > 0)
+        // Nodes near the surface may fall to either side.
+        const std::uint64_t n_body = std::max(node_count(filled), node_count(inside.slabs));
+        if (100 * (n_wrong + n_missing) > n_body)
             report_.warnings.push_back(
                 fmt::format("{}: autofill is a flood from the centre of the bounding box, as in "
                             "GenCase: it filled {} nodes that "
@@ -808,12 +831,42 @@ private:
         const std::vector<Spans> nodes =
             flood(field_, seed, fillable(op.filter), box, mask_used, threads_);
         if (state().draw_points && node_count(nodes) == 0)
-            report_.warnings.push_back(
-                fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) is outside "
-                            "its region or on a "
-                            "node that modefill does not name.",
-                            place(), op.seed.x, op.seed.y, op.seed.z));
+            report_.warnings.push_back(fmt::format(
+                "{}: the fill added no node: its seed ({:g}, {:g}, {:g}) {}", place(), op.seed.x,
+                op.seed.y, op.seed.z, why_nothing_is_filled(seed, box, mask_used)));
+        checks_.check_fill(*op_, nodes);
         paint_nodes(nodes);
+    }
+
+    std::string why_nothing_is_filled(const Node& seed, const NodeBox& box,
+                                      const SpanSet* mask) const
+    {
+        if (!is_inside(seed, grid()))
+            return "is outside the domain; expected a place between <pointmin> and <pointmax>";
+        const auto y = static_cast<std::uint32_t>(seed.y);
+        const auto z = static_cast<std::uint32_t>(seed.z);
+        const auto holds = [&](const auto& s) { return s.y == y && s.z_begin <= z && z < s.z_end; };
+        const auto x = static_cast<std::size_t>(seed.x);
+        const auto is_in_box = [&](int axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            return box.begin[k] <= seed[axis] && seed[axis] < box.end[k];
+        };
+        if (!is_in_box(0) || !is_in_box(1) || !is_in_box(2) ||
+            (mask != nullptr && std::none_of(mask->slabs[x].begin(), mask->slabs[x].end(), holds)))
+            return "is outside the region that limits the fill; expected a place strictly inside "
+                   "it";
+        const auto run = std::find_if(field_.slabs[x].begin(), field_.slabs[x].end(), holds);
+        if (run == field_.slabs[x].end())
+            return "is on a node where nothing is drawn, which <modefill> does not name; add void "
+                   "there";
+        const int mk = run->mk & ~wall_zone_bit;
+        const bool is_bound = mk >= def_.mk_bound_first;
+        return fmt::format(
+            "lies in {} {}, which <modefill> does not name; expected a place in the "
+            "empty space to be filled",
+            is_bound ? "the solid of mkbound" : "mkfluid",
+            mk - (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
     }
 
     void draw(const RedrawOp& op)
@@ -839,9 +892,34 @@ private:
 
     void draw(const ShapeOutOp&) {}
 
+    void draw(const CellsOutOp& op)
+    {
+        NodeFile file;
+        file.name = "_" + op.file + "_MkCells" + op.suffix + ".vtk";
+        file.is_cells = true;
+        file.cells = plain_nodes(field_);
+        file.mk = op.mk;
+        keep(std::move(file));
+    }
+
+    void draw(const PointsMkOutOp& op)
+    {
+        NodeFile file;
+        file.name = fmt::format("_{}_mk{}.vtk", op.file, state().mk.mk);
+        file.points = border_nodes(field_, state().mk.mk);
+        keep(std::move(file));
+    }
+
+    void keep(NodeFile file)
+    {
+        std::erase_if(report_.node_files, [&](const NodeFile& f) { return f.name == file.name; });
+        report_.node_files.push_back(std::move(file));
+    }
+
     const CaseDef& def_;
     int threads_;
     LatticeReport& report_;
+    DrawChecks checks_;
     RunField field_;
     WallPainter walls_;
     FreePainter free_;

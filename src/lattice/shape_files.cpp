@@ -7,7 +7,9 @@
 #include "lattice/snap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace fppg
@@ -70,7 +72,11 @@ private:
         {
             if (!(snapped ? out.snapped : out.actual)) continue;
             ShapeFile file;
-            file.name = "_" + out.file + (snapped ? "_Dp.vtk" : "_Actual.vtk");
+            constexpr std::array<const char*, 4> endings{".vtk", ".vtp", ".vtu", ".stl"};
+            const char* ending = endings[static_cast<std::size_t>(out.format)];
+            const std::string stem = "_" + out.file + (snapped ? "_Dp" : "_Actual");
+            file.name = stem + ending;
+            file.format = out.format;
             std::uint32_t id = 0;
             for (const DrawOp* op : drawn_)
             {
@@ -84,9 +90,58 @@ private:
                         if (p.size() > 2) std::reverse(p.begin(), p.end());
                 if (!shape.polygons.empty()) file.shapes.push_back(std::move(shape));
             }
-            if (!file.shapes.empty()) files_.push_back(std::move(file));
+            if (file.shapes.empty()) continue;
+            if (out.normal_dp != 0)
+            {
+                ShapeFile shown = file;
+                shown.name = stem + "_Nor" + ending;
+                shown.has_normals = true;
+                std::vector<ShapePolygons> lines = normals(file.shapes, id, out.normal_dp);
+                shown.shapes.insert(shown.shapes.begin(), std::make_move_iterator(lines.begin()),
+                                    std::make_move_iterator(lines.end()));
+                keep(std::move(file));
+                file = std::move(shown);
+            }
+            keep(std::move(file));
         }
         if (out.reset) drawn_.clear();
+    }
+
+    /// Of two files with one name the later one counts.
+    void keep(ShapeFile file)
+    {
+        std::erase_if(files_, [&](const ShapeFile& f) { return f.name == file.name; });
+        files_.push_back(std::move(file));
+    }
+
+    /// A line along the normal of every face from the middle of its corners, with the mk of the
+    /// face and an object number of their own, as in GenCase v5.4.354.
+    std::vector<ShapePolygons> normals(const std::vector<ShapePolygons>& shapes, std::uint32_t id,
+                                       double length_dp) const
+    {
+        std::vector<ShapePolygons> out;
+        for (const ShapePolygons& shape : shapes)
+        {
+            ShapePolygons lines;
+            lines.object_id = id;
+            lines.mk = shape.mk;
+            for (const auto& polygon : shape.polygons)
+            {
+                if (polygon.size() < 3) continue;
+                Vec3 middle;
+                for (const std::uint32_t v : polygon) middle = middle + shape.vertices[v];
+                middle = middle / static_cast<double>(polygon.size());
+                const Vec3& a = shape.vertices[polygon[0]];
+                Vec3 normal = cross(shape.vertices[polygon[1]] - a, shape.vertices[polygon[2]] - a);
+                if (norm(normal) > 0) normal = normal / norm(normal);
+                const auto i = static_cast<std::uint32_t>(lines.vertices.size());
+                lines.vertices.push_back(middle);
+                lines.vertices.push_back(middle + normal * (length_dp * def_.grid.dp));
+                lines.polygons.push_back({i, i + 1});
+            }
+            if (!lines.polygons.empty()) out.push_back(std::move(lines));
+        }
+        return out;
     }
 
     Vec3 place(const Vec3& p, bool snapped) const

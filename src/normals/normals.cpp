@@ -191,6 +191,7 @@ private:
     {
         InitialState state;
         state.position = place_in_run(particles_, *place.block, *place.run, k);
+        state.place = place.id + k - place.block->begin;
         if (!place.block->initials.empty()) apply_initials(place.block->initials, state);
         return state.position;
     }

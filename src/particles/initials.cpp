@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace fppg
 {
@@ -56,6 +57,28 @@ double value_at(const MeshValues& mesh, const Vec3& p)
             sum += weight * mesh.values[node[0] + mesh.n[0] * (node[1] + mesh.n[1] * node[2])];
     }
     return sum;
+}
+
+int moved_axes(const RandomMove& op)
+{
+    return (op.width.x > 0) + (op.width.y > 0) + (op.width.z > 0);
+}
+
+std::shared_ptr<const std::vector<std::uint32_t>> random_numbers(const RandomMove& op,
+                                                                 std::uint64_t particles)
+{
+    std::mt19937 generator(op.seed);
+    generator.discard(37);
+    auto numbers = std::make_shared<std::vector<std::uint32_t>>(
+        particles * static_cast<std::uint64_t>(moved_axes(op)));
+    for (std::uint32_t& n : *numbers) n = static_cast<std::uint32_t>(generator());
+    return numbers;
+}
+
+bool moves_particles(const InitialOp& op)
+{
+    return std::holds_alternative<MoveParticles>(op.what) ||
+           std::holds_alternative<RandomMove>(op.what);
 }
 
 /// Runs one operation on a particle that it selects.
@@ -110,6 +133,17 @@ struct Applier
         turn.offset = {};
         state.velocity = turn(state.velocity);
     }
+    void operator()(const RandomMove& op) const
+    {
+        const auto axes = static_cast<std::size_t>(moved_axes(op));
+        std::size_t at = state.place * axes;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (!(op.width[axis] > 0)) continue;
+            const double u = static_cast<double>((*op.numbers)[at++]) * 0x1p-32;
+            state.position[axis] += (u - 0.5) * op.width[axis];
+        }
+    }
 };
 
 bool turns(const ParticleBlock& block)
@@ -117,18 +151,32 @@ bool turns(const ParticleBlock& block)
     return motion_of(block).linear != Transform{}.linear;
 }
 
-/// Calls body(position) with places of a block before `<initials>` that hold all its extremes; with
-/// all places on request.
+bool scatters(const ParticleBlock& block)
+{
+    return std::any_of(block.initials.begin(), block.initials.end(),
+                       [](const InitialOp& op)
+                       { return std::holds_alternative<RandomMove>(op.what); });
+}
+
+/// Calls body(state) with particles of a block before `<initials>` that hold all its extremes; with
+/// all of them on request.
 template <typename Body>
 void for_places(const CaseParticles& particles, const ParticleBlock& block, bool all,
                 const Body& body)
 {
+    std::uint64_t begin = 0;
     for (const ParticleRun& run : block.runs)
     {
         if (run.count == 0) continue;
         const std::uint32_t step = all || run.is_free() ? 1 : std::max(1u, run.count - 1);
         for (std::uint32_t k = 0; k < run.count; k += step)
-            body(place_in_run(particles, block, run, k));
+        {
+            InitialState state;
+            state.position = place_in_run(particles, block, run, k);
+            state.place = begin + k;
+            body(state);
+        }
+        begin += run.count;
     }
 }
 
@@ -138,10 +186,8 @@ std::optional<Vec3> highest_place(const CaseParticles& particles, const Particle
 {
     std::optional<Vec3> best;
     for_places(particles, block, true,
-               [&](const Vec3& place)
+               [&](InitialState state)
                {
-                   InitialState state;
-                   state.position = place;
                    apply_initials(block.initials, state);
                    if (!only.contains(state.position)) return;
                    if (!best || dot(state.position, gravity) < dot(*best, gravity))
@@ -166,6 +212,8 @@ void add_initial(const CaseDef& def, const CaseConstants& constants, const CaseP
             depth->surface = highest_place(particles, block, op.only, *depth->gravity)
                                  .value_or(Vec3{}); // where nothing is selected it is not used
     }
+    if (auto* random = std::get_if<RandomMove>(&op.what))
+        random->numbers = random_numbers(*random, block.count);
     block.initials.push_back(std::move(op));
 }
 
@@ -176,18 +224,16 @@ void set_moved_limits(const CaseDef& def, CaseParticles& particles)
     for (const ParticleBlock& block : particles.blocks)
     {
         Box3 box;
-        for_places(particles, block, turns(block),
-                   [&](const Vec3& place)
+        for_places(particles, block, turns(block) || scatters(block),
+                   [&](InitialState state)
                    {
-                       InitialState state;
-                       state.position = place;
                        apply_initials(block.initials, state);
                        box.add(state.position);
                    });
         if (box.is_empty()) continue;
         all.add(box.min);
         all.add(box.max);
-        if (motion_of(block).is_identity()) continue;
+        if (motion_of(block).is_identity() && !scatters(block)) continue;
         for (int axis = 0; axis < 3; ++axis)
         {
             // Room for the rounding of the moves; GenCase v5.4.354 takes a node moved to pointmax.
@@ -196,13 +242,12 @@ void set_moved_limits(const CaseDef& def, CaseParticles& particles)
             const double low = def.case_pos_min[axis] - room;
             const double high = (is_flat ? def.case_pos_min : def.case_pos_max)[axis] + room;
             if (box.min[axis] >= low && box.max[axis] <= high) continue;
-            const auto last = std::find_if(
-                block.initials.rbegin(), block.initials.rend(),
-                [](const InitialOp& op) { return std::holds_alternative<MoveParticles>(op.what); });
+            const auto last =
+                std::find_if(block.initials.rbegin(), block.initials.rend(), moves_particles);
             throw CaseError(
                 def.file, last->line,
                 fmt::format("<initials>: particles of mk{} {} are moved to {} = {:g}, outside the "
-                            "domain {:g} to {:g}; check <move> and <rotateaxis>",
+                            "domain {:g} to {:g}; check <move>, <moverandom> and <rotateaxis>",
                             block.type == ParticleType::Fluid ? "fluid" : "bound", block.mk_type,
                             "xyz"[axis], box.min[axis] < low ? box.min[axis] : box.max[axis],
                             low + room, high - room));
@@ -237,7 +282,7 @@ void set_initials(const CaseDef& def, const CaseConstants& constants, CasePartic
         {
             if (block.mk != op.mk) continue;
             add_initial(def, constants, particles, op, block);
-            moves = moves || std::holds_alternative<MoveParticles>(op.what);
+            moves = moves || moves_particles(op);
         }
     if (moves) set_moved_limits(def, particles);
 }

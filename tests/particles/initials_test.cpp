@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace fppg
@@ -226,6 +227,198 @@ TEST(InitialMesh, IsRefusedWhereItsFileIsWrong)
                  IoError);
 }
 
+/// A binary file of the same kind (without 64-bit sizes).
+class BinaryMesh
+{
+public:
+    BinaryMesh() : bytes_("#FileJBD JMeshTDatas")
+    {
+        bytes_.resize(58, ' ');
+        bytes_ += std::string("\n\0\0\0\0\0", 6);
+    }
+
+    struct Data
+    {
+        std::string name;
+        std::vector<float> values;
+        bool is_vector = false;
+        int tag = 0;
+    };
+
+    /// The description of a mesh of 3 x 1 x 3 nodes.
+    void describe(const std::vector<Data>& data, std::uint32_t version = 200817)
+    {
+        values_.clear();
+        n_values_ = 0;
+        value("FormatVer", 8, version);
+        value("MeshPtRef", 23, std::array<double, 3>{0, 0, 0});
+        value("MeshVdp1", 23, std::array<double, 3>{0.2, 0, 0});
+        value("MeshVdp2", 23, std::array<double, 3>{0, 0.2, 0});
+        value("MeshVdp3", 23, std::array<double, 3>{0, 0, 0.2});
+        value("MeshNpt1", 8, 3U);
+        value("MeshNpt2", 8, 1U);
+        value("MeshNpt3", 8, 3U);
+        value("Data_Count", 8, static_cast<std::uint32_t>(data.size()));
+        for (std::size_t i = 0; i < data.size(); ++i)
+        {
+            ++n_values_;
+            values_ += text("DataName_0" + std::to_string(i)) + raw(1) + text(data[i].name);
+            value("DataTag_0" + std::to_string(i), 7, data[i].tag);
+        }
+        add_item({});
+    }
+
+    void add_time(double time, const std::vector<Data>& data)
+    {
+        values_.clear();
+        n_values_ = 0;
+        value("TimeStep", 12, time);
+        add_item(data);
+    }
+
+    const std::string& bytes() const { return bytes_; }
+
+private:
+    template <typename T>
+    static std::string raw(const T& v)
+    {
+        return {reinterpret_cast<const char*>(&v), sizeof v};
+    }
+    static std::string text(const std::string& s)
+    {
+        return raw(static_cast<std::uint32_t>(s.size())) + s;
+    }
+    template <typename T>
+    void value(const std::string& name, int type, const T& v)
+    {
+        ++n_values_;
+        values_ += text(name) + raw(type) + raw(v);
+    }
+    void add_item(const std::vector<Data>& data)
+    {
+        const std::string values = text("\nVALUES") + raw(n_values_) + values_;
+        bytes_ += raw(0U) + text("\nITEM\n") + text("ITEM") + raw(0) + raw(0) + text("%.7E") +
+                  text("%.15E") + raw(static_cast<std::uint32_t>(data.size())) + raw(0U) +
+                  raw(static_cast<std::uint32_t>(values.size())) + values;
+        for (const Data& d : data)
+        {
+            bytes_ += raw(0U) + text("\nARRAY") + text(d.name) + raw(0) +
+                      raw(d.is_vector ? 22 : 11) +
+                      raw(static_cast<std::uint32_t>(d.values.size() / (d.is_vector ? 3 : 1))) +
+                      raw(static_cast<std::uint32_t>(4 * d.values.size()));
+            for (const float v : d.values) bytes_ += raw(v);
+        }
+    }
+
+    std::string bytes_;
+    std::string values_;
+    std::uint32_t n_values_ = 0;
+};
+
+const BinaryMesh::Data densities{"rhop", {1000, 1010, 1020, 1100, 1117, 1120, 1200, 1210, 1220}};
+
+Started start_with_binary(const BinaryMesh& mesh, const std::string& element)
+{
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "mesh.MBI4", mesh.bytes());
+    std::string text = element;
+    text.replace(text.find("FILE"), 4, folder / "mesh.MBI4");
+    return start(text);
+}
+
+constexpr const char* density_mesh =
+    R"(<densitymesh mkfluid="0"><meshdata file="FILE" initialtime="0.25" /></densitymesh>)";
+
+TEST(InitialMesh, IsTheSameFromABinaryFile)
+{
+    BinaryMesh mesh;
+    const BinaryMesh::Data other{"VelDir", std::vector<float>(9, 3)};
+    mesh.describe({other, densities});
+    mesh.add_time(0, {other, densities});
+    BinaryMesh::Data later = densities;
+    for (float& v : later.values) v += 1000;
+    mesh.add_time(1, {other, later});
+    const Started s = start_with_binary(mesh, density_mesh);
+    EXPECT_NEAR(s.water(0.1, 0, 0.1).rhop, 1306.75, 1e-9);
+    const Started speeds = start_with_binary(
+        mesh,
+        R"(<velmesh mkfluid="0"><direction x="0" y="0" z="2" /><meshdata file="FILE" magnitude="true" /></velmesh>)");
+    expect_vector(speeds.water(0.1, 0, 0.1).velocity, {0, 0, 3});
+}
+
+TEST(InitialMesh, OfTwoDimensionsIsTheSameAllAlongTheThird)
+{
+    BinaryMesh mesh;
+    const BinaryMesh::Data flat{"Rhop", {1000, 1010, 1020}, false, 12};
+    mesh.describe({flat});
+    mesh.add_time(0, {flat});
+    const Started s = start_with_binary(mesh, density_mesh);
+    EXPECT_NEAR(s.water(0.1, 0, 0.4).rhop, 1005, 1e-9);
+}
+
+TEST(InitialMesh, IsRefusedWhereABinaryFileIsWrong)
+{
+    const auto message = [](const BinaryMesh& mesh)
+    {
+        try
+        {
+            start_with_binary(mesh, density_mesh);
+        }
+        catch (const Error& error)
+        {
+            return std::string(error.what());
+        }
+        return std::string("nothing was thrown");
+    };
+    BinaryMesh unnamed;
+    unnamed.describe({{"Foo", densities.values}});
+    EXPECT_NE(message(unnamed).find("mesh.MBI4: the file has no data named Rhop, only Foo"),
+              std::string::npos);
+    BinaryMesh old;
+    old.describe({densities}, 1);
+    EXPECT_NE(message(old).find("format version 1, expected 200817"), std::string::npos);
+    BinaryMesh empty;
+    empty.describe({densities});
+    EXPECT_NE(message(empty).find("holds no time"), std::string::npos);
+    empty.add_time(0, {{"Rhop", {1000, 1000}}});
+    EXPECT_NE(message(empty).find("has 2 numbers of Rhop at 0 s, expected 9"), std::string::npos);
+    EXPECT_NE(message({}).find("announced"), std::string::npos);
+}
+
+TEST(InitialRandomMove, IsThatOfGenCase)
+{
+    // Displacements in dp by GenCase v5.4.354 for the seed 1 and dpxyz 1, the first two particles.
+    const Started s = start(R"(<moverandom mkfluid="0" randomseed="1" dpxyz="1" />)");
+    const ParticleBlock& water = s.particles.blocks.back();
+    InitialState first{{0.1, 0.1, 0.1}, {}, 1000, 0};
+    apply_initials(water.initials, first);
+    expect_vector(first.position - Vec3{0.1, 0.1, 0.1},
+                  {0.0439127794932574, -0.0301898516714573, 0.0278389235492796}, 1e-15);
+    InitialState second{{0.1, 0.1, 0.2}, {}, 1000, 1};
+    apply_initials(water.initials, second);
+    EXPECT_NEAR(second.position.x - 0.1, 0.0300744566367939, 1e-15);
+}
+
+TEST(InitialRandomMove, TakesOneNumberAnAxisThatMoves)
+{
+    const Started s = start(
+        R"(<moverandom mkfluid="0" randomseed="7" dpxyz="0.5" dpx="0" dpz="1" /><moverandom mkfluid="0" randomseed="7" dpx="1" />)");
+    const ParticleBlock& water = s.particles.blocks.back();
+    InitialState third{{}, {}, 1000, 2};
+    apply_initials(water.initials, third);
+    // The generator's numbers for the seed 7: 0.26258378, 0.02489923, 0.75076273, 0.60054892,
+    // 0.25489406, 0.95012949.
+    expect_vector(third.position, {0.025076273, 0.05 * (0.25489406 - 0.5), 0.045012949}, 1e-9);
+}
+
+TEST(InitialRandomMove, IsRefusedForBoundariesAndBelowZero)
+{
+    EXPECT_THROW(start(R"(<moverandom mkbound="0" randomseed="1" dpx="1" />)"), CaseError);
+    EXPECT_THROW(start(R"(<moverandom mkfluid="0" randomseed="1" dpx="-1" />)"), CaseError);
+    EXPECT_THROW(start(R"(<moverandom mkfluid="0" dpx="1" />)"), CaseError);
+    EXPECT_THROW(start(R"(<moverandom mkfluid="0" randomseed="1" dpxyz="30" />)"), CaseError);
+}
+
 TEST(InitialMove, ShiftsPlacesBeforeWhatFollows)
 {
     const Started s = start(
@@ -315,7 +508,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{R"(<velmesh mkfluid="0" />)", "<velmesh>: the element <meshdata> is missing"},
         Mistake{R"(<densitymesh mkfluid="0"><direction x="1" y="0" z="0" /></densitymesh>)",
                 "<direction>: is not known in <densitymesh>"},
-        Mistake{R"(<moverandom mkfluid="0" />)", "<moverandom>: not supported yet"},
+        Mistake{R"(<moverandom mkfluid="0" />)", "attribute 'randomseed' is missing"},
         Mistake{R"(<velocity x="1" y="0" z="0" />)", "attribute 'mkfluid' is missing"},
         Mistake{R"(<velocity mkbound="0" x="1" y="0" z="0" />)", "only fluid can have"},
         Mistake{R"(<velocity mkfluid="0" x="1" y="0" />)", "attribute 'z' is missing"},

@@ -392,7 +392,7 @@ TEST(MakeParticles, MovesOnlyWhatAMotionBegins)
 {
     CaseText text = small_case();
     text.after_geometry =
-        R"(<motion><objreal ref="0"><begin mov="1" start="0" /></objreal><objreal ref="1" /></motion>)";
+        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><wait id="1" duration="1" /></objreal><objreal ref="1" /></motion>)";
     const Made made = make(text, any_nodes(6));
     for (const ParticleBlock& block : made.particles.blocks)
         if (block.type != ParticleType::Fluid)
@@ -422,7 +422,8 @@ TEST(MakeParticles, JoinsThePropertiesOfABlock)
     CaseText text = small_case();
     text.after_geometry =
         R"(<properties><links><link mkbound="0,2-3" property="steel" /><link mkbound="0" property="wet" />
-<link mkfluid="1" property="oil" /></links></properties>)";
+<link mkfluid="1" property="oil" /></links><property name="steel" /><property name="wet" />
+<property name="oil" /></properties>)";
     const Made made = make(text, any_nodes(8));
     const std::map<std::uint16_t, std::string> expected{{10, "steel+wet"}, {11, ""}, {12, "steel"},
                                                         {13, "steel"},     {1, ""},  {2, "oil"}};

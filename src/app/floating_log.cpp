@@ -1,0 +1,97 @@
+#include "app/floating_log.h"
+
+#include "fppg/error.h"
+
+#include "lattice/exact_body.h"
+#include "particles/initials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fppg
+{
+namespace
+{
+
+std::string text_of(const FloatingBody& body)
+{
+    const auto& i = body.inertia;
+    return fmt::format(
+        "mass {:.9g} kg, centre ({:.9g}, {:.9g}, {:.9g}) m, inertia xx yy zz "
+        "({:.9g}, {:.9g}, {:.9g}) xy xz yz ({:.9g}, {:.9g}, {:.9g}) kg*m^2",
+        body.mass_body, body.center.x, body.center.y, body.center.z, i[0].x, i[1].y, i[2].z, i[0].y,
+        i[0].z, i[1].z);
+}
+
+/// R I R^T
+std::array<Vec3, 3> turned(const std::array<Vec3, 3>& inertia, const Transform& map)
+{
+    std::array<Vec3, 3> out;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const Vec3& row = map.linear[i];
+        const Vec3 left = row.x * inertia[0] + row.y * inertia[1] + row.z * inertia[2];
+        for (std::size_t j = 0; j < 3; ++j) out[i][static_cast<int>(j)] = dot(left, map.linear[j]);
+    }
+    return out;
+}
+
+const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
+{
+    const auto found = std::find_if(
+        def.floatings.rbegin(), def.floatings.rend(),
+        [&](const FloatingDef& f)
+        { return std::find(f.mkbound.begin(), f.mkbound.end(), mkbound) != f.mkbound.end(); });
+    return found == def.floatings.rend() ? nullptr : &*found;
+}
+
+} // namespace
+
+void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
+{
+    if (particles.floatings.empty()) return;
+    const ExactFloatings& exact = def.exact_floatings;
+    log.line("Floating bodies:");
+    for (FloatingBody& body : particles.floatings)
+    {
+        const ParticleBlock& block = particles.blocks[body.block];
+        const FloatingDef* f = definition_of(def, block.mk_type);
+        log.line(fmt::format("  mkbound {}: {} (particles)", block.mk_type, text_of(body)));
+        const bool is_wanted =
+            exact.all || std::find(exact.mk.begin(), exact.mk.end(), block.mk) != exact.mk.end();
+        std::string why_not;
+        const std::optional<ExactBody> shape = exact_body(def, block.mk, why_not);
+        if (!shape || f == nullptr)
+        {
+            log.line(fmt::format("    there is no single closed shape of it: {}", why_not));
+            if (is_wanted)
+                throw CaseError(def.file, exact.line,
+                                fmt::format("<floatings exact=\"true\">: mkbound {} has no exact "
+                                            "mass and inertia: {}; expected one closed shape",
+                                            block.mk_type, why_not));
+            continue;
+        }
+        FloatingBody true_body = body;
+        true_body.mass_body =
+            f->mass_body ? *f->mass_body : f->rhop_body.value_or(0) * shape->volume;
+        const double density = true_body.mass_body / shape->volume;
+        const Transform map = motion_of(block);
+        std::array<Vec3, 3> inertia = turned(shape->inertia, map);
+        for (Vec3& row : inertia)
+            for (int j = 0; j < 3; ++j) row[j] = row[j] == 0 ? 0 : row[j] * density;
+        const Vec3 center = map(shape->center);
+        true_body.center = f->center ? *f->center : center;
+        true_body.inertia =
+            f->inertia ? *f->inertia
+                       : inertia_about(inertia, true_body.mass_body, center - true_body.center);
+        if (f->distribute_mass)
+            true_body.mass_part = true_body.mass_body / static_cast<double>(block.count);
+        log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
+                             text_of(true_body), is_wanted ? " (taken)" : ""));
+        if (is_wanted) body = true_body;
+    }
+    log.line();
+}
+
+} // namespace fppg

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "app/run_log.h"
+#include "fppg/case_def.h"
+#include "fppg/particles.h"
+
+namespace fppg
+{
+
+/// Writes mass, centre and inertia of all floating bodies into the log: of their particles, as they
+/// go into Case.xml like those of GenCase, and beside them the exact ones of the closed shape, at
+/// the density of `<floating>` (where the mass is given, mass over exact volume). Where
+/// `<fppg><floatings exact="true">` asks for it the exact ones take the place of the others, but
+/// for what `<floating>` itself gives.
+///
+/// throws  CaseError where exact ones are asked for and no single closed shape draws the body
+void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log);
+
+} // namespace fppg

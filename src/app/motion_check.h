@@ -1,0 +1,19 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/particles.h"
+
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// Moving parts that leave the domain: every moving block's box is followed through the movements
+/// of `<motion>` up to TimeMax (10 s without it) in 2000 steps. Movements that files give are not
+/// followed, nor is a case whose `<simulationdomain>` gives limits of its own.
+///
+/// returns  a sentence a moving block that leaves, with file, line, time and place
+std::vector<std::string> check_motion(const CaseDef& def, const CaseParticles& particles);
+
+} // namespace fppg

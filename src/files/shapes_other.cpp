@@ -1,0 +1,237 @@
+// Shape files in the formats other than legacy VTK, and files of points.
+
+#include "files/vtk.h"
+#include "fppg/error.h"
+#include "fppg/files.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+
+namespace fppg
+{
+
+namespace
+{
+
+template <typename T>
+void append(std::string& out, T value)
+{
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// The cells of all shapes in the order points, lines, faces, as in the legacy files.
+struct Cells
+{
+    std::string points;
+    std::uint64_t n_points = 0;
+    std::string mk;
+    std::string object_id;
+    struct Part
+    {
+        std::string connectivity;
+        std::string offsets; ///< ends of the cells
+        std::string types;
+        std::uint64_t cells = 0;
+        std::int32_t end = 0;
+    };
+    std::array<Part, 3> parts; ///< points, lines, faces
+};
+
+std::uint8_t cell_type(std::size_t corners)
+{
+    constexpr std::array<std::uint8_t, 5> types{0, 1, 3, 5, 9};
+    return corners < types.size() ? types[corners] : std::uint8_t{7};
+}
+
+Cells cells_of(const std::vector<ShapePolygons>& shapes)
+{
+    Cells out;
+    for (const ShapePolygons& shape : shapes)
+    {
+        for (const Vec3& v : shape.vertices)
+            for (int axis = 0; axis < 3; ++axis) append(out.points, static_cast<float>(v[axis]));
+        out.n_points += shape.vertices.size();
+    }
+    constexpr std::array<std::size_t, 4> sizes{1, 2, 3, std::numeric_limits<std::size_t>::max()};
+    for (std::size_t kind = 0; kind < 3; ++kind)
+    {
+        Cells::Part& part = out.parts[kind];
+        std::int32_t first = 0;
+        for (const ShapePolygons& shape : shapes)
+        {
+            for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+            {
+                const std::size_t n = polygon.size();
+                if (n < sizes[kind] || (kind < 2 && n > sizes[kind])) continue;
+                for (const std::uint32_t v : polygon)
+                    append(part.connectivity, first + static_cast<std::int32_t>(v));
+                part.end += static_cast<std::int32_t>(n);
+                append(part.offsets, part.end);
+                part.types += static_cast<char>(cell_type(n));
+                ++part.cells;
+                append(out.mk, static_cast<std::int32_t>(shape.mk));
+                append(out.object_id, static_cast<std::int32_t>(shape.object_id));
+            }
+            first += static_cast<std::int32_t>(shape.vertices.size());
+        }
+    }
+    return out;
+}
+
+/// Collects arrays and the places where they stand.
+class Appended
+{
+public:
+    std::uint64_t add(const std::string& bytes)
+    {
+        const std::uint64_t place = data_.size();
+        append(data_, static_cast<std::uint64_t>(bytes.size()));
+        data_ += bytes;
+        return place;
+    }
+    const std::string& data() const { return data_; }
+
+private:
+    std::string data_;
+};
+
+std::string array_line(const char* indent, const char* type, const char* name, std::uint64_t place)
+{
+    return fmt::format("{}<DataArray type=\"{}\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+                       indent, type, name, place);
+}
+
+/// What both formats begin with, up to the points.
+std::string shared_part(const Cells& cells, Appended& appended)
+{
+    return fmt::format(
+        "      <PointData>\n      </PointData>\n      <CellData Scalars=\"Mk\">\n"
+        "{}{}      </CellData>\n      <Points>\n"
+        "        <DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" "
+        "format=\"appended\" offset=\"{}\"/>\n      </Points>\n",
+        array_line("        ", "Int32", "Mk", appended.add(cells.mk)),
+        array_line("        ", "Int32", "ObjId", appended.add(cells.object_id)),
+        appended.add(cells.points));
+}
+
+void write_file(OutputFile& file, const char* type, const std::string& piece,
+                const Appended& appended)
+{
+    file.append(
+        fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                    "header_type=\"UInt64\">\n  <{}>\n{}    </Piece>\n  </{}>\n"
+                    "  <AppendedData encoding=\"raw\">\n_",
+                    type, type, piece, type));
+    file.append(appended.data());
+    file.append("\n  </AppendedData>\n</VTKFile>\n");
+}
+
+} // namespace
+
+void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes)
+{
+    const Cells cells = cells_of(shapes);
+    Appended appended;
+    std::string piece = fmt::format(
+        "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" "
+        "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
+        cells.n_points, cells.parts[0].cells, cells.parts[1].cells, cells.parts[2].cells);
+    piece += shared_part(cells, appended);
+    const auto add = [&](const char* name, const Cells::Part& part)
+    {
+        const std::uint64_t connectivity = appended.add(part.connectivity);
+        piece += fmt::format("      <{}>\n{}{}      </{}>\n", name,
+                             array_line("        ", "Int32", "connectivity", connectivity),
+                             array_line("        ", "Int32", "offsets", appended.add(part.offsets)),
+                             name);
+    };
+    add("Verts", cells.parts[0]);
+    add("Lines", cells.parts[1]);
+    add("Strips", {});
+    add("Polys", cells.parts[2]);
+    write_file(file, "PolyData", piece, appended);
+}
+
+void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes)
+{
+    const Cells cells = cells_of(shapes);
+    Cells::Part all;
+    for (const Cells::Part& part : cells.parts)
+    {
+        all.connectivity += part.connectivity;
+        for (std::size_t i = 0; i < part.offsets.size(); i += sizeof(std::int32_t))
+        {
+            std::int32_t end = 0;
+            std::memcpy(&end, part.offsets.data() + i, sizeof end);
+            append(all.offsets, all.end + end);
+        }
+        all.end += part.end;
+        all.types += part.types;
+        all.cells += part.cells;
+    }
+    Appended appended;
+    std::string piece = fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+                                    cells.n_points, all.cells);
+    piece += shared_part(cells, appended);
+    piece += "      <Cells>\n";
+    piece += array_line("        ", "Int32", "connectivity", appended.add(all.connectivity));
+    piece += array_line("        ", "Int32", "offsets", appended.add(all.offsets));
+    piece += array_line("        ", "UInt8", "types", appended.add(all.types));
+    piece += "      </Cells>\n";
+    write_file(file, "UnstructuredGrid", piece, appended);
+}
+
+std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons>& shapes)
+{
+    std::string facets;
+    std::uint64_t n = 0;
+    for (const ShapePolygons& shape : shapes)
+        for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+            for (std::size_t i = 2; i < polygon.size(); ++i)
+            {
+                const std::array<Vec3, 3> corners{shape.vertices[polygon[0]],
+                                                  shape.vertices[polygon[i - 1]],
+                                                  shape.vertices[polygon[i]]};
+                Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+                if (const double length = norm(normal); length > 0) normal = normal / length;
+                for (const Vec3& v : {normal, corners[0], corners[1], corners[2]})
+                    for (int axis = 0; axis < 3; ++axis)
+                        append(facets, static_cast<float>(v[axis]));
+                append(facets, std::uint16_t{0});
+                ++n;
+            }
+    if (n > std::numeric_limits<std::uint32_t>::max())
+        throw IoError(fmt::format("cannot write '{}': {} facets, but STL counts them with 32 bits",
+                                  file.path(), n));
+    std::string head = "Shapes of a case, by fppg";
+    head.resize(80, '\0');
+    append(head, static_cast<std::uint32_t>(n));
+    file.append(head);
+    file.append(facets);
+    return n;
+}
+
+void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points)
+{
+    const std::vector<Vec3> origin(1);
+    const std::vector<Vec3>& shown = points.empty() ? origin : points;
+    std::string bytes;
+    for (const Vec3& p : shown)
+        for (int axis = 0; axis < 3; ++axis) append_big_endian(bytes, static_cast<float>(p[axis]));
+    std::string cells;
+    for (std::uint32_t i = 0; i < shown.size(); ++i)
+    {
+        append_big_endian(cells, std::uint32_t{1});
+        append_big_endian(cells, i);
+    }
+    file.append(fmt::format("{}POINTS {} float\n", vtk_head, shown.size()));
+    file.append(bytes);
+    file.append(fmt::format("\nVERTICES {} {}\n", shown.size(), 2 * shown.size()));
+    file.append(cells);
+    file.append("\n");
+}
+
+} // namespace fppg

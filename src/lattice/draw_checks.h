@@ -1,0 +1,64 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/mesh.h"
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// Edges of a mesh that are not run through as often in one way as in the other. Corners nearer
+/// than a millionth of the mesh's size are one.
+///
+/// cost  O(n log n) for n facets
+std::uint64_t open_edge_count(const TriangleSoup& soup);
+
+/// The box around what a draw without a file draws; empty for what draws no shape.
+Box3 bounds_of(const DrawOp& op, double dp);
+
+/// Looks for slips in draws that GenCase passes over in silence. Each kind of warning comes once a
+/// line of the definition, however often a list runs it.
+class DrawChecks
+{
+public:
+    DrawChecks(const CaseDef& def, std::vector<std::string>& warnings)
+        : def_(def), warnings_(warnings)
+    {
+    }
+
+    /// A shape by the box around it: a mesh file whose size does not go with that of the domain
+    /// (100 times as large, or as small and below 4 dp: a file in other units), a body thinner than
+    /// dp, a shape that reaches beyond the nodes of the domain. Not for clipped draws.
+    void check_shape(const DrawOp& op, const Box3& bounds);
+
+    /// A file that is to be filled, with open edges.
+    void check_closed(const DrawOp& op, const TriangleSoup& soup);
+
+    /// The nodes that a fill added, slab by slab, at the border of the domain.
+    void check_fill(const DrawOp& op, const std::vector<std::vector<Span>>& nodes);
+
+private:
+    enum class Kind
+    {
+        Size,
+        Thin,
+        Lost,
+        Open,
+        Leak,
+    };
+
+    bool is_flat(int axis) const
+    {
+        return (def_.grid.is_2d && axis == 1) || def_.grid.n[static_cast<std::size_t>(axis)] == 1;
+    }
+    void warn(const DrawOp& op, Kind kind, const std::string& text);
+
+    const CaseDef& def_;
+    std::vector<std::string>& warnings_;
+    std::set<std::pair<int, Kind>> said_;
+};
+
+} // namespace fppg
