@@ -85,6 +85,7 @@ public:
             read();
             draw();
             relax();
+            add_points();
             prepare();
             save();
         }
@@ -162,6 +163,7 @@ private:
                   LatticeReport report;
                   field_ = generate_lattice(def_, threads_, draw_progress(), report);
                   mesh_files_ = std::move(report.mesh_files);
+                  for (const std::string& line : report.log) log_.line(line);
                   for (std::string& w : def_.warnings) warn(std::move(w));
                   for (std::string& w : report.warnings) warn(std::move(w));
                   log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
@@ -196,6 +198,16 @@ private:
                   relax_history_ = std::move(done.history);
                   for (std::string& w : done.warnings) warn(std::move(w));
               });
+    }
+
+    /// After the relaxation, which would move them.
+    void add_points()
+    {
+        if (def_.point_files.empty()) return;
+        LatticeReport report;
+        add_point_files(def_, field_, report);
+        for (const std::string& line : report.log) log_.line(line);
+        for (std::string& w : report.warnings) warn(std::move(w));
     }
 
     void prepare()

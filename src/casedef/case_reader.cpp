@@ -2,6 +2,7 @@
 #include "fppg/error.h"
 
 #include "casedef/attributes.h"
+#include "casedef/draw_block.h"
 #include "casedef/fit_block.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
@@ -70,6 +71,7 @@ public:
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
         if (const Element* e = casedef.find_child("vres"))
             if (read_.flag_or(*e, "active", true)) read_.fail_unsupported(*e);
+        read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
         apply_overrides(def_.casedef);
         for (const Variable& v : variables_.exported())

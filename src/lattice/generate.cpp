@@ -6,7 +6,9 @@
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "lattice/cavity_fill.h"
 #include "lattice/depth_region.h"
+#include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/redraw.h"
@@ -25,14 +27,6 @@ namespace fppg
 {
 namespace
 {
-
-std::uint64_t node_count(const std::vector<Spans>& nodes)
-{
-    std::uint64_t n = 0;
-    for (const Spans& spans : nodes)
-        for (const Span& s : spans) n += s.z_end - s.z_begin;
-    return n;
-}
 
 /// From the lowest y of some shapes to their highest, in dp from the plane of a 2D case.
 std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shapes,
@@ -575,6 +569,24 @@ private:
                             "node that modefill does not name.",
                             place(), op.seed.x, op.seed.y, op.seed.z));
         paint_nodes(nodes);
+    }
+
+    void draw(const CavityFillOp& op)
+    {
+        CavityFillReport said;
+        try
+        {
+            const std::vector<Spans> nodes = fill_cavity(field_, op, threads_, said);
+            for (const std::string& line : said.log)
+                report_.log.push_back(fmt::format("{}: {}", place(), line));
+            for (const std::string& w : said.warnings)
+                report_.warnings.push_back(fmt::format("{}: {}", place(), w));
+            paint_nodes(nodes);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
     }
 
     void draw(const RedrawOp& op)
