@@ -60,11 +60,8 @@ public:
         {
             empty = limited(std::move(empty));
             const Slabs elsewhere = limited(dilated(elsewhere_cells));
-            const Slabs outside = limited(dilated(
-                each([&](std::size_t x) { return subtract(outer_cells[x], reached_cells[x]); })));
-            Slabs gaps;
-            nodes = with_narrow_places(std::move(nodes), empty, elsewhere, gaps);
-            list_gaps(gaps, outside);
+            nodes = with_narrow_places(std::move(nodes), empty, elsewhere);
+            list_gaps(nodes, empty, limited(dilated(outer_cells)));
         }
         to_lattice(nodes);
         return std::move(out_);
@@ -406,57 +403,70 @@ private:
         return connected_spans(cells, seeds, threads_);
     }
 
+    /// The spans of a graph that have nodes in a set, as where to begin.
+    std::vector<SpanGraph::Id> spans_at(const SpanGraph& graph, const Slabs& where) const
+    {
+        std::vector<SpanGraph::Id> found;
+        for (std::size_t x = 0; x < where.size(); ++x)
+            for (const Span& s : intersect(graph.spans(x), where[x]))
+                found.push_back(*graph.find(static_cast<std::int64_t>(x), s.y, s.z_begin));
+        return found;
+    }
+
     /// Adds to the cavity the places where no cube fits: wholly where they lead nowhere else, or
-    /// else up to `gap_nodes` steps.
-    ///
-    /// gaps  set to the nodes of places that lead elsewhere, and those of the cavity that touch it
-    Slabs with_narrow_places(Slabs nodes, const Slabs& empty, const Slabs& elsewhere,
-                             Slabs& gaps) const
+    /// else the nodes that are fewer steps away from the cavity than from where they lead.
+    Slabs with_narrow_places(Slabs nodes, const Slabs& empty, const Slabs& elsewhere) const
     {
         const Slabs others = each([&](std::size_t x) { return subtract(elsewhere[x], nodes[x]); });
-        const Slabs beside_nodes = grown(nodes);
-        const Slabs around_others = grown(others);
         const SpanGraph narrow(
             each([&](std::size_t x)
                  { return subtract(subtract(empty[x], nodes[x]), elsewhere[x]); }),
             0, size_[1], threads_);
-        const auto seeds_at = [&](const Slabs& where)
-        {
-            std::vector<SpanGraph::Id> seeds;
-            for (std::size_t x = 0; x < where.size(); ++x)
-                for (const Span& s : intersect(narrow.spans(x), where[x]))
-                    seeds.push_back(*narrow.find(static_cast<std::int64_t>(x), s.y, s.z_begin));
-            return seeds;
-        };
-        const Slabs from_nodes = connected_spans(narrow, seeds_at(beside_nodes), threads_);
-        const Slabs from_others = connected_spans(narrow, seeds_at(around_others), threads_);
-        const Slabs leading =
+        const Slabs from_nodes = connected_spans(narrow, spans_at(narrow, grown(nodes)), threads_);
+        const Slabs from_others =
+            connected_spans(narrow, spans_at(narrow, grown(others)), threads_);
+        Slabs undecided =
             each([&](std::size_t x) { return intersect(from_nodes[x], from_others[x]); });
-        gaps = each(
-            [&](std::size_t x)
-            {
-                const Spans touching = unite(around_others[x], elsewhere[x]);
-                return unite(leading[x], intersect(nodes[x], touching));
-            });
-        Slabs mouths = nodes;
-        Slabs taken = others; // with what is nearer to them
-        for (std::uint32_t step = 0; step < width_; ++step)
+        nodes = each([&](std::size_t x)
+                     { return unite(nodes[x], subtract(from_nodes[x], undecided[x])); });
+        Slabs front = nodes;
+        Slabs other_front = others;
+        const auto is_empty = [](const Spans& spans) { return spans.empty(); };
+        while (!std::all_of(front.begin(), front.end(), is_empty))
         {
-            const Slabs far = grown(taken);
-            taken =
-                each([&](std::size_t x) { return unite(taken[x], intersect(far[x], leading[x])); });
-            const Slabs wide = grown(mouths);
-            mouths = each(
+            const Slabs around = grown(front);
+            const Slabs other_around = grown(other_front);
+            other_front =
+                each([&](std::size_t x) { return intersect(other_around[x], undecided[x]); });
+            front = each([&](std::size_t x)
+                         { return subtract(intersect(around[x], undecided[x]), other_front[x]); });
+            parallel_for(
+                nodes.size(), threads_,
                 [&](std::size_t x)
-                { return unite(mouths[x], subtract(intersect(wide[x], leading[x]), taken[x])); });
+                {
+                    if (!front[x].empty())
+                    {
+                        nodes[x] = unite(nodes[x], front[x]);
+                        undecided[x] = subtract(undecided[x], front[x]);
+                    }
+                    if (!other_front[x].empty())
+                        undecided[x] = subtract(undecided[x], other_front[x]);
+                },
+                4);
         }
-        return each([&](std::size_t x)
-                    { return unite(mouths[x], subtract(from_nodes[x], leading[x])); });
+        return nodes;
     }
 
-    /// Joins gap nodes that are near to one another.
-    void list_gaps(const Slabs& gaps, const Slabs& outside)
+    /// The gaps are where the cavity touches empty nodes that are not in it; nodes near to one
+    /// another are one gap.
+    void list_gaps(const Slabs& nodes, const Slabs& empty, const Slabs& outside)
     {
+        const SpanGraph beyond(each([&](std::size_t x) { return subtract(empty[x], nodes[x]); }), 0,
+                               size_[1], threads_);
+        const Slabs touching = grown(each([&](std::size_t x) { return beyond.spans(x); }));
+        const Slabs gaps = each([&](std::size_t x) { return intersect(nodes[x], touching[x]); });
+        const Slabs near_outside =
+            grown(connected_spans(beyond, spans_at(beyond, outside), threads_));
         const Slabs wide = each(
             [&](std::size_t x)
             {
@@ -474,7 +484,6 @@ private:
                 return rows;
             });
         const SpanGraph graph(wide, 0, size_[1] + 1, threads_);
-        const Slabs near_outside = grown(outside);
         std::vector<std::vector<std::size_t>> gap_of(graph.slab_count());
         for (std::size_t x = 0; x < gap_of.size(); ++x)
             gap_of[x].assign(graph.spans(x).size(), SIZE_MAX);

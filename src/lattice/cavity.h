@@ -22,11 +22,12 @@ struct CavityOptions
 };
 
 /// A narrow place between the cavity and other empty nodes that a cube one node wider than
-/// CavityOptions::gap_nodes cannot pass. Places nearer than three nodes to one another are one.
+/// CavityOptions::gap_nodes cannot pass: where the nodes of the cavity touch those beyond it, about
+/// the middle of the way. Places nearer than three nodes to one another are one.
 struct CavityGap
 {
-    std::uint64_t nodes = 0;
-    Vec3 center; ///< mean of the nodes, metres
+    std::uint64_t nodes = 0; ///< of the cavity there: the cross-section of the gap
+    Vec3 center;             ///< mean of these nodes, metres
     bool leads_outside = false;
 };
 
@@ -53,15 +54,15 @@ struct Cavity
 /// wall too).
 ///
 /// The cavity is what cubes of gap_nodes + 1 nodes a side, moved node by node from the seed,
-/// reach and cover, and narrower places that lead nowhere else. Narrow places that lead on to other
-/// empty space are gaps: they stay empty, but for gap_nodes steps from the cavity on this side of
-/// their middle. It is open when the cubes get out of the box around all drawn nodes.
+/// reach and cover, and narrower places that lead nowhere else. Of narrow places that lead on to
+/// other empty space, the gaps, it has the nodes that are fewer steps away from it than from there.
+/// It is open when the cubes get out of the box around all drawn nodes.
 ///
 /// threads  number of threads; the result does not depend on it
 /// throws   GeometryError, without the place of the draw: the seed is outside everything drawn, on
 ///          a node that is not empty, or where the cube does not fit
 /// cost     O(s log s) time and O(s) memory for s runs and columns of the box around all drawn
-///          nodes, times gap_nodes + 1
+///          nodes, the time times gap_nodes + 1
 Cavity find_cavity(const RunField& field, const CavityOptions& options, int threads);
 
 } // namespace fppg

@@ -193,10 +193,10 @@ TEST(FillCavity, ClosesAGapOneNodeWideAndListsIt)
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Percent, 100)), 735U);
     ASSERT_EQ(room.report.warnings.size(), 1U);
     EXPECT_TRUE(says(room.report.warnings[0], "1 gap up to 1 node wide is closed"));
-    EXPECT_TRUE(says(room.report.warnings[0], "12 nodes near (1.55, 0.8, 0.95), to the outside"));
+    EXPECT_TRUE(says(room.report.warnings[0], "6 nodes near (1.5, 0.8, 0.95), to the outside"));
     const std::string open = room.error(fill_at({10, 10, 10}, FillMeasure::Percent, 100, 0));
     EXPECT_TRUE(says(open, "the lowest way out is at height 0.7 near (1."));
-    EXPECT_TRUE(says(open, "through an opening 1 node wide, gapclose=\"1\" closes: 12 nodes"));
+    EXPECT_TRUE(says(open, "through an opening 1 node wide, gapclose=\"1\" closes: 6 nodes"));
     // Below the gap the room is a tank.
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Level, 0.6, 0)), 81U);
 }
@@ -210,7 +210,7 @@ TEST(FillCavity, RefusesAWiderOpeningAndSaysWhereItIs)
     const std::string open = room.error(fill_at({10, 10, 10}, FillMeasure::Percent, 100));
     EXPECT_TRUE(says(open, "is not closed: the lowest way out is at height 0.9"));
     EXPECT_TRUE(says(open,
-                     "an opening 3 nodes wide, gapclose=\"3\" closes: 18 nodes near (1.55, "
+                     "an opening 3 nodes wide, gapclose=\"3\" closes: 9 nodes near (1.5, "
                      "0.9, 1)"))
         << open;
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Level, 0.8)), 243U);
@@ -225,6 +225,20 @@ TEST(FillCavity, FillsNarrowPlacesThatLeadNowhere)
     room.carve({15, 8, 8}, {18, 8, 12}); // a slot of one node by five, four deep
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Percent, 100)), 749U);
     EXPECT_EQ(room.report.warnings.size(), 0U);
+}
+
+TEST(FillCavity, FillsAThinSheetUpToTheMiddleOfTheWayOut)
+{
+    Room room;
+    room.block({5, 5, 5}, {20, 25, 15});
+    room.carve({6, 6, 6}, {14, 14, 14});
+    room.carve({10, 15, 8}, {10, 22, 14});  // a sheet one node thick, eight by seven
+    room.carve({11, 22, 14}, {19, 22, 14}); // and from its far corner nine nodes, then out
+    room.carve({20, 22, 14}, {20, 22, 14});
+    // The sheet is nearer to the room, and so is one node of the passage: nine steps from the room
+    // and ten from the outside.
+    EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Percent, 100)), 729U + 56U + 1U);
+    EXPECT_TRUE(says(room.report.warnings.at(0), "1 nodes near (1.1, 2.2, 1.4), to the outside"));
 }
 
 TEST(FillCavity, TakesAGapToAnotherClosedRoomForAGap)
