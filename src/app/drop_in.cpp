@@ -30,6 +30,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -206,6 +207,8 @@ private:
         if (def_.point_files.empty()) return;
         LatticeReport report;
         add_point_files(def_, field_, report);
+        std::move(report.mesh_files.begin(), report.mesh_files.end(),
+                  std::back_inserter(mesh_files_));
         for (const std::string& line : report.log) log_.line(line);
         for (std::string& w : report.warnings) warn(std::move(w));
     }

@@ -112,6 +112,9 @@ void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report)
                 at, i + 1, points.size(), text(points[i]), text(grid.origin),
                 text(position(last, grid))));
         }
+        const auto is_it = [&](const MeshFileUse& use) { return use.name == file.file; };
+        if (std::none_of(report.mesh_files.begin(), report.mesh_files.end(), is_it))
+            report.mesh_files.push_back({file.file, path, file.source.line});
         VolumeParticles& volume = field.walls.volume;
         volume.positions.insert(volume.positions.end(), points.begin(), points.end());
         volume.mk.insert(volume.mk.end(), points.size(), file.mk.mk);

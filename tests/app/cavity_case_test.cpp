@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <numbers>
+#include <tuple>
 
 namespace
 {
@@ -246,6 +249,41 @@ TEST(FillOfACase, DoesNotLeakThroughTheClearanceOfAShaft)
         }
 }
 
+TEST(FillOfACase, FillsTheSumpOfAGearboxWhoseLidHasAHole)
+{
+    const char* shared = std::getenv("FPPG_SHARED");
+    const std::string models = std::string(shared != nullptr ? shared : "") + "/models/generated/";
+    if (shared == nullptr || !std::filesystem::exists(models + "gearbox_housing.stl"))
+        GTEST_SKIP() << "FPPG_SHARED does not name the folder of the generated models";
+    CaseText text;
+    text.dp = "0.002";
+    text.pointmin = R"(<pointmin x="-0.08" y="-0.12" z="-0.11" />)";
+    text.pointmax = R"(<pointmax x="0.19" y="0.12" z="0.11" />)";
+    text.mainlist = R"(<setdrawmode mode="full" />)";
+    int mk = 0;
+    for (const char* part : {"housing", "lid", "gear1", "gear2", "shaft1", "shaft2"})
+        text.mainlist += fmt::format(
+            R"(<setmkbound mk="{}" /><drawfilestl file="{}gearbox_{}.stl" fppg:fill="inside">)"
+            R"(<drawscale x="0.001" y="0.001" z="0.001" /></drawfilestl>)",
+            mk++, models, part);
+    const std::string fill = R"(<fppg><fill mkfluid="0" seed="0.045,0.02,-0.04" {} /></fppg>)";
+    for (const char* fit : {"-fit:off", "-fit:raw"})
+    {
+        const TemporaryFolder folder;
+        text.after_geometry = fmt::format(fmt::runtime(fill), R"(level="-0.02")");
+        const RunResult level = run_case(folder, text, {fit});
+        ASSERT_EQ(level.code, 0) << level.output;
+        const std::vector<Vec3> oil = positions_of(folder, fluid_mk);
+        EXPECT_NEAR(static_cast<double>(oil.size()) * 8e-6, 0.322, 0.005); // litres
+        for (const Vec3& p : oil) EXPECT_LT(p.z, -0.0199);
+        text.after_geometry = fmt::format(fmt::runtime(fill), R"(percent="45")");
+        const RunResult open = run_case(folder, text, {fit});
+        EXPECT_EQ(open.code, 3);
+        EXPECT_TRUE(says(open.output, "gapclose=\"4\" closes: 26 nodes near (0.055, 0, 0.07)"))
+            << open.output;
+    }
+}
+
 TEST(FillOfACase, ListsTheGapRoundAShaftAndRefusesAWideOne)
 {
     bool has_gap = false;
@@ -297,6 +335,7 @@ TEST(PointsOfACase, StandExactlyWhereTheFileSays)
     std::vector<Vec3> moved = some_points;
     for (Vec3& p : moved) p.z += 0.01;
     expect_sorted(positions_of(folder, fluid_mk + 1), moved, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/p.csv")) << "beside the result, as meshes";
     EXPECT_EQ(positions_of(folder, bound_mk).size(), 11u * 11 * 11 - 9 * 9 * 9);
 }
 
