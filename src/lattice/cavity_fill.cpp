@@ -31,7 +31,7 @@ std::string text(const Vec3& p)
 std::string text(const CavityGap& gap)
 {
     return fmt::format("{} nodes near {}{}", gap.nodes, text(gap.center),
-                       gap.leads_outside ? ", to the outside" : "");
+                       gap.leads_outside ? ", to the outside" : ", to another closed space");
 }
 
 class CavityFill
@@ -130,8 +130,9 @@ private:
                         fmt::format("it holds {:.6g} {}, {:g} are wanted",
                                     litres(cavity.node_count), litre_name(), op_.amount);
                     if (cavity.opening) fail_open(cavity, "below it " + holds);
-                    throw GeometryError(fmt::format("the cavity of the seed {} is full: {}",
-                                                    text(op_.seed), holds));
+                    throw GeometryError(
+                        fmt::format("the cavity of the seed {} is full: {}{}", text(op_.seed),
+                                    holds, cavity.gaps.empty() ? "" : "; " + closed_gaps(cavity)));
                 }
                 return level_of_count(cavity.nodes, heights_, wanted, threads_);
             }
@@ -205,27 +206,29 @@ private:
                 "the fill added no node: the lowest node of the cavity is at height {:g}{}",
                 metres(level.height), up));
         if (cavity.gaps.empty()) return;
-        std::vector<std::string> places;
-        for (const CavityGap& gap : cavity.gaps)
-        {
-            const std::size_t i = places.size();
-            if (i >= gaps_logged) break;
-            places.push_back(text(gap));
-            report_.log.push_back(fmt::format("gap {}: {}", i + 1, places.back()));
-        }
+        for (std::size_t i = 0; i < std::min(cavity.gaps.size(), gaps_logged); ++i)
+            report_.log.push_back(fmt::format("gap {}: {}", i + 1, text(cavity.gaps[i])));
         if (cavity.gaps.size() > gaps_logged)
             report_.log.push_back(
                 fmt::format("and {} gaps more", cavity.gaps.size() - gaps_logged));
-        const std::size_t left_out =
-            cavity.gaps.size() - std::min(cavity.gaps.size(), gaps_warned_of);
-        places.resize(std::min(places.size(), gaps_warned_of));
         report_.warnings.push_back(fmt::format(
-            "{} gap{} up to {} node{} wide {} closed, so that the fill does not leak: {}{}. "
-            "gapclose=\"0\" leaves gaps open.",
-            cavity.gaps.size(), cavity.gaps.size() == 1 ? "" : "s", op_.gap_nodes,
-            op_.gap_nodes == 1 ? "" : "s", cavity.gaps.size() == 1 ? "is" : "are",
-            fmt::join(places, "; "),
-            left_out > 0 ? fmt::format("; and {} more, which the log lists", left_out) : ""));
+            "{}. gapclose=\"0\" leaves gaps open; a closed space behind one can have a fill of its "
+            "own.",
+            closed_gaps(cavity)));
+    }
+
+    std::string closed_gaps(const Cavity& cavity) const
+    {
+        const std::size_t n = cavity.gaps.size();
+        std::vector<std::string> places;
+        for (std::size_t i = 0; i < std::min(n, gaps_warned_of); ++i)
+            places.push_back(text(cavity.gaps[i]));
+        return fmt::format(
+            "{} gap{} up to {} node{} wide {} closed, so that the fill does not leak: "
+            "{}{}",
+            n, n == 1 ? "" : "s", op_.gap_nodes, op_.gap_nodes == 1 ? "" : "s",
+            n == 1 ? "is" : "are", fmt::join(places, "; "),
+            n > gaps_warned_of ? fmt::format("; and {} more", n - gaps_warned_of) : "");
     }
 
     const RunField& field_;

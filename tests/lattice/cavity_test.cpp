@@ -250,7 +250,9 @@ TEST(FillCavity, TakesAGapToAnotherClosedRoomForAGap)
     room.carve({15, 8, 8}, {15, 8, 8});
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Percent, 100)), 729U);
     ASSERT_EQ(room.report.warnings.size(), 1U);
-    EXPECT_FALSE(says(room.report.warnings[0], "outside"));
+    EXPECT_TRUE(says(room.report.warnings[0], "1 nodes near (1.4, 0.8, 0.8), to another closed"));
+    EXPECT_TRUE(says(room.error(fill_at({10, 10, 10}, FillMeasure::Litres, 800)),
+                     "it holds 729 litres, 800 are wanted; 1 gap up to 1 node wide is closed"));
     EXPECT_EQ(room.filled(fill_at({10, 10, 10}, FillMeasure::Percent, 100, 0)), 1459U);
 }
 
