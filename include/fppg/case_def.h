@@ -294,6 +294,26 @@ struct ShapeOutOp
     std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
 };
 
+/// How much of a cavity a fill takes.
+enum class FillMeasure : std::uint8_t
+{
+    Level,   ///< metres along `up`: nodes at or below it
+    Litres,  ///< one node holds 1000 dp^3 of them, in 2D 1000 dp^2 (a metre of width)
+    Percent, ///< of the nodes of the cavity
+};
+
+/// `<fppg><fill>`: the empty nodes around a seed that drawn nodes enclose, up to a level. Runs
+/// after all commands. Litres and percent take whole layers, from the lowest one up, so many that
+/// their nodes are as nearly as possible the number wanted.
+struct CavityFillOp
+{
+    Vec3 seed;
+    Vec3 up{0, 0, 1}; ///< of length 1; in 2D with a part in the plane
+    FillMeasure measure = FillMeasure::Percent;
+    double amount = 100;
+    int gap_nodes = 1; ///< openings up to so many nodes wide are closed; 0: none
+};
+
 /// `cellsout`: writes the cells of the nodes as they are now.
 struct CellsOutOp
 {
@@ -310,7 +330,8 @@ struct PointsMkOutOp
 
 using DrawVariant =
     std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, MeshFileOp, WaveOp,
-                 FillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp, CellsOutOp, PointsMkOutOp>;
+                 FillOp, CavityFillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp, CellsOutOp,
+                 PointsMkOutOp>;
 
 /// One executed command.
 struct DrawOp
@@ -431,6 +452,15 @@ struct DataFileUse
     int line = 0;
 };
 
+/// `<fppg><points>`: particles exactly at the places that a file gives.
+struct PointFile
+{
+    SourceRef source;
+    MkValue mk;
+    std::string file; ///< as written in the case
+    Transform transform;
+};
+
 /// A user variable, for `<uservars>`.
 struct UserVariable
 {
@@ -464,6 +494,7 @@ struct CaseDef
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
+    std::vector<PointFile> point_files; ///< in the order of the file
     std::vector<InitialOp> initials;    ///< in the order of the file
     NormalsDef normals;
     std::vector<FloatingDef> floatings;

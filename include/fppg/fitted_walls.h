@@ -79,16 +79,16 @@ struct WallParticles
     }
 };
 
-/// Particles off the lattice that stand in for lattice nodes, near the walls or where
-/// `setfrdrawmode` draws them, one entry each in all arrays. The nodes carry the wall_zone_bit on
+/// Particles off the lattice that belong to no wall, one entry each in all arrays: those near walls
+/// or of `setfrdrawmode`, which stand in for lattice nodes, and those of point files. The nodes carry the wall_zone_bit on
 /// their mk, so that a water column still counts them; where they were taken out of the field
 /// altogether, the column ends below them.
 struct VolumeParticles
 {
     std::vector<Vec3> positions;
     std::vector<std::uint16_t> mk; ///< absolute, bound or fluid
-    std::vector<float> distances;  ///< metres to the nearest wall, negative in a solid;
-                                   ///< distance_of_nodes where setfrdrawmode draws them
+    /// Metres to the nearest wall, negative in a solid; distance_of_nodes where it is not measured.
+    std::vector<float> distances;
 
     std::size_t size() const { return positions.size(); }
 };

@@ -86,6 +86,7 @@ struct NodeFile
 struct LatticeReport
 {
     std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
+    std::vector<std::string> log;        ///< lines about the fills of cavities
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<MeshFileUse> mesh_files; ///< in order of use, each once
@@ -104,6 +105,15 @@ using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 /// cost      time and memory O(surface of what is drawn), never O(nodes of the domain)
 RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
                           LatticeReport& report);
+
+/// Puts the particles of `<points>` files into field.walls.volume, in the order of the files.
+///
+/// field   with all that was drawn; its nodes stay
+/// throws  IoError, GeometryError for the files; GeometryError that names the point and its line
+/// for
+///         one outside the domain (between its first and last nodes; in 2D off its plane)
+/// warns   of points nearer than dp/2 to a drawn node that is a particle, or equal to another one
+void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report);
 
 struct ShapePolygons;
 enum class ShapeFormat : std::uint8_t;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace fppg
 {
@@ -40,6 +41,15 @@ MeshFile read_stl(const std::string& path, int threads = 1);
 ///          truncated, has a count that does not fit, names a point that is not there, or has no
 ///          shape (names the line, the byte or the element, and what was expected)
 MeshFile read_mesh_file(const std::string& path, const MeshReading& reading, int threads = 1);
+
+/// Reads the points of a file, whatever it makes of them: lines of three numbers x y z, separated
+/// by blanks, commas or semicolons, after a heading or not; or the points of a VTK (legacy, .vtp,
+/// .vtu) or PLY file, by its first bytes.
+///
+/// returns  in the order of the file; coordinates as the file has them, float32 or double
+/// throws   IoError if the file cannot be opened; GeometryError as read_mesh_file() for what is
+///          none of these, and if there is no point
+std::vector<Vec3> read_point_file(const std::string& path);
 
 /// The kind of a file by the ending of its name, whatever its case; STL for an ending that is not
 /// known.

@@ -183,7 +183,7 @@ std::string help_text()
         "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
         "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
-        "  fppg inspect MESH.stl [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
+        "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
         "\n"
         "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "

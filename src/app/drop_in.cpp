@@ -32,6 +32,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -87,6 +88,7 @@ public:
             read();
             draw();
             relax();
+            add_points();
             prepare();
             save();
         }
@@ -164,6 +166,7 @@ private:
                   LatticeReport report;
                   field_ = generate_lattice(def_, threads_, draw_progress(), report);
                   mesh_files_ = std::move(report.mesh_files);
+                  for (const std::string& line : report.log) log_.line(line);
                   node_files_ = std::move(report.node_files);
                   for (std::string& w : def_.warnings) warn_of_slip(std::move(w));
                   for (std::string& w : report.warnings) warn_of_slip(std::move(w));
@@ -199,6 +202,18 @@ private:
                   relax_history_ = std::move(done.history);
                   for (std::string& w : done.warnings) warn(std::move(w));
               });
+    }
+
+    /// After the relaxation, which would move them.
+    void add_points()
+    {
+        if (def_.point_files.empty()) return;
+        LatticeReport report;
+        add_point_files(def_, field_, report);
+        std::move(report.mesh_files.begin(), report.mesh_files.end(),
+                  std::back_inserter(mesh_files_));
+        for (const std::string& line : report.log) log_.line(line);
+        for (std::string& w : report.warnings) warn(std::move(w));
     }
 
     void prepare()

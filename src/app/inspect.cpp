@@ -32,7 +32,7 @@ struct UnitGuess
     std::string reason;
 };
 
-/// STL has no unit; what a designer draws in millimetres is hundreds of units long.
+/// Files have no unit; what a designer draws in millimetres is hundreds of units long.
 UnitGuess guess_unit(const Box3& bounds, double dp)
 {
     const Vec3 extent = bounds.max - bounds.min;
@@ -175,16 +175,37 @@ nlohmann::ordered_json as_json(const Vec3& p)
     return {p.x, p.y, p.z};
 }
 
+MeshFile read_file(const InspectOptions& options, Inspection& found)
+{
+    static constexpr std::array<const char*, 4> names{"stl", "ply", "vtk", "csv"};
+    if (options.path.ends_with(".vtm") || options.path.ends_with(".VTM"))
+        throw GeometryError(
+            fmt::format("{}: names other files that hold the meshes, expected one "
+                        "of those",
+                        options.path));
+    MeshReading reading;
+    reading.format = mesh_format_of(options.path);
+    found.format = names[static_cast<std::size_t>(reading.format)];
+    return read_mesh_file(options.path, reading, options.threads);
+}
+
 } // namespace
 
 Inspection inspect_mesh(const InspectOptions& options)
 {
     Inspection found;
     found.options = options;
-    const MeshFile file = read_stl(options.path, options.threads);
+    const MeshFile file = read_file(options, found);
     found.file_warnings = file.warnings;
+    found.points = file.points.size();
+    found.polylines = file.lines.size();
     try
     {
+        if (file.soup.size() == 0)
+            throw GeometryError(
+                fmt::format("has no surface, only {} points and {} lines, which a case draws on "
+                            "the lattice",
+                            found.points, found.polylines));
         const SurfaceMesh mesh = take_in_mesh(
             file.soup, {.weld_distance = options.weld_distance, .count_self_intersections = true},
             options.threads, found.report);
@@ -220,11 +241,13 @@ std::string to_text(const Inspection& found)
     std::string text;
     const auto line = [&text](const char* name, const std::string& value)
     { text += fmt::format("{:<18}{}\n", name, value); };
-    line("File", found.options.path);
+    line("File", fmt::format("{} ({})", found.options.path, found.format));
     line("Facets", found.facets == report.facets_read
                        ? fmt::format("{}", found.facets)
                        : fmt::format("{} of {} read", found.facets, report.facets_read));
     line("Vertices", fmt::format("{}", found.vertices));
+    if (found.points + found.polylines > 0)
+        line("Besides", fmt::format("{} single points, {} lines", found.points, found.polylines));
     line("Shells", fmt::format("{}", report.shells));
     line("Watertight", report.is_watertight ? "yes" : "no");
     for (const auto& [a, b] : found.open_edges)
@@ -280,6 +303,9 @@ std::string to_json(const Inspection& found)
     const MeshReport& report = found.report;
     nlohmann::ordered_json json;
     json["file"] = found.options.path;
+    json["format"] = found.format;
+    json["points"] = found.points;
+    json["polylines"] = found.polylines;
     json["facets_read"] = report.facets_read;
     json["facets"] = found.facets;
     json["vertices"] = found.vertices;

@@ -10,7 +10,7 @@
 namespace fppg
 {
 
-/// What `fppg inspect` is asked. Lengths are in the unit of the file, which STL does not say.
+/// What `fppg inspect` is asked. Lengths are in the unit of the file, which no format says.
 struct InspectOptions
 {
     std::string path;
@@ -24,7 +24,10 @@ struct InspectOptions
 struct Inspection
 {
     InspectOptions options;
-    MeshReport report;
+    MeshReport report;         ///< of the surface
+    std::string format;        ///< "stl", "ply", "vtk" or "csv", by the ending of the name
+    std::size_t points = 0;    ///< single ones, that a case draws beside the surface
+    std::size_t polylines = 0; ///< likewise
     std::vector<std::string> file_warnings;
     std::size_t facets = 0;
     std::size_t vertices = 0;
@@ -53,9 +56,11 @@ struct Inspection
     Vec3 thinnest_at;
 };
 
-/// Reads, takes in and measures a mesh file.
+/// Reads, takes in and measures a mesh file of any kind that mesh_format_of() knows; a CSV file is
+/// a table of heights.
 ///
-/// throws  IoError, GeometryError as read_stl() and take_in_mesh(); the text names the file
+/// throws  IoError, GeometryError as read_mesh_file() and take_in_mesh(), and for a file without a
+///         surface; the text names the file
 Inspection inspect_mesh(const InspectOptions& options);
 
 /// For people, about twenty lines.

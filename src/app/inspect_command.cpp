@@ -17,7 +17,8 @@ int run_inspect(const std::vector<std::string>& arguments)
         "fppg inspect");
     InspectOptions inspect;
     bool as_json = false;
-    app.add_option("mesh", inspect.path, "STL file, binary or ASCII")->required();
+    app.add_option("mesh", inspect.path, "STL, PLY, VTK (.vtk, .vtp, .vtu) or CSV file (heights)")
+        ->required();
     app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file")
         ->check(CLI::PositiveNumber);
     app.add_option("--angle", inspect.angle_deg, "feature angle, degrees")

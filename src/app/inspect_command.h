@@ -6,7 +6,7 @@
 namespace fppg
 {
 
-/// `fppg inspect MESH.stl ...`, arguments after the name. Returns the exit code.
+/// `fppg inspect MESH ...`, arguments after the name. Returns the exit code.
 ///
 /// throws UsageError for arguments that are not known or cannot be read, and what inspect_mesh
 /// throws

@@ -2,6 +2,7 @@
 #include "fppg/error.h"
 
 #include "casedef/attributes.h"
+#include "casedef/draw_block.h"
 #include "casedef/fit_block.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
@@ -79,6 +80,7 @@ public:
                            "own of every zone (CASE_vres00.bi4, CASE_vres01.bi4, ...) from it. "
                            "active=\"false\" makes one case of a single resolution");
         note_data_files(casedef);
+        read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
         if (!def_.fit.is_empty() &&
             (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))

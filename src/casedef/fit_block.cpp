@@ -2,11 +2,12 @@
 
 #include "fppg/fitted_walls.h"
 
+#include "casedef/block_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <set>
 #include <string>
@@ -21,26 +22,21 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Numbers that a warning lists.
 constexpr std::size_t mks_shown = 10;
 
-/// Reads `<fppg>`. The block belongs to this program, so all that it holds is understood or
-/// refused; only what the language takes for a remark is passed over: `_elements`, `_attributes`
-/// and `comment`.
-class FitBlockReader
+/// Reads what `<fppg>` says of body-fitted walls.
+class FitBlockReader : BlockReader
 {
 public:
-    FitBlockReader(const AttributeReader& read, CaseDef& def) : read_(read), def_(def) {}
+    FitBlockReader(const AttributeReader& read, CaseDef& def) : BlockReader(read), def_(def) {}
 
     void read_block(const Element& block) const
     {
-        require_known(block, {}, {"bodyfitted", "fluidband", "floatings"});
+        require_known(block, {}, {"bodyfitted", "fluidband", "fill", "floatings", "points"});
         for (const Element& e : block.children)
         {
             if (is_remark(e)) continue;
-            if (e.name == "bodyfitted")
-                read_body_fitted(e);
-            else if (e.name == "floatings")
-                read_exact_floatings(e);
-            else
-                read_fluid_band(e);
+            if (e.name == "bodyfitted") read_body_fitted(e);
+            if (e.name == "fluidband") read_fluid_band(e);
+            if (e.name == "floatings") read_exact_floatings(e);
         }
     }
 
@@ -58,34 +54,6 @@ private:
             exact.mk.insert(exact.mk.end(), mks.begin(), mks.end());
     }
 
-    static bool is_remark(const Element& e)
-    {
-        return e.kind != Element::Kind::Tag || e.name.starts_with('_');
-    }
-
-    void require_known(const Element& e, std::initializer_list<std::string_view> attributes,
-                       std::initializer_list<std::string_view> children) const
-    {
-        const auto list = [](std::initializer_list<std::string_view> known) {
-            return known.size() == 0 ? std::string("none")
-                                     : fmt::format("{}", fmt::join(known, ", "));
-        };
-        const auto is_in =
-            [](const std::string& name, std::initializer_list<std::string_view> known)
-        { return std::find(known.begin(), known.end(), name) != known.end(); };
-        for (const Element::Attribute& a : e.attributes)
-            if (!a.name.starts_with('_') && a.name != "comment" && !is_in(a.name, attributes))
-                read_.fail(e, fmt::format("attribute {}=\"{}\" is not known, expected {}", a.name,
-                                          a.value, list(attributes)));
-        for (const Element& c : e.children)
-            if (!is_remark(c) && !is_in(c.name, children))
-                read_.fail(
-                    c, fmt::format("is not known in <{}>, expected {}", e.name, list(children)));
-        if (!e.text.empty())
-            read_.fail(e, fmt::format("text \"{}\" has no meaning here, expected {}", e.text,
-                                      children.size() == 0 ? "attributes only" : "elements only"));
-    }
-
     /// True for the first word, which is what a missing attribute means too; false for the second.
     bool is_first_of(const Element& e, std::string_view name, std::string_view first,
                      std::string_view second) const
@@ -95,22 +63,6 @@ private:
         if (*value == second) return false;
         read_.fail(e, fmt::format("attribute {}=\"{}\" is invalid, expected {} or {}", name, *value,
                                   first, second));
-    }
-
-    template <typename IsValid>
-    double number_or(const Element& e, std::string_view name, double otherwise,
-                     const IsValid& is_valid, const char* expected) const
-    {
-        const std::string* value = e.find_attribute(name);
-        if (value == nullptr) return otherwise;
-        // An empty number is 0 elsewhere, as with GenCase; here it is a slip.
-        if (value->find_first_not_of(" \t\r\n") == std::string::npos)
-            read_.fail(e, fmt::format("attribute {}=\"\" is empty, expected {}", name, expected));
-        const double number = read_.number(e, name);
-        if (!is_valid(number))
-            read_.fail(e, fmt::format("attribute {}=\"{}\" is {:g}, expected {}", name, *value,
-                                      number, expected));
-        return number;
     }
 
     bool is_word(const Element& e, std::string_view name, std::string_view word) const
@@ -223,7 +175,6 @@ private:
         def_.fluid_bands.push_back(std::move(band));
     }
 
-    const AttributeReader& read_;
     CaseDef& def_;
 };
 

@@ -17,18 +17,6 @@ namespace fppg
 namespace
 {
 
-/// Scale, then rotate right-handed about y, x, z in this order, about the centre; then move (rule
-/// T5; the order was found with four random triples of angles: only this one puts all corners
-/// right).
-Transform placement(const Vec3& center, const Vec3& scale, const Vec3& angles_deg, const Vec3& move)
-{
-    Transform t = scaling(scale);
-    for (const int axis : {1, 0, 2})
-        if (angles_deg[axis] != 0) t = rotation_about_axis(axis, radians(angles_deg[axis])) * t;
-    if (!(center == Vec3{})) t = around(center, t);
-    return translation(move) * t;
-}
-
 /// A file that a VTM file names.
 struct VtmEntry
 {

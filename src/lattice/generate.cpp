@@ -6,10 +6,12 @@
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "lattice/cavity_fill.h"
 #include "lattice/depth_region.h"
 #include "lattice/domain_clip.h"
 #include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
+#include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
 #include "lattice/free_points.h"
@@ -32,14 +34,6 @@ namespace fppg
 {
 namespace
 {
-
-std::uint64_t node_count(const std::vector<Spans>& nodes)
-{
-    std::uint64_t n = 0;
-    for (const Spans& spans : nodes)
-        for (const Span& s : spans) n += s.z_end - s.z_begin;
-    return n;
-}
 
 /// From the lowest y of some shapes to their highest, in dp from the plane of a 2D case.
 std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shapes,
@@ -867,6 +861,24 @@ private:
             "empty space to be filled",
             is_bound ? "the solid of mkbound" : "mkfluid",
             mk - (is_bound ? def_.mk_bound_first : def_.mk_fluid_first));
+    }
+
+    void draw(const CavityFillOp& op)
+    {
+        CavityFillReport said;
+        try
+        {
+            const std::vector<Spans> nodes = fill_cavity(field_, op, threads_, said);
+            for (const std::string& line : said.log)
+                report_.log.push_back(fmt::format("{}: {}", place(), line));
+            for (const std::string& w : said.warnings)
+                report_.warnings.push_back(fmt::format("{}: {}", place(), w));
+            paint_nodes(nodes);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
     }
 
     void draw(const RedrawOp& op)

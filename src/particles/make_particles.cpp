@@ -64,6 +64,9 @@ public:
     }
 
 private:
+    /// Whether there are particles off the lattice.
+    bool has_free() const { return field_.walls.particles.size() + field_.walls.volume.size() > 0; }
+
     void set_types()
     {
         for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk)
@@ -98,8 +101,9 @@ private:
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab) used[r.mk] = 1;
         if (!field_.walls.is_empty())
-        {
             std::fill(used.begin() + wall_zone_bit, used.end(), 0);
+        if (has_free())
+        {
             free_of_mk_ = count_free_particles(field_.walls);
             for (std::size_t mk = 0; mk < used.size(); ++mk)
                 if (free_of_mk_[mk] > 0) used[mk] = 1;
@@ -145,7 +149,7 @@ private:
                 run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
                 out_.blocks[b].count += nodes[x * n + b];
             }
-        if (!field_.walls.is_empty())
+        if (has_free())
             for (ParticleBlock& block : out_.blocks) block.count += free_of_mk_[block.mk];
         std::uint64_t all = 0;
         for (const ParticleBlock& block : out_.blocks) all += block.count;
@@ -207,7 +211,7 @@ private:
     void sort_free()
     {
         free_begin_.assign(out_.blocks.size() + 1, 0);
-        if (field_.walls.is_empty()) return;
+        if (!has_free()) return;
         std::vector<PositionOrder> orders;
         for (const ParticleBlock& block : out_.blocks) orders.push_back(order_of(block.mk));
         out_.free = sort_free_particles(field_.walls, out_.blocks, orders, threads_, free_begin_);
@@ -215,7 +219,7 @@ private:
 
     void merge_free()
     {
-        if (field_.walls.is_empty()) return;
+        if (!has_free()) return;
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
             merge_free_particles(out_, out_.blocks[b], order_of(out_.blocks[b].mk), free_begin_[b],
                                  free_begin_[b + 1]);
@@ -414,7 +418,7 @@ private:
     std::vector<ParticleType> type_of_mk_;
     static constexpr std::size_t no_block = SIZE_MAX;
     std::vector<std::size_t> block_of_mk_;
-    std::vector<std::uint64_t> free_of_mk_; ///< particles off the lattice; empty without walls
+    std::vector<std::uint64_t> free_of_mk_; ///< particles off the lattice; empty without any
     std::vector<std::uint64_t>
         free_begin_; ///< per block its first one in out_.free, then their number
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run

@@ -38,8 +38,10 @@ IndexedMesh read_vtk_xml(std::string_view bytes, const std::string& path);
 /// throws GeometryError that names the line and what was expected
 IndexedMesh read_csv_bathymetry(std::string_view bytes, const std::string& path);
 
-/// Makes the grid of `<drawbathymetry>` from points given as lines of three numbers or as a VTK
-/// file.
+/// As read_point_file(), of bytes.
+std::vector<Vec3> read_points(std::string_view bytes, const std::string& path);
+
+/// Makes the grid of `<drawbathymetry>` from points as read_points() gives them.
 ///
 /// Found by experiment with GenCase v5.4.354 on the polygons of its shapeout, a dozen grids: the
 /// grid begins at the least x and y of the points and has whole cells until it reaches the largest;

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -52,6 +53,70 @@ TEST(Inspect, MeasuresACube)
     EXPECT_EQ(found.line_particles, 12 * 7);
     EXPECT_EQ(found.corner_particles, 8);
     EXPECT_EQ(found.thin_share, 0);
+}
+
+/// A file whose name has an ending.
+class NamedFile
+{
+public:
+    NamedFile(const std::string& ending, const std::string& text)
+        : path_(std::filesystem::temp_directory_path() /
+                fmt::format("fppg-inspect-{}.{}", static_cast<const void*>(this), ending))
+    {
+        std::ofstream(path_) << text;
+    }
+    ~NamedFile() { std::filesystem::remove(path_); }
+    NamedFile(const NamedFile&) = delete;
+    NamedFile& operator=(const NamedFile&) = delete;
+    std::string path() const { return path_.string(); }
+
+private:
+    std::filesystem::path path_;
+};
+
+const std::string tetrahedron_points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+const std::string tetrahedron_facets = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+TEST(Inspect, ReadsEveryMeshFormatOfACase)
+{
+    const NamedFile ply("ply",
+                        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty "
+                        "float y\nproperty float z\nelement face 4\nproperty list uchar int "
+                        "vertex_indices\nend_header\n" +
+                            tetrahedron_points + tetrahedron_facets);
+    const NamedFile vtk("vtk",
+                        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 "
+                        "float\n" +
+                            tetrahedron_points + "POLYGONS 4 16\n" + tetrahedron_facets);
+    for (const NamedFile* file : {&ply, &vtk})
+    {
+        const Inspection found = inspect_mesh({.path = file->path()});
+        EXPECT_EQ(found.format, file == &ply ? "ply" : "vtk");
+        EXPECT_TRUE(found.report.is_watertight);
+        EXPECT_NEAR(found.report.volume, 1.0 / 6, 1e-12);
+        EXPECT_EQ(found.lines, 6u);
+        EXPECT_TRUE(has(to_text(found), "(" + found.format + ")"));
+    }
+    const NamedFile heights("csv", ";0;1;2\n0;1;1;1\n1;1;1;1\n");
+    const Inspection sheet = inspect_mesh({.path = heights.path()});
+    EXPECT_EQ(sheet.facets, 4u);
+    EXPECT_FALSE(sheet.report.is_watertight);
+}
+
+TEST(Inspect, SaysWhatAFileWithoutASurfaceHolds)
+{
+    const NamedFile file("vtk",
+                         "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 "
+                         "float\n0 0 0\n1 0 0\nLINES 1 3\n2 0 1\n");
+    try
+    {
+        inspect_mesh({.path = file.path()});
+        FAIL() << "accepted";
+    }
+    catch (const GeometryError& error)
+    {
+        EXPECT_TRUE(has(error.what(), "has no surface, only 0 points and 1 lines")) << error.what();
+    }
 }
 
 TEST(Inspect, CountsWhatFitPutsOnTheSurface)

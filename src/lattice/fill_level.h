@@ -1,0 +1,48 @@
+#pragma once
+
+#include "lattice/spans.h"
+
+#include <array>
+#include <cstdint>
+
+namespace fppg
+{
+
+/// Heights of nodes along a direction, in dp from the node (0, 0, 0) of the lattice. Heights that
+/// differ by less than `tolerance` are one layer.
+struct NodeHeights
+{
+    static constexpr double tolerance = 1e-6;
+
+    Vec3 up{0, 0, 1};                           ///< of length 1
+    std::array<std::int64_t, 3> begin{0, 0, 0}; ///< lattice node that the indices count from
+
+    double at(std::int64_t x, std::int64_t y, std::int64_t z) const
+    {
+        return up.x * static_cast<double>(x + begin[0]) + up.y * static_cast<double>(y + begin[1]) +
+               up.z * static_cast<double>(z + begin[2]);
+    }
+};
+
+std::uint64_t node_count(const std::vector<Spans>& nodes);
+
+/// The nodes of slab x whose height is at most `limit`.
+Spans nodes_up_to(const Spans& spans, std::int64_t x, const NodeHeights& heights, double limit);
+
+/// Nodes of a set up to a height.
+struct FillLevel
+{
+    double height = 0; ///< of the highest node, dp; that of the lowest node of the set if none is
+    std::uint64_t nodes = 0;
+};
+
+/// All nodes up to a given height, NodeHeights::tolerance included.
+FillLevel level_at(const std::vector<Spans>& nodes, const NodeHeights& heights, double limit,
+                   int threads);
+
+/// The whole layers, from the lowest one up, that hold as nearly as possible a number of nodes; of
+/// two numbers equally near the smaller one.
+FillLevel level_of_count(const std::vector<Spans>& nodes, const NodeHeights& heights, double count,
+                         int threads);
+
+} // namespace fppg

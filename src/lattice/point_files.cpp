@@ -1,0 +1,128 @@
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/lattice.h"
+#include "fppg/particles.h"
+#include "fppg/shapes.h"
+
+#include "casedef/mesh_path.h"
+#include "lattice/snap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace fppg
+{
+namespace
+{
+
+/// Rounding of the place of a point, dp.
+constexpr double place_tolerance = 1e-6;
+
+std::string text(const Vec3& p)
+{
+    return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
+}
+
+/// Between the first and the last nodes, and in 2D in the plane.
+bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        if (!(index >= -place_tolerance &&
+              index <= grid.n[static_cast<std::size_t>(axis)] - 1 + place_tolerance))
+            return false;
+    }
+    return true;
+}
+
+/// Whether a particle stands on a node.
+bool is_taken(const RunField& field, const Node& n)
+{
+    if (!is_inside(n, field.grid)) return false;
+    const std::vector<Run>& slab = field.slabs[static_cast<std::size_t>(n.x)];
+    const auto after =
+        std::upper_bound(slab.begin(), slab.end(), std::pair(n.y, n.z),
+                         [](const std::pair<std::int64_t, std::int64_t>& at, const Run& r)
+                         { return std::tuple(at.first, at.second) < std::tuple(r.y, r.z_begin); });
+    if (after == slab.begin()) return false;
+    const Run& r = *std::prev(after);
+    const bool is_zone = !field.walls.bodies.empty() && (r.mk & wall_zone_bit) != 0;
+    return r.y == n.y && n.z < r.z_end && !is_zone;
+}
+
+/// Warnings of points that stand on one another or on nodes: the solver stops on them.
+void check_places(const std::string& at, const std::vector<Vec3>& points, const RunField& field,
+                  LatticeReport& report)
+{
+    std::size_t near_nodes = 0;
+    Vec3 first;
+    for (const Vec3& p : points)
+    {
+        const Node n = snap(p, field.grid);
+        if (!is_taken(field, n) || norm(position(n, field.grid) - p) >= 0.5 * field.grid.dp)
+            continue;
+        if (near_nodes++ == 0) first = p;
+    }
+    if (near_nodes > 0)
+        report.warnings.push_back(fmt::format(
+            "{}: {} points stand nearer than dp/2 to a particle on the lattice, the first at {}.",
+            at, near_nodes, text(first)));
+    const auto before = [](const Vec3& a, const Vec3& b)
+    { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+    std::vector<Vec3> sorted = field.walls.volume.positions;
+    std::sort(sorted.begin(), sorted.end(), before);
+    std::size_t twice = 0;
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (sorted[i] == sorted[i - 1] && twice++ == 0) first = sorted[i];
+    if (twice > 0)
+        report.warnings.push_back(
+            fmt::format("{}: {} points stand where another one stands already, the first at {}.",
+                        at, twice, text(first)));
+}
+
+} // namespace
+
+void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report)
+{
+    for (const PointFile& file : def.point_files)
+    {
+        const std::string at = fmt::format("{}:{}: <{} file=\"{}\">", def.file, file.source.line,
+                                           file.source.command, file.file);
+        const std::string path = find_mesh_file(def, file.source, file.file);
+        std::vector<Vec3> points;
+        try
+        {
+            points = read_point_file(path);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", at, e.what()));
+        }
+        for (std::size_t i = 0; i < points.size(); ++i)
+        {
+            points[i] = file.transform(points[i]);
+            if (is_in_domain(points[i], field.grid)) continue;
+            const LatticeGrid& grid = field.grid;
+            const Node last{grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1};
+            throw GeometryError(fmt::format(
+                "{}: point {} of {} is at {}, expected a place from {} to {}, inside the domain",
+                at, i + 1, points.size(), text(points[i]), text(grid.origin),
+                text(position(last, grid))));
+        }
+        const auto is_it = [&](const MeshFileUse& use) { return use.name == file.file; };
+        if (std::none_of(report.mesh_files.begin(), report.mesh_files.end(), is_it))
+            report.mesh_files.push_back({file.file, path, file.source.line});
+        VolumeParticles& volume = field.walls.volume;
+        volume.positions.insert(volume.positions.end(), points.begin(), points.end());
+        volume.mk.insert(volume.mk.end(), points.size(), file.mk.mk);
+        volume.distances.insert(volume.distances.end(), points.size(), distance_of_nodes);
+        check_places(at, points, field, report);
+        report.log.push_back(
+            fmt::format("{}: {} particles of mk {}", at, points.size(), file.mk.mk));
+    }
+}
+
+} // namespace fppg
