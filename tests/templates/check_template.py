@@ -123,20 +123,26 @@ def check_FluidBand(result):
 
 
 def check_FillInside(result):
-    corner = np.array((0.1, 0.1, 0.1))
-    local = result.positions - corner
-    notch = (local[:, 0] > 0.25 + result.dp) & (local[:, 1] > 0.25 + result.dp)
-    if notch.any():
-        yield f"{np.count_nonzero(notch)} particles stand in the notch"
-    nodes = np.stack(np.meshgrid(*(np.arange(n) for n in (28, 20, 20)), indexing="ij"), -1).reshape(-1, 3)
-    p = (nodes - 2) * result.dp - corner
-    eps = 1e-9
-    inside = np.all((p > eps) & (p < np.array((0.6, 0.6, 0.3)) - eps), axis=1)
-    inside &= ~((p[:, 0] > 0.25 - eps) & (p[:, 1] > 0.25 - eps))
-    found = {tuple(n) for n in np.rint(result.positions / result.dp).astype(int) + 2}
-    missing = [tuple(n) for n in nodes[inside] if tuple(n) not in found]
-    if missing:
-        yield f"{len(missing)} nodes inside the part are empty, first {missing[0]}"
+    def in_part(p):
+        return np.all((p > 1e-9) & (p < (0.6 - 1e-9, 0.6 - 1e-9, 0.3 - 1e-9)), axis=1) & ~((p[:, 0] > 0.25 - 1e-9) & (p[:, 1] > 0.25 - 1e-9))
+
+    def in_block(p):
+        return np.all(abs(p) < 0.2 - 1e-9, axis=1)
+
+    nodes = np.stack(np.meshgrid(*(np.arange(-2, n) for n in (26, 18, 18)), indexing="ij"), -1).reshape(-1, 3)
+    for mk, place, is_in in ((10, (0.1, 0.1, 0.1), in_part), (11, (0.1, 0.1, 0.5), in_part),
+                             (12, (1, 0.3, 0.2), in_block), (13, (1, 0.6, 0.65), in_block)):
+        # Nodes on a face are on the shell, which is drawn too.
+        inside = is_in((nodes * result.dp - np.array(place)))
+        found = {tuple(n) for n in np.rint(result.positions[result.mk == mk] / result.dp).astype(int)}
+        empty = [tuple(n) for n in nodes[inside] if tuple(n) not in found]
+        if empty:
+            yield f"mk {mk}: {len(empty)} nodes inside are empty, first {empty[0]}"
+        if mk in (10, 11):
+            local = result.positions[result.mk == mk] - np.array(place)
+            in_notch = np.all(local[:, :2] > 0.25 + result.dp, axis=1)
+            if in_notch.any():
+                yield f"mk {mk}: {np.count_nonzero(in_notch)} particles stand in the notch"
 
 
 def check_InitialVelocityProfile(result):
