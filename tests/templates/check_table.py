@@ -2,9 +2,9 @@
 """Checks that xml-templates/README.md lists every element and attribute of the schema, and truly.
 
     check_table.py TEMPLATES_FOLDER TESTS_FOLDER           exits with 1 at a fault
-    check_table.py --rows TEMPLATES_FOLDER TESTS_FOLDER    prints the rows of the table for what is there
+    check_table.py --rows TEMPLATES_FOLDER TESTS_FOLDER    prints rows of the table for what is there
 
-A row is `| element | attributes | templates | tests |`. An element is told by itself for commands and
+Also every template must be named in README.md. A row is `| element | attributes | templates | tests |`. An element is told by itself for commands and
 by its parent/itself elsewhere. The templates named in the row must have the element, and between them
 every attribute of the row; the tests must be those of the templates.
 """
@@ -17,8 +17,8 @@ import xml.etree.ElementTree as ElementTree
 XS = "{http://www.w3.org/2001/XMLSchema}"
 # Lists hold the same commands; motions the same movements.
 ONE_PARENT = {"list": "", "mainlist": "", "obj": "motion", "objreal": "motion"}
-# Sections that are passed on unread.
-FREE = {"special", "particles", "constants", "uservars", "vtkout", "execution/motion"}
+# Elements that may hold anything, and what the templates have in them.
+FREE = {"special", "gauges", "swl", "property", "properties/property"}
 
 
 def path_of(parent, name):
@@ -96,15 +96,27 @@ def read_table(file):
                 yield cells[0].strip("`"), *(re.findall(r"`([^`]+)`|\[(\w+)\]", c) for c in cells[1:])
 
 
+# Where to look first for what every case has.
+FRAME = {"case": "Remarks", "casedef": "Constants", "constantsdef": "Constants", "geometry": "Definition",
+         "definition": "Definition", "commands": "Lists", "mkconfig": "MkConfig", "execution": "Parameters",
+         "parameters": "Parameters", "setmkbound": "SetMk", "setmkfluid": "SetMk"}
+
+
 def rows(schema, templates):
-    """A row for each element: the fewest templates that show it with all its attributes, by their size."""
-    sizes = {n: len(u) for n, u in templates.items()}
+    """A row for each element: the fewest templates that show it with all its attributes, the one that
+    is named after it first, else the smallest."""
+
+    def rank(name, path):
+        parent = path.split("/")[0]
+        named = FRAME.get(parent) == name or parent.startswith(name.lower())
+        return (not named, len(templates[name]), name)
+
     for path, attributes in schema.elements.items():
         missing, chosen = {""} | attributes, []
         while missing:
             shows = {n: {a for p, a in u if p == path} & missing for n, u in templates.items()
                      if n != "AllCommands"}
-            best = min(shows, key=lambda n: (-len(shows[n]), sizes[n], n))
+            best = min(shows, key=lambda n: (-len(shows[n]), *rank(n, path)))
             if not shows[best]:
                 break
             chosen.append(best)
@@ -141,13 +153,17 @@ def faults(folder, tests):
             continue
         for attribute in attributes - seen[path]:
             yield f"{path}: the attribute {attribute} is missing in the table"
+    with open(os.path.join(folder, "README.md"), encoding="utf-8") as file:
+        text = file.read()
+    for name in templates:
+        if f"- [{name}]({name}_Def.xml)" not in text:
+            yield f"{name}: is missing in the list of templates"
     everything = set().union(*templates.values())
     known = {(p, a) for p, all_of in schema.elements.items() for a in all_of | schema.common | {""}}
     variables = {"newvar", "newvarcte", "setvar", "newvarstr", "newvarstrcte", "setvarstr"}
     for path, attribute in sorted(everything - known):
-        top = path.split("/")[0]
-        free = top in FREE or path.split("/")[-1] in FREE | variables or path.startswith("property")
-        if not free and not any(p.split("/")[0] in ("special", "gauges", "swl", "property") for p in (path,)):
+        parent, own = path.split("/")[0], path.split("/")[-1]
+        if own not in FREE | variables and parent not in FREE and own != "property":
             yield f"{path} {attribute}: is in a template, not in the schema"
 
 
@@ -157,8 +173,9 @@ def main(arguments):
         for path, attributes, chosen, missing in rows(Schema(os.path.join(folder, "fppg.xsd")), templates_of(folder)):
             if missing:
                 print(f"NOT SHOWN {path}: {missing}", file=sys.stderr)
-            print(f"| `{path}` | {' '.join(f'`{a}`' for a in attributes) or '-'} | "
-                  f"{', '.join(f'[{n}]({n}_Def.xml)' for n in chosen)} | {', '.join(f'`Templates.{n}`' for n in chosen)} |")
+            names = " ".join(f"`{a}`" for a in attributes) or "-"
+            links = ", ".join(f"[{n}]({n}_Def.xml)" for n in chosen)
+            print(f"| `{path}` | {names} | {links} | {', '.join(f'`Templates.{n}`' for n in chosen)} |")
         return 0
     if len(arguments) != 2:
         sys.exit(__doc__)
