@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes closed triangle meshes of parametric bodies, as binary STL (templates also in other formats).
+"""Makes closed triangle meshes of parametric bodies, as binary STL, PLY or VTK.
 
     make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; lengths in metres, angles in degrees
     make_meshes.py --all DIR                         every shape with its default parameters
