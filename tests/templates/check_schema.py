@@ -46,6 +46,8 @@ BROKEN = (
     ("InitialVelocity", "<posmin ", "<posMin ", "posMin"),
     ("BodyFitted", 'density="cell"', 'density="nodes"', "density"),
     ("BodyFittedRelax", 'band="3"', 'bands="3"', "bands"),
+    ("Boolean", 'op="union"', 'op="sum"', "op"),
+    ("FillCavity", 'seed="0.2,0.2,0.1"', 'seed="0.2,0.2"', "seed"),
     ("Parameters", '<parameter key="Kernel"', '<parameter kee="Kernel"', "key"),
     ("Parameters", 'y="default - 0.1"', 'y="defaults - 0.1"', "'y'"),
     ("VRes", "<dpratio ", "<ratio ", "ratio"),

@@ -4,9 +4,10 @@
     check_table.py TEMPLATES_FOLDER TESTS_FOLDER           exits with 1 at a fault
     check_table.py --rows TEMPLATES_FOLDER TESTS_FOLDER    prints rows of the table for what is there
 
-Also every template must be named in README.md. A row is `| element | attributes | templates | tests |`. An element is told by itself for commands and
-by its parent/itself elsewhere. The templates named in the row must have the element, and between them
-every attribute of the row; the tests must be those of the templates.
+Every template must be named in README.md. A row of its table is `| element | attributes | templates | tests |`.
+An element is told by itself for commands and by its parent/itself elsewhere. The templates named in the
+row must have the element, and between them every attribute of the row; the tests must be those of the
+templates.
 """
 
 import os
@@ -21,6 +22,10 @@ ONE_PARENT = {"list": "", "mainlist": "", "obj": "motion", "objreal": "motion"}
 FREE = {"special", "gauges", "swl", "property", "properties/property"}
 
 
+# Draws that may have fppg:fill.
+WITH_INSIDE = {"drawfilestl", "drawfileply", "drawfilevtk", "drawfilevtm"}
+
+
 def path_of(parent, name):
     parent = ONE_PARENT.get(parent, parent)
     return f"{parent}/{name}" if parent else name
@@ -32,8 +37,8 @@ class Schema:
     def __init__(self, path):
         self.root = ElementTree.parse(path).getroot()
         self.named = {(c.tag, c.get("name")): c for c in self.root}
-        # `active` stands where entries can be switched off.
-        self.common = {a.get("name") for a in self.named[XS + "attributeGroup", "remarks"]} | {"active"}
+        # `active` stands where entries can be switched off, `fppg:name` on draws.
+        self.common = {a.get("name") for a in self.named[XS + "attributeGroup", "remarks"]} | {"active", "fppg:name"}
         self.elements = {}
         self.read(self.named[XS + "element", "case"], "")
 
@@ -55,7 +60,7 @@ class Schema:
             if child.tag == XS + "attribute":
                 if child.get("name") not in self.common:
                     self.elements[path].add(child.get("name"))
-            elif child.tag == XS + "anyAttribute" and child.get("namespace") == "urn:fppg":
+            elif child.tag == XS + "anyAttribute" and name in WITH_INSIDE:
                 self.elements[path].add("fppg:fill")
             elif child.tag == XS + "element":
                 self.read(child, name)
