@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Makes closed triangle meshes of parametric bodies, as binary STL.
+"""Makes closed triangle meshes of parametric bodies, as binary STL, PLY or VTK.
 
     make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; lengths in metres, angles in degrees
     make_meshes.py --all DIR                         every shape with its default parameters
     make_meshes.py --cases DIR                       the meshes that the cases in DIR read
+    make_meshes.py --templates DIR                   the meshes that the case templates read
     make_meshes.py --list                            shapes, their parameters and defaults
 
 Every mesh is checked before it is written: each edge has exactly two facets that run along it in
@@ -101,6 +102,71 @@ def write_stl(mesh, path, name):
         data += struct.pack("<12fH", *normal(*corners), *corners[0], *corners[1], *corners[2], 0)
     with open(path, "wb") as file:
         file.write(data)
+    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+
+
+def text_rows(mesh):
+    """Vertices and facets as lines of text."""
+    points = [" ".join(f"{c:.9g}" for c in p) for p in mesh.vertices]
+    return points, [" ".join(str(i) for i in f) for f in mesh.facets]
+
+
+def ply_text(mesh):
+    points, facets = text_rows(mesh)
+    return "\n".join(["ply", "format ascii 1.0", f"element vertex {len(points)}"]
+                     + [f"property float {axis}" for axis in "xyz"]
+                     + [f"element face {len(facets)}", "property list uchar int vertex_indices",
+                        "end_header"] + points + ["3 " + f for f in facets]) + "\n"
+
+
+def vtk_text(mesh):
+    points, facets = text_rows(mesh)
+    return "\n".join(["# vtk DataFile Version 3.0", "fppg", "ASCII", "DATASET POLYDATA",
+                      f"POINTS {len(points)} float"] + points
+                     + [f"POLYGONS {len(facets)} {4 * len(facets)}"]
+                     + ["3 " + f for f in facets]) + "\n"
+
+
+def xml_array(name, numbers, kind, more=""):
+    return f'<DataArray type="{kind}" Name="{name}"{more} format="ascii">\n{numbers}\n</DataArray>\n'
+
+
+def vtk_xml_text(mesh, is_polydata):
+    """A .vtp or a .vtu of triangles; GenCase v5.4 wants PointData and CellData, empty or not."""
+    points, facets = text_rows(mesh)
+    corners = xml_array("connectivity", " ".join(facets), "Int64")
+    corners += xml_array("offsets", " ".join(str(3 * i + 3) for i in range(len(facets))), "Int64")
+    kind = "PolyData" if is_polydata else "UnstructuredGrid"
+    if is_polydata:
+        empty = xml_array("connectivity", "", "Int64") + xml_array("offsets", "", "Int64")
+        count = f'NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{len(facets)}"'
+        cells = "".join(f"<{part}>\n{empty}</{part}>\n" for part in ("Verts", "Lines", "Strips"))
+        cells += f"<Polys>\n{corners}</Polys>\n"
+    else:
+        count = f'NumberOfCells="{len(facets)}"'
+        cells = "<Cells>\n" + corners
+        cells += xml_array("types", " ".join("5" for _ in facets), "UInt8") + "</Cells>\n"
+    return (f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" '
+            f'header_type="UInt64">\n<{kind}>\n<Piece NumberOfPoints="{len(points)}" {count}>\n'
+            "<PointData>\n</PointData>\n<CellData>\n</CellData>\n<Points>\n"
+            + xml_array("Points", " ".join(points), "Float32", ' NumberOfComponents="3"')
+            + f"</Points>\n{cells}</Piece>\n</{kind}>\n</VTKFile>\n")
+
+
+TEXT_FORMATS = {".ply": ply_text, ".vtk": vtk_text,
+                ".vtp": lambda mesh: vtk_xml_text(mesh, True),
+                ".vtu": lambda mesh: vtk_xml_text(mesh, False)}
+
+
+def write_mesh(mesh, path, name):
+    """Binary STL, or text in the format that the file's ending names."""
+    ending = os.path.splitext(path)[1]
+    if ending not in TEXT_FORMATS:
+        write_stl(mesh, path, name)
+        return
+    mesh.check(name)
+    with open(path, "w", encoding="ascii") as file:
+        file.write(TEXT_FORMATS[ending](mesh))
     print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
 
 
@@ -418,6 +484,18 @@ CASE_MESHES = (
     ("tyre/tyre.stl", "tyre", {"tread_depth": 0.016, "blocks": 18}),
 )
 
+# Those of the case templates, in every format that a draw command reads.
+PART = ("l_shape", {"length": 0.6, "thickness": 0.25, "depth": 0.3})
+TEMPLATE_MESHES = (
+    ("part.stl", *PART), ("part.ply", *PART), ("part.vtk", *PART), ("part.vtp", *PART),
+    ("part.vtu", *PART),
+    ("block.stl", "box", {"x": 0.4, "y": 0.4, "z": 0.4}),
+    ("block.vtp", "box", {"x": 0.4, "y": 0.4, "z": 0.4}),
+    ("ball.stl", "icosphere", {"radius": 0.25, "subdivisions": 2}),
+    ("shaft.stl", "cylinder", {"radius": 0.15, "height": 0.5, "sides": 24}),
+    ("plate.stl", "box", {"x": 0.6, "y": 0.4, "z": 0.01}),
+)
+
 
 def parameters(shape):
     return {p.name: p.default for p in inspect.signature(shape).parameters.values()}
@@ -451,6 +529,10 @@ def main(words):
             path = os.path.join(words[1], file)
             os.makedirs(os.path.dirname(path), exist_ok=True)
             write_stl(SHAPES[name](**given), path, name)
+    elif len(words) == 2 and words[0] == "--templates":
+        os.makedirs(words[1], exist_ok=True)
+        for file, name, given in TEMPLATE_MESHES:
+            write_mesh(SHAPES[name](**given), os.path.join(words[1], file), name)
     elif len(words) >= 2 and words[0] in SHAPES:
         shape = SHAPES[words[0]]
         write_stl(shape(**parse(shape, words[2:])), words[1], words[0])

@@ -94,6 +94,8 @@ void read_option(const std::string& argument, DropInOptions& options)
         options.action = Action::Info;
     else if (name == "-templates" || name == "-template")
         options.action = Action::Templates;
+    else if (name == "-overwrite" || name == "--overwrite")
+        options.overwrite = flag_of(name, value);
     else if (name == "-clean")
         options.action = Action::Clean;
     else if (name == "-dp")
@@ -158,6 +160,14 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
             names.push_back(a);
     }
     if (arguments.empty()) options.action = DropInOptions::Action::Help;
+    if (options.action == DropInOptions::Action::Templates)
+    {
+        if (names.size() > 1)
+            throw UsageError(
+                fmt::format("\"{}\" is one name too many, expected a folder", names[1]));
+        options.output = names.empty() ? "." : names[0];
+        return options;
+    }
     if (options.action != DropInOptions::Action::Run &&
         options.action != DropInOptions::Action::Clean)
         return options;
@@ -185,12 +195,13 @@ std::string help_text()
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
+        "  fppg templates FOLDER                writes case templates and the schema of cases\n"
         "\n"
         "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "
         "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
-        "Options (GenCase's own, but for -fit, -strict and vtkfeatures):\n"
+        "Options (GenCase's own, but for -fit, -strict, vtkfeatures and -overwrite):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -fit                   body-fitted walls: every boundary mk gets its particles on its "
@@ -211,7 +222,11 @@ std::string help_text()
         "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
         "  -debug:N               accepted, changes nothing\n"
         "  -clean                 only write OUTPUT.xml, a tidy copy of the definition\n"
-        "  -templates             write FppgCaseTemplate.xml, a commented case, into this folder\n"
+        "  -templates [FOLDER]    write case templates, one a feature, and the schema of cases "
+        "into "
+        "FOLDER\n"
+        "                         (default: this one); files that differ stay, unless with "
+        "-overwrite\n"
         "  -info                  what this program can do, as JSON\n"
         "  -ver, --version        the version\n"
         "  -h, --help             this text\n"

@@ -26,7 +26,7 @@ struct DropInOptions
 
     Action action = Action::Run;
     std::string input;  ///< without ".xml"
-    std::string output; ///< without extension
+    std::string output; ///< without extension; of Templates the folder
     std::optional<double> dp;
     std::vector<std::pair<std::string, std::string>> evars;
     FitChoice fit = FitChoice::AsCase;
@@ -42,6 +42,7 @@ struct DropInOptions
     bool save_three_vtk = false;
     bool create_folders = true;
     bool strict = false; ///< warnings where GenCase is silent are errors
+    bool overwrite = false; ///< templates that exist and differ
 };
 
 /// Reads arguments in GenCase's form: `in out`, `in a*b` (the star stands for the input's name), or

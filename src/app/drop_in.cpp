@@ -10,13 +10,13 @@
 #include "fppg/relax_walls.h"
 #include "fppg/version.h"
 
-#include "app/case_template.h"
 #include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/relax_stage.h"
 #include "app/run_log.h"
 #include "app/stop_signals.h"
 #include "app/stopwatch.h"
+#include "app/templates_command.h"
 #include "app/thousands.h"
 #include "app/threads.h"
 
@@ -664,13 +664,9 @@ int run_drop_in(const DropInOptions& options)
             print_info();
             return 0;
         case DropInOptions::Action::Templates:
-        {
-            OutputFile file("FppgCaseTemplate.xml");
-            file.append(case_template_text());
-            file.commit();
-            fmt::print("{}\nFppgCaseTemplate.xml\n", full_name());
+            fmt::print("{}\n", full_name());
+            write_templates(options.output, options.overwrite);
             return 0;
-        }
         case DropInOptions::Action::Clean:
             return write_clean_copy(options);
         case DropInOptions::Action::Run:

@@ -2,6 +2,7 @@
 
 #include "app/inspect_command.h"
 #include "app/render_command.h"
+#include "app/templates_command.h"
 
 namespace fppg
 {
@@ -18,6 +19,7 @@ struct Entry
 constexpr Entry entries[] = {
     {"inspect", run_inspect},
     {"render", run_render},
+    {"templates", run_templates},
 };
 
 } // namespace

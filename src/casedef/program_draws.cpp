@@ -373,7 +373,12 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
             op.filters.push_back({MkKind::Fluid, mk});
         if (const auto mk = absolute_mk(e, "mkbound", MkKind::Bound))
             op.filters.push_back({MkKind::Bound, mk});
-        if (name == "redrawbox") op.region = box_of(e);
+        if (name == "redrawbox")
+        {
+            // Without an mk it is for void nodes alone (seen with GenCase v5.4).
+            if (op.filters.empty()) op.filters.push_back({MkKind::Void, std::nullopt});
+            op.region = box_of(e);
+        }
         add(e, std::move(op));
     }
     else if (name == "redrawnear" || name == "redrawnearbox")

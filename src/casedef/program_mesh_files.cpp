@@ -123,11 +123,13 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
     if (const Element* depth = e.find_child("depth"))
     {
-        const auto low = read_.number_if(*depth, "depthmin");
-        const auto high = read_.number_if(*depth, "depthmax");
-        if (low) op.depth_min = *low;
-        if (low && !high) op.depth_max = std::numeric_limits<double>::infinity();
-        if (high) op.depth_max = *high;
+        // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing.
+        op.depth_min = read_.number_or(*depth, "depthmin", 0);
+        const double high = read_.number_or(*depth, "depthmax", 0);
+        if (high != 0)
+            op.depth_max = high;
+        else if (op.depth_min != 0)
+            op.depth_max = std::numeric_limits<double>::infinity();
     }
 }
 

@@ -407,11 +407,25 @@ std::string format_ranges(std::vector<int> numbers)
     return out;
 }
 
+namespace
+{
+
+bool uses_own_prefix(const Element& e)
+{
+    return std::any_of(e.attributes.begin(), e.attributes.end(),
+                       [](const auto& a) { return a.name.starts_with("fppg:"); }) ||
+           std::any_of(e.children.begin(), e.children.end(), uses_own_prefix);
+}
+
+} // namespace
+
 void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& particles,
                     const CaseConstants& constants, const std::vector<VtkOutEntry>& vtk_out,
                     const FileOrigin& origin)
 {
     Element root = tag("case", {{"app", origin.app_name}, {"date", origin.date}});
+    // Readers that know of namespaces refuse a prefix that nobody declares.
+    if (uses_own_prefix(def.casedef)) root.attributes.push_back({"xmlns:fppg", "urn:fppg"});
     root.children.push_back(def.casedef);
     Element execution = tag("execution");
     for (const Element& child : def.execution)

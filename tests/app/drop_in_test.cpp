@@ -532,6 +532,46 @@ TEST(FppgTemplates, WriteACaseThatRuns)
     EXPECT_EQ(result.code, 0) << result.output;
 }
 
+TEST(FppgTemplates, AreThoseOfTheSourceWithFilesAndSchema)
+{
+    const TemporaryFolder folder;
+    ASSERT_EQ(run(folder, {"templates", "a/b"}).code, 0);
+    ASSERT_EQ(run(folder, {"-templates", "c"}).code, 0);
+    const auto written = contents(folder / "a/b");
+    EXPECT_GT(written.size(), 80u);
+    EXPECT_TRUE(written.contains("fppg.xsd") && written.contains("DrawSphere_Def.xml"));
+    for (const auto& [name, bytes] : written)
+        EXPECT_EQ(bytes == read_text(fs::path(FPPG_TEMPLATES) / name), true) << name;
+    EXPECT_EQ(written == contents(folder / "c"), true);
+    const RunResult result =
+        shell(folder, "cd a/b && '" FPPG_PROGRAM "' DrawFileStl_Def out/DrawFileStl");
+    EXPECT_EQ(result.code, 0) << result.output;
+}
+
+TEST(FppgTemplates, ReplaceNoFileUnlessTold)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "DrawSphere_Def.xml", "mine");
+    const RunResult first = run(folder, {"templates", "."});
+    EXPECT_EQ(first.code, 0);
+    EXPECT_TRUE(contains(first.output, "\n  DrawSphere_Def.xml\n")) << first.output;
+    EXPECT_EQ(read_text(folder / "DrawSphere_Def.xml"), "mine");
+    const RunResult second = run(folder, {"templates", ".", "--overwrite"});
+    EXPECT_TRUE(contains(second.output, "1 files written")) << second.output;
+    EXPECT_TRUE(contains(read_text(folder / "DrawSphere_Def.xml"), "<drawsphere"));
+}
+
+TEST(FppgTemplates, SayWhereTheyCannotBeWritten)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "file", "");
+    const RunResult result = run(folder, {"templates", "file/below"});
+    EXPECT_EQ(result.code, 4) << result.output;
+    EXPECT_TRUE(contains(result.output, "file")) << result.output;
+    EXPECT_EQ(run(folder, {"templates"}).code, 2);
+    EXPECT_EQ(run(folder, {"-templates", "a", "b"}).code, 2);
+}
+
 CaseText tank_with_normals(const std::string& file)
 {
     CaseText text = tank();

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -428,6 +430,33 @@ TEST(ReadCase, ReadsWhichShapesOfAVtkFileAreDrawn)
                   .find("polyselec \"dots\" is invalid"),
               std::string::npos);
     EXPECT_NE(error_of(R"(<drawfilecsv file="a.csv" />)").find("mode"), std::string::npos);
+}
+
+TEST(ReadCase, TakesADepthOfZeroForNone)
+{
+    const double dp = run("").grid.dp;
+    const auto limits = [](const std::string& depth)
+    {
+        const CaseDef def =
+            run("<drawfilestl file=\"a.stl\" advanced=\"true\">" + depth + "</drawfilestl>");
+        return std::pair(mesh_op(def, 0).depth_min, mesh_op(def, 0).depth_max);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(limits(""), std::pair(0.0, 2 * dp));
+    EXPECT_EQ(limits(R"(<depth depthmin="0" depthmax="0" />)"), std::pair(0.0, 2 * dp));
+    EXPECT_EQ(limits(R"(<depth depthmin="0" />)"), std::pair(0.0, 2 * dp));
+    EXPECT_EQ(limits(R"(<depth depthmin="0.02" depthmax="0" />)"), std::pair(0.02, infinity));
+    EXPECT_EQ(limits(R"(<depth depthmax="0.1" />)"), std::pair(0.0, 0.1));
+}
+
+TEST(ReadCase, MeansEmptyNodesWithARedrawboxWithoutMk)
+{
+    const std::string box = R"(<point x="0" y="0" z="0" /><size x="1" y="1" z="1" />)";
+    const CaseDef def = run("<redrawbox>" + box + "</redrawbox><redraw />");
+    const auto& op = std::get<RedrawOp>(def.ops.at(0).what);
+    ASSERT_EQ(op.filters.size(), 1u);
+    EXPECT_EQ(op.filters[0].kind, MkKind::Void);
+    EXPECT_TRUE(std::get<RedrawOp>(def.ops.at(1).what).filters.empty());
 }
 
 /// A case beside a VTM file of three parts.

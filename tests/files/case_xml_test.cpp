@@ -119,6 +119,14 @@ TEST(WriteCaseXml, RepeatsTheDefinitionAndAddsTheExecution)
     EXPECT_EQ(SmallCase().case_xml(), expected);
 }
 
+TEST(WriteCaseXml, DeclaresThePrefixOfOwnAttributes)
+{
+    SmallCase small;
+    EXPECT_EQ(small.case_xml().find("xmlns"), std::string::npos);
+    small.def.casedef = parse("<casedef><a><drawfilestl fppg:fill=\"inside\"/></a></casedef>");
+    EXPECT_NE(small.case_xml().find(" xmlns:fppg=\"urn:fppg\""), std::string::npos);
+}
+
 TEST(WriteCaseXml, KeepsTheYOfATwoDimensionalCaseExactly)
 {
     SmallCase small;

@@ -55,6 +55,14 @@ class MakeMeshes(unittest.TestCase):
                 self.assertTrue(filecmp.cmp(os.path.join(folder, file), kept, shallow=False), file)
                 self.assertLess(os.path.getsize(kept), 200000)
 
+    def test_the_meshes_of_the_templates_are_the_ones_it_makes(self):
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            make_meshes.main(["--templates", folder])
+            for file, _, _ in make_meshes.TEMPLATE_MESHES:
+                kept = os.path.join(ROOT, "xml-templates", "data", file)
+                self.assertTrue(filecmp.cmp(os.path.join(folder, file), kept, shallow=False), file)
+                self.assertLess(os.path.getsize(kept), 20000)
+
     def test_an_unknown_parameter_is_named(self):
         script = os.path.join(ROOT, "tools", "make_meshes.py")
         run = subprocess.run([sys.executable, script, "gear", "gear.stl", "tooth=3"],
