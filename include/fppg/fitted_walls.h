@@ -80,9 +80,9 @@ struct WallParticles
 };
 
 /// Particles off the lattice that belong to no wall, one entry each in all arrays: those near walls
-/// or of `setfrdrawmode`, which stand in for lattice nodes, and those of point files. The nodes carry the wall_zone_bit on
-/// their mk, so that a water column still counts them; where they were taken out of the field
-/// altogether, the column ends below them.
+/// or of `setfrdrawmode`, which stand in for lattice nodes, and those of point files. The nodes
+/// carry the wall_zone_bit on their mk, so that a water column still counts them; where they were
+/// taken out of the field altogether, the column ends below them.
 struct VolumeParticles
 {
     std::vector<Vec3> positions;
@@ -104,8 +104,10 @@ struct FittedWalls
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
 
-    /// Whether particles stand off the lattice and nodes may carry the wall_zone_bit.
-    bool is_empty() const { return bodies.empty() && volume.size() == 0; }
+    bool hides_nodes = false; ///< particles of `setfrdrawmode` stand in for nodes
+
+    /// Whether nodes may carry the wall_zone_bit.
+    bool has_zones() const { return !bodies.empty() || hides_nodes; }
 };
 
 } // namespace fppg

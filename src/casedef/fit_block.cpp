@@ -217,7 +217,7 @@ void refuse_high_mks(const CaseDef& def, const AttributeReader& read)
         at.name = op.source.command;
         at.line = op.source.line;
         read.fail(at, fmt::format("mkbound {} is mk {} and cannot stand in a case with body-fitted "
-                                  "walls, expected a number below {}",
+                                  "walls or <setfrdrawmode>, expected a number below {}",
                                   op.state->mk.mk_type, op.state->mk.mk,
                                   wall_zone_bit - def.mk_bound_first));
     }
@@ -289,7 +289,10 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     if ((choice == FitChoice::On || choice == FitChoice::Raw) && !def.fit.all)
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
-    if (!def.fit.is_empty()) refuse_high_mks(def, read);
+    const bool is_off_lattice =
+        std::any_of(def.ops.begin(), def.ops.end(),
+                    [](const DrawOp& op) { return op.state && op.state->off_lattice; });
+    if (!def.fit.is_empty() || is_off_lattice) refuse_high_mks(def, read);
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

@@ -382,7 +382,7 @@ std::uint64_t write_faces(OutputFile& file, const RunField& field, int threads, 
 void write_cells_vtk(OutputFile& file, const RunField& field,
                      const std::vector<ParticleType>& type_of_mk, int threads)
 {
-    if (!field.walls.is_empty())
+    if (field.walls.has_zones())
     {
         write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
         return;

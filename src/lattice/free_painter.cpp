@@ -183,6 +183,7 @@ void FreePainter::finish()
         out.mk.push_back(mk_[i]);
         out.distances.push_back(distance_of_nodes);
     }
+    field_->walls.hides_nodes = true;
     parallel_for(
         field_->slabs.size(), threads_,
         [&](std::size_t x)

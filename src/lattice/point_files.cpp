@@ -49,7 +49,7 @@ bool is_taken(const RunField& field, const Node& n)
                          { return std::tuple(at.first, at.second) < std::tuple(r.y, r.z_begin); });
     if (after == slab.begin()) return false;
     const Run& r = *std::prev(after);
-    const bool is_zone = !field.walls.bodies.empty() && (r.mk & wall_zone_bit) != 0;
+    const bool is_zone = field.walls.has_zones() && (r.mk & wall_zone_bit) != 0;
     return r.y == n.y && n.z < r.z_end && !is_zone;
 }
 

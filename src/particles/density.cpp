@@ -58,7 +58,7 @@ private:
 class ParticleTest
 {
 public:
-    explicit ParticleTest(const RunField& field) : has_walls_(!field.walls.is_empty()) {}
+    explicit ParticleTest(const RunField& field) : has_walls_(field.walls.has_zones()) {}
     bool operator()(const Run& run) const { return !has_walls_ || (run.mk & wall_zone_bit) == 0; }
 
 private:

@@ -90,7 +90,7 @@ private:
                 type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
                     ParticleType::Floating;
             }
-        if (field_.walls.is_empty()) return;
+        if (!field_.walls.has_zones()) return;
         for (std::size_t mk = 0; mk < wall_zone_bit; ++mk)
             type_of_mk_[mk | wall_zone_bit] = type_of_mk_[mk];
     }
@@ -100,8 +100,7 @@ private:
         std::vector<char> used(65536, 0);
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab) used[r.mk] = 1;
-        if (!field_.walls.is_empty())
-            std::fill(used.begin() + wall_zone_bit, used.end(), 0);
+        if (field_.walls.has_zones()) std::fill(used.begin() + wall_zone_bit, used.end(), 0);
         if (has_free())
         {
             free_of_mk_ = count_free_particles(field_.walls);
