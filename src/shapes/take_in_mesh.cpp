@@ -9,6 +9,7 @@
 #include "core/predicates.h"
 #include "fppg/error.h"
 #include "shapes/box_tree.h"
+#include "shapes/connect_mesh.h"
 #include "shapes/facet_pairs.h"
 #include "shapes/mesh_query.h"
 
@@ -830,6 +831,24 @@ void judge_edges(const SurfaceMesh& mesh, MeshReport& report)
 }
 
 } // namespace
+
+void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    report = {};
+    report.facets_read = mesh.facets.size();
+    build_edges(mesh, threads);
+    orient_shells(mesh, report.shells);
+    measure_facets(mesh, threads);
+    for (const Facet& facet : mesh.facets)
+        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
+    const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        report.volume += volume_times_six(mesh, f, middle) / 6;
+        report.area += mesh.areas[f];
+    }
+    judge_edges(mesh, report);
+}
 
 SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
                          MeshReport& report)
