@@ -256,6 +256,14 @@ void PlaneTriangulation::legalise(std::vector<Side>& stack)
 
 PlaneTriangulation::Side PlaneTriangulation::find_side(std::uint32_t a, std::uint32_t b) const
 {
+    if (a >= first_outer_ && b < first_outer_)
+    {
+        // The triangles around an outer point do not close; those around the other one do.
+        const Side back = find_side(b, a);
+        if (back.triangle == none) return back;
+        const std::uint32_t across = triangles_[back.triangle].neighbours[back.side];
+        return {across, across == none ? 0 : side_of(across, a)};
+    }
     const std::uint32_t first = at_[a];
     std::uint32_t t = first;
     do
