@@ -62,6 +62,9 @@ struct BooleanMesh
     MeshReport report;
     std::vector<std::uint32_t> parts;  ///< per facet, the part that it comes from
     std::vector<std::uint32_t> facets; ///< per facet, the facet of that part's mesh
+    /// Per facet, the part whose solid lies behind it: its own, or where a part is taken away the
+    /// first one that it is taken from.
+    std::vector<std::uint32_t> owners;
     /// Edges where surfaces of different parts meet at an angle of more than half a degree, or
     /// more than two facets meet; ascending.
     std::vector<std::uint32_t> seams;
@@ -94,6 +97,12 @@ struct BooleanMesh
 /// cost     O(n log n) and that of arranging the facets that meet
 BooleanMesh boolean_mesh(const std::vector<BooleanPart>& parts, const BooleanNode& node,
                          const BooleanOptions& options, int threads);
+
+/// The nodes inside a part or on it: those of inside_spans() for a mesh without fault, else those
+/// of inside_by_vote(). None for a part without an inside.
+///
+/// mesh  as take_in_mesh() made it
+SpanSet solid_nodes(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads);
 
 /// The nodes of a combination, by interval operations on the runs of its parts: exactly the nodes
 /// for which evaluate() is true.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/boolean.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/initials.h"
@@ -87,6 +88,7 @@ struct SourceRef
 {
     int line = 0;
     std::string command;
+    std::string name{}; ///< fppg:name of the draw; empty without
 };
 
 /// `drawpoint`, `drawpoints`: nodes nearest to the points.
@@ -355,6 +357,23 @@ struct FluidBand
     double width_dp = 3; ///< fluid this near to a fitted wall moves, in dp; above 0, finite
 };
 
+/// Parts of the case that are drawn as one: `<fppg><boolean>`.
+struct BooleanDef
+{
+    /// A draw that is one of the parts.
+    struct Part
+    {
+        std::size_t op = 0;    ///< index into CaseDef::ops
+        bool is_sheet = false; ///< it may be a surface without an inside
+    };
+    int line = 0;
+    std::string name; ///< empty without
+    BooleanNode tree; ///< of the parts
+    std::vector<Part> parts;
+    std::optional<std::uint16_t> mk; ///< absolute; empty: each particle has the mk of its part
+    bool is_drawn = true;            ///< false: only a name for others
+};
+
 /// A user variable, for `<uservars>`.
 struct UserVariable
 {
@@ -388,7 +407,9 @@ struct CaseDef
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
-    std::vector<InitialOp> initials;    ///< in the order of the file
+    /// Drawn in place of their parts, where the last of these stands.
+    std::vector<BooleanDef> booleans;
+    std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
     std::vector<FloatingDef> floatings;
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names

@@ -316,7 +316,8 @@ private:
         KeepTurned,
     };
 
-    Verdict judge_facet(std::uint32_t f, const std::vector<Where>& where) const
+    Verdict judge_facet(std::uint32_t f, const std::vector<Where>& where,
+                        std::uint32_t& owner) const
     {
         const std::uint32_t own = all_.facets[f].part;
         std::vector<char> outer(parts_.size()), inner(parts_.size());
@@ -325,6 +326,7 @@ private:
             outer[p] = where[p] == Where::Inside || where[p] == Where::OnOpposite;
             inner[p] = where[p] == Where::Inside || where[p] == Where::OnSame;
         }
+        owner = own;
         if (is_sheet(f))
         {
             // Of a part with an inside, a sheet lies in the inside or out of it as its other
@@ -347,7 +349,14 @@ private:
         // Of surfaces in one place that of the first part stays.
         for (std::size_t p = 0; p < own; ++p)
             if (where[p] == Where::OnSame || where[p] == Where::OnOpposite) return Verdict::Drop;
-        return behind ? Verdict::Keep : Verdict::KeepTurned;
+        if (behind) return Verdict::Keep;
+        for (std::uint32_t p = 0; p < parts_.size(); ++p)
+            if (outer[p] != 0 && stays_[p] != 0)
+            {
+                owner = p;
+                break;
+            }
+        return Verdict::KeepTurned;
     }
 
     /// The largest facets of a patch, so that none is a sliver along a seam.
@@ -367,6 +376,8 @@ private:
     void choose_facets()
     {
         verdicts_.assign(all_.facets.size(), Verdict::Drop);
+        owners_.assign(all_.facets.size(), 0);
+        stays_ = staying_parts(node_, parts_.size());
         parallel_for(
             patches_.size(), threads_,
             [&](std::size_t i)
@@ -378,7 +389,7 @@ private:
                     std::all_of(asked.begin() + 1, asked.end(),
                                 [&](std::uint32_t f) { return places(f) == where; });
                 for (const std::uint32_t f : patch)
-                    verdicts_[f] = judge_facet(f, is_whole ? where : places(f));
+                    verdicts_[f] = judge_facet(f, is_whole ? where : places(f), owners_[f]);
             },
             1);
     }
@@ -405,6 +416,7 @@ private:
             out.mesh.facets.push_back(corners);
             out.parts.push_back(all_.facets[f].part);
             out.facets.push_back(all_.facets[f].facet);
+            out.owners.push_back(owners_[f]);
             normals.push_back(is_turned ? -normal(f) : normal(f));
         }
         if (out.mesh.facets.empty()) return;
@@ -455,6 +467,8 @@ private:
     std::vector<std::pair<std::uint32_t, std::uint32_t>> copies_; ///< first one, copy
     std::vector<std::vector<std::uint32_t>> patches_;
     std::vector<Verdict> verdicts_;
+    std::vector<std::uint32_t> owners_;
+    std::vector<char> stays_; ///< per part
 };
 
 } // namespace

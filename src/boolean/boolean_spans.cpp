@@ -1,6 +1,8 @@
 #include "fppg/boolean.h"
 
 #include "core/parallel.h"
+#include "fit/closed_part.h"
+#include "fppg/shapes.h"
 
 #include <algorithm>
 
@@ -116,6 +118,15 @@ std::vector<char> staying_parts(const BooleanNode& node, std::size_t parts)
     std::vector<char> out(parts, 0);
     mark_staying(node, true, out);
     return out;
+}
+
+SpanSet solid_nodes(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+{
+    const ClosedPart closed = find_closed_part(mesh);
+    if (!(closed.volume > 0) || closed.soup.size() == 0) return {};
+    if (closed.is_exact) return inside_spans(closed.soup, grid, threads);
+    std::uint64_t disputed = 0;
+    return inside_by_vote(closed.soup, grid, threads, disputed);
 }
 
 SpanSet boolean_spans(const std::vector<SpanSet>& sets, const BooleanNode& node, int threads)
