@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -27,6 +28,8 @@ constexpr double default_merge = 2e-7;
 constexpr double flat_seam_deg = 0.5;
 /// Facets of a patch that are asked where they are; they must agree.
 constexpr std::size_t asked_facets = 7;
+/// Facets lower than this many merge distances are slivers.
+constexpr double sliver_height = 4;
 
 /// Where a surface lies, seen from another part.
 enum class Where : char
@@ -157,6 +160,7 @@ public:
         find_patches();
         out.patches = patches_.size();
         choose_facets();
+        choose_slivers();
         gather(out);
         find_seams(out);
         judge(out);
@@ -392,6 +396,74 @@ private:
                     verdicts_[f] = judge_facet(f, is_whole ? where : places(f), owners_[f]);
             },
             1);
+    }
+
+    /// Whether the facet is no higher than what counts as touching: where it lies is chance.
+    bool is_sliver(std::uint32_t f) const
+    {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, norm(corner(f, (k + 1) % 3) - corner(f, k)));
+        return area2(f) < sliver_height * merge_ * longest;
+    }
+
+    static int balance_of(Verdict v)
+    {
+        return v == Verdict::Keep ? 1 : v == Verdict::KeepTurned ? -1 : 0;
+    }
+
+    /// Slivers are kept, turned or left out as it closes the surface around them.
+    void choose_slivers()
+    {
+        std::vector<std::uint32_t> slivers;
+        for (std::uint32_t f = 0; f < all_.facets.size(); ++f)
+            if (is_sliver(f)) slivers.push_back(f);
+        if (slivers.empty()) return;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+        const auto for_each_side = [&](std::uint32_t f, const auto& visit)
+        {
+            const auto& c = all_.facets[f].corners;
+            for (std::size_t s = 0; s < 3; ++s)
+                visit(std::minmax(c[s], c[(s + 1) % 3]), c[s] < c[(s + 1) % 3] ? 1 : -1);
+        };
+        for (const std::uint32_t f : slivers)
+            for_each_side(f, [&](const auto& side, int) { balance[side] = 0; });
+        for (std::uint32_t f = 0; f < all_.facets.size(); ++f)
+            if (verdicts_[f] != Verdict::Drop)
+                for_each_side(f,
+                              [&](const auto& side, int way)
+                              {
+                                  const auto at = balance.find(side);
+                                  if (at != balance.end())
+                                      at->second += way * balance_of(verdicts_[f]);
+                              });
+        bool has_changed = true;
+        for (int pass = 0; pass < 4 && has_changed; ++pass)
+        {
+            has_changed = false;
+            for (const std::uint32_t f : slivers)
+            {
+                const Verdict old = verdicts_[f];
+                const auto cost = [&](Verdict v)
+                {
+                    int sum = 0;
+                    for_each_side(f,
+                                  [&](const auto& side, int way) {
+                                      sum += std::abs(balance[side] +
+                                                      way * (balance_of(v) - balance_of(old)));
+                                  });
+                    return sum;
+                };
+                Verdict best = old;
+                for (const Verdict v : {Verdict::Drop, Verdict::Keep, Verdict::KeepTurned})
+                    if (cost(v) < cost(best)) best = v;
+                if (best == old) continue;
+                for_each_side(f, [&](const auto& side, int way)
+                              { balance[side] += way * (balance_of(best) - balance_of(old)); });
+                verdicts_[f] = best;
+                has_changed = true;
+            }
+        }
     }
 
     void gather(BooleanMesh& out)

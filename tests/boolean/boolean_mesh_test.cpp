@@ -163,6 +163,26 @@ TEST(BooleanMesh, ADrilledBoxHasSeamsAroundItsHole)
         }
 }
 
+TEST(BooleanMesh, APartWithAHoleHasAnInside)
+{
+    PartList list;
+    TriangleSoup ball = sphere(3);
+    const double whole = [&]
+    {
+        MeshReport report;
+        take_in_mesh(ball, {}, 1, report);
+        return report.area;
+    }();
+    ball.vertices.resize(ball.vertices.size() - 3);
+    list.add(ball);
+    list.add(box({-2, -2, 0}, {2, 2, 2}));
+    const BooleanMesh cut = list.run(of_two(BooleanOp::Intersection));
+    EXPECT_NEAR(cut.report.area, 0.5 * whole + std::numbers::pi, 0.05);
+    const BooleanMesh rest = list.run(of_two(BooleanOp::Difference));
+    EXPECT_NEAR(rest.report.area, 0.5 * whole + std::numbers::pi, 0.05);
+    EXPECT_EQ(cut.report.open_edges + rest.report.open_edges, 3U);
+}
+
 TEST(BooleanMesh, NamesAPartWithoutAnInside)
 {
     PartList list;
