@@ -456,6 +456,8 @@ void warn_of_undrawn_mks(CaseDef& def)
         if (op.state->mk.kind == MkKind::Bound && has_surface(op)) walls.insert(op.state->mk.mk);
         if (op.state->mk.kind == MkKind::Fluid && paints(op)) fluids.insert(op.state->mk.mk);
     }
+    for (const BooleanDef& boolean : def.booleans)
+        if (boolean.is_drawn && boolean.mk) walls.insert(*boolean.mk);
     const auto warn = [&](int line, const char* element, const char* type, int first,
                           const std::vector<std::uint16_t>& mks, const char* text)
     {

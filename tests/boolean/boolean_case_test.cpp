@@ -108,6 +108,14 @@ TEST(BooleanCase, OneMkForAllWhereItIsGiven)
     EXPECT_EQ(count(field).size(), 1U);
 }
 
+TEST(BooleanCase, ItsOwnMkMayBeFitted)
+{
+    const CaseDef def = read(
+        R"(<bodyfitted mkbound="7" /><boolean op="union" mkbound="7"><part ref="block" /><part ref="ball" /></boolean>)");
+    for (const std::string& w : def.warnings) EXPECT_THAT(w, testing::Not(HasSubstr("bodyfitted")));
+    EXPECT_EQ(run(def).walls.bodies.size(), 1U);
+}
+
 TEST(BooleanCase, NestsByName)
 {
     const std::string block =
