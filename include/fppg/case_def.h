@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/boolean.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/initials.h"
@@ -107,6 +108,7 @@ struct SourceRef
 {
     int line = 0;
     std::string command;
+    std::string name{}; ///< fppg:name of the draw; empty without
 };
 
 /// `drawpoint`, `drawpoints`: nodes nearest to the points.
@@ -328,10 +330,9 @@ struct PointsMkOutOp
     std::string file; ///< may be empty
 };
 
-using DrawVariant =
-    std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, MeshFileOp, WaveOp,
-                 FillOp, CavityFillOp, RedrawOp, RedrawNearOp, ResetOp, ShapeOutOp, CellsOutOp,
-                 PointsMkOutOp>;
+using DrawVariant = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
+                                 MeshFileOp, WaveOp, FillOp, CavityFillOp, RedrawOp, RedrawNearOp,
+                                 ResetOp, ShapeOutOp, CellsOutOp, PointsMkOutOp>;
 
 /// One executed command.
 struct DrawOp
@@ -461,6 +462,23 @@ struct PointFile
     Transform transform;
 };
 
+/// Parts of the case that are drawn as one: `<fppg><boolean>`.
+struct BooleanDef
+{
+    /// A draw that is one of the parts.
+    struct Part
+    {
+        std::size_t op = 0;    ///< index into CaseDef::ops
+        bool is_sheet = false; ///< it may be a surface without an inside
+    };
+    int line = 0;
+    std::string name; ///< empty without
+    BooleanNode tree; ///< of the parts
+    std::vector<Part> parts;
+    std::optional<std::uint16_t> mk; ///< absolute; empty: each particle has the mk of its part
+    bool is_drawn = true;            ///< false: only a name for others
+};
+
 /// A user variable, for `<uservars>`.
 struct UserVariable
 {
@@ -495,7 +513,9 @@ struct CaseDef
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
     std::vector<PointFile> point_files; ///< in the order of the file
-    std::vector<InitialOp> initials;    ///< in the order of the file
+    /// Drawn in place of their parts, where the last of these stands.
+    std::vector<BooleanDef> booleans;
+    std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;

@@ -45,10 +45,12 @@ struct Features
 /// mesh, whatever the threads. Both angles are compared with 0.01 degrees to spare, so that edges
 /// that a designer made alike (a rim of twelve sides at 30 degrees) are judged alike.
 ///
+/// always  edges that are features whatever their angle, such as the seams of a BooleanMesh
 /// throws  GeometryError for an angle out of range
 /// cost    O(edges)
 /// source  FPPG paper, "Feature extraction and feature line particles"
-Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options);
+Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
+                       const std::vector<std::uint32_t>& always = {});
 
 /// A particle on a corner or on a feature line.
 struct FeatureParticle

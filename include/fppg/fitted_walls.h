@@ -43,6 +43,8 @@ struct FittedBody
     int line = 0;         ///< of the draw, in the definition
     std::string name;     ///< command, and file for a mesh
     std::uint16_t mk = 0; ///< absolute, as drawn
+    /// Of a combination of parts, per facet the mk of the part that it belongs to; else empty.
+    std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
     RoundShape round = RoundShape::None;
     Vec3 p0;

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -30,12 +33,14 @@ public:
 
     void read_block(const Element& block) const
     {
-        require_known(block, {}, {"bodyfitted", "fluidband", "fill", "floatings", "points"});
+        require_known(block, {},
+                      {"bodyfitted", "boolean", "fluidband", "fill", "floatings", "points"});
         for (const Element& e : block.children)
         {
             if (is_remark(e)) continue;
             if (e.name == "bodyfitted") read_body_fitted(e);
             if (e.name == "fluidband") read_fluid_band(e);
+            if (e.name == "boolean") read_boolean(e);
             if (e.name == "floatings") read_exact_floatings(e);
         }
     }
@@ -163,6 +168,192 @@ private:
         return r;
     }
 
+    void read_boolean(const Element& e) const
+    {
+        require_known(e, {"name", "op", "mkbound", "draw"}, {"part", "boolean"});
+        BooleanDef boolean;
+        boolean.line = e.line;
+        boolean.name = read_.text_or(e, "name", "");
+        boolean.is_drawn = read_.flag_or(e, "draw", true);
+        if (!boolean.is_drawn && boolean.name.empty())
+            read_.fail(e, "is not drawn and has no name, so that it has no effect");
+        if (!boolean.name.empty())
+        {
+            const auto has_name = [&](const auto& other) { return other.name == boolean.name; };
+            if (std::any_of(def_.booleans.begin(), def_.booleans.end(), has_name) ||
+                std::any_of(def_.ops.begin(), def_.ops.end(),
+                            [&](const DrawOp& op) { return has_name(op.source); }))
+                read_.fail(e, fmt::format("name=\"{}\" is that of another boolean or of a draw",
+                                          boolean.name));
+        }
+        boolean.tree = boolean_node(e, boolean);
+        const std::vector<std::uint16_t> mks = mks_of(e, MkKind::Bound);
+        if (mks.size() > 1)
+            read_.fail(e, fmt::format("mkbound names {} numbers, expected one", mks.size()));
+        if (!mks.empty()) boolean.mk = mks[0];
+        if (boolean.is_drawn) check_boolean(e, boolean);
+        def_.booleans.push_back(std::move(boolean));
+    }
+
+    BooleanNode boolean_node(const Element& e, BooleanDef& boolean) const
+    {
+        BooleanNode node;
+        const std::string& op = read_.text(e, "op");
+        if (op == "union")
+            node.op = BooleanOp::Union;
+        else if (op == "intersection")
+            node.op = BooleanOp::Intersection;
+        else if (op == "difference")
+            node.op = BooleanOp::Difference;
+        else
+            read_.fail(
+                e, fmt::format("op=\"{}\" is not known, expected union, intersection or difference",
+                               op));
+        for (const Element& c : e.children)
+        {
+            if (is_remark(c)) continue;
+            if (c.name == "part")
+                node.operands.push_back(boolean_part(c, boolean));
+            else
+            {
+                require_known(c, {"op"}, {"part", "boolean"});
+                node.operands.push_back(boolean_node(c, boolean));
+            }
+        }
+        if (node.operands.size() < 2)
+            read_.fail(e, fmt::format("has {} operands, expected two or more <part> or <boolean>",
+                                      node.operands.size()));
+        return node;
+    }
+
+    /// The draws of a name or of an mk, together if there are several; or an earlier boolean.
+    BooleanNode boolean_part(const Element& e, BooleanDef& boolean) const
+    {
+        require_known(e, {"ref", "mkbound", "mkfluid", "sheet"}, {});
+        const int ways = (e.find_attribute("ref") != nullptr ? 1 : 0) +
+                         (e.find_attribute("mkbound") != nullptr ? 1 : 0) +
+                         (e.find_attribute("mkfluid") != nullptr ? 1 : 0);
+        if (ways != 1) read_.fail(e, "needs one of the attributes ref, mkbound and mkfluid");
+        const bool is_sheet = read_.flag_or(e, "sheet", false);
+        BooleanNode node;
+        node.op = BooleanOp::Union;
+        const auto add = [&](std::size_t op, bool may_be_sheet)
+        {
+            BooleanNode leaf;
+            leaf.part = static_cast<std::uint32_t>(boolean.parts.size());
+            for (std::size_t p = 0; p < boolean.parts.size(); ++p)
+                if (boolean.parts[p].op == op) leaf.part = static_cast<std::uint32_t>(p);
+            if (leaf.part == boolean.parts.size()) boolean.parts.push_back({op, may_be_sheet});
+            return leaf;
+        };
+        if (const std::string* ref = e.find_attribute("ref"))
+        {
+            for (const BooleanDef& other : def_.booleans)
+            {
+                if (other.name.empty() || other.name != *ref) continue;
+                std::vector<std::uint32_t> parts;
+                for (const BooleanDef::Part& p : other.parts)
+                    parts.push_back(add(p.op, p.is_sheet).part);
+                node = other.tree;
+                renumber(node, parts);
+                return node;
+            }
+            std::set<std::string> names;
+            for (std::size_t i = 0; i < def_.ops.size(); ++i)
+            {
+                const DrawOp& op = def_.ops[i];
+                if (!op.source.name.empty()) names.insert(op.source.name);
+                if (op.source.name.empty() || op.source.name != *ref) continue;
+                if (!is_part(op))
+                    read_.fail(e, fmt::format("ref=\"{}\" is the <{}> in line {}, which has no "
+                                              "surface of its own and cannot be a part",
+                                              *ref, op.source.command, op.source.line));
+                node.operands.push_back(add(i, is_sheet));
+            }
+            if (node.operands.empty())
+                read_.fail(
+                    e,
+                    fmt::format(
+                        "ref=\"{}\" is the fppg:name of no draw and the name of no "
+                        "boolean before this one; there are: {}",
+                        *ref, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+        }
+        else
+        {
+            const MkKind kind =
+                e.find_attribute("mkbound") != nullptr ? MkKind::Bound : MkKind::Fluid;
+            const std::vector<std::uint16_t> mks = mks_of(e, kind);
+            for (std::size_t i = 0; i < def_.ops.size(); ++i)
+            {
+                const MkValue& mk = def_.ops[i].state->mk;
+                if (mk.kind == kind && is_part(def_.ops[i]) &&
+                    std::find(mks.begin(), mks.end(), mk.mk) != mks.end())
+                    node.operands.push_back(add(i, is_sheet));
+            }
+            if (node.operands.empty())
+                read_.fail(e, "names an mk with which nothing is drawn that has a surface");
+        }
+        if (node.operands.size() > 1) return node;
+        BooleanNode only = node.operands[0];
+        return only;
+    }
+
+    static void renumber(BooleanNode& node, const std::vector<std::uint32_t>& parts)
+    {
+        if (node.op == BooleanOp::Part) node.part = parts[node.part];
+        for (BooleanNode& operand : node.operands) renumber(operand, parts);
+    }
+
+    static bool is_part(const DrawOp& op)
+    {
+        return std::holds_alternative<FigureOp>(op.what) ||
+               std::holds_alternative<SphereOp>(op.what) ||
+               std::holds_alternative<CylinderOp>(op.what) ||
+               std::holds_alternative<EllipsoidOp>(op.what) ||
+               std::holds_alternative<MeshFileOp>(op.what);
+    }
+
+    /// What stays of the result is of one kind, and all parts are drawn under the same clips.
+    void check_boolean(const Element& e, const BooleanDef& boolean) const
+    {
+        const std::vector<char> stays = staying_parts(boolean.tree, boolean.parts.size());
+        std::size_t last = 0;
+        std::size_t first = SIZE_MAX;
+        const auto place_of = [&](std::size_t part)
+        {
+            const SourceRef& at = def_.ops[boolean.parts[part].op].source;
+            return fmt::format("the <{}> in line {}", at.command, at.line);
+        };
+        std::optional<MkKind> kind;
+        if (boolean.mk) kind = MkKind::Bound;
+        for (std::size_t p = 0; p < boolean.parts.size(); ++p)
+        {
+            const DrawOp& op = def_.ops[boolean.parts[p].op];
+            first = std::min(first, boolean.parts[p].op);
+            last = std::max(last, boolean.parts[p].op);
+            if (op.state->clips.size() != def_.ops[boolean.parts[0].op].state->clips.size())
+                read_.fail(e,
+                           fmt::format("{} is drawn under other clips than {}, expected the same",
+                                       place_of(p), place_of(0)));
+            if (stays[p] == 0 || boolean.mk) continue;
+            const MkKind own = op.state->mk.kind;
+            if (own == MkKind::Void)
+                read_.fail(e, fmt::format("{} stays in the result and is drawn as void, expected "
+                                          "a bound or a fluid (void is for what is taken away)",
+                                          place_of(p)));
+            if (kind && *kind != own)
+                read_.fail(e,
+                           fmt::format("{} is fluid and others that stay in the result are bound, "
+                                       "or the other way round, expected one of both",
+                                       place_of(p)));
+            kind = own;
+        }
+        for (std::size_t i = first; i < last; ++i)
+            if (std::holds_alternative<ResetOp>(def_.ops[i].what))
+                read_.fail(e, fmt::format("the <resetdraw> in line {} lies between its parts",
+                                          def_.ops[i].source.line));
+    }
+
     void read_fluid_band(const Element& e) const
     {
         require_known(e, {"mkfluid", "width"}, {});
@@ -232,6 +423,8 @@ void warn_of_undrawn_mks(CaseDef& def)
         if (op.state->mk.kind == MkKind::Bound && has_surface(op)) walls.insert(op.state->mk.mk);
         if (op.state->mk.kind == MkKind::Fluid && paints(op)) fluids.insert(op.state->mk.mk);
     }
+    for (const BooleanDef& boolean : def.booleans)
+        if (boolean.is_drawn && boolean.mk) walls.insert(*boolean.mk);
     const auto warn = [&](int line, const char* element, const char* type, int first,
                           const std::vector<std::uint16_t>& mks, const char* text)
     {

@@ -8,7 +8,8 @@ namespace fppg
 {
 
 /// Which walls are body-fitted, by the `<fppg>` blocks of `<casedef>` and the command line: fills
-/// fit and fluid_bands of a case whose commands have run, and warns of mks that nothing draws.
+/// fit, fluid_bands and booleans of a case whose commands have run, and warns of mks that nothing
+/// draws.
 ///
 /// root    `<case>`
 /// throws  CaseError with file, line and element for anything inside `<fppg>` that is not known or

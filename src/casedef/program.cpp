@@ -121,7 +121,10 @@ void ProgramRunner::add(const Element& e, DrawVariant what)
 void ProgramRunner::add_whole(const Element& e, DrawVariant what)
 {
     if (!shared_state_) shared_state_ = std::make_shared<const DrawState>(state_);
-    def_.ops.push_back({{e.line, e.name}, shared_state_, std::move(what)});
+    const std::string* name = e.find_attribute("fppg:name");
+    def_.ops.push_back({{e.line, e.name, name != nullptr ? read_.interpolated(e, *name) : ""},
+                        shared_state_,
+                        std::move(what)});
 }
 
 void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)

@@ -6,6 +6,7 @@
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "lattice/boolean_wall.h"
 #include "lattice/cavity_fill.h"
 #include "lattice/depth_region.h"
 #include "lattice/domain_clip.h"
@@ -86,6 +87,26 @@ public:
         field_.slabs.resize(def.grid.n[0]);
     }
 
+    /// Parts of booleans are drawn together, where the last of them stands.
+    void run(std::size_t i)
+    {
+        bool is_part = false;
+        for (const BooleanDef& boolean : def_.booleans)
+        {
+            if (!boolean.is_drawn) continue;
+            std::size_t last = 0;
+            bool is_its_part = false;
+            for (const BooleanDef::Part& part : boolean.parts)
+            {
+                last = std::max(last, part.op);
+                is_its_part = is_its_part || part.op == i;
+            }
+            is_part = is_part || is_its_part;
+            if (last == i) draw_boolean(boolean);
+        }
+        if (!is_part) run(def_.ops[i]);
+    }
+
     void run(const DrawOp& op)
     {
         op_ = &op;
@@ -93,7 +114,8 @@ public:
             check_mesh(mesh(*file), file->transform);
         else
             checks_.check_shape(op, bounds_of(op, grid().dp));
-        if (!draw_fitted(op)) std::visit([this](const auto& what) { draw(what); }, op.what);
+        if (fits_walls_ && draw_fitted(op)) return;
+        std::visit([this](const auto& what) { draw(what); }, op.what);
     }
 
     RunField take()
@@ -242,6 +264,131 @@ private:
         return true;
     }
 
+    /// Draws the result of a combination: by its true surface, or the nodes of its parts by
+    /// interval operations where they stay on the lattice.
+    void draw_boolean(const BooleanDef& boolean)
+    {
+        const std::vector<char> stays = staying_parts(boolean.tree, boolean.parts.size());
+        const auto first =
+            static_cast<std::size_t>(std::find(stays.begin(), stays.end(), 1) - stays.begin());
+        const DrawOp& leading = def_.ops[boolean.parts[first].op];
+        // The result has the state of its first part, and stands where the boolean does.
+        DrawState whole = *leading.state;
+        whole.mk = mk_of(boolean, first);
+        DrawOp op;
+        op.source = {boolean.line, "boolean", boolean.name};
+        op.state = std::make_shared<const DrawState>(whole);
+        const FitSettings* settings =
+            whole.mk.kind == MkKind::Bound ? fit_settings(def_.fit, whole.mk.mk) : nullptr;
+        if (settings != nullptr)
+            fit_parts(boolean, op, *settings);
+        else
+            paint_parts(boolean, op);
+    }
+
+    MkValue mk_of(const BooleanDef& boolean, std::size_t part) const
+    {
+        if (!boolean.mk) return def_.ops[boolean.parts[part].op].state->mk;
+        return {MkKind::Bound, *boolean.mk,
+                static_cast<std::uint16_t>(*boolean.mk - def_.mk_bound_first)};
+    }
+
+    void fit_parts(const BooleanDef& boolean, const DrawOp& whole, const FitSettings& settings)
+    {
+        std::vector<BooleanWallPart> parts;
+        for (std::size_t p = 0; p < boolean.parts.size(); ++p)
+        {
+            const DrawOp& op = def_.ops[boolean.parts[p].op];
+            op_ = &op;
+            BooleanWallPart part;
+            part.name = op.source.name.empty()
+                            ? fmt::format("<{}> in line {}", op.source.command, op.source.line)
+                            : op.source.name;
+            part.mk = mk_of(boolean, p).mk;
+            part.may_be_sheet = boolean.parts[p].is_sheet;
+            const auto* file = std::get_if<MeshFileOp>(&op.what);
+            const TriangleSoup* soup = file != nullptr ? &mesh(*file).soup : nullptr;
+            try
+            {
+                if (soup == nullptr || !soup->vertices.empty())
+                    for (const ShapeMesh& shape : shape_meshes(op, soup, grid().dp))
+                    {
+                        part.soup.vertices.insert(part.soup.vertices.end(),
+                                                  shape.soup.vertices.begin(),
+                                                  shape.soup.vertices.end());
+                        part.is_solid = part.is_solid || shape.is_solid;
+                    }
+            }
+            catch (const GeometryError& e)
+            {
+                throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+            }
+            if (part.soup.vertices.empty())
+                throw GeometryError(
+                    fmt::format("{}: has no surface, so that it cannot be a part of "
+                                "the <boolean> in line {}",
+                                place(), boolean.line));
+            parts.push_back(std::move(part));
+        }
+        op_ = &whole;
+        if (!state().draw_points) return;
+        try
+        {
+            FittedDraw draw =
+                fit_boolean(parts, boolean.tree, settings, grid(), state().clips, threads_);
+            draw.body.line = boolean.line;
+            draw.body.name = boolean.name.empty() ? "boolean" : "boolean " + boolean.name;
+            add_wall(std::move(draw), nullptr);
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", place(), e.what()));
+        }
+    }
+
+    /// The nodes that the draw of a part takes on an empty lattice.
+    SpanSet nodes_of(const DrawOp& op)
+    {
+        DrawOp alone = op;
+        DrawState state_alone = *op.state;
+        state_alone.mk = {MkKind::Bound, def_.mk_bound_first, 0};
+        if (state_alone.mk.mk == 0) state_alone.mk.mk = 1;
+        alone.state = std::make_shared<const DrawState>(state_alone);
+        Generator generator(def_, threads_, report_);
+        generator.fits_walls_ = false;
+        generator.run(alone);
+        const RunField field = generator.take();
+        SpanSet out;
+        out.slabs.resize(field.slabs.size());
+        parallel_for(field.slabs.size(), threads_,
+                     [&](std::size_t x) { out.slabs[x] = occupied(field.slabs[x]); });
+        return out;
+    }
+
+    void paint_parts(const BooleanDef& boolean, const DrawOp& whole)
+    {
+        std::vector<SpanSet> sets;
+        for (const BooleanDef::Part& part : boolean.parts)
+            sets.push_back(nodes_of(def_.ops[part.op]));
+        const SpanSet nodes = boolean_spans(sets, boolean.tree, threads_);
+        const std::vector<SpanSet> shares = share_out(nodes, sets, boolean.tree, threads_);
+        for (std::size_t p = 0; p < shares.size(); ++p)
+        {
+            if (shares[p].slabs.empty()) continue;
+            DrawState painted = *whole.state;
+            painted.mk = mk_of(boolean, p);
+            DrawOp op = whole;
+            op.state = std::make_shared<const DrawState>(painted);
+            op_ = &op;
+            paint_region(region_of(shares[p]));
+        }
+        if (nodes.slabs.empty())
+            report_.warnings.push_back(
+                fmt::format("{}:{}: <boolean>: nothing is left of its parts on the lattice",
+                            def_.file, boolean.line));
+        op_ = nullptr;
+    }
+
     FittedDraw fit(const ShapeMesh& shape, const DrawOp& op, const FitSettings& settings) const
     {
         FittedDraw draw = fit_shape(shape, settings, grid(), state().clips, threads_);
@@ -260,7 +407,8 @@ private:
             if (file->advanced) keep_depth(draw, *file);
         }
         // A tank drawn without its lid is open on purpose.
-        if (file == nullptr && !draw.body.is_solid) draw.warnings.clear();
+        if (file == nullptr && !draw.body.is_solid && draw.body.facet_mk.empty())
+            draw.warnings.clear();
         for (const std::string& w : draw.warnings)
             report_.warnings.push_back(file != nullptr
                                            ? fmt::format("{}: {}: {}", place(), file->file, w)
@@ -936,6 +1084,7 @@ private:
     WallPainter walls_;
     FreePainter free_;
     const DrawOp* op_ = nullptr;
+    bool fits_walls_ = true;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t memory_ = available_memory();
     std::uint64_t run_limit_ = memory_ / 5 * 4 / sizeof(Run);
@@ -957,7 +1106,7 @@ RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress
     for (std::size_t i = 0; i < def.ops.size(); ++i)
     {
         if (progress) progress(i, def.ops.size());
-        generator.run(def.ops[i]);
+        generator.run(i);
     }
     return generator.take();
 }

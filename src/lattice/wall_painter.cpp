@@ -120,9 +120,8 @@ bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
     return votes >= 2;
 }
 
-SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& feature_options,
-                            const FitSettings& settings, const LatticeGrid& grid, int threads,
-                            std::vector<Vec3>& cut)
+SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid, int threads, std::vector<Vec3>& cut)
 {
     FitOptions options;
     options.dp = grid.dp;
@@ -130,7 +129,8 @@ SurfaceParticles surface_of(const FittedBody& body, const FeatureOptions& featur
     options.density = settings.density;
     SurfaceParticles particles = fit_surface(
         body.mesh, body.features,
-        place_feature_particles(body.mesh, body.features, feature_options), options, threads);
+        place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
+        threads);
     if (settings.one_sheet)
         cut = keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
     return particles;
@@ -150,25 +150,37 @@ SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
 
 } // namespace
 
+FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid)
+{
+    FeatureOptions options;
+    options.angle_deg = settings.feature_angle_deg;
+    options.dp = grid.dp;
+    return options;
+}
+
 FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
                      const std::vector<ClipPlane>& clips, int threads)
 {
-    FittedDraw out;
-    FittedBody& body = out.body;
+    FittedBody body;
     body.is_solid = shape.is_solid;
     body.round = shape.round;
     body.p0 = shape.p0;
     body.p1 = shape.p1;
     body.radius = shape.radius;
     body.mesh = take_in_mesh(shape.soup, {}, threads, body.report);
+    body.features = find_features(body.mesh, feature_options(settings, grid));
+    return fit_body(std::move(body), settings, grid, clips, threads);
+}
+
+FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const LatticeGrid& grid,
+                    const std::vector<ClipPlane>& clips, int threads)
+{
+    FittedDraw out;
+    out.body = std::move(given);
+    FittedBody& body = out.body;
     out.warnings = body.report.warnings;
-    FeatureOptions feature_options;
-    feature_options.angle_deg = settings.feature_angle_deg;
-    feature_options.dp = grid.dp;
-    body.features = find_features(body.mesh, feature_options);
-    SurfaceParticles surface =
-        grid.is_2d ? section_of(body, settings, grid)
-                   : surface_of(body, feature_options, settings, grid, threads, out.cut);
+    SurfaceParticles surface = grid.is_2d ? section_of(body, settings, grid)
+                                          : surface_of(body, settings, grid, threads, out.cut);
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,
@@ -179,16 +191,16 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     WallZoneOptions zone_options;
     zone_options.clearance_dp = settings.clearance_dp;
     zone_options.wall_particles = surface.positions.size();
-    zone_options.is_solid = shape.is_solid;
+    zone_options.is_solid = body.is_solid;
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
-    if (shape.is_solid && !zone.has_inside && zone.warnings.empty())
+    if (body.is_solid && !zone.has_inside && zone.warnings.empty())
         out.warnings.push_back(
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
     out.zone = by_slab(std::move(zone.zone), grid);
-    out.volume = by_slab(shape.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
+    out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
     for (const ClipPlane& clip : clips)
         parallel_for(grid.n[0], threads,
                      [&](std::size_t x)
@@ -261,17 +273,27 @@ void WallPainter::add(FittedDraw&& draw)
     FittedWalls& walls = field_->walls;
     const auto body = static_cast<std::uint32_t>(walls.bodies.size());
     const std::uint16_t mk = draw.body.mk;
-    parallel_for(field_->slabs.size(), threads_,
-                 [&](std::size_t x)
-                 {
-                     paint(field_->slabs[x], draw.volume[x], mk);
-                     paint(field_->slabs[x], draw.zone[x],
-                           static_cast<std::uint16_t>(mk | wall_zone_bit));
-                 });
+    parallel_for(
+        field_->slabs.size(), threads_,
+        [&](std::size_t x)
+        {
+            paint(field_->slabs[x], draw.volume[x], mk);
+            paint(field_->slabs[x], draw.zone[x], static_cast<std::uint16_t>(mk | wall_zone_bit));
+            for (const NodeShare& share : draw.shares)
+            {
+                paint(field_->slabs[x], intersect(draw.volume[x], share.nodes[x]), share.mk);
+                paint(field_->slabs[x], intersect(draw.zone[x], share.nodes[x]),
+                      static_cast<std::uint16_t>(share.mk | wall_zone_bit));
+            }
+        });
     walls.bodies.push_back(std::move(draw.body));
     const std::size_t first = walls.particles.size();
     std::fill(draw.particles.bodies.begin(), draw.particles.bodies.end(), body);
     std::fill(draw.particles.mk.begin(), draw.particles.mk.end(), mk);
+    const std::vector<std::uint16_t>& facet_mk = walls.bodies.back().facet_mk;
+    if (!facet_mk.empty())
+        for (std::size_t i = 0; i < draw.particles.size(); ++i)
+            draw.particles.mk[i] = facet_mk[draw.particles.facets[i]];
     if (first == 0)
         walls.particles = std::move(draw.particles);
     else

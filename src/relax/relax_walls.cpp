@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -160,6 +161,46 @@ struct Region
     std::optional<int> iterations;
 };
 
+/// The mks of solid bodies, those of one body together; ascending by the first of each.
+std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies)
+{
+    std::vector<std::uint16_t> first_of(65536, 0); // 0: no solid
+    const auto find = [&first_of](std::uint16_t mk)
+    {
+        while (first_of[mk] != mk) mk = first_of[mk];
+        return mk;
+    };
+    const auto join = [&](std::uint16_t a, std::uint16_t b)
+    {
+        for (const std::uint16_t mk : {a, b})
+            if (first_of[mk] == 0) first_of[mk] = mk;
+        a = find(a);
+        b = find(b);
+        first_of[std::max(a, b)] = std::min(a, b);
+    };
+    for (const FittedBody& body : bodies)
+    {
+        if (!body.is_solid) continue;
+        join(body.mk, body.mk);
+        std::set<std::uint16_t> of_parts(body.facet_mk.begin(), body.facet_mk.end());
+        for (const std::uint16_t mk : of_parts) join(body.mk, mk);
+    }
+    std::vector<std::vector<std::uint16_t>> out;
+    std::vector<std::size_t> group(65536, 0);
+    for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+    {
+        if (first_of[mk] == 0) continue;
+        const std::uint16_t first = find(static_cast<std::uint16_t>(mk));
+        if (first == mk)
+        {
+            group[mk] = out.size();
+            out.emplace_back();
+        }
+        out[group[first]].push_back(static_cast<std::uint16_t>(mk));
+    }
+    return out;
+}
+
 class Relaxation
 {
 public:
@@ -302,19 +343,15 @@ private:
     void relax_volumes()
     {
         std::vector<Region> regions;
-        std::vector<char> has_solid(65536, 0);
-        for (const FittedBody& body : field_.walls.bodies)
-            if (body.is_solid) has_solid[body.mk] = 1;
-        for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+        for (const std::vector<std::uint16_t>& mks : solid_mks(field_.walls.bodies))
         {
-            if (!has_solid[mk]) continue;
-            const FitSettings* settings = settings_of(static_cast<std::uint16_t>(mk));
+            const FitSettings* settings = settings_of(mks.front());
             if (settings == nullptr || !settings->relax.is_active || settings->relax.band_dp <= 0)
                 continue;
             Region region;
-            region.what = fmt::format("volume mk {}", mk);
+            region.what = fmt::format("volume mk {}", fmt::join(mks, ","));
             region.band.assign(65536, 0);
-            region.band[mk] = settings->relax.band_dp;
+            for (const std::uint16_t mk : mks) region.band[mk] = settings->relax.band_dp;
             region.beside.assign(65536, 0);
             region.is_solid = true;
             if (settings->relax.iterations)

@@ -71,7 +71,8 @@ bool is_singular(const SurfaceMesh& mesh, const Fans& fans, std::uint32_t v, dou
 
 } // namespace
 
-Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options)
+Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
+                       const std::vector<std::uint32_t>& always)
 {
     if (!(options.angle_deg >= 0 && options.angle_deg < 180))
         throw GeometryError(
@@ -82,9 +83,12 @@ Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options)
                                         options.corner_angle_deg));
     Features features;
     features.is_feature_edge.assign(mesh.edges.size(), 0);
+    for (const std::uint32_t e : always) features.is_feature_edge[e] = 1;
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     {
-        if (!is_feature(mesh, e, (options.angle_deg + spare_deg) * degree)) continue;
+        if (features.is_feature_edge[e] == 0 &&
+            !is_feature(mesh, e, (options.angle_deg + spare_deg) * degree))
+            continue;
         features.is_feature_edge[e] = 1;
         features.edges.push_back(static_cast<std::uint32_t>(e));
     }

@@ -174,8 +174,7 @@ ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
     query.y = static_cast<float>(unit.y);
     query.z = static_cast<float>(unit.z);
     query.time = 0;
-    query.radius =
-        static_cast<float>(within / scene_->scale * (1 + rounding_room) + nearest.reach);
+    query.radius = static_cast<float>(within / scene_->scale * (1 + rounding_room) + nearest.reach);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_->scene.get(), &query, &context, Scene::meet_point, &nearest);

@@ -4,6 +4,7 @@
 
 #include "generated_cases.h"
 
+#include "fppg/boolean.h"
 #include "fppg/case_def.h"
 #include "fppg/files.h"
 #include "fppg/lattice.h"
@@ -247,6 +248,26 @@ void add_meshes(const std::shared_ptr<WorkFolder>& work)
                                [&] { benchmark::DoNotOptimize(fppg::read_stl(path, threads)); });
                 });
             if (!is_binary) continue;
+            add("boolean_mesh/union_of_two_" + name,
+                [path, rings](State& state, int threads)
+                {
+                    fppg::TriangleSoup soup = fppg::read_stl(path).soup;
+                    fppg::MeshReport report;
+                    const fppg::SurfaceMesh one = fppg::take_in_mesh(soup, {}, threads, report);
+                    for (fppg::Vec3& v : soup.vertices) v = v + fppg::Vec3{0.21, 0.13, 0.17};
+                    const fppg::SurfaceMesh two = fppg::take_in_mesh(soup, {}, threads, report);
+                    fppg::BooleanNode both;
+                    both.op = fppg::BooleanOp::Union;
+                    both.operands.resize(2);
+                    both.operands[1].part = 1;
+                    time_stage(
+                        state, "triangles", 2 * sphere_facets(rings),
+                        [&]
+                        {
+                            benchmark::DoNotOptimize(fppg::boolean_mesh(
+                                {{"one", &one, false}, {"two", &two, false}}, both, {}, threads));
+                        });
+                });
             for (const std::uint32_t nodes : {100U, 400U})
                 add(fmt::format("inside_spans/{}_in_{}^3_nodes", name, nodes),
                     [path, rings, nodes](State& state, int threads)

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// A point of a plane.
+struct PlanePoint
+{
+    double x = 0;
+    double y = 0;
+};
+
+/// A constrained triangulation of points in a plane. It covers a triangle far around them, whose
+/// corners are the three points behind the given ones.
+///
+/// All sides are told by exact predicates, so that it is a valid triangulation whatever the
+/// points; it is that of Delaunay but for rounding and constraints.
+/// Source: C. L. Lawson, Software for C1 surface interpolation, 1977 (points by flips); S. W.
+/// Sloan, A fast algorithm for generating constrained Delaunay triangulations, 1993.
+class PlaneTriangulation
+{
+public:
+    struct Triangle
+    {
+        std::array<std::uint32_t, 3> corners;    ///< counter-clockwise
+        std::array<std::uint32_t, 3> neighbours; ///< across the side from corner s to s + 1
+        std::array<char, 3> is_fixed{0, 0, 0};   ///< the side is a constraint
+    };
+
+    /// points  any; of points in one place the first one stands for all
+    explicit PlaneTriangulation(std::vector<PlanePoint> points);
+
+    /// Makes a side from a to b, or several where points lie on the way.
+    ///
+    /// returns  false, and adds nothing from there on, where another constraint is in the way
+    bool add_constraint(std::uint32_t a, std::uint32_t b);
+
+    /// The point that stands for point i.
+    std::uint32_t place_of(std::uint32_t i) const { return place_[i]; }
+    const std::vector<Triangle>& triangles() const { return triangles_; }
+    /// Points from here on are the corners of the triangle around all.
+    std::uint32_t first_outer() const { return first_outer_; }
+
+private:
+    struct Side
+    {
+        std::uint32_t triangle;
+        std::uint32_t side;
+    };
+
+    int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    bool is_in_circle(const Triangle& t, std::uint32_t p) const;
+    std::uint32_t locate(std::uint32_t p) const;
+    void insert(std::uint32_t p);
+    void link(std::uint32_t t, std::uint32_t side, std::uint32_t to, std::uint32_t from_side);
+    void set_neighbour(std::uint32_t t, std::uint32_t old, std::uint32_t now);
+    void flip(std::uint32_t t, std::uint32_t side);
+    void legalise(std::vector<Side>& stack);
+    std::uint32_t side_of(std::uint32_t t, std::uint32_t corner) const;
+    /// The triangle with a side from a to b; no triangle without one.
+    Side find_side(std::uint32_t a, std::uint32_t b) const;
+
+    std::vector<PlanePoint> points_;
+    std::vector<Triangle> triangles_;
+    std::vector<std::uint32_t> place_;
+    std::vector<std::uint32_t> at_; ///< per point a triangle that has it as a corner
+    std::uint32_t first_outer_ = 0;
+    mutable std::uint32_t last_ = 0; ///< where the search for a point begins
+};
+
+} // namespace fppg

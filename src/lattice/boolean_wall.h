@@ -1,0 +1,39 @@
+#pragma once
+
+#include "fppg/boolean.h"
+#include "fppg/case_def.h"
+
+#include "lattice/wall_painter.h"
+
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// A draw that is part of a combination, by its true shape.
+struct BooleanWallPart
+{
+    std::string name; ///< for messages
+    TriangleSoup soup;
+    std::uint16_t mk = 0;  ///< absolute, that its particles get
+    bool is_solid = false; ///< the draw fills its inside
+    bool may_be_sheet = false;
+};
+
+/// Puts particles on the true surface of a combination of parts and finds the nodes inside and
+/// around it.
+///
+/// Edges where surfaces of different parts meet are feature lines. Nodes of the inside are those of
+/// boolean_spans(), less the zone of the wall; each belongs to the first of its parts, as
+/// share_out() says, and is drawn if that part is solid. A facet has the mk of the part whose solid
+/// lies behind it.
+///
+/// parts   meshes in the coordinates of the case
+/// clips   as in fit_shape()
+/// throws  GeometryError without the place of the draw
+FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
+                       const FitSettings& settings, const LatticeGrid& grid,
+                       const std::vector<ClipPlane>& clips, int threads);
+
+} // namespace fppg

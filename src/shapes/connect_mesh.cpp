@@ -1,0 +1,30 @@
+#include "shapes/connect_mesh.h"
+
+#include "shapes/edge_map.h"
+#include "shapes/judge_edges.h"
+#include "shapes/measure_facets.h"
+#include "shapes/mesh_facets.h"
+#include "shapes/orient_shells.h"
+
+namespace fppg
+{
+
+void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    report = {};
+    report.facets_read = mesh.facets.size();
+    build_edges(mesh, threads);
+    orient_shells(mesh, report.shells);
+    measure_facets(mesh, threads);
+    for (const Facet& facet : mesh.facets)
+        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
+    const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        report.volume += volume_times_six(mesh, f, middle) / 6;
+        report.area += mesh.areas[f];
+    }
+    judge_edges(mesh, report);
+}
+
+} // namespace fppg
