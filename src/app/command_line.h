@@ -41,7 +41,7 @@ struct DropInOptions
     bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
     bool create_folders = true;
-    bool strict = false; ///< warnings where GenCase is silent are errors
+    bool strict = false;    ///< warnings where GenCase is silent are errors
     bool overwrite = false; ///< templates that exist and differ
 };
 

@@ -137,10 +137,12 @@ public:
                 particles.bodies.push_back(body);
                 particles.facets.push_back(is_fixed ? given.facets[p.source]
                                                     : layers_[l].mesh_facet(p.place.facet));
+                // Beside a seam the nearest particle may be one of another part.
                 const std::vector<std::uint16_t>& facet_mk = bodies_[body].facet_mk;
-                particles.mk.push_back(has_source         ? given.mk[p.source]
-                                       : facet_mk.empty() ? bodies_[body].mk
-                                                          : facet_mk[particles.facets.back()]);
+                if (p.is_new && !facet_mk.empty())
+                    particles.mk.push_back(facet_mk[particles.facets.back()]);
+                else
+                    particles.mk.push_back(has_source ? given.mk[p.source] : bodies_[body].mk);
                 if (!given_held.empty())
                     held.push_back(p.is_new ? !p.is_moving : given_held[p.source]);
             }

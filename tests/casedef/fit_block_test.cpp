@@ -295,7 +295,8 @@ INSTANTIATE_TEST_SUITE_P(
     Block, FitBlockMistake,
     testing::Values(
         Mistake{"UnknownElement", "<fppg><bodyfit /></fppg>",
-                "<bodyfit>: is not known in <fppg>, expected bodyfitted, fluidband"},
+                "<bodyfit>: is not known in <fppg>, expected bodyfitted, boolean, fluidband, fill, "
+                "floatings, points"},
         Mistake{
             "UnknownAttribute", R"(<fppg><bodyfitted angle="30" /></fppg>)",
             "<bodyfitted>: attribute angle=\"30\" is not known, expected mkbound, featureangle,"},
@@ -364,9 +365,11 @@ TEST(FitBlock, RefusesNumbersWhoseTopBitIsTaken)
     text.after_geometry.clear();
     text.mainlist += R"(<setmkbound mk="32758" /><drawpoint x="0" y="0" z="0" />)";
     EXPECT_EQ(error_of(text), "no error");
-    EXPECT_THAT(error_of(text, FitChoice::On),
-                HasSubstr("Case_Def.xml:7: <drawpoint>: mkbound 32758 is mk 32768 and cannot stand "
-                          "in a case with body-fitted walls, expected a number below 32758"));
+    EXPECT_THAT(
+        error_of(text, FitChoice::On),
+        HasSubstr(
+            "Case_Def.xml:7: <drawpoint>: mkbound 32758 is mk 32768 and cannot stand "
+            "in a case with body-fitted walls or <setfrdrawmode>, expected a number below 32758"));
 }
 
 } // namespace
