@@ -106,6 +106,10 @@ using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
                           LatticeReport& report);
 
+/// The nodes of a field with the plain mk of those that walls stand in for (wall_zone_bit);
+/// touching runs of one mk are one. Without the walls.
+RunField plain_nodes(const RunField& field, int threads);
+
 /// Puts the particles of `<points>` files into field.walls.volume, in the order of the files.
 ///
 /// field   with all that was drawn; its nodes stay

@@ -1,9 +1,9 @@
 #include "app/inspect_command.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "app/inspect.h"
+#include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/error.h"
 
@@ -28,19 +28,7 @@ int run_inspect(const std::vector<std::string>& arguments)
                    "weld vertices nearer than this, in the unit of the file");
     app.add_option("--threads", inspect.threads, "threads (0: what the machine allows)");
     app.add_flag("--json", as_json, "print JSON");
-    try
-    {
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        fmt::print("{}", app.help());
-        return 0;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        throw UsageError(fmt::format("{}; fppg inspect --help shows the form", error.what()));
-    }
+    if (!read_subcommand_line(app, arguments)) return 0;
     if (inspect.threads <= 0) inspect.threads = default_threads();
     const Inspection inspection = inspect_mesh(inspect);
     fmt::print("{}", as_json ? to_json(inspection) : to_text(inspection));

@@ -1,11 +1,11 @@
 #include "app/render_command.h"
 
+#include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/error.h"
 #include "fppg/render.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -124,20 +124,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_flag("--palette", call.has_palette, "256 colours, for a smaller file");
     app.add_option("--threads", call.threads,
                    "default 0: what the machine or its scheduler allows");
-    try
-    {
-        // CLI11 takes the arguments from the back.
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        fmt::print("{}", app.help());
-        return false;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        throw UsageError(fmt::format("{}; fppg render --help shows the form", error.what()));
-    }
+    if (!read_subcommand_line(app, arguments)) return false;
     if (!size.empty()) read_size(size, options);
     if (!center.empty()) read_center(center, options);
     if (!mks.empty()) read_mks(mks, options);

@@ -3,10 +3,10 @@
 #include "fppg/error.h"
 #include "fppg/files.h"
 
+#include "app/subcommand_line.h"
 #include "app/template_files.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -81,19 +81,7 @@ int run_templates(const std::vector<std::string>& arguments)
     bool overwrite = false;
     app.add_option("folder", folder, "where to, made where it is missing")->required();
     app.add_flag("--overwrite", overwrite, "replace files that exist and differ");
-    try
-    {
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        fmt::print("{}", app.help());
-        return 0;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        throw UsageError(fmt::format("{}; fppg templates --help shows the form", error.what()));
-    }
+    if (!read_subcommand_line(app, arguments)) return 0;
     write_templates(folder, overwrite);
     return 0;
 }

@@ -9,6 +9,7 @@
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "fppg/lattice.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -286,32 +287,6 @@ std::array<Vec3, 4> corners(const LatticeGrid& grid, const Faces& faces, const R
     return out;
 }
 
-/// The nodes without the walls: those of a zone carry their plain mk, and touching runs of one mk
-/// are one.
-RunField without_zones(const RunField& field, int threads)
-{
-    RunField out;
-    out.grid = field.grid;
-    out.slabs.resize(field.slabs.size());
-    parallel_for(
-        field.slabs.size(), threads,
-        [&](std::size_t x)
-        {
-            for (Run run : field.slabs[x])
-            {
-                run.mk = static_cast<std::uint16_t>(run.mk & ~wall_zone_bit);
-                std::vector<Run>& runs = out.slabs[x];
-                if (!runs.empty() && runs.back().y == run.y && runs.back().mk == run.mk &&
-                    runs.back().z_end == run.z_begin)
-                    runs.back().z_end = run.z_end;
-                else
-                    runs.push_back(run);
-            }
-        },
-        16);
-    return out;
-}
-
 /// A face and its number among those of all mks.
 struct NumberedFace
 {
@@ -384,7 +359,7 @@ void write_cells_vtk(OutputFile& file, const RunField& field,
 {
     if (field.walls.has_zones())
     {
-        write_cells_vtk(file, without_zones(field, threads), type_of_mk, threads);
+        write_cells_vtk(file, plain_nodes(field, threads), type_of_mk, threads);
         return;
     }
     write_faces(

@@ -72,26 +72,8 @@ std::uint64_t node_count(const std::vector<Spans>& nodes)
 
 Spans nodes_up_to(const Spans& spans, std::int64_t x, const NodeHeights& heights, double limit)
 {
-    Spans kept;
-    kept.reserve(spans.size());
-    for (const Span& s : spans)
-    {
-        const auto keeps = [&](std::uint32_t z) { return heights.at(x, s.y, z) <= limit; };
-        const bool first = keeps(s.z_begin);
-        const bool last = keeps(s.z_end - 1);
-        if (first && last) kept.push_back(s);
-        if (first == last) continue;
-        std::uint32_t in = first ? s.z_begin : s.z_end - 1;
-        std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
-        // Heights are monotone along a column, in double too.
-        while (std::max(in, out) - std::min(in, out) > 1)
-        {
-            const std::uint32_t middle = std::midpoint(in, out);
-            keeps(middle) ? in = middle : out = middle;
-        }
-        kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
-    }
-    return kept;
+    return part_of_columns(
+        spans, [&](std::uint32_t y, std::uint32_t z) { return heights.at(x, y, z) <= limit; });
 }
 
 FillLevel level_at(const std::vector<Spans>& nodes, const NodeHeights& heights, double limit,

@@ -1057,7 +1057,7 @@ private:
         NodeFile file;
         file.name = "_" + op.file + "_MkCells" + op.suffix + ".vtk";
         file.is_cells = true;
-        file.cells = plain_nodes(field_);
+        file.cells = plain_nodes(field_, threads_);
         file.mk = op.mk;
         keep(std::move(file));
     }

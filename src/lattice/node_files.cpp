@@ -2,6 +2,7 @@
 
 #include "fppg/fitted_walls.h"
 
+#include "core/parallel.h"
 #include "lattice/snap.h"
 #include "lattice/spans.h"
 
@@ -35,28 +36,33 @@ Spans shortened(const Spans& spans)
 
 } // namespace
 
-RunField plain_nodes(const RunField& field)
+RunField plain_nodes(const RunField& field, int threads)
 {
     RunField out;
     out.grid = field.grid;
     out.slabs.resize(field.slabs.size());
-    for (std::size_t x = 0; x < field.slabs.size(); ++x)
-        for (Run run : field.slabs[x])
+    parallel_for(
+        field.slabs.size(), threads,
+        [&](std::size_t x)
         {
-            run.mk = static_cast<std::uint16_t>(run.mk & ~wall_zone_bit);
-            std::vector<Run>& runs = out.slabs[x];
-            if (!runs.empty() && runs.back().y == run.y && runs.back().mk == run.mk &&
-                runs.back().z_end == run.z_begin)
-                runs.back().z_end = run.z_end;
-            else
-                runs.push_back(run);
-        }
+            for (Run run : field.slabs[x])
+            {
+                run.mk = static_cast<std::uint16_t>(run.mk & ~wall_zone_bit);
+                std::vector<Run>& runs = out.slabs[x];
+                if (!runs.empty() && runs.back().y == run.y && runs.back().mk == run.mk &&
+                    runs.back().z_end == run.z_begin)
+                    runs.back().z_end = run.z_end;
+                else
+                    runs.push_back(run);
+            }
+        },
+        16);
     return out;
 }
 
 std::vector<Vec3> border_nodes(const RunField& field, std::uint16_t mk)
 {
-    const RunField plain = plain_nodes(field);
+    const RunField plain = plain_nodes(field, 1);
     std::vector<char> wanted(65536, 0);
     wanted[mk] = 1;
     std::vector<Spans> nodes;

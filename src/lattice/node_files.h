@@ -6,9 +6,6 @@
 namespace fppg
 {
 
-/// The nodes of a field without what body-fitting notes on them, for `cellsout`.
-RunField plain_nodes(const RunField& field);
-
 /// The places of the nodes of an mk (0: those that carry none) that have a face neighbour of
 /// another mk or none at all, sorted by z, y, x: what GenCase v5.4.354 writes for `pointsmkout`. In
 /// 2D neighbours along y do not count.

@@ -220,34 +220,14 @@ Spans occupied(const std::vector<Run>& runs)
 
 void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
 {
-    Spans kept;
-    kept.reserve(spans.size());
     const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-    for (const Span& s : spans)
-    {
-        const double y = grid.origin.y + static_cast<double>(s.y) * grid.dp;
-        const auto keeps = [&](std::uint32_t k)
-        {
-            const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-            return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
-        };
-        const bool first = keeps(s.z_begin);
-        const bool last = keeps(s.z_end - 1);
-        if (first && last)
-            kept.push_back(s);
-        else if (first || last)
-        {
-            std::uint32_t in = first ? s.z_begin : s.z_end - 1;
-            std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
-            while (std::max(in, out) - std::min(in, out) > 1)
-            {
-                const std::uint32_t middle = std::midpoint(in, out);
-                keeps(middle) ? in = middle : out = middle;
-            }
-            kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
-        }
-    }
-    spans.swap(kept);
+    spans = part_of_columns(spans,
+                            [&](std::uint32_t j, std::uint32_t k)
+                            {
+                                const double y = grid.origin.y + static_cast<double>(j) * grid.dp;
+                                const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
+                                return dot(Vec3{x, y, z} - clip.point, clip.normal) <= 0;
+                            });
 }
 
 } // namespace fppg

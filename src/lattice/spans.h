@@ -3,7 +3,9 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
+#include <algorithm>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 namespace fppg
@@ -44,6 +46,31 @@ void count_wall_zones(std::vector<char>& wanted);
 Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted);
 /// All nodes that carry an mk.
 Spans occupied(const std::vector<Run>& runs);
+
+/// The nodes that keeps(y, z) takes, of spans along columns of which it takes all up to some z or
+/// all from some z on: the limit is found by bisection.
+template <typename Keeps>
+Spans part_of_columns(const Spans& spans, const Keeps& keeps)
+{
+    Spans kept;
+    kept.reserve(spans.size());
+    for (const Span& s : spans)
+    {
+        const bool first = keeps(s.y, s.z_begin);
+        const bool last = keeps(s.y, s.z_end - 1);
+        if (first && last) kept.push_back(s);
+        if (first == last) continue;
+        std::uint32_t in = first ? s.z_begin : s.z_end - 1;
+        std::uint32_t out = first ? s.z_end - 1 : s.z_begin;
+        while (std::max(in, out) - std::min(in, out) > 1)
+        {
+            const std::uint32_t middle = std::midpoint(in, out);
+            keeps(s.y, middle) ? in = middle : out = middle;
+        }
+        kept.push_back(first ? Span{s.y, s.z_begin, in + 1} : Span{s.y, in, s.z_end});
+    }
+    return kept;
+}
 
 /// Drops the nodes of one slab that a clip refuses. Along a column the test value is monotone in
 /// double too, so the limit is found by bisection on the test itself.
