@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes closed triangle meshes of parametric bodies, as binary STL, PLY or VTK.
 
-    make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; lengths in metres, angles in degrees
+    make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; angles in degrees
     make_meshes.py --all DIR                         every shape with its default parameters
     make_meshes.py --cases DIR                       the meshes that the cases in DIR read
     make_meshes.py --templates DIR                   the meshes that the case templates read
@@ -102,7 +102,7 @@ def write_stl(mesh, path, name):
         data += struct.pack("<12fH", *normal(*corners), *corners[0], *corners[1], *corners[2], 0)
     with open(path, "wb") as file:
         file.write(data)
-    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+    print(f"{path}: {len(mesh.facets)} facets, volume {mesh.volume():.6g}")
 
 
 def text_rows(mesh):
@@ -167,7 +167,7 @@ def write_mesh(mesh, path, name):
     mesh.check(name)
     with open(path, "w", encoding="ascii") as file:
         file.write(TEXT_FORMATS[ending](mesh))
-    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+    print(f"{path}: {len(mesh.facets)} facets, volume {mesh.volume():.6g}")
 
 
 # --- Ways to make a surface ---
@@ -180,7 +180,10 @@ def turn(count):
 
 
 def triangulate(polygon):
-    """Ear clipping of a simple polygon (x, y), counter-clockwise; concave is allowed."""
+    """Ear clipping of a polygon (x, y), counter-clockwise; concave is allowed.
+
+    It is simple, but for cuts to holes, along which it runs twice.
+    """
 
     def area(o, a, b):
         return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
@@ -195,7 +198,7 @@ def triangulate(polygon):
             if area(pa, pb, pc) <= 0:
                 continue
             if any(area(pa, pb, q) >= 0 and area(pb, pc, q) >= 0 and area(pc, pa, q) >= 0
-                   for q in (polygon[i] for i in left if i not in (a, b, c))):
+                   for q in (polygon[i] for i in left) if q not in (pa, pb, pc)):
                 continue
             length = math.dist(pa, pc)
             if best is None or length < best[0]:
@@ -502,7 +505,7 @@ def walls_along(mesh, outline, z0, z1, closed=True, flip=False):
             mesh.quad(low[i], low[k], high[k], high[i])
 
 
-def gearbox_case(radius_a=38.0, radius_b=53.0, distance=75.0, width=34.0, wall=6.0, height=45.0,
+def gearbox_case(radius_a=38.0, radius_b=53.0, distance=75.0, width=34.0, wall=6.0, height=62.0,
                  bore_a=22.0, bore_b=28.0, sides=24):
     """A trough round two parallel shafts along z, open at y = `height`, with bores for bearings.
 
@@ -543,7 +546,7 @@ def gearbox_case(radius_a=38.0, radius_b=53.0, distance=75.0, width=34.0, wall=6
     return mesh
 
 
-def lid(left=-46.0, right=136.0, width=50.0, low=42.0, high=48.0, radius=5.0, plug=10.0):
+def lid(left=-46.0, right=136.0, width=50.0, low=59.0, high=65.0, radius=5.0, plug=10.0):
     """A plate with round corners from x = left to right, and a filler plug on it; up is y.
 
     low, high  the plate along y
@@ -569,7 +572,7 @@ def lid(left=-46.0, right=136.0, width=50.0, low=42.0, high=48.0, radius=5.0, pl
     return out
 
 
-def shaft(length=46.0, journal=12.0, seat=20.0, seat_length=26.0, collar=26.0, collar_length=4.0,
+def shaft(length=50.0, journal=12.0, seat=20.0, seat_length=26.0, collar=26.0, collar_length=6.0,
           sides=48):
     """A stepped shaft about z: journals at both ends, between them a seat and a collar at its end.
 
