@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes closed triangle meshes of parametric bodies, as binary STL, PLY or VTK.
 
-    make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; lengths in metres, angles in degrees
+    make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; angles in degrees
     make_meshes.py --all DIR                         every shape with its default parameters
     make_meshes.py --cases DIR                       the meshes that the cases in DIR read
     make_meshes.py --templates DIR                   the meshes that the case templates read
@@ -102,7 +102,7 @@ def write_stl(mesh, path, name):
         data += struct.pack("<12fH", *normal(*corners), *corners[0], *corners[1], *corners[2], 0)
     with open(path, "wb") as file:
         file.write(data)
-    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+    print(f"{path}: {len(mesh.facets)} facets, volume {mesh.volume():.6g}")
 
 
 def text_rows(mesh):
@@ -167,7 +167,7 @@ def write_mesh(mesh, path, name):
     mesh.check(name)
     with open(path, "w", encoding="ascii") as file:
         file.write(TEXT_FORMATS[ending](mesh))
-    print(f"{path}: {len(mesh.facets)} facets, {mesh.volume():.6g} m3")
+    print(f"{path}: {len(mesh.facets)} facets, volume {mesh.volume():.6g}")
 
 
 # --- Ways to make a surface ---
@@ -180,7 +180,10 @@ def turn(count):
 
 
 def triangulate(polygon):
-    """Ear clipping of a simple polygon (x, y), counter-clockwise; concave is allowed."""
+    """Ear clipping of a polygon (x, y), counter-clockwise; concave is allowed.
+
+    It is simple, but for cuts to holes, along which it runs twice.
+    """
 
     def area(o, a, b):
         return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
@@ -195,7 +198,7 @@ def triangulate(polygon):
             if area(pa, pb, pc) <= 0:
                 continue
             if any(area(pa, pb, q) >= 0 and area(pb, pc, q) >= 0 and area(pc, pa, q) >= 0
-                   for q in (polygon[i] for i in left if i not in (a, b, c))):
+                   for q in (polygon[i] for i in left) if q not in (pa, pb, pc)):
                 continue
             length = math.dist(pa, pc)
             if best is None or length < best[0]:
@@ -329,7 +332,7 @@ def l_shape(length=1.0, thickness=0.4, depth=0.5):
     return extrude([(0, 0), (a, 0), (a, t), (t, t), (t, a), (0, a)], 0, depth)
 
 
-def gear_outline(module, teeth, pressure_angle):
+def gear_outline(module, teeth, pressure_angle, backlash=0.0, turned=0.0):
     """Outline of a spur gear with involute flanks, counter-clockwise; its polar angle only grows."""
     pitch = module * teeth / 2
     tip, root = pitch + module, pitch - 1.25 * module
@@ -339,7 +342,7 @@ def gear_outline(module, teeth, pressure_angle):
         ratio = math.acos(min(1.0, base / radius))
         return math.tan(ratio) - ratio
 
-    half_tooth = math.pi / (2 * teeth) + involute(pitch)
+    half_tooth = math.pi / (2 * teeth) + involute(pitch) - backlash / (4 * pitch)
     start = max(base, root)
     half_root = half_tooth - involute(start)
     # Below the base circle there is no involute; the flank leans out a little instead.
@@ -349,15 +352,19 @@ def gear_outline(module, teeth, pressure_angle):
     flank = [(root, foot)] + [(r, half_tooth - involute(r)) for r in radii]
     outline = []
     for tooth in range(teeth):
-        axis = 2 * math.pi * tooth / teeth
+        axis = 2 * math.pi * tooth / teeth + math.radians(turned)
         polar = [(r, axis - a) for r, a in flank] + [(r, axis + a) for r, a in reversed(flank)]
         outline += [(r * math.cos(a), r * math.sin(a)) for r, a in polar]
     return outline
 
 
-def gear(module=0.1, teeth=18, width=0.3, bore=0.4, pressure_angle=20.0):
-    """A spur gear about z with involute teeth; `bore` is a diameter, 0 for a full gear."""
-    outline = gear_outline(module, teeth, pressure_angle)
+def gear(module=0.1, teeth=18, width=0.3, bore=0.4, pressure_angle=20.0, backlash=0.0, turned=0.0):
+    """A spur gear about z with involute teeth; `bore` is a diameter, 0 for a full gear.
+
+    backlash  play between the flanks of two such gears, half of it taken off the teeth of each
+    turned    angle of the first tooth from x; half a pitch puts a gap there
+    """
+    outline = gear_outline(module, teeth, pressure_angle, backlash, turned)
     if bore == 0:
         return prism_about_axis(outline, -width / 2, width / 2)
     inner = [(bore / 2 * x / math.hypot(x, y), bore / 2 * y / math.hypot(x, y)) for x, y in outline]
@@ -471,8 +478,124 @@ def housing(radius_a=0.6, radius_b=0.45, distance=0.9, height=0.5, wall=0.06, li
     return loft([level(outer, -wall), level(outer, height), level(inner, height), level(inner, 0)])
 
 
+def ring_on(mesh, outline, holes, z, up):
+    """A flat face at height z between an outline and holes in it; all counter-clockwise.
+
+    Each hole is joined to the outline by a cut to its nearest corner.
+    """
+    boundary = list(outline)
+    for hole in holes:
+        i, k = min(((i, k) for i in range(len(boundary)) for k in range(len(hole))),
+                   key=lambda pair: math.dist(boundary[pair[0]], hole[pair[1]]))
+        backwards = [hole[(k - n) % len(hole)] for n in range(len(hole) + 1)]
+        boundary[i:i] = [boundary[i]] + backwards
+    rows = [mesh.vertex(x, y, z) for x, y in boundary]
+    for a, b, c in triangulate(boundary):
+        mesh.triangle(*((rows[a], rows[b], rows[c]) if up else (rows[a], rows[c], rows[b])))
+
+
+def walls_along(mesh, outline, z0, z1, closed=True, flip=False):
+    """Walls over a line of (x, y), looking to its right; `flip`: to its left."""
+    low, high = ([mesh.vertex(x, y, z) for x, y in outline] for z in (z0, z1))
+    for i in range(len(outline) if closed else len(outline) - 1):
+        k = (i + 1) % len(outline)
+        if flip:
+            mesh.quad(low[i], high[i], high[k], low[k])
+        else:
+            mesh.quad(low[i], low[k], high[k], high[i])
+
+
+def gearbox_case(radius_a=38.0, radius_b=53.0, distance=75.0, width=34.0, wall=6.0, height=62.0,
+                 bore_a=22.0, bore_b=28.0, sides=24):
+    """A trough round two parallel shafts along z, open at y = `height`, with bores for bearings.
+
+    radius_a, radius_b  inner radii round the shafts, which stand at x = 0 and x = distance, y = 0
+    width               between the two walls with the bores, which are at z = -width/2 and width/2
+    bore_a, bore_b      diameters of the bores
+    """
+
+    def trough(a, b):
+        """From the top of the far side down, round below and up, and its two upper corners."""
+        lean = math.acos((a - b) / distance)
+        # The common tangent below touches both circles at the same angle from x.
+        right = [(distance + b * math.cos(t), b * math.sin(t))
+                 for t in (-lean + lean * i / sides for i in range(sides + 1))]
+        left = [(a * math.cos(t), a * math.sin(t))
+                for t in (-math.pi + (math.pi - lean) * i / sides for i in range(sides + 1))]
+        return [(-a, height)] + left + right + [(distance + b, height)]
+
+    def bore(x, diameter):
+        return [(x + diameter / 2 * c, diameter / 2 * s) for c, s in turn(2 * sides)]
+
+    inner, outer = trough(radius_a, radius_b), trough(radius_a + wall, radius_b + wall)
+    bores = [bore(0, bore_a), bore(distance, bore_b)]
+    levels = [-width / 2 - wall, -width / 2, width / 2, width / 2 + wall]
+    mesh = Mesh()
+    # The rim of the walls with bores has corners where the trough between them begins.
+    whole = outer + [inner[-1], inner[0]]
+    between = outer + inner[::-1]
+    for z, holes, up in ((levels[0], bores, False), (levels[3], bores, True)):
+        ring_on(mesh, whole, holes, z, up)
+    for z, up in ((levels[1], True), (levels[2], False)):
+        ring_on(mesh, inner, bores, z, up)
+    for low, high in ((levels[0], levels[1]), (levels[2], levels[3])):
+        walls_along(mesh, whole, low, high)
+        for hole in bores:
+            walls_along(mesh, hole, low, high, flip=True)
+    walls_along(mesh, between, levels[1], levels[2])
+    return mesh
+
+
+def lid(left=-46.0, right=136.0, width=50.0, low=59.0, high=65.0, radius=5.0, plug=10.0):
+    """A plate with round corners from x = left to right, and a filler plug on it; up is y.
+
+    low, high  the plate along y
+    plug       diameter of the plug, which stands in the middle and is as high as the plate is thick
+    """
+    x, z = (right - left) / 2 - radius, width / 2 - radius
+    corners = [(x, z), (-x, z), (-x, -z), (x, -z)]
+    plate = [(a + radius * math.cos(t), b + radius * math.sin(t))
+             for n, (a, b) in enumerate(corners)
+             for t in (math.pi / 2 * (n + i / 6) for i in range(7))]
+    round_plug = [(plug / 2 * c, plug / 2 * s) for c, s in turn(24)]
+    thickness = high - low
+    mesh = Mesh()
+    ring_on(mesh, plate, [], 0, False)
+    walls_along(mesh, plate, 0, thickness)
+    ring_on(mesh, plate, [round_plug], thickness, True)
+    walls_along(mesh, round_plug, thickness, 2 * thickness)
+    ring_on(mesh, round_plug, [], 2 * thickness, True)
+    middle, out = (left + right) / 2, Mesh()
+    for facet in mesh.facets:
+        out.triangle(*(out.vertex(middle + a, low + c, -b)
+                       for a, b, c in (mesh.vertices[i] for i in facet)))
+    return out
+
+
+def shaft(length=50.0, journal=12.0, seat=20.0, seat_length=26.0, collar=26.0, collar_length=6.0,
+          sides=48):
+    """A stepped shaft about z: journals at both ends, between them a seat and a collar at its end.
+
+    journal, seat, collar  diameters
+    length                 of the whole shaft; the seat with the collar stands in its middle
+    """
+    z = [-length / 2, -seat_length / 2, seat_length / 2 - collar_length, seat_length / 2,
+         length / 2]
+    j, s, c = journal / 2, seat / 2, collar / 2
+    profile = [(0, z[0]), (j, z[0]), (j, z[1]), (s, z[1]), (s, z[2]), (c, z[2]), (c, z[3]),
+               (j, z[3]), (j, z[4]), (0, z[4])]
+    return revolve(profile, sides, closed=False)
+
+
+def bearing(outer=23.0, inner=11.5, width=8.0, chamfer=1.0, sides=48):
+    """A bearing as one ring about z with chamfers outside; `outer` and `inner` are diameters."""
+    r, w, c = outer / 2, width / 2, chamfer
+    profile = [(inner / 2, -w), (r - c, -w), (r, c - w), (r, w - c), (r - c, w), (inner / 2, w)]
+    return revolve(profile, sides, closed=True)
+
+
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
-                                  vehicle_body, housing)}
+                                  vehicle_body, housing, gearbox_case, lid, shaft, bearing)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -482,6 +605,17 @@ CASE_MESHES = (
     ("ford/wheel.stl", "wheel", {}),
     ("gear/gear.stl", "gear", {"module": 0.02, "teeth": 20, "width": 0.1, "bore": 0.1}),
     ("tyre/tyre.stl", "tyre", {"tread_depth": 0.016, "blocks": 18}),
+    # In millimetres, as drawings of machines are.
+    ("gearbox/case.stl", "gearbox_case", {}),
+    ("gearbox/lid.stl", "lid", {}),
+    ("gearbox/pinion.stl", "gear", {"module": 3, "teeth": 20, "width": 20, "bore": 19,
+                                    "backlash": 0.4}),
+    ("gearbox/wheel.stl", "gear", {"module": 3, "teeth": 30, "width": 16, "bore": 25,
+                                   "backlash": 0.4, "turned": 6}),
+    ("gearbox/pinion_shaft.stl", "shaft", {}),
+    ("gearbox/wheel_shaft.stl", "shaft", {"journal": 16, "seat": 26, "collar": 34}),
+    ("gearbox/pinion_bearing.stl", "bearing", {}),
+    ("gearbox/wheel_bearing.stl", "bearing", {"outer": 29, "inner": 15.5}),
 )
 
 # Those of the case templates, in every format that a draw command reads.

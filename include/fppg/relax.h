@@ -69,7 +69,8 @@ struct RelaxSurfaceReport
 ///
 /// bodies     with mesh and features; the particles name them
 /// particles  by body; those of a body keep their order, and new ones follow at its end with the mk
-///            of the particle nearest to them
+///            of the particle nearest to them, or that of their facet where the nearest one is of
+///            another part of a combination
 /// held       empty, or one a particle: not 0 holds it still. Kept in step with the particles; a
 /// new
 ///            one next to a held surface particle is held

@@ -24,6 +24,9 @@ struct BooleanWallPart
 /// Puts particles on the true surface of a combination of parts and finds the nodes inside and
 /// around it.
 ///
+/// Spheres, cylinders and ellipsoids take part by their facets: particles are within
+/// chord_error_dp (0.005 dp) of the true surface, not on it as those of a round shape by itself.
+///
 /// Edges where surfaces of different parts meet are feature lines. Nodes of the inside are those of
 /// boolean_spans(), less the zone of the wall; each belongs to the first of its parts, as
 /// share_out() says, and is drawn if that part is solid. A facet has the mk of the part whose solid

@@ -130,19 +130,13 @@ public:
             {
                 const LayerParticle& p = own[i];
                 const bool is_fixed = !p.is_moving && !p.is_new;
-                const bool has_source = p.source != no_index;
                 particles.positions.push_back(is_fixed ? given.positions[p.source]
                                                        : p.place.position);
                 particles.kinds.push_back(p.kind);
                 particles.bodies.push_back(body);
                 particles.facets.push_back(is_fixed ? given.facets[p.source]
                                                     : layers_[l].mesh_facet(p.place.facet));
-                // Beside a seam the nearest particle may be one of another part.
-                const std::vector<std::uint16_t>& facet_mk = bodies_[body].facet_mk;
-                if (p.is_new && !facet_mk.empty())
-                    particles.mk.push_back(facet_mk[particles.facets.back()]);
-                else
-                    particles.mk.push_back(has_source ? given.mk[p.source] : bodies_[body].mk);
+                particles.mk.push_back(mk_of(p, given, bodies_[body], particles.facets.back()));
                 if (!given_held.empty())
                     held.push_back(p.is_new ? !p.is_moving : given_held[p.source]);
             }
@@ -153,6 +147,18 @@ public:
     RelaxSurfaceReport report() const { return report_; }
 
 private:
+    /// The mk of the particle itself or of the one nearest to it, unless its facet belongs to
+    /// another part of a combination.
+    static std::uint16_t mk_of(const LayerParticle& p, const WallParticles& given,
+                               const FittedBody& body, std::uint32_t facet)
+    {
+        if (body.facet_mk.empty()) return p.source == no_index ? body.mk : given.mk[p.source];
+        const std::uint16_t of_facet = body.facet_mk[facet];
+        const bool is_of_source =
+            p.source != no_index && body.facet_mk[given.facets[p.source]] == of_facet;
+        return is_of_source ? given.mk[p.source] : of_facet;
+    }
+
     static bool comes_before(const LayerParticle& a, const LayerParticle& b)
     {
         if (a.is_new != b.is_new) return b.is_new;

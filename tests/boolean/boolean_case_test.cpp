@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 namespace fppg
@@ -24,7 +25,10 @@ constexpr const char* parts = R"(<setmkbound mk="1" />
 <setmkvoid />
 <drawcylinder radius="0.1" fppg:name="drill"><point x="0.4" y="0.4" z="0" /><point x="0.4" y="0.4" z="1" /></drawcylinder>)";
 
-CaseDef read(const std::string& block)
+constexpr const char* cube = R"(<pointmin x="0" y="0" z="0" /><pointmax x="1" y="1" z="1" />)";
+
+CaseDef read(const std::string& block, const std::string& draws = parts,
+             const std::string& limits = cube)
 {
     const test::TemporaryFolder folder;
     const std::string text =
@@ -32,9 +36,9 @@ CaseDef read(const std::string& block)
 <lattice bound="1" fluid="1" /><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" />
 <hswl value="0" auto="true" /><gamma value="7" /><coefsound value="20" /><coefh value="1" />
 <cflnumber value="0.2" /></constantsdef><mkconfig boundcount="240" fluidcount="9" />
-<geometry><definition dp="0.04"><pointmin x="0" y="0" z="0" /><pointmax x="1" y="1" z="1" />
-</definition><commands><mainlist>)" +
-        std::string(parts) + "</mainlist></commands></geometry><fppg>" + block +
+<geometry><definition dp="0.04">)" +
+        limits + "</definition><commands><mainlist>" + draws +
+        "</mainlist></commands></geometry><fppg>" + block +
         "</fppg></casedef><execution><parameters><parameter key=\"TimeMax\" value=\"1\" />"
         "</parameters></execution></case>";
     test::write_text(folder / "Case_Def.xml", text);
@@ -114,6 +118,41 @@ TEST(BooleanCase, ItsOwnMkMayBeFitted)
         R"(<bodyfitted mkbound="7" /><boolean op="union" mkbound="7"><part ref="block" /><part ref="ball" /></boolean>)");
     for (const std::string& w : def.warnings) EXPECT_THAT(w, testing::Not(HasSubstr("bodyfitted")));
     EXPECT_EQ(run(def).walls.bodies.size(), 1U);
+}
+
+TEST(BooleanCase, CutsTheSectionOfTwoCylindersInTwoDimensions)
+{
+    const RunField field = run(read(
+        R"(<bodyfitted /><boolean op="union"><part ref="left" /><part ref="right" /></boolean>)",
+        R"(<setdrawmode mode="full" /><setmkbound mk="1" />
+<drawcylinder radius="0.2" fppg:name="left"><point x="0.4" y="0.3" z="0.5" /><point x="0.4" y="0.7" z="0.5" /></drawcylinder>
+<setmkbound mk="2" />
+<drawcylinder radius="0.2" fppg:name="right"><point x="0.6" y="0.3" z="0.5" /><point x="0.6" y="0.7" z="0.5" /></drawcylinder>)",
+        R"(<pointmin x="0" y="0.5" z="0" /><pointmax x="1" y="0.5" z="1" />)"));
+    const double dp = 0.04;
+    const auto& walls = field.walls.particles;
+    std::size_t seam = 0;
+    for (std::size_t i = 0; i < walls.size(); ++i)
+    {
+        const Vec3& p = walls.positions[i];
+        EXPECT_EQ(p.y, 0.5);
+        const double left = std::hypot(p.x - 0.4, p.z - 0.5) - 0.2;
+        const double right = std::hypot(p.x - 0.6, p.z - 0.5) - 0.2;
+        // On one circle, to the facets that stand for it, and inside none.
+        EXPECT_NEAR(std::min(left, right), 0, 0.0051 * dp);
+        if (std::abs(left - right) < 0.0051 * dp)
+            ++seam;
+        else
+            EXPECT_EQ(walls.mk[i], left < right ? 11 : 12);
+    }
+    EXPECT_EQ(seam, 2U);
+    // Two thirds of two circles.
+    EXPECT_NEAR(static_cast<double>(walls.size()), 4.0 / 3 * 2 * 3.14159265 * 0.2 / dp, 2);
+    // Particles inside and half of those around stand for the area of the section.
+    double nodes = 0;
+    for (const auto& [mk, n] : count(field)) nodes += static_cast<double>(n);
+    const double area = 3.14159265 * 0.04 * 4 / 3 + std::sqrt(3.0) / 2 * 0.04;
+    EXPECT_NEAR((nodes + 0.5 * static_cast<double>(walls.size())) * dp * dp, area, 0.03 * area);
 }
 
 TEST(BooleanCase, NestsByName)

@@ -1,16 +1,20 @@
 #!/usr/bin/python3
-"""Runs the program on a case with one body-fitted mesh and looks at the particles themselves.
+"""Runs the program on a case with body-fitted meshes and looks at the particles themselves.
 
     check_fitted_case.py PROGRAM CASE_FOLDER WORK_FOLDER   exits with 1 when something is wrong
     check_fitted_case.py --summary OUT/Case                counts as expected_fitted.json holds them
 
 Held against the mesh, not against a recording: the distance of the wall's particles to its
-facets, the volume that the body's particles stand for, no fluid inside the clearance. The counts of
-expected_fitted.json may be off by half a per cent, as the last digits of sines and roots differ
-between machines.
+facets, the volume that the body's particles stand for, no fluid inside the clearance. Where several
+meshes are united, no particle of a wall is inside another one. The counts of expected_fitted.json
+may be off by half a per cent, as the last digits of sines and roots differ between machines.
+
+expected_fitted.json names the mesh with its mk and place, or a list of them as "parts" with the
+"volume" of their union, and the speeds of the case's rotations in their order as "turns".
 """
 
 import os
+import re
 import sys
 
 import numpy as np
@@ -50,6 +54,30 @@ def distances(points, facets):
     return best
 
 
+def sample(values):
+    """A few thousand of them, evenly."""
+    return values[::max(7, len(values) // 2000)]
+
+
+def volume_of(facets):
+    return np.einsum("fk,fk->f", facets[:, 0], np.cross(facets[:, 1], facets[:, 2])).sum() / 6
+
+
+def is_inside(points, facets):
+    """Whether each point is inside closed facets, by the sum of their solid angles."""
+    inside = np.zeros(len(points), bool)
+    near = np.all((points > facets.min(axis=(0, 1))) & (points < facets.max(axis=(0, 1))), axis=1)
+    for chunk in np.array_split(np.flatnonzero(near), max(1, np.count_nonzero(near) // 200)):
+        a, b, c = (facets[None, :, k] - points[chunk, None] for k in range(3))
+        la, lb, lc = (np.linalg.norm(v, axis=2) for v in (a, b, c))
+        above = np.einsum("pfk,pfk->pf", a, np.cross(b, c))
+        below = la * lb * lc
+        for u, v, length in ((a, b, lc), (b, c, la), (c, a, lb)):
+            below += np.einsum("pfk,pfk->pf", u, v) * length
+        inside[chunk] = np.arctan2(above, below).sum(axis=1) > np.pi
+    return inside
+
+
 def summarise(case):
     values, _ = read_bi4(case + ".bi4")
     picture = read_vtk(case + "_All.vtk")
@@ -74,25 +102,42 @@ def faults(case, folder, expected):
     picture = read_vtk(case + "_All.vtk")
     dp, positions = values["Dp"], arrays["Posd"]
     kind, mk = np.asarray(picture["Kind"]).ravel(), np.asarray(picture["Mk"]).ravel()
-    body = mk == expected["mk"]
-    facets = read_stl(os.path.join(folder, expected["mesh"])) @ np.array(expected["turn"]).T
-    facets += np.array(expected["move"])
-    volume = np.einsum("fk,fk->f", facets[:, 0], np.cross(facets[:, 1], facets[:, 2])).sum() / 6
+    parts = []
+    for part in expected.get("parts", [expected]):
+        facets = read_stl(os.path.join(folder, part["mesh"])) @ np.array(part["turn"]).T
+        parts.append((part["mk"], facets * part.get("scale", 1) + np.array(part["move"])))
+    body = np.isin(mk, [part_mk for part_mk, _ in parts])
 
-    wall = positions[body & (kind < VOLUME)][::7]
-    farthest = distances(wall, facets).max() / dp
-    if farthest > 1e-4:
-        yield f"a wall particle is {farthest:.3g} dp off the mesh"
+    wall = body & (kind < VOLUME)
+    wall_sample = sample(np.flatnonzero(wall))
+    for part_mk in sorted({part_mk for part_mk, _ in parts}):
+        own = np.concatenate([facets for k, facets in parts if k == part_mk])
+        of_mk = positions[wall_sample[mk[wall_sample] == part_mk]]
+        farthest = distances(of_mk, own).max() / dp
+        if farthest > 1e-4:
+            yield f"a wall particle of mk {part_mk} is {farthest:.3g} dp off the mesh"
+    if len(parts) > 1:
+        for i, (_, facets) in enumerate(parts):
+            within = positions[wall_sample][is_inside(positions[wall_sample], facets)]
+            deepest = distances(within, facets).max() / dp if len(within) else 0
+            if deepest > 1e-4:
+                yield f"a wall particle is {deepest:.3g} dp inside part {i}"
     inside = np.count_nonzero(body & (kind == VOLUME))
-    stands_for = (inside + 0.5 * np.count_nonzero(body & (kind < VOLUME))) * dp ** 3
+    stands_for = (inside + 0.5 * np.count_nonzero(wall)) * dp ** 3
+    volume = expected["volume"] if len(parts) > 1 else volume_of(parts[0][1])
     if abs(stands_for / volume - 1) > 0.01:
         yield f"the particles stand for {stands_for:.6g} m3, the body has {volume:.6g}"
     fluid = positions[mk == 1]
-    low, high = facets.min(axis=(0, 1)) - dp, facets.max(axis=(0, 1)) + dp
-    near = fluid[np.all((fluid > low) & (fluid < high), axis=1)][::7]
-    nearest = distances(near, facets).min() / dp
+    every = np.concatenate([facets for _, facets in parts])
+    low, high = every.min(axis=(0, 1)) - dp, every.max(axis=(0, 1)) + dp
+    near = fluid[np.all((fluid > low) & (fluid < high), axis=1)]
+    nearest = distances(sample(near), every).min() / dp
     if nearest < 0.499:
         yield f"fluid stands {nearest:.3g} dp from the mesh"
+    with open(case + ".xml", encoding="utf-8") as file:
+        turns = [float(v) for v in re.findall(r'<vel ang="([-+.\de]+)"', file.read())]
+    if turns != expected.get("turns", turns):
+        yield f"rotations at {turns}, expected {expected['turns']}"
     yield from differences(summarise(case), expected["counts"], is_same)
 
 

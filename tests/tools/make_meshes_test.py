@@ -47,6 +47,17 @@ class MakeMeshes(unittest.TestCase):
             for bore in (0, 0.2):
                 make_meshes.gear(teeth=teeth, bore=bore).check("gear")
 
+    def test_a_gearbox_case_is_its_walls_less_the_bores(self):
+        narrow, wide = (make_meshes.gearbox_case(bore_a=d, sides=60).volume() for d in (22, 30))
+        self.assertAlmostEqual(narrow - wide, 2 * 6 * math.pi * (15**2 - 11**2), delta=5)
+
+    def test_backlash_takes_half_of_itself_off_a_tooth(self):
+        def thickness(backlash):
+            outline = make_meshes.gear_outline(3, 20, 20, backlash)
+            return math.dist(outline[3], outline[10])  # next to the pitch circle
+
+        self.assertAlmostEqual(thickness(0) - thickness(0.4), 0.2, delta=0.01)
+
     def test_the_meshes_of_the_cases_are_the_ones_it_makes(self):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
             make_meshes.main(["--cases", folder])
