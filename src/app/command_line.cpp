@@ -195,6 +195,8 @@ std::string help_text()
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
+        "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"
+        "  fppg batch FOLDER                    many cases side by side; fppg batch --help\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
         "\n"
         "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "

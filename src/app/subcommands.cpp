@@ -1,5 +1,7 @@
 #include "app/subcommands.h"
 
+#include "app/batch_command.h"
+#include "app/estimate_command.h"
 #include "app/inspect_command.h"
 #include "app/render_command.h"
 #include "app/templates_command.h"
@@ -17,6 +19,8 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
+    {"batch", run_batch_command},
+    {"estimate", run_estimate},
     {"inspect", run_inspect},
     {"render", run_render},
     {"templates", run_templates},

@@ -21,7 +21,9 @@ set(boolean_may_see fit casedef shapes particles core)
 foreach(folder compare render)
   set(${folder}_may_see files particles shapes core)
 endforeach()
-set(app_may_see compare render lattice fit boolean relax normals files casedef shapes particles core)
+# Cases beforehand and many at a time.
+set(batch_may_see lattice files casedef shapes particles core)
+set(app_may_see batch compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.

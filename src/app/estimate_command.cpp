@@ -1,0 +1,55 @@
+#include "app/estimate_command.h"
+
+#include "app/command_line.h"
+#include "app/threads.h"
+#include "batch/estimate.h"
+#include "fppg/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace fppg
+{
+
+int run_estimate(const std::vector<std::string>& arguments)
+{
+    const auto asks = [](const std::string& a) { return a == "-h" || a == "--help"; };
+    if (arguments.empty() || std::any_of(arguments.begin(), arguments.end(), asks))
+    {
+        fmt::print(
+            "Says how many particles a case gives and what memory and time it needs, without "
+            "writing anything.\n"
+            "\n"
+            "Usage:\n"
+            "  fppg estimate DEFINITION [--json] [options]   fppg estimate Case_Def -dp:0.005\n"
+            "\n"
+            "The options are those of a run: -dp, -evars, -fit, -save, -threads. Counts are exact, "
+            "but for\n"
+            "body-fitted walls; memory and time are estimates. --json prints one JSON object.\n");
+        return 0;
+    }
+    std::vector<std::string> of_run = arguments;
+    const bool as_json = std::erase(of_run, "--json") > 0;
+    DropInOptions run = parse_command_line(of_run);
+    if (run.action != DropInOptions::Action::Run || run.input != run.output)
+        throw UsageError(
+            "expected the name of one case definition; fppg estimate --help shows "
+            "the form");
+    if (run.input.ends_with(".xml")) run.input.resize(run.input.size() - 4);
+    EstimateOptions options;
+    options.case_options.fit = run.fit;
+    options.case_options.dp = run.dp;
+    options.case_options.evars = run.evars;
+    options.case_options.case_name = std::filesystem::path(run.input).filename().string();
+    options.threads = run.threads > 0 ? run.threads : default_threads();
+    options.saves_bi4 = run.save_bi4;
+    options.saves_all = run.save_all;
+    options.saves_parts = run.save_bound || run.save_fluid;
+    const Estimate estimate = estimate_case(run.input + ".xml", options);
+    fmt::print("{}", as_json ? to_json(estimate) : to_text(estimate));
+    return 0;
+}
+
+} // namespace fppg

@@ -1,0 +1,34 @@
+#include "batch/content_hash.h"
+
+#include "fppg/error.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <fstream>
+
+namespace fppg
+{
+
+std::string content_hash(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw IoError(fmt::format("cannot read '{}'", path));
+    std::uint64_t hash = 14695981039346656037U;
+    std::uint64_t size = 0;
+    std::string block(1 << 20, '\0');
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+    {
+        const auto n = static_cast<std::size_t>(in.gcount());
+        for (std::size_t i = 0; i < n; ++i)
+        {
+            hash ^= static_cast<unsigned char>(block[i]);
+            hash *= 1099511628211U;
+        }
+        size += n;
+    }
+    if (in.bad()) throw IoError(fmt::format("cannot read '{}'", path));
+    return fmt::format("{:016x}-{}", hash, size);
+}
+
+} // namespace fppg

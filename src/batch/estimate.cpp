@@ -1,0 +1,373 @@
+#include "batch/estimate.h"
+
+#include "fppg/error.h"
+#include "fppg/features.h"
+#include "fppg/lattice.h"
+#include "fppg/shapes.h"
+
+#include "batch/rates.h"
+#include "casedef/mesh_path.h"
+#include "lattice/shape_mesh.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+namespace fppg
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// The area of shapes that reach out of the domain is found with so many points.
+constexpr double area_samples = 20000;
+/// Particles on a surface, as a multiple of area / dp^2 with density="cell": between 1.0 and 1.7
+/// by the tilt of the surface.
+constexpr double cell_density = 1.5;
+
+/// What a body-fitted mk counts.
+struct WallCount
+{
+    double on_surface = 0;
+    double on_lines = 0;
+    double inside = 0;
+    double relaxed = 0; ///< of those on surfaces
+};
+
+class Estimator
+{
+public:
+    Estimator(const std::string& path, const EstimateOptions& options) : options_(options)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        def_ = read_case(path, options.case_options);
+        out_.definition = path;
+        out_.dp = def_.grid.dp;
+        out_.nodes = def_.grid.n;
+        draw();
+        draw_seconds_ =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (!def_.grid.is_2d)
+            for (const DrawOp& op : def_.ops) count_wall(op);
+        count_blocks();
+        add_up();
+    }
+
+    Estimate take() { return std::move(out_); }
+
+private:
+    /// Draws all on the lattice, body-fitted walls too.
+    void draw()
+    {
+        CaseDef on_lattice = def_;
+        on_lattice.fit = {};
+        on_lattice.fluid_bands.clear();
+        LatticeReport report;
+        RunField field = generate_lattice(on_lattice, options_.threads, {}, report);
+        for (const auto& slab : field.slabs) runs_ += slab.size();
+        add_point_files(on_lattice, field, report);
+        CaseConstants constants;
+        std::vector<std::string> warnings;
+        const CaseParticles particles =
+            make_particles(on_lattice, field, options_.threads, constants, warnings);
+        for (const ParticleBlock& block : particles.blocks)
+            out_.blocks.push_back({block.type, block.mk, block.count, true});
+        out_.triangles = report.triangles;
+        for (const auto* list : {&def_.warnings, &report.warnings, &warnings})
+            out_.warnings.insert(out_.warnings.end(), list->begin(), list->end());
+        note_files(report);
+    }
+
+    void note_files(const LatticeReport& report)
+    {
+        const auto note = [this](const fs::path& path)
+        {
+            std::error_code ignored;
+            if (!fs::is_regular_file(path, ignored)) return false;
+            out_.files.push_back(fs::absolute(path).lexically_normal().string());
+            return true;
+        };
+        const fs::path folder = fs::path(out_.definition).parent_path();
+        for (const MeshFileUse& use : report.mesh_files) note(use.path);
+        for (const DataFileUse& use : def_.data_files)
+            if (!note(use.name)) note(folder / use.name);
+        note_attributes(read_definition_tree(out_.definition), note, folder);
+        std::sort(out_.files.begin(), out_.files.end());
+        out_.files.erase(std::unique(out_.files.begin(), out_.files.end()), out_.files.end());
+    }
+
+    /// Whatever the definition names that is a file counts as one that it reads: tables of
+    /// properties, geometry for normals.
+    template <typename Note>
+    static void note_attributes(const Element& e, const Note& note, const fs::path& folder)
+    {
+        for (const Element::Attribute& a : e.attributes)
+            if (a.value.find('.') != std::string::npos && a.value.size() < 1024 && !note(a.value))
+                note(folder / a.value);
+        for (const Element& child : e.children) note_attributes(child, note, folder);
+    }
+
+    void count_wall(const DrawOp& op)
+    {
+        const DrawState& state = *op.state;
+        if (state.mk.kind != MkKind::Bound || !state.draw_points || state.mode == DrawMode::Wire)
+            return;
+        const FitSettings* settings = fit_settings(def_.fit, state.mk.mk);
+        if (settings == nullptr) return;
+        MeshFile file;
+        if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+            file = read_mesh_file(find_mesh_file(def_, op.source, mesh->file), mesh->reading,
+                                  options_.threads);
+        if (std::holds_alternative<MeshFileOp>(op.what) && file.soup.size() == 0) return;
+        for (const ShapeMesh& shape : shape_meshes(op, &file.soup, def_.grid.dp))
+            count_shape(shape, state, *settings);
+    }
+
+    void count_shape(const ShapeMesh& shape, const DrawState& state, const FitSettings& settings)
+    {
+        if (shape.soup.size() == 0) return;
+        const double dp = def_.grid.dp;
+        MeshReport report;
+        const SurfaceMesh mesh = take_in_mesh(shape.soup, {}, options_.threads, report);
+        const Features features =
+            find_features(mesh, {.angle_deg = settings.feature_angle_deg, .dp = dp});
+        double length = 0;
+        for (const FeatureLine& line : features.lines) length += line.length;
+        const double share = share_inside(mesh, state.clips);
+        const double density = settings.density == FitDensity::Cell ? cell_density : 1;
+        WallCount& count = walls_[state.mk.mk];
+        const double on_lines =
+            share * (length / dp + static_cast<double>(features.singular.size()));
+        const double on_surface = std::max(on_lines, share * density * report.area / (dp * dp));
+        count.on_lines += on_lines;
+        count.on_surface += on_surface;
+        if (settings.relax.is_active) count.relaxed += on_surface;
+        if (shape.is_solid)
+            count.inside +=
+                std::max(0.0, share * std::abs(report.volume) / (dp * dp * dp) - on_surface / 2);
+        out_.wall_area += share * report.area;
+        out_.line_length += share * length;
+    }
+
+    bool is_inside(const Vec3& p, const std::vector<ClipPlane>& clips) const
+    {
+        const LatticeGrid& grid = def_.grid;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double at = (p[axis] - grid.origin[axis]) / grid.dp;
+            if (at < -0.5 || at > grid.n[static_cast<std::size_t>(axis)] - 0.5) return false;
+        }
+        return std::all_of(clips.begin(), clips.end(),
+                           [&](const ClipPlane& clip)
+                           { return dot(p - clip.point, clip.normal) <= 0; });
+    }
+
+    /// How much of the area of a mesh lies in the domain and inside the clips, by points spread
+    /// evenly over it.
+    double share_inside(const SurfaceMesh& mesh, const std::vector<ClipPlane>& clips) const
+    {
+        if (clips.empty() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                         [&](const Vec3& v) { return is_inside(v, clips); }))
+            return 1;
+        const double area = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
+        double inside = 0;
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        {
+            const int samples = std::max(1, static_cast<int>(area_samples * mesh.areas[f] / area));
+            const auto& c = mesh.facets[f];
+            const Vec3& a = mesh.vertices[c[0]];
+            int found = 0;
+            for (int i = 0; i < samples; ++i)
+            {
+                // The additive sequence of the plastic number fills a square evenly; its first
+                // point is taken to the middle of the facet.
+                double u = std::fmod(1.0 / 3 + i * 0.7548776662466927, 1.0);
+                double v = std::fmod(1.0 / 3 + i * 0.5698402909980532, 1.0);
+                if (u + v > 1)
+                {
+                    u = 1 - u;
+                    v = 1 - v;
+                }
+                const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
+                found += static_cast<int>(is_inside(p, clips));
+            }
+            inside += mesh.areas[f] * found / samples;
+        }
+        return area > 0 ? inside / area : 1;
+    }
+
+    void count_blocks()
+    {
+        for (EstimatedBlock& block : out_.blocks)
+        {
+            if (block.type == ParticleType::Fluid) continue;
+            if (fit_settings(def_.fit, block.mk) == nullptr) continue;
+            const auto wall = walls_.find(block.mk);
+            block.is_exact = wall == walls_.end() && !def_.grid.is_2d;
+            if (wall != walls_.end())
+                block.count =
+                    static_cast<std::uint64_t>(wall->second.on_surface + wall->second.inside);
+        }
+        for (const auto& [mk, wall] : walls_)
+        {
+            out_.n_wall += static_cast<std::uint64_t>(wall.on_surface);
+            out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
+            relaxed_ += wall.relaxed;
+            const auto is_it = [mk = mk](const EstimatedBlock& b) { return b.mk == mk; };
+            // A shape so thin that no node is near it.
+            if (std::none_of(out_.blocks.begin(), out_.blocks.end(), is_it))
+                out_.blocks.push_back({ParticleType::Fixed, mk,
+                                       static_cast<std::uint64_t>(wall.on_surface + wall.inside),
+                                       false});
+        }
+        out_.is_exact = std::all_of(out_.blocks.begin(), out_.blocks.end(),
+                                    [](const EstimatedBlock& b) { return b.is_exact; });
+    }
+
+    void add_up()
+    {
+        for (const EstimatedBlock& block : out_.blocks)
+        {
+            out_.np += block.count;
+            switch (block.type)
+            {
+                case ParticleType::Fixed:
+                    out_.n_fixed += block.count;
+                    break;
+                case ParticleType::Moving:
+                    out_.n_moving += block.count;
+                    break;
+                case ParticleType::Floating:
+                    out_.n_floating += block.count;
+                    break;
+                case ParticleType::Fluid:
+                    out_.n_fluid += block.count;
+                    break;
+            }
+        }
+        const auto np = static_cast<double>(out_.np);
+        const auto bound = static_cast<double>(out_.np - out_.n_fluid);
+        const auto walls = static_cast<double>(out_.n_wall);
+        const double vtk = rates.vtk_bytes + (walls > 0 ? rates.wall_vtk_bytes : 0);
+        if (options_.saves_bi4)
+            out_.output_bytes +=
+                np * rates.bi4_bytes + (def_.normals.is_active ? bound * rates.normal_bytes : 0);
+        if (options_.saves_all) out_.output_bytes += np * vtk;
+        if (options_.saves_parts) out_.output_bytes += np * vtk;
+
+        out_.memory_bytes = rates.base_bytes + rates.bytes_a_thread * options_.threads +
+                            rates.bytes_a_run * static_cast<double>(runs_) +
+                            rates.bytes_a_triangle * static_cast<double>(out_.triangles) +
+                            rates.bytes_a_wall_particle * walls +
+                            rates.bytes_a_relaxed_particle * relaxed_;
+        if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
+        out_.seconds =
+            rates.seconds_to_start + draw_seconds_ +
+            (rates.seconds_a_wall_particle * walls + rates.seconds_a_relaxed_particle * relaxed_) /
+                options_.threads +
+            out_.output_bytes / rates.written_bytes_a_second;
+    }
+
+    EstimateOptions options_;
+    CaseDef def_;
+    Estimate out_;
+    std::map<std::uint16_t, WallCount> walls_; ///< by mk
+    std::uint64_t runs_ = 0;
+    double relaxed_ = 0;
+    double draw_seconds_ = 0;
+};
+
+const char* name_of(ParticleType type)
+{
+    static constexpr const char* names[] = {"fixed", "moving", "floating", "fluid"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+std::string size_text(double bytes)
+{
+    if (bytes >= 1e9) return fmt::format("{:.1f} GB", bytes / 1e9);
+    return fmt::format("{:.0f} MB", std::max(1.0, bytes / 1e6));
+}
+
+std::string grouped(std::uint64_t n)
+{
+    std::string text = std::to_string(n);
+    for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
+        text.insert(static_cast<std::size_t>(at), 1, ',');
+    return text;
+}
+
+} // namespace
+
+Estimate estimate_case(const std::string& path, const EstimateOptions& options)
+{
+    return Estimator(path, options).take();
+}
+
+std::string to_text(const Estimate& e)
+{
+    const char* about = e.is_exact ? "" : "about ";
+    std::string text;
+    const auto line = [&text](const char* name, const std::string& value)
+    { text += fmt::format("{:<12}{}\n", name, value); };
+    line("Case", e.definition);
+    line("Dp", fmt::format("{:g}, a domain of {} x {} x {} nodes", e.dp, e.nodes[0], e.nodes[1],
+                           e.nodes[2]));
+    line("Particles", fmt::format("{}{} (fixed {}, moving {}, floating {}, fluid {})", about,
+                                  grouped(e.np), grouped(e.n_fixed), grouped(e.n_moving),
+                                  grouped(e.n_floating), grouped(e.n_fluid)));
+    for (const EstimatedBlock& block : e.blocks)
+        line("", fmt::format("mk {:<4} {:<9}{}{}", block.mk, name_of(block.type),
+                             block.is_exact ? "" : "about ", grouped(block.count)));
+    if (e.n_wall > 0)
+        line("Walls",
+             fmt::format("body-fitted: {:.4g} m^2, about {} particles on them, of these "
+                         "{} on {:.4g} m of edges",
+                         e.wall_area, grouped(e.n_wall), grouped(e.n_line), e.line_length));
+    line("Memory", "about " + size_text(e.memory_bytes));
+    line("Files", "about " + size_text(e.output_bytes));
+    line("Time", e.seconds < 10 ? fmt::format("about {:.1f} s", e.seconds)
+                                : fmt::format("about {:.0f} s", e.seconds));
+    for (const std::string& warning : e.warnings) line("Warning", warning);
+    return text;
+}
+
+std::string to_json(const Estimate& e)
+{
+    nlohmann::ordered_json blocks = nlohmann::ordered_json::array();
+    for (const EstimatedBlock& block : e.blocks)
+        blocks.push_back({{"mk", block.mk},
+                          {"type", name_of(block.type)},
+                          {"count", block.count},
+                          {"exact", block.is_exact}});
+    const nlohmann::ordered_json json = {{"definition", e.definition},
+                                         {"dp", e.dp},
+                                         {"nodes", e.nodes},
+                                         {"exact", e.is_exact},
+                                         {"particles", e.np},
+                                         {"fixed", e.n_fixed},
+                                         {"moving", e.n_moving},
+                                         {"floating", e.n_floating},
+                                         {"fluid", e.n_fluid},
+                                         {"blocks", blocks},
+                                         {"wall_area", e.wall_area},
+                                         {"line_length", e.line_length},
+                                         {"wall_particles", e.n_wall},
+                                         {"line_particles", e.n_line},
+                                         {"triangles", e.triangles},
+                                         {"memory_bytes", e.memory_bytes},
+                                         {"output_bytes", e.output_bytes},
+                                         {"seconds", e.seconds},
+                                         {"files", e.files},
+                                         {"warnings", e.warnings}};
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+} // namespace fppg

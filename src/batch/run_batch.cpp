@@ -1,0 +1,392 @@
+#include "batch/run_batch.h"
+
+#include "fppg/error.h"
+
+#include "batch/child_process.h"
+#include "batch/content_hash.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <thread>
+
+namespace fppg
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// What a child counts where nothing is known of it: an estimate, or a run whose estimate failed,
+/// which fails as early itself.
+constexpr double small_bytes = 32e6;
+/// A picture needs the particles, their spheres and the tree over them.
+constexpr double picture_bytes_a_particle = 200;
+constexpr auto poll_interval = std::chrono::milliseconds(5);
+/// Between two requests to stop; the first one ends a relaxation early, the second the program.
+constexpr auto stop_interval = std::chrono::milliseconds(200);
+
+std::string read_whole(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+enum class Step
+{
+    Estimate,
+    Run,
+    Picture,
+    End,
+};
+
+struct Job
+{
+    const BatchRun* run = nullptr;
+    Step step = Step::Estimate;
+    std::unique_ptr<ChildProcess> child;
+    double reserved_bytes = 0; ///< while the child is at work
+    RunRecord record;
+
+    std::string folder() const { return fs::path(run->output).parent_path().string(); }
+    std::string log() const { return run->output + ".batch.log"; }
+    std::string estimate_file() const { return run->output + ".batch.estimate"; }
+};
+
+class Batch
+{
+public:
+    Batch(const std::vector<BatchRun>& runs, const BatchOptions& options, Progress& progress,
+          bool only_estimates)
+        : options_(options),
+          progress_(progress),
+          only_estimates_(only_estimates),
+          program_(program_identity()),
+          jobs_(runs.size())
+    {
+        for (std::size_t i = 0; i < runs.size(); ++i) jobs_[i].run = &runs[i];
+    }
+
+    std::vector<RunRecord> work()
+    {
+        for (Job& job : jobs_) prepare(job);
+        while (std::any_of(jobs_.begin(), jobs_.end(),
+                           [](const Job& job) { return job.step != Step::End; }))
+        {
+            if (options_.is_asked_to_stop && options_.is_asked_to_stop()) stop();
+            for (Job& job : jobs_)
+                if (job.child && job.child->has_ended()) take_result(job);
+            while (!is_stopped_ && start_next())
+            {
+            }
+            progress_.tick(running(), share_done());
+            std::this_thread::sleep_for(poll_interval);
+        }
+        std::vector<RunRecord> out;
+        for (Job& job : jobs_) out.push_back(std::move(job.record));
+        return out;
+    }
+
+private:
+    std::size_t running() const
+    {
+        return static_cast<std::size_t>(
+            std::count_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return !!job.child; }));
+    }
+
+    double share_done() const
+    {
+        double all = 0;
+        double done = 0;
+        for (const Job& job : jobs_)
+        {
+            if (job.step == Step::Estimate) return 0;
+            if (job.record.is_reused) continue;
+            all += job.record.estimated_seconds;
+            if (job.step == Step::End) done += job.record.estimated_seconds;
+        }
+        return all > 0 ? done / all : 0;
+    }
+
+    double reserved() const
+    {
+        double sum = 0;
+        for (const Job& job : jobs_) sum += job.child ? job.reserved_bytes : 0;
+        return sum;
+    }
+
+    void prepare(Job& job)
+    {
+        if (options_.resumes)
+        {
+            job.record = read_record(*job.run);
+            if (is_current(*job.run, job.record, program_))
+            {
+                job.record.is_reused = true;
+                finish(job);
+                return;
+            }
+        }
+        job.record = {};
+        job.record.program = program_;
+        job.record.options = job.run->options;
+        std::error_code error;
+        fs::create_directories(job.folder(), error);
+        if (error)
+            throw IoError(
+                fmt::format("{}: cannot create the folder: {}", job.folder(), error.message()));
+        remove_leftovers(job);
+    }
+
+    /// Temporary files of a run that was killed.
+    static void remove_leftovers(const Job& job)
+    {
+        std::error_code ignored;
+        for (const auto& entry : fs::directory_iterator(job.folder(), ignored))
+        {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with('.') && name.find(".part-") != std::string::npos)
+                fs::remove(entry.path(), ignored);
+        }
+    }
+
+    /// Starts what fits beside the children at work; false if nothing does.
+    bool start_next()
+    {
+        if (running() >= static_cast<std::size_t>(options_.jobs)) return false;
+        const double free_bytes = options_.memory_bytes - reserved();
+        Job* best = nullptr;
+        bool has_estimates = false;
+        for (Job& job : jobs_)
+        {
+            has_estimates = has_estimates || job.step == Step::Estimate;
+            if (job.child || job.step == Step::End) continue;
+            if (running() > 0 && needed_bytes(job) > free_bytes) continue;
+            if (best == nullptr || comes_before(job, *best)) best = &job;
+        }
+        if (best == nullptr) return false;
+        // The longest runs come first, which all estimates must be known for.
+        if (best->step == Step::Run && has_estimates) return false;
+        start(*best);
+        return true;
+    }
+
+    static double needed_bytes(const Job& job)
+    {
+        if (job.step == Step::Run) return std::max(small_bytes, job.record.estimated_memory_bytes);
+        if (job.step == Step::Picture)
+            return small_bytes + picture_bytes_a_particle * static_cast<double>(job.record.np);
+        return small_bytes;
+    }
+
+    static bool comes_before(const Job& a, const Job& b)
+    {
+        const auto rank = [](const Job& job) {
+            return job.step == Step::Estimate ? 0 : job.step == Step::Picture ? 1 : 2;
+        };
+        if (rank(a) != rank(b)) return rank(a) < rank(b);
+        return a.step == Step::Run && a.record.estimated_seconds > b.record.estimated_seconds;
+    }
+
+    void start(Job& job)
+    {
+        const fs::path definition(job.run->definition);
+        const std::string folder = definition.parent_path().string();
+        const std::string threads = fmt::format("{}", options_.threads);
+        job.reserved_bytes = needed_bytes(job);
+        std::vector<std::string> words;
+        std::string log = job.log();
+        if (job.step == Step::Estimate)
+        {
+            words = {"estimate", definition.filename().string(), "--json", "-threads:" + threads};
+            words.insert(words.end(), job.run->options.begin(), job.run->options.end());
+            log = job.estimate_file();
+        }
+        else if (job.step == Step::Run)
+        {
+            note_inputs(job);
+            job.record.state = RunState::Stopped;
+            write_record(*job.run, job.record);
+            words = {definition.filename().string(), job.run->output, "-threads:" + threads};
+            words.insert(words.end(), job.run->options.begin(), job.run->options.end());
+            progress_.started(*job.run);
+        }
+        else
+        {
+            words = {"render", job.run->output, "-o",        job.run->output + ".png",
+                     "--size", "480x360",       "--palette", "--threads",
+                     threads};
+        }
+        job.child = std::make_unique<ChildProcess>(words, folder, log);
+    }
+
+    /// As they are before the run reads them: what changes meanwhile is found by the next batch.
+    static void note_inputs(Job& job)
+    {
+        const std::string definition = job.run->definition + ".xml";
+        std::vector<std::string> paths{definition};
+        for (const auto& input : job.record.inputs)
+            if (input.first != definition) paths.push_back(input.first);
+        job.record.inputs.clear();
+        std::error_code ignored;
+        for (const std::string& path : paths)
+            if (fs::is_regular_file(path, ignored))
+                job.record.inputs.emplace_back(path, content_hash(path));
+    }
+
+    void take_result(Job& job)
+    {
+        const std::unique_ptr<ChildProcess> child = std::move(job.child);
+        if (job.step == Step::Estimate)
+            take_estimate(job, *child);
+        else if (job.step == Step::Run)
+            take_run(job, *child);
+        else
+            take_picture(job, *child);
+    }
+
+    void take_estimate(Job& job, const ChildProcess& child)
+    {
+        const std::string text = read_whole(job.estimate_file());
+        fs::remove(job.estimate_file());
+        job.step = Step::Run;
+        const auto json = nlohmann::json::parse(text, nullptr, false);
+        if (child.exit_code() == 0 && json.is_object())
+        {
+            job.record.np = json.at("particles").get<std::uint64_t>();
+            job.record.estimated_memory_bytes = json.at("memory_bytes").get<double>();
+            job.record.estimated_seconds = json.at("seconds").get<double>();
+            for (const auto& file : json.at("files"))
+                job.record.inputs.emplace_back(file.get<std::string>(), "");
+            progress_.estimated(*job.run, job.record);
+        }
+        if (only_estimates_)
+        {
+            job.step = Step::End;
+            return;
+        }
+        if (is_stopped_)
+        {
+            job.record.state = RunState::Waiting;
+            job.step = Step::End;
+            return;
+        }
+        if (job.record.estimated_memory_bytes <= options_.memory_bytes) return;
+        job.record.state = RunState::Refused;
+        job.record.error = fmt::format(
+            "needs about {:.2f} GB of memory, more than the {:.2f} GB that the batch may use; "
+            "--memory allows more, a larger dp needs less",
+            job.record.estimated_memory_bytes / 1e9, options_.memory_bytes / 1e9);
+        note_inputs(job);
+        finish(job);
+    }
+
+    void take_run(Job& job, const ChildProcess& child)
+    {
+        const std::string text = read_whole(job.log());
+        RunRecord& record = job.record;
+        record.np = 0;
+        read_printed(text, record);
+        record.exit_code = child.exit_code();
+        record.seconds = child.seconds();
+        record.memory_bytes = static_cast<double>(child.peak_bytes());
+        // A relaxation that was asked to stop ends well, with what it had reached.
+        const bool is_cut_short = text.find("was stopped by the user") != std::string::npos;
+        if (record.exit_code == 130 || is_stopped_ || is_cut_short)
+        {
+            record.state = RunState::Stopped;
+        }
+        else if (record.exit_code != 0)
+        {
+            record.state = RunState::Failed;
+            if (record.error.empty())
+                record.error =
+                    record.exit_code > 128
+                        ? fmt::format("ended by signal {}{}", record.exit_code - 128,
+                                      record.exit_code == 137 ? ", perhaps for want of memory" : "")
+                        : fmt::format("ended with exit code {}; {} holds what it said",
+                                      record.exit_code, job.log());
+        }
+        else
+        {
+            record.state = RunState::Done;
+            fs::remove(job.log());
+            const bool fits =
+                small_bytes + picture_bytes_a_particle * static_cast<double>(record.np) <=
+                options_.memory_bytes;
+            if (options_.has_pictures && record.np > 0 && fits)
+            {
+                job.step = Step::Picture;
+                return;
+            }
+        }
+        finish(job);
+    }
+
+    /// A run is done without a picture too: -save:-bi leaves nothing to draw.
+    void take_picture(Job& job, const ChildProcess& child)
+    {
+        if (child.exit_code() == 0)
+            job.record.picture = fs::path(job.run->output + ".png").filename().string();
+        fs::remove(job.log());
+        if (is_stopped_) job.record.state = RunState::Stopped;
+        finish(job);
+    }
+
+    void finish(Job& job)
+    {
+        job.step = Step::End;
+        if (!job.record.is_reused)
+        {
+            if (job.record.state == RunState::Done) job.record.outputs = list_outputs(*job.run);
+            write_record(*job.run, job.record);
+        }
+        if (job.record.state != RunState::Waiting) progress_.finished(*job.run, job.record);
+    }
+
+    void stop()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        if (is_stopped_ && now < stopped_at_ + stop_interval) return;
+        is_stopped_ = true;
+        stopped_at_ = now;
+        for (Job& job : jobs_)
+        {
+            if (job.child)
+                job.child->stop();
+            else
+                job.step = Step::End;
+        }
+    }
+
+    const BatchOptions& options_;
+    Progress& progress_;
+    bool only_estimates_;
+    std::string program_;
+    std::vector<Job> jobs_;
+    bool is_stopped_ = false;
+    std::chrono::steady_clock::time_point stopped_at_;
+};
+
+} // namespace
+
+std::vector<RunRecord> run_batch(const std::vector<BatchRun>& runs, const BatchOptions& options,
+                                 Progress& progress)
+{
+    return Batch(runs, options, progress, false).work();
+}
+
+std::vector<RunRecord> estimate_runs(const std::vector<BatchRun>& runs, const BatchOptions& options,
+                                     Progress& progress)
+{
+    return Batch(runs, options, progress, true).work();
+}
+
+} // namespace fppg
