@@ -1,5 +1,6 @@
 #include "app/subcommands.h"
 
+#include "app/compare_command.h"
 #include "app/inspect_command.h"
 #include "app/render_command.h"
 #include "app/templates_command.h"
@@ -17,6 +18,7 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
+    {"compare", run_compare},
     {"inspect", run_inspect},
     {"render", run_render},
     {"templates", run_templates},
