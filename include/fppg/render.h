@@ -90,6 +90,9 @@ Rgb colour_of_kind(std::uint8_t kind);
 Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOptions& options,
                        int threads);
 
+/// The bytes of write_png(). throws IoError
+std::string png_bytes(const Image& image, bool has_palette = false);
+
 /// Writes an image as PNG, 8 bits a channel; with a palette of 256 colours chosen for it the file
 /// is about a third as large. throws IoError
 void write_png(OutputFile& file, const Image& image, bool has_palette = false);

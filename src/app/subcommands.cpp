@@ -1,6 +1,7 @@
 #include "app/subcommands.h"
 
 #include "app/batch_command.h"
+#include "app/compare_command.h"
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
 #include "app/render_command.h"
@@ -20,6 +21,7 @@ struct Entry
 
 constexpr Entry entries[] = {
     {"batch", run_batch_command},
+    {"compare", run_compare},
     {"estimate", run_estimate},
     {"inspect", run_inspect},
     {"render", run_render},

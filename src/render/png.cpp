@@ -8,7 +8,7 @@
 namespace fppg
 {
 
-void write_png(OutputFile& file, const Image& image, bool has_palette)
+std::string png_bytes(const Image& image, bool has_palette)
 {
     static_assert(sizeof(Rgb) == 3, "colours follow one another without gaps");
     png_image png = {};
@@ -21,12 +21,18 @@ void write_png(OutputFile& file, const Image& image, bool has_palette)
     png.colormap_entries = static_cast<png_uint_32>(palette.colours.size());
     const void* pixels = has_palette ? static_cast<const void*>(palette.indices.data())
                                      : static_cast<const void*>(image.pixels.data());
-    std::vector<char> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
+    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
     png_alloc_size_t size = bytes.size();
     if (png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0,
                                   palette.colours.data()) == 0)
-        throw IoError(fmt::format("cannot write '{}': {}", file.path(), png.message));
-    file.append(bytes.data(), size);
+        throw IoError(fmt::format("cannot make a PNG: {}", png.message));
+    bytes.resize(size);
+    return bytes;
+}
+
+void write_png(OutputFile& file, const Image& image, bool has_palette)
+{
+    file.append(png_bytes(image, has_palette));
 }
 
 } // namespace fppg

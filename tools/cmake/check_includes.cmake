@@ -18,9 +18,9 @@ endforeach()
 # Relaxation fills the holes that open as fitting does; parts have an inside where walls have one.
 set(relax_may_see fit casedef shapes particles core)
 set(boolean_may_see fit casedef shapes particles core)
-foreach(folder compare render)
-  set(${folder}_may_see files particles shapes core)
-endforeach()
+set(render_may_see files particles shapes core)
+# What differs in Case.xml is found in its tree, which casedef reads.
+set(compare_may_see files casedef particles shapes core)
 # Cases beforehand and many at a time.
 set(batch_may_see lattice files casedef shapes particles core)
 set(app_may_see batch compare render lattice fit boolean relax normals files casedef shapes particles core)

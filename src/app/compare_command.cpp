@@ -1,0 +1,223 @@
+#include "app/compare_command.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "app/threads.h"
+#include "fppg/compare.h"
+#include "fppg/files.h"
+#include "fppg/render.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::size_t most_in_picture = 1500000;
+constexpr std::size_t most_changed = 200000;
+constexpr std::uint64_t bytes_a_particle = 100;
+
+struct CompareCall
+{
+    std::string a;
+    std::string b;
+    std::string json;
+    std::string html;
+    double memory_mib = 2048;
+    CompareOptions options;
+};
+
+/// Reads the arguments; false when only the help was asked for.
+bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call)
+{
+    CLI::App app(
+        "Says what differs between two results of one case, the largest differences first. A "
+        "result is named without extension (Case.bi4 and Case.xml, or Case_All.vtk), or as one "
+        "file .bi4 or .vtk. Exit code: 0 equal, 1 different, 2 not comparable.",
+        "fppg compare");
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    CompareOptions& options = call.options;
+    app.add_option("A", call.a, "a result")->required();
+    app.add_option("B", call.b, "another one")->required();
+    app.add_option("--json", call.json, "all numbers, as JSON");
+    app.add_option("--html", call.html, "a page with pictures and histograms, in one file");
+    app.add_option("--stl", options.geometry,
+                   "mesh (STL, PLY, VTK) in the place of the particles: how far they are from it; "
+                   "may be repeated")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--tolerance", options.same_place_dp, "two places are one within this, dp")
+        ->check(CLI::Range(0.0, 0.5))
+        ->capture_default_str();
+    app.add_option("--tolerance-density", options.density, "relative")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--tolerance-velocity", options.velocity, "m/s")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--tolerance-normal", options.normal_dp, "dp")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--tolerance-constants", options.constants, "relative, of numbers in Case.xml")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--examples", options.examples, "particles named of each kind of difference")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    app.add_option("--memory", call.memory_mib, "MiB for particles; files of any size are compared")
+        ->check(CLI::Range(1.0, 1e9))
+        ->capture_default_str();
+    app.add_option("--threads", options.threads,
+                   "default 0: what the machine or its scheduler allows")
+        ->check(CLI::Range(0, 4096));
+    options.threads = 0;
+    try
+    {
+        // CLI11 takes the arguments from the back.
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    }
+    catch (const CLI::CallForHelp&)
+    {
+        fmt::print("{}", app.help());
+        return false;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        throw UsageError(fmt::format("{}; fppg compare --help shows the form", error.what()));
+    }
+    if (options.threads == 0) options.threads = default_threads();
+    options.particles_at_once = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(call.memory_mib * (1 << 20)) / bytes_a_particle);
+    if (!call.html.empty()) options.changed_at_most = most_changed;
+    return true;
+}
+
+RenderOptions picture_options(const Comparison& comparison)
+{
+    RenderOptions options;
+    options.width = 1600;
+    options.height = 700;
+    if (comparison.is_2d) options.view = parse_view("front");
+    return options;
+}
+
+/// Colours of kinds stand for the ways to change.
+std::uint8_t colour_of(ChangeKind kind)
+{
+    switch (kind)
+    {
+        case ChangeKind::Missing:
+            return 0;
+        case ChangeKind::Extra:
+            return 1;
+        case ChangeKind::Moved:
+            return 2;
+        default:
+            return 3;
+    }
+}
+
+std::string hex(std::uint8_t kind)
+{
+    const Rgb c = colour_of_kind(kind);
+    return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
+}
+
+void draw_changed(const Comparison& comparison, std::vector<ComparePicture>& pictures)
+{
+    if (comparison.changed.empty()) return;
+    std::vector<ParticleCloud> clouds(2);
+    for (const std::size_t f : {0U, 1U})
+    {
+        clouds[f].file = comparison.files[f].path;
+        clouds[f].dp = comparison.dp;
+        for (const ChangedParticle& p : comparison.changed)
+        {
+            if (p.kind == (f == 0 ? ChangeKind::Extra : ChangeKind::Missing)) continue;
+            clouds[f].positions.push_back(p.position[f]);
+            clouds[f].mk.push_back(p.mk[f]);
+            clouds[f].kind.push_back(colour_of(p.kind));
+        }
+    }
+    RenderOptions options = picture_options(comparison);
+    options.colour = RenderColour::Kind;
+    pictures.push_back(
+        {fmt::format("Only what differs{}, A on the left, B on the right: {} missing, {} extra, {} "
+                     "moved, {} another mk",
+                     comparison.changed.size() < most_changed ? "" : " (the first 200,000)", hex(0),
+                     hex(1), hex(2), hex(3)),
+         png_bytes(render_particles(clouds, options, comparison.options.threads), true)});
+}
+
+std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
+{
+    std::vector<ComparePicture> pictures;
+    const int threads = comparison.options.threads;
+    {
+        const auto both = clouds_for_picture(comparison, most_in_picture);
+        const std::vector<ParticleCloud> clouds(both.begin(), both.end());
+        RenderOptions options = picture_options(comparison);
+        std::string thinned;
+        if (clouds[0].dp > comparison.dp)
+            thinned = fmt::format("; one particle for every cube of {:g} dp",
+                                  clouds[0].dp / comparison.dp);
+        if (clouds[0].positions.empty() && clouds[1].positions.empty()) return pictures;
+        pictures.push_back({"A on the left, B on the right, by mk" + thinned,
+                            png_bytes(render_particles(clouds, options, threads), true)});
+        Box3 bounds;
+        for (const ComparedFile& file : comparison.files)
+            if (!file.bounds.is_empty())
+            {
+                bounds.add(file.bounds.min);
+                bounds.add(file.bounds.max);
+            }
+        if (!comparison.is_2d)
+        {
+            // From a plane between layers, so that rounding does not decide what is cut.
+            const double middle = 0.5 * (bounds.min.y + bounds.max.y) - 0.25 * comparison.dp;
+            options.cuts = {{1, true, middle}};
+            options.view = parse_view("front");
+            pictures.push_back({fmt::format("Cut at y = {:.4g} m", middle) + thinned,
+                                png_bytes(render_particles(clouds, options, threads), true)});
+        }
+    }
+    draw_changed(comparison, pictures);
+    return pictures;
+}
+
+} // namespace
+
+int run_compare(const std::vector<std::string>& arguments)
+{
+    CompareCall call;
+    if (!read_arguments(arguments, call)) return 0;
+    try
+    {
+        // The files are made first: a folder that cannot be written is found before the work.
+        std::optional<OutputFile> json;
+        std::optional<OutputFile> html;
+        if (!call.json.empty()) json.emplace(call.json);
+        if (!call.html.empty()) html.emplace(call.html);
+        const Comparison comparison = compare_results(call.a, call.b, call.options);
+        if (json)
+        {
+            json->append(to_json(comparison));
+            json->commit();
+        }
+        if (html)
+        {
+            html->append(to_html(comparison, draw_pictures(comparison)));
+            html->commit();
+        }
+        fmt::print("{}", to_text(comparison));
+        return comparison.is_equal() ? 0 : 1;
+    }
+    catch (const IoError& error)
+    {
+        throw CompareError(error.what());
+    }
+}
+
+} // namespace fppg

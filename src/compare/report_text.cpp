@@ -1,0 +1,164 @@
+#include "fppg/compare.h"
+
+#include "compare/report_words.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::size_t findings_shown = 40;
+constexpr std::size_t values_shown = 40;
+
+/// Right-aligned columns, the first two left-aligned.
+std::string table(const std::vector<std::vector<std::string>>& rows)
+{
+    std::vector<std::size_t> widths(rows.front().size());
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const auto& row : rows)
+    {
+        std::string line = "  ";
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += c < 2 ? fmt::format("{:<{}}  ", row[c], widths[c])
+                          : fmt::format("{:>{}}  ", row[c], widths[c]);
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::string whole(std::uint64_t n)
+{
+    return std::to_string(n);
+}
+
+std::string mean_and_deviation(const Spread& spread)
+{
+    return spread.count == 0 ? "-" : fmt::format("{:.4f} +- {:.4f}", spread.mean, spread.deviation);
+}
+
+std::string type_of(const MkComparison& of)
+{
+    const std::string a = particle_type_name(of.type[0]);
+    const std::string b = particle_type_name(of.type[1]);
+    return a == b || b == "-" ? a : a == "-" ? b : a + "/" + b;
+}
+
+std::string counts_table(const Comparison& comparison)
+{
+    std::vector<std::vector<std::string>> rows{{"mk", "type", "A", "B", "same place", "moved",
+                                                "mean dp", "most dp", "missing", "extra",
+                                                "other mk", "other id"}};
+    for (const MkComparison& of : comparison.mks)
+        rows.push_back(
+            {whole(of.mk), type_of(of), whole(of.count[0]), whole(of.count[1]), whole(of.same),
+             whole(of.moved), of.moved > 0 ? fmt::format("{:.4f}", of.moved_dp.mean) : "-",
+             of.moved > 0 ? fmt::format("{:.4f}", of.moved_dp.largest) : "-", whole(of.missing),
+             whole(of.extra), whole(of.mk_changed + of.mk_gained), whole(of.id_changed)});
+    return table(rows);
+}
+
+std::string quality_table(const Comparison& comparison)
+{
+    const bool has_geometry = !comparison.options.geometry.empty();
+    std::vector<std::vector<std::string>> rows{{"mk", "", "spacing A", "B", "Shepard A", "B"}};
+    if (has_geometry)
+        for (const char* name : {"distance A", "B", "most A", "B", "near A", "B"})
+            rows.front().emplace_back(name);
+    for (const MkComparison& of : comparison.mks)
+    {
+        rows.push_back({whole(of.mk), type_of(of), mean_and_deviation(of.spacing_dp[0]),
+                        mean_and_deviation(of.spacing_dp[1]), mean_and_deviation(of.shepard[0]),
+                        mean_and_deviation(of.shepard[1])});
+        if (!has_geometry) continue;
+        for (const Spread& d : of.distance_dp) rows.back().push_back(mean_and_deviation(d));
+        for (const Spread& d : of.distance_dp)
+            rows.back().push_back(d.count > 0 ? fmt::format("{:.4f}", d.largest) : "-");
+        for (const Spread& d : of.distance_dp) rows.back().push_back(whole(d.count));
+    }
+    return table(rows);
+}
+
+} // namespace
+
+std::string to_text(const Comparison& comparison)
+{
+    std::string text;
+    for (std::size_t f = 0; f < 2; ++f)
+    {
+        const ComparedFile& file = comparison.files[f];
+        text += fmt::format("{}  {}: {} particles", f == 0 ? "A" : "B", file.path, file.np);
+        if (file.dp > 0) text += fmt::format(", dp {} m", file.dp);
+        if (!file.app_name.empty()) text += ", by " + file.app_name;
+        text += "\n";
+    }
+    if (comparison.is_equal())
+        text += fmt::format(
+            "Equal: every particle of A has one of B within {:.3g} m, and all that both files say "
+            "of "
+            "them and of the case is the same.\n",
+            comparison.same_place_m);
+    else
+    {
+        text +=
+            fmt::format("Different, largest first (share of the particles, or of the value):\n");
+        const std::size_t shown = std::min(findings_shown, comparison.findings.size());
+        for (std::size_t i = 0; i < shown; ++i)
+        {
+            const Finding& finding = comparison.findings[i];
+            text += fmt::format("  {:>8.3g} %  {:<8}  {}\n", 100 * finding.size, finding.category,
+                                finding.text);
+        }
+        if (shown < comparison.findings.size())
+            text += fmt::format("  and {} more\n", comparison.findings.size() - shown);
+    }
+    if (!comparison.mks.empty())
+    {
+        text += "Particles:\n" + counts_table(comparison);
+        text += fmt::format(
+            "Distance to the nearest particle in dp, and Shepard sum ({}, h = 1.3 dp){}; mean and "
+            "standard deviation:\n",
+            comparison.is_2d ? "2-D" : "3-D",
+            comparison.options.geometry.empty()
+                ? ""
+                : "; distance in dp to the geometry of those within 2 dp of it");
+        text += quality_table(comparison);
+    }
+    bool has_alone = false;
+    for (const MkComparison& of : comparison.mks)
+        for (std::size_t f = 0; f < 2; ++f)
+            if (of.alone[f] > 0)
+            {
+                text += fmt::format("{}mk {} in {}: {} particles",
+                                    has_alone ? ", " : "Without another within 2.6 dp: ", of.mk,
+                                    f == 0 ? "A" : "B", of.alone[f]);
+                has_alone = true;
+            }
+    if (has_alone) text += "\n";
+    if (!comparison.examples.empty()) text += "Examples:\n";
+    for (const ChangedParticle& p : comparison.examples)
+        text += fmt::format("  {:<8}  mk {}: {}\n", change_name(p.kind),
+                            p.mk[p.kind == ChangeKind::Extra ? 1 : 0], describe_change(p));
+    if (!comparison.values.empty()) text += "Values in Case.bi4 and Case.xml, constants first:\n";
+    const std::size_t values = std::min(values_shown, comparison.values.size());
+    for (std::size_t i = 0; i < values; ++i)
+    {
+        const ValueDifference& value = comparison.values[i];
+        text += fmt::format("  {}: {} in A, {} in B\n", value.place, value.a.value_or("none"),
+                            value.b.value_or("none"));
+    }
+    if (values < comparison.values.size())
+        text += fmt::format("  and {} more\n", comparison.values.size() - values);
+    for (const std::string& note : comparison.notes) text += "Note: " + note + "\n";
+    return text;
+}
+
+} // namespace fppg
