@@ -471,8 +471,112 @@ def housing(radius_a=0.6, radius_b=0.45, distance=0.9, height=0.5, wall=0.06, li
     return loft([level(outer, -wall), level(outer, height), level(inner, height), level(inner, 0)])
 
 
+def road_wheel(radius=0.3563, width=0.235, rim_radius=0.23, tread_depth=0.012, blocks=24, dish=0.07):
+    """A treaded tyre on a closed rim, about y; the blocks of its two shoulders are staggered.
+
+    rim_radius   where the tyre meets the rim
+    tread_depth  of the cross grooves and of the groove round the middle
+    blocks       tread blocks round the circumference; a quarter of each is groove
+    dish         how far the middle of the rim is set back from the side wall, on both sides
+    """
+    w, base = width / 2, radius - tread_depth
+    # (r, z, which rows of blocks): from the axis over one side wall and the tread to the axis again.
+    half = [(0, -w + dish, 0), (0.3 * rim_radius, -w + dish, 0),
+            (0.92 * rim_radius, -w + 0.85 * dish, 0), (rim_radius, -0.75 * w, 0),
+            (radius - 0.16 * radius, -w, 0), (base - 0.03 * radius, -0.94 * w, 0),
+            (base, -0.84 * w, 0), (base, -0.83 * w, 1), (base, -0.13 * w, 1), (base, -0.12 * w, 0)]
+    profile = half + [(r, -z, 2 * row) for r, z, row in reversed(half)]
+    # Row 1 is raised in the first 0.74 of a block, row 2 in all but 0.26 at the middle of it.
+    steps = ((0.0, 1, 1), (0.24, 1, 1), (0.26, 1, 0), (0.48, 1, 0), (0.5, 1, 1), (0.74, 1, 1),
+             (0.76, 0, 1), (0.98, 0, 1))
+    angles = [(2 * math.pi * (block + part) / blocks, (0, first, second))
+              for block in range(blocks) for part, first, second in steps]
+    mesh = Mesh()
+    rows = [[mesh.vertex(*((r + (tread_depth if raised[row] else 0)) * f(a)
+                           for f in (math.cos, math.sin)), z) if r > 0 else mesh.vertex(0, 0, z)
+             for a, raised in angles] for r, z, row in profile]
+    for low, high in zip(rows, rows[1:]):
+        for i in range(len(angles)):
+            k = (i + 1) % len(angles)
+            mesh.quad(low[i], low[k], high[k], high[i])
+    return about_y(mesh)
+
+
+def estate_body(length=4.4, width=1.86, height=1.65, clearance=0.22, wheelbase=2.66,
+                axle_height=0.3563, arch_radius=0.44, arch_depth=0.4, belt=0.93, lean=0.16,
+                rounding=0.2):
+    """A closed car body along x, its front at the larger x: bonnet, cabin, four wheel arches.
+
+    The ground is z = 0 and the middle of the wheelbase x = 0.
+
+    clearance   height of the flat floor above the ground
+    arch_depth  how far an arch reaches in from the side
+    belt        height of the lower edge of the side windows; the windows above it lean in by `lean`
+    rounding    how far the corners of both bumpers are drawn in, seen from above
+    """
+    spread = math.acos((clearance - axle_height) / arch_radius)  # from the top of an arch to the floor
+    c, back, front = clearance, -length / 2, length / 2
+    arch, flat = [], []
+    for centre in (-wheelbase / 2, wheelbase / 2):
+        for i in range(19):
+            a = -spread + 2 * spread * i / 18
+            x = centre + arch_radius * math.sin(a)
+            arch.append((x, axle_height + arch_radius * math.cos(a) if 0 < i < 18 else c))
+            flat.append((x, c))
+    roof = [(front - 0.24, c), (front - 0.03, c + 0.16), (front, c + 0.3), (front - 0.05, c + 0.48),
+            (front - 0.13, 0.53 * height), (front - 0.5, 0.59 * height),
+            (front - 1.15, 0.635 * height), (front - 1.85, 0.955 * height), (front - 2.4, height),
+            (back + 1.2, 0.993 * height), (back + 0.5, 0.94 * height), (back + 0.14, 0.65 * height),
+            (back + 0.03, 0.56 * height), (back, c + 0.42), (back + 0.04, c + 0.18), (back + 0.3, c)]
+    reach = front - 0.6  # only what is beyond it is drawn in
+
+    def loop(bottom, depth, shoulder, pulled, side):
+        """The outline at `depth` from a side: `shoulder` of the cabin's height, corners pulled in."""
+        points = list(bottom)
+        for x, z in roof:
+            over = max(0.0, abs(x) - reach) / 0.6
+            points.append((x - math.copysign(pulled * over, x),
+                           belt + shoulder * (z - belt) if z > belt else z))
+        return [(x, z, side * (width / 2 - depth)) for x, z in points]
+
+    # depth, part of the cabin's height, part of the rounding
+    levels = ((0.0, 0.02, 1.0), (0.05, 0.1, 0.45), (0.05 + lean, 0.92, 0.1), (0.14 + lean, 1.0, 0.0))
+    half = [loop(arch, depth, part, rounding * pull, -1) for depth, part, pull in levels]
+    half += [loop(bottom, arch_depth, 1.0, 0.0, -1) for bottom in (arch, flat)]
+    # Lofted along z; a turn of 90 degrees about x lays that direction along -y.
+    return about_y(loft(half + [[(x, z, -y) for x, z, y in ring] for ring in reversed(half)]))
+
+
+def estate_panels(length=4.4, width=1.86, clearance=0.22, wheelbase=2.66, arch_radius=0.44,
+                  thickness=0.016):
+    """Panels of `estate_body`, each a closed plate: four mud flaps, a guard under the engine, sills.
+
+    Their upper ends reach into the body by up to three times the thickness.
+    """
+    mesh, c, t = Mesh(), clearance, thickness
+
+    def plate(outline, y0, y1):
+        mesh.add(about_y(extrude(outline, y0, y1)))
+
+    for side in (-1, 1):
+        inner, outer = sorted((side * (width / 2 - 0.29), side * (width / 2 - 0.04)))
+        for centre in (-wheelbase / 2, wheelbase / 2):
+            x = centre - arch_radius - 0.1
+            plate([(x - 0.05, c - 0.13), (x - 0.05 + t, c - 0.13), (x + t, c + 3 * t), (x, c + 3 * t)],
+                  inner, outer)
+        inner, outer = sorted((side * (width / 2 - 0.06), side * (width / 2 + 0.05)))
+        begin, end = -wheelbase / 2 + arch_radius + 0.14, wheelbase / 2 - arch_radius - 0.2
+        plate([(begin, c + 0.04), (end, c + 0.04), (end, c + 0.04 + 2 * t), (begin, c + 0.04 + 2 * t)],
+              inner, outer)
+    nose = length / 2 - 0.3
+    plate([(nose - 1.0, c - 0.07), (nose - 0.12, c - 0.07), (nose, c + t), (nose - 0.012, c + 2 * t),
+           (nose - 0.12, c - 0.07 + t), (nose - 1.0, c - 0.07 + t)], -0.42, 0.42)
+    return mesh
+
+
+
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
-                                  vehicle_body, housing)}
+                                  vehicle_body, housing, road_wheel, estate_body, estate_panels)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -482,6 +586,9 @@ CASE_MESHES = (
     ("ford/wheel.stl", "wheel", {}),
     ("gear/gear.stl", "gear", {"module": 0.02, "teeth": 20, "width": 0.1, "bore": 0.1}),
     ("tyre/tyre.stl", "tyre", {"tread_depth": 0.016, "blocks": 18}),
+    ("wading/body.stl", "estate_body", {}),
+    ("wading/panels.stl", "estate_panels", {}),
+    ("wading/wheel.stl", "road_wheel", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.
