@@ -575,8 +575,63 @@ def estate_panels(length=4.4, width=1.86, clearance=0.22, wheelbase=2.66, arch_r
 
 
 
+def pipe_bend(radius=0.05, wall=0.015, bend_radius=0.15, inlet=0.25, outlet=0.25, angle=90.0,
+              sides=48, stations=24):
+    """The wall of a pipe with a bend, open at both ends: along x, then up by `angle` in the x-z plane.
+
+    radius       inner radius; the outer one is larger by `wall`
+    bend_radius  of the axis; the bend begins at the origin
+    inlet        length of the straight part before it, outlet of the one behind
+    stations     rings in the bend
+    """
+    end = math.radians(angle)
+    path = [(-inlet, 0.0, 0.0)]  # x, z, direction
+    for i in range(stations + 1):
+        a = end * i / stations
+        path.append((bend_radius * math.sin(a), bend_radius * (1 - math.cos(a)), a))
+    x, z, _ = path[-1]
+    path.append((x + outlet * math.cos(end), z + outlet * math.sin(end), end))
+    mesh = Mesh()
+    tubes = [[[mesh.vertex(x - r * c * math.sin(a), r * s, z + r * c * math.cos(a))
+               for c, s in turn(sides)] for x, z, a in path] for r in (radius + wall, radius)]
+    # Once round the wall: along the outside, back along the inside.
+    rings = tubes[0] + tubes[1][::-1]
+    for low, high in zip(rings, rings[1:] + rings[:1]):
+        for i in range(sides):
+            k = (i + 1) % sides
+            mesh.quad(low[k], low[i], high[i], high[k])
+    return mesh
+
+
+def impeller(radius=0.06, hub_radius=0.014, height=0.03, thickness=0.006, blades=4, twist=40.0,
+             levels=8):
+    """An impeller about z, its middle at the origin: a hub with blades that turn by `twist` over its height.
+
+    radius     of the tips of the blades
+    thickness  of the blades
+    levels     layers of facets over the height
+    """
+    gap = math.asin(thickness / 2 / hub_radius)
+    tip = math.asin(thickness / 2 / radius)
+    outline = []
+    for blade in range(blades):
+        middle, pitch = 2 * math.pi * blade / blades, 2 * math.pi / blades
+        outline += [(hub_radius, middle - gap), (radius, middle - tip), (radius, middle),
+                    (radius, middle + tip), (hub_radius, middle + gap)]
+        outline += [(hub_radius, middle + gap + (pitch - 2 * gap) * i / 4) for i in range(1, 4)]
+
+    def loop(level):
+        turned = math.radians(twist) * (level / levels - 0.5)
+        return [(r * math.cos(a + turned), r * math.sin(a + turned), height * (level / levels - 0.5))
+                for r, a in outline]
+
+    return loft([loop(level) for level in range(levels + 1)])
+
+
+
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
-                                  vehicle_body, housing, road_wheel, estate_body, estate_panels)}
+                                  vehicle_body, housing, road_wheel, estate_body, estate_panels,
+                                  pipe_bend, impeller)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -589,6 +644,8 @@ CASE_MESHES = (
     ("wading/body.stl", "estate_body", {}),
     ("wading/panels.stl", "estate_panels", {}),
     ("wading/wheel.stl", "road_wheel", {}),
+    ("pipe/pipe.stl", "pipe_bend", {}),
+    ("stirred/impeller.stl", "impeller", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.
