@@ -594,8 +594,167 @@ def bearing(outer=23.0, inner=11.5, width=8.0, chamfer=1.0, sides=48):
     return revolve(profile, sides, closed=True)
 
 
+def road_wheel(radius=0.3563, width=0.235, rim_radius=0.23, tread_depth=0.012, blocks=24, dish=0.07):
+    """A treaded tyre on a closed rim, about y; the blocks of its two shoulders are staggered.
+
+    rim_radius   where the tyre meets the rim
+    tread_depth  of the cross grooves and of the groove round the middle
+    blocks       tread blocks round the circumference; a quarter of each is groove
+    dish         how far the middle of the rim is set back from the side wall, on both sides
+    """
+    w, base = width / 2, radius - tread_depth
+    # (r, z, which rows of blocks): from the axis over one side wall and the tread to the axis again.
+    half = [(0, -w + dish, 0), (0.3 * rim_radius, -w + dish, 0),
+            (0.92 * rim_radius, -w + 0.85 * dish, 0), (rim_radius, -0.75 * w, 0),
+            (radius - 0.16 * radius, -w, 0), (base - 0.03 * radius, -0.94 * w, 0),
+            (base, -0.84 * w, 0), (base, -0.83 * w, 1), (base, -0.13 * w, 1), (base, -0.12 * w, 0)]
+    profile = half + [(r, -z, 2 * row) for r, z, row in reversed(half)]
+    # Row 1 is raised in the first 0.74 of a block, row 2 in all but 0.26 at the middle of it.
+    steps = ((0.0, 1, 1), (0.24, 1, 1), (0.26, 1, 0), (0.48, 1, 0), (0.5, 1, 1), (0.74, 1, 1),
+             (0.76, 0, 1), (0.98, 0, 1))
+    angles = [(2 * math.pi * (block + part) / blocks, (0, first, second))
+              for block in range(blocks) for part, first, second in steps]
+    mesh = Mesh()
+    rows = [[mesh.vertex(*((r + (tread_depth if raised[row] else 0)) * f(a)
+                           for f in (math.cos, math.sin)), z) if r > 0 else mesh.vertex(0, 0, z)
+             for a, raised in angles] for r, z, row in profile]
+    for low, high in zip(rows, rows[1:]):
+        for i in range(len(angles)):
+            k = (i + 1) % len(angles)
+            mesh.quad(low[i], low[k], high[k], high[i])
+    return about_y(mesh)
+
+
+def estate_body(length=4.4, width=1.86, height=1.65, clearance=0.22, wheelbase=2.66,
+                axle_height=0.3563, arch_radius=0.44, arch_depth=0.4, belt=0.93, lean=0.16,
+                rounding=0.2):
+    """A closed car body along x, its front at the larger x: bonnet, cabin, four wheel arches.
+
+    The ground is z = 0 and the middle of the wheelbase x = 0.
+
+    clearance   height of the flat floor above the ground
+    arch_depth  how far an arch reaches in from the side
+    belt        height of the lower edge of the side windows; the windows above it lean in by `lean`
+    rounding    how far the corners of both bumpers are drawn in, seen from above
+    """
+    spread = math.acos((clearance - axle_height) / arch_radius)  # from the top of an arch to the floor
+    c, back, front = clearance, -length / 2, length / 2
+    arch, flat = [], []
+    for centre in (-wheelbase / 2, wheelbase / 2):
+        for i in range(19):
+            a = -spread + 2 * spread * i / 18
+            x = centre + arch_radius * math.sin(a)
+            arch.append((x, axle_height + arch_radius * math.cos(a) if 0 < i < 18 else c))
+            flat.append((x, c))
+    roof = [(front - 0.24, c), (front - 0.03, c + 0.16), (front, c + 0.3), (front - 0.05, c + 0.48),
+            (front - 0.13, 0.53 * height), (front - 0.5, 0.59 * height),
+            (front - 1.15, 0.635 * height), (front - 1.85, 0.955 * height), (front - 2.4, height),
+            (back + 1.2, 0.993 * height), (back + 0.5, 0.94 * height), (back + 0.14, 0.65 * height),
+            (back + 0.03, 0.56 * height), (back, c + 0.42), (back + 0.04, c + 0.18), (back + 0.3, c)]
+    reach = front - 0.6  # only what is beyond it is drawn in
+
+    def loop(bottom, depth, shoulder, pulled, side):
+        """The outline at `depth` from a side: `shoulder` of the cabin's height, corners pulled in."""
+        points = list(bottom)
+        for x, z in roof:
+            over = max(0.0, abs(x) - reach) / 0.6
+            points.append((x - math.copysign(pulled * over, x),
+                           belt + shoulder * (z - belt) if z > belt else z))
+        return [(x, z, side * (width / 2 - depth)) for x, z in points]
+
+    # depth, part of the cabin's height, part of the rounding
+    levels = ((0.0, 0.02, 1.0), (0.05, 0.1, 0.45), (0.05 + lean, 0.92, 0.1), (0.14 + lean, 1.0, 0.0))
+    half = [loop(arch, depth, part, rounding * pull, -1) for depth, part, pull in levels]
+    half += [loop(bottom, arch_depth, 1.0, 0.0, -1) for bottom in (arch, flat)]
+    # Lofted along z; a turn of 90 degrees about x lays that direction along -y.
+    return about_y(loft(half + [[(x, z, -y) for x, z, y in ring] for ring in reversed(half)]))
+
+
+def estate_panels(length=4.4, width=1.86, clearance=0.22, wheelbase=2.66, arch_radius=0.44,
+                  thickness=0.016):
+    """Panels of `estate_body`, each a closed plate: four mud flaps, a guard under the engine, sills.
+
+    Their upper ends reach into the body by up to three times the thickness.
+    """
+    mesh, c, t = Mesh(), clearance, thickness
+
+    def plate(outline, y0, y1):
+        mesh.add(about_y(extrude(outline, y0, y1)))
+
+    for side in (-1, 1):
+        inner, outer = sorted((side * (width / 2 - 0.29), side * (width / 2 - 0.04)))
+        for centre in (-wheelbase / 2, wheelbase / 2):
+            x = centre - arch_radius - 0.1
+            plate([(x - 0.05, c - 0.13), (x - 0.05 + t, c - 0.13), (x + t, c + 3 * t), (x, c + 3 * t)],
+                  inner, outer)
+        inner, outer = sorted((side * (width / 2 - 0.06), side * (width / 2 + 0.05)))
+        begin, end = -wheelbase / 2 + arch_radius + 0.14, wheelbase / 2 - arch_radius - 0.2
+        plate([(begin, c + 0.04), (end, c + 0.04), (end, c + 0.04 + 2 * t), (begin, c + 0.04 + 2 * t)],
+              inner, outer)
+    nose = length / 2 - 0.3
+    plate([(nose - 1.0, c - 0.07), (nose - 0.12, c - 0.07), (nose, c + t), (nose - 0.012, c + 2 * t),
+           (nose - 0.12, c - 0.07 + t), (nose - 1.0, c - 0.07 + t)], -0.42, 0.42)
+    return mesh
+
+
+
+def pipe_bend(radius=0.05, wall=0.015, bend_radius=0.15, inlet=0.25, outlet=0.25, angle=90.0,
+              sides=48, stations=24):
+    """The wall of a pipe with a bend, open at both ends: along x, then up by `angle` in the x-z plane.
+
+    radius       inner radius; the outer one is larger by `wall`
+    bend_radius  of the axis; the bend begins at the origin
+    inlet        length of the straight part before it, outlet of the one behind
+    stations     rings in the bend
+    """
+    end = math.radians(angle)
+    path = [(-inlet, 0.0, 0.0)]  # x, z, direction
+    for i in range(stations + 1):
+        a = end * i / stations
+        path.append((bend_radius * math.sin(a), bend_radius * (1 - math.cos(a)), a))
+    x, z, _ = path[-1]
+    path.append((x + outlet * math.cos(end), z + outlet * math.sin(end), end))
+    mesh = Mesh()
+    tubes = [[[mesh.vertex(x - r * c * math.sin(a), r * s, z + r * c * math.cos(a))
+               for c, s in turn(sides)] for x, z, a in path] for r in (radius + wall, radius)]
+    # Once round the wall: along the outside, back along the inside.
+    rings = tubes[0] + tubes[1][::-1]
+    for low, high in zip(rings, rings[1:] + rings[:1]):
+        for i in range(sides):
+            k = (i + 1) % sides
+            mesh.quad(low[k], low[i], high[i], high[k])
+    return mesh
+
+
+def impeller(radius=0.06, hub_radius=0.014, height=0.03, thickness=0.006, blades=4, twist=40.0,
+             levels=8):
+    """An impeller about z, its middle at the origin: a hub with blades that turn by `twist` over its height.
+
+    radius     of the tips of the blades
+    thickness  of the blades
+    levels     layers of facets over the height
+    """
+    gap = math.asin(thickness / 2 / hub_radius)
+    tip = math.asin(thickness / 2 / radius)
+    outline = []
+    for blade in range(blades):
+        middle, pitch = 2 * math.pi * blade / blades, 2 * math.pi / blades
+        outline += [(hub_radius, middle - gap), (radius, middle - tip), (radius, middle),
+                    (radius, middle + tip), (hub_radius, middle + gap)]
+        outline += [(hub_radius, middle + gap + (pitch - 2 * gap) * i / 4) for i in range(1, 4)]
+
+    def loop(level):
+        turned = math.radians(twist) * (level / levels - 0.5)
+        return [(r * math.cos(a + turned), r * math.sin(a + turned), height * (level / levels - 0.5))
+                for r, a in outline]
+
+    return loft([loop(level) for level in range(levels + 1)])
+
+
+
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
-                                  vehicle_body, housing, gearbox_case, lid, shaft, bearing)}
+                                  vehicle_body, housing, gearbox_case, lid, shaft, bearing,
+                                  road_wheel, estate_body, estate_panels, pipe_bend, impeller)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -616,6 +775,11 @@ CASE_MESHES = (
     ("gearbox/wheel_shaft.stl", "shaft", {"journal": 16, "seat": 26, "collar": 34}),
     ("gearbox/pinion_bearing.stl", "bearing", {}),
     ("gearbox/wheel_bearing.stl", "bearing", {"outer": 29, "inner": 15.5}),
+    ("wading/body.stl", "estate_body", {}),
+    ("wading/panels.stl", "estate_panels", {}),
+    ("wading/wheel.stl", "road_wheel", {}),
+    ("pipe/pipe.stl", "pipe_bend", {}),
+    ("stirred/impeller.stl", "impeller", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.

@@ -11,6 +11,10 @@ may be off by half a per cent, as the last digits of sines and roots differ betw
 
 expected_fitted.json names the mesh with its mk and place, or a list of them as "parts" with the
 "volume" of their union, and the speeds of the case's rotations in their order as "turns".
+
+A record may hold "bodies" instead, a list of mesh, mk, turn and move of bodies that stand apart;
+"volume_within" in one is how far the volume that its particles stand for may be off (default 0.01; more
+where edges are closer than dp), null where they are not meant to stand for it.
 """
 
 import os
@@ -96,12 +100,41 @@ def is_same(found, expected, place):
     return found == expected
 
 
+def body_faults(record, folder, dp, positions, kind, mk):
+    """Yields a line for everything that is wrong about the particles of one body, or near it."""
+    body = mk == record["mk"]
+    facets = read_stl(os.path.join(folder, record["mesh"])) @ np.array(record["turn"]).T
+    facets += np.array(record["move"])
+    volume = np.einsum("fk,fk->f", facets[:, 0], np.cross(facets[:, 1], facets[:, 2])).sum() / 6
+
+    wall = positions[body & (kind < VOLUME)][::7]
+    farthest = distances(wall, facets).max() / dp
+    if farthest > 1e-4:
+        yield f"a wall particle of mk {record['mk']} is {farthest:.3g} dp off the mesh"
+    inside = np.count_nonzero(body & (kind == VOLUME))
+    stands_for = (inside + 0.5 * np.count_nonzero(body & (kind < VOLUME))) * dp ** 3
+    within = record.get("volume_within", 0.01)
+    if within is not None and abs(stands_for / volume - 1) > within:
+        yield f"mk {record['mk']} stands for {stands_for:.6g} m3, the body has {volume:.6g}"
+    fluid = positions[mk == 1]
+    low, high = facets.min(axis=(0, 1)) - dp, facets.max(axis=(0, 1)) + dp
+    near = fluid[np.all((fluid > low) & (fluid < high), axis=1)]
+    nearest = distances(sample(near), facets).min() / dp
+    if nearest < 0.499:
+        yield f"fluid stands {nearest:.3g} dp from the mesh of mk {record['mk']}"
+
+
 def faults(case, folder, expected):
     """Yields a line for everything about the particles that is wrong."""
     values, arrays = read_bi4(case + ".bi4")
     picture = read_vtk(case + "_All.vtk")
     dp, positions = values["Dp"], arrays["Posd"]
     kind, mk = np.asarray(picture["Kind"]).ravel(), np.asarray(picture["Mk"]).ravel()
+    if "bodies" in expected:
+        for record in expected["bodies"]:
+            yield from body_faults(record, folder, dp, positions, kind, mk)
+        yield from differences(summarise(case), expected["counts"], is_same)
+        return
     parts = []
     for part in expected.get("parts", [expected]):
         facets = read_stl(os.path.join(folder, part["mesh"])) @ np.array(part["turn"]).T
