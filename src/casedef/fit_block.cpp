@@ -21,6 +21,13 @@ namespace fppg
 namespace
 {
 
+bool has_same_clips(const DrawState& a, const DrawState& b)
+{
+    return std::equal(a.clips.begin(), a.clips.end(), b.clips.begin(), b.clips.end(),
+                      [](const ClipPlane& p, const ClipPlane& q)
+                      { return p.point == q.point && p.normal == q.normal; });
+}
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Numbers that a warning lists.
 constexpr std::size_t mks_shown = 10;
@@ -331,7 +338,7 @@ private:
             const DrawOp& op = def_.ops[boolean.parts[p].op];
             first = std::min(first, boolean.parts[p].op);
             last = std::max(last, boolean.parts[p].op);
-            if (op.state->clips.size() != def_.ops[boolean.parts[0].op].state->clips.size())
+            if (!has_same_clips(*op.state, *def_.ops[boolean.parts[0].op].state))
                 read_.fail(e,
                            fmt::format("{} is drawn under other clips than {}, expected the same",
                                        place_of(p), place_of(0)));

@@ -12,6 +12,17 @@
 
 namespace fppg
 {
+namespace
+{
+
+ClipPlane placed(const ClipPlane& plane, const Transform& matrix)
+{
+    if (matrix.is_identity()) return plane;
+    const Vec3 point = matrix(plane.point);
+    return {point, matrix(plane.point + plane.normal) - point};
+}
+
+} // namespace
 
 MkValue ProgramRunner::mk_value(const Element& e, MkKind kind, int mk_type) const
 {
@@ -170,6 +181,7 @@ bool ProgramRunner::run_state_command(const Element& e)
         pop_mk();
         pop(saved_constants_, state_.constants);
         pop(saved_matrices_, matrix_);
+        place_clips();
     }
     else if (name == "resetdraw")
     {
@@ -178,6 +190,8 @@ bool ProgramRunner::run_state_command(const Element& e)
         state_ = {};
         state_.pattern = std::move(pattern);
         matrix_ = {};
+        defined_clips_.clear();
+        clip_matrix_ = {};
         saved_states_.clear();
         saved_matrices_.clear();
         saved_mks_.clear();
@@ -213,7 +227,10 @@ bool ProgramRunner::run_transform(const Element& e)
     if (name == "matrixreset")
         matrix_ = {};
     else if (name == "matrixsave")
+    {
         saved_matrices_.push_back(matrix_);
+        return true;
+    }
     else if (name == "matrixload")
     {
         if (!saved_matrices_.empty())
@@ -259,7 +276,23 @@ bool ProgramRunner::run_transform(const Element& e)
     }
     else
         return false;
+    place_clips();
     return true;
+}
+
+void ProgramRunner::add_clip(const ClipPlane& plane)
+{
+    defined_clips_.push_back(plane);
+    state_.clips.push_back(placed(plane, clip_matrix_));
+}
+
+void ProgramRunner::place_clips()
+{
+    if (defined_clips_.empty()) return;
+    clip_matrix_ = matrix_;
+    for (std::size_t i = 0; i < defined_clips_.size(); ++i)
+        state_.clips[i] = placed(defined_clips_[i], matrix_);
+    shared_state_.reset();
 }
 
 /// The angles of a clipbox turn it about its lowest corner, about y, x and z in this order,
@@ -270,7 +303,11 @@ bool ProgramRunner::run_clip(const Element& e)
 {
     const std::string& name = e.name;
     if (name == "clipreset")
+    {
         state_.clips.clear();
+        defined_clips_.clear();
+        clip_matrix_ = {};
+    }
     else if (name == "clipdomain")
         return true;
     else if (name == "clipplane")
@@ -278,21 +315,15 @@ bool ProgramRunner::run_clip(const Element& e)
         ClipPlane plane;
         if (e.find_child("point1") != nullptr)
         {
-            const Vec3 p1 = matrix_(read_.child_vec3(e, "point1"));
-            const Vec3 p2 = matrix_(read_.child_vec3(e, "point2"));
-            const Vec3 p3 = matrix_(read_.child_vec3(e, "point3"));
-            plane = {p1, cross(p2 - p1, p3 - p1)};
+            plane.point = read_.child_vec3(e, "point1");
+            plane.normal = cross(read_.child_vec3(e, "point2") - plane.point,
+                                 read_.child_vec3(e, "point3") - plane.point);
         }
         else
-        {
-            const Vec3 point = read_.child_vec3(e, "point");
-            plane.point = matrix_(point);
-            plane.normal = matrix_(point + read_.child_vec3(e, "vector")) - plane.point;
-            if (matrix_.is_identity()) plane.normal = read_.child_vec3(e, "vector");
-        }
+            plane = {read_.child_vec3(e, "point"), read_.child_vec3(e, "vector")};
         if (norm(plane.normal) == 0)
             read_.fail(e, "the plane has no direction, expected a vector that is not zero");
-        state_.clips.push_back(plane);
+        add_clip(plane);
     }
     else if (name == "clipbox")
     {
@@ -324,34 +355,29 @@ bool ProgramRunner::run_clip(const Element& e)
             low[axis] = std::min(box.corner0[axis], box.corner1[axis]);
             high[axis] = std::max(box.corner0[axis], box.corner1[axis]);
         }
-        Transform turned = matrix_;
+        Transform turned;
         if (const Element* c = e.find_child("angles"))
         {
-            // Where GenCase puts a turned box that the matrix moves or scales is not known.
-            if (!matrix_.is_identity())
-                read_.fail(*c,
-                           "angles are not possible under a move, rotation or scale, expected "
-                           "<matrixreset> before");
             Transform rotation;
             const Vec3 angles = read_.vec3(*c);
             for (const int axis : {1, 0, 2})
                 rotation = rotation_about_axis(axis, radians(angles[axis])) * rotation;
             turned = around(low, rotation);
         }
+        const bool is_turned = !turned.is_identity();
         const auto side = [&](BoxSide which, const Vec3& at, const Vec3& outward)
         {
             if (!faces[which]) return;
-            if (turned.is_identity())
-                state_.clips.push_back({at, outward});
-            else
-                state_.clips.push_back({turned(at), turned(at + outward) - turned(at)});
+            ClipPlane plane{at, outward};
+            if (is_turned) plane = {turned(at), turned(at + outward) - turned(at)};
+            add_clip(plane);
         };
         side(BoxBottom, low, {0, 0, -1});
-        side(BoxTop, high, {0, 0, 1});
+        side(BoxTop, is_turned ? high : Vec3{low.x, low.y, high.z}, {0, 0, 1});
         side(BoxLeft, low, {-1, 0, 0});
-        side(BoxRight, high, {1, 0, 0});
+        side(BoxRight, is_turned ? high : Vec3{high.x, low.y, low.z}, {1, 0, 0});
         side(BoxFront, low, {0, -1, 0});
-        side(BoxBack, high, {0, 1, 0});
+        side(BoxBack, is_turned ? high : Vec3{high.x, high.y, low.z}, {0, 1, 0});
     }
     else
         return false;

@@ -607,13 +607,62 @@ TEST(Transforms, HaveAStackAndAReset)
     expect_near(moved(R"(<matrixload />)"), {1, 2, 3});
 }
 
-TEST(Transforms, TurnClipsToo)
+const char* const quarter_turn = R"(<rotate ang="90" x="0" y="0" z="1" />)";
+const char* const clip_at_x =
+    R"(<clipplane><point x="1" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane>)";
+const char* const a_point = R"(<drawpoint x="0" y="0" z="0" />)";
+
+std::vector<ClipPlane> clips_after(const std::string& commands)
 {
-    const CaseDef def = run(R"(<rotate ang="90" x="0" y="0" z="1" />
-<clipplane><point x="1" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane><drawpoint x="0" y="0" z="0" />)");
-    const ClipPlane& clip = def.ops.at(0).state->clips.at(0);
+    return run(commands + a_point).ops.at(0).state->clips;
+}
+
+TEST(Clips, StandWhereTheyAreWrittenWhateverTheMatrixIs)
+{
+    const ClipPlane clip = clips_after(std::string(quarter_turn) + clip_at_x).at(0);
+    EXPECT_EQ(clip.point, (Vec3{1, 0, 0}));
+    EXPECT_EQ(clip.normal, (Vec3{1, 0, 0}));
+}
+
+TEST(Clips, TurnWithATransformAfterThem)
+{
+    const ClipPlane clip = clips_after(std::string(clip_at_x) + quarter_turn).at(0);
     expect_near(clip.point, {0, -1, 0});
     expect_near(clip.normal, {0, -1, 0});
+}
+
+TEST(Clips, MoveByTheWholeMatrixThatATransformLeaves)
+{
+    const std::string move = R"(<move x="0" y="0" z="3" />)";
+    const ClipPlane clip = clips_after(quarter_turn + (clip_at_x + move)).at(0);
+    expect_near(clip.point, {0, -1, 3});
+    const ClipPlane reset =
+        clips_after(quarter_turn + (clip_at_x + move) + "<matrixreset />").at(0);
+    EXPECT_EQ(reset.point, (Vec3{1, 0, 0}));
+    EXPECT_EQ(reset.normal, (Vec3{1, 0, 0}));
+}
+
+TEST(Clips, BeginUnderTheMatrixThatMovedOthersUntilClipreset)
+{
+    const std::string two = std::string(clip_at_x) + quarter_turn + clip_at_x;
+    expect_near(clips_after(two).at(1).point, {0, -1, 0});
+    const std::string again = std::string(clip_at_x) + quarter_turn + "<clipreset />" + clip_at_x;
+    expect_near(clips_after(again).at(0).point, {1, 0, 0});
+}
+
+TEST(Clips, StayWhereMatrixsaveStands)
+{
+    const std::string saved = std::string(quarter_turn) + clip_at_x + "<matrixsave />";
+    expect_near(clips_after(saved).at(0).point, {1, 0, 0});
+}
+
+TEST(Clips, OfABoxMayBeTurnedUnderAMatrix)
+{
+    const std::string box = R"(<clipbox><point x="0" y="0" z="0" /><size x="1" y="1" z="1" />
+<angles x="0" y="0" z="90" /><boxfaces>right</boxfaces></clipbox>)";
+    const ClipPlane clip = clips_after(box + R"(<move x="0" y="0" z="3" />)").at(0);
+    expect_near(clip.normal, {0, 1, 0});
+    expect_near(clip.point, {-1, 1, 4});
 }
 
 // -- variables and flow
