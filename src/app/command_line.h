@@ -34,6 +34,7 @@ struct DropInOptions
     int debug = 0;
     bool save_bi4 = true;
     bool save_cells = true;
+    bool save_free_points = true; ///< of setfrdrawmode, where there are any
     bool save_all = false;
     bool save_bound = false;
     bool save_fluid = false;
@@ -41,7 +42,7 @@ struct DropInOptions
     bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
     bool create_folders = true;
-    bool strict = false; ///< warnings where GenCase is silent are errors
+    bool strict = false;    ///< warnings where GenCase is silent are errors
     bool overwrite = false; ///< templates that exist and differ
 };
 
