@@ -106,10 +106,11 @@ struct FittedWalls
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
 
-    bool hides_nodes = false; ///< particles of `setfrdrawmode` stand in for nodes
+    /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
+    std::vector<std::uint16_t> free_mks;
 
     /// Whether nodes may carry the wall_zone_bit.
-    bool has_zones() const { return !bodies.empty() || hides_nodes; }
+    bool has_zones() const { return !bodies.empty() || !free_mks.empty(); }
 };
 
 } // namespace fppg

@@ -103,6 +103,14 @@ struct CaseConstants
     double speed_sound = 0;
 };
 
+/// Particles as `_FreePt.vtk` shows them, one entry each in all arrays.
+struct FreePoints
+{
+    std::vector<Vec3> positions;
+    std::vector<std::uint16_t> mk;
+    std::vector<ParticleType> types;
+};
+
 /// The particles of a case in id order: fixed, moving, floating, fluid; within a type by mk; within
 /// an mk by x, y, z (or by the order that mkorient asks for), those off the lattice among the
 /// nodes. Positions and densities of nodes are not stored: writers make them from the runs, node n
@@ -132,6 +140,10 @@ struct CaseParticles
     /// From every boundary particle to the boundary's surface, in id order; empty: the case asks
     /// for no normals. Zero: none.
     std::vector<std::array<float, 3>> bound_normals;
+
+    /// All particles of the mks that have one of `setfrdrawmode`, those on nodes too, by mk, in an
+    /// mk in id order; before `<lattice>` and `<initials>`.
+    FreePoints free_points;
 };
 
 struct CaseDef;

@@ -63,6 +63,7 @@ void choose_formats(const std::string& list, DropInOptions& options)
                 word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
+        if (all || word == "vtkfreept") options.save_free_points = on;
         if (all || word == "vtkall") options.save_all = on;
         if (all || word == "vtkbound") options.save_bound = on;
         if (all || word == "vtkfluid") options.save_fluid = on;

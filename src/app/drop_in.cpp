@@ -327,6 +327,7 @@ private:
                   if (options_.save_cells)
                       timed("_MkCells.vtk", "",
                             [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
+                  save_free_points();
                   if (options_.save_relaxation && !relax_history_.empty())
                       timed("_Relax.csv", "", [&](OutputFile& f) { f.append(relax_history_); });
                   if (options_.save_features && !field_.walls.bodies.empty())
@@ -364,6 +365,14 @@ private:
                   log_.line();
               });
         log_.line();
+    }
+
+    void save_free_points()
+    {
+        if (options_.save_free_points && !particles_.free_points.mk.empty())
+            timed("_FreePt.vtk", "",
+                  [&](OutputFile& f) { write_free_points_vtk(f, particles_.free_points); });
+        particles_.free_points = {};
     }
 
     /// Meshes go beside the result, as with GenCase; those outside the folder of the case stay

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -214,6 +215,23 @@ std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons
     return n;
 }
 
+namespace
+{
+
+void append_vertices(OutputFile& file, std::size_t n)
+{
+    std::string cells;
+    for (std::uint32_t i = 0; i < n; ++i)
+    {
+        append_big_endian(cells, std::uint32_t{1});
+        append_big_endian(cells, i);
+    }
+    file.append(fmt::format("\nVERTICES {} {}\n", n, 2 * n));
+    file.append(cells);
+}
+
+} // namespace
+
 void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points)
 {
     const std::vector<Vec3> origin(1);
@@ -221,16 +239,38 @@ void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points)
     std::string bytes;
     for (const Vec3& p : shown)
         for (int axis = 0; axis < 3; ++axis) append_big_endian(bytes, static_cast<float>(p[axis]));
-    std::string cells;
-    for (std::uint32_t i = 0; i < shown.size(); ++i)
-    {
-        append_big_endian(cells, std::uint32_t{1});
-        append_big_endian(cells, i);
-    }
     file.append(fmt::format("{}POINTS {} float\n", vtk_head, shown.size()));
     file.append(bytes);
-    file.append(fmt::format("\nVERTICES {} {}\n", shown.size(), 2 * shown.size()));
-    file.append(cells);
+    append_vertices(file, shown.size());
+    file.append("\n");
+}
+
+void write_free_points_vtk(OutputFile& file, const FreePoints& points)
+{
+    const std::size_t n = points.positions.size();
+    std::string bytes;
+    for (const Vec3& p : points.positions)
+        for (int axis = 0; axis < 3; ++axis) append_big_endian(bytes, p[axis]);
+    file.append(fmt::format("{}POINTS {} double\n", vtk_head, n));
+    file.append(bytes);
+    append_vertices(file, n);
+    const bool is_wide =
+        std::any_of(points.mk.begin(), points.mk.end(), [](std::uint16_t mk) { return mk > 255; });
+    std::string mk;
+    std::string types;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        if (is_wide)
+            append_big_endian(mk, points.mk[i]);
+        else
+            mk.push_back(static_cast<char>(points.mk[i]));
+        types.push_back(static_cast<char>(points.types[i]));
+    }
+    file.append(fmt::format("\nPOINT_DATA {}\nSCALARS Mk {}\nLOOKUP_TABLE default\n", n,
+                            is_wide ? "unsigned_short" : "unsigned_char"));
+    file.append(mk);
+    file.append(fmt::format("\nFIELD FieldData 1\nType 1 {} unsigned_char\n", n));
+    file.append(types);
     file.append("\n");
 }
 

@@ -21,6 +21,10 @@ inline std::uint32_t big_endian(float value)
 {
     return big_endian(std::bit_cast<std::uint32_t>(value));
 }
+inline std::uint64_t big_endian(double value)
+{
+    return __builtin_bswap64(std::bit_cast<std::uint64_t>(value));
+}
 inline std::uint16_t big_endian(std::uint16_t value)
 {
     return __builtin_bswap16(value);

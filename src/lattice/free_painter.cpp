@@ -183,7 +183,10 @@ void FreePainter::finish()
         out.mk.push_back(mk_[i]);
         out.distances.push_back(distance_of_nodes);
     }
-    field_->walls.hides_nodes = true;
+    std::vector<std::uint16_t>& mks = field_->walls.free_mks;
+    mks = out.mk;
+    std::sort(mks.begin(), mks.end());
+    mks.erase(std::unique(mks.begin(), mks.end()), mks.end());
     parallel_for(
         field_->slabs.size(), threads_,
         [&](std::size_t x)

@@ -3,6 +3,8 @@
 #include "fppg/case_def.h"
 #include "fppg/particles.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +12,12 @@ namespace fppg
 {
 
 /// The order of the particles of an mk: by coordinates, slowest axis first.
+///
+/// Where the mk has particles of `setfrdrawmode`, GenCase v5.4.354 sorts all its particles by cells
+/// instead, 1024 along each axis of their bounding box; a cell is floor(float(x - min) / float(max
+/// - min) * 1024), the last one for the maximum, in single precision (found by experiment: 2880 of
+/// 2880 places beside limits of cells). Particles of one cell keep the order of drawing. Nodes of
+/// one cell, which a box of more than 1024 dp has, keep their own order here.
 class PositionOrder
 {
 public:
@@ -18,16 +26,31 @@ public:
     /// By x, y, z, or as `orient` says.
     explicit PositionOrder(const MkOrient& orient = {}) : orient_(orient) {}
 
+    /// Sorts by cells of this box from now on.
+    void use_cells(const Box3& box) { cells_ = box; }
+
     Key key(const Vec3& p) const
     {
         Key key{};
         for (std::size_t i = 0; i < 3; ++i)
-            key[i] = orient_.descending[i] ? -p[orient_.axes[i]] : p[orient_.axes[i]];
+        {
+            const int axis = orient_.axes[i];
+            const double value = cells_.is_empty() ? p[axis] : cell(p[axis], axis);
+            key[i] = orient_.descending[i] ? -value : value;
+        }
         return key;
     }
 
 private:
+    double cell(double x, int axis) const
+    {
+        const auto size = static_cast<float>(cells_.max[axis] - cells_.min[axis]);
+        const float share = static_cast<float>(x - cells_.min[axis]) / size;
+        return size > 0 ? std::min(std::floor(share * 1024.0F), 1023.0F) : 0.0;
+    }
+
     MkOrient orient_;
+    Box3 cells_;
 };
 
 /// How many particles off the lattice carry each mk; size 65536.

@@ -8,6 +8,7 @@
 #include "particles/floating.h"
 #include "particles/free_particles.h"
 #include "particles/initials.h"
+#include "particles/run_positions.h"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,7 @@ public:
         compute_densities(def_, field_, type_of_mk_, free_begin_, out_, constants, threads_);
         orient_blocks();
         merge_free();
+        list_free_points();
         if (double_particles(def_, out_)) set_limits();
         set_initials(def_, constants, out_);
         make_floatings();
@@ -207,21 +209,50 @@ private:
         return order;
     }
 
+    /// Of all its particles, on nodes and off the lattice.
+    Box3 box_of(const ParticleBlock& block) const
+    {
+        Box3 box;
+        for (const ParticleRun& run : block.runs)
+            for (const std::uint32_t k : {std::uint32_t{0}, run.count - 1})
+                box.add(place_in_run(out_, block, run, k));
+        const FittedWalls& walls = field_.walls;
+        for (std::size_t i = 0; i < walls.particles.size(); ++i)
+            if (walls.particles.mk[i] == block.mk) box.add(walls.particles.positions[i]);
+        for (std::size_t i = 0; i < walls.volume.size(); ++i)
+            if (walls.volume.mk[i] == block.mk) box.add(walls.volume.positions[i]);
+        return box;
+    }
+
     void sort_free()
     {
         free_begin_.assign(out_.blocks.size() + 1, 0);
         if (!has_free()) return;
-        std::vector<PositionOrder> orders;
-        for (const ParticleBlock& block : out_.blocks) orders.push_back(order_of(block.mk));
-        out_.free = sort_free_particles(field_.walls, out_.blocks, orders, threads_, free_begin_);
+        for (const ParticleBlock& block : out_.blocks) orders_.push_back(order_of(block.mk));
+        for (const std::uint16_t mk : field_.walls.free_mks)
+            orders_[block_of_mk_[mk]].use_cells(box_of(out_.blocks[block_of_mk_[mk]]));
+        out_.free = sort_free_particles(field_.walls, out_.blocks, orders_, threads_, free_begin_);
     }
 
     void merge_free()
     {
         if (!has_free()) return;
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
-            merge_free_particles(out_, out_.blocks[b], order_of(out_.blocks[b].mk), free_begin_[b],
+            merge_free_particles(out_, out_.blocks[b], orders_[b], free_begin_[b],
                                  free_begin_[b + 1]);
+    }
+
+    void list_free_points()
+    {
+        for (const std::uint16_t mk : field_.walls.free_mks)
+        {
+            const ParticleBlock& block = out_.blocks[block_of_mk_[mk]];
+            for (const ParticleRun& run : block.runs)
+                for (std::uint32_t k = 0; k < run.count; ++k)
+                    out_.free_points.positions.push_back(place_in_run(out_, block, run, k));
+            out_.free_points.mk.resize(out_.free_points.positions.size(), mk);
+            out_.free_points.types.resize(out_.free_points.positions.size(), block.type);
+        }
     }
 
     void set_limits()
@@ -419,7 +450,8 @@ private:
     std::vector<std::size_t> block_of_mk_;
     std::vector<std::uint64_t> free_of_mk_; ///< particles off the lattice; empty without any
     std::vector<std::uint64_t>
-        free_begin_; ///< per block its first one in out_.free, then their number
+        free_begin_;                    ///< per block its first one in out_.free, then their number
+    std::vector<PositionOrder> orders_; ///< of every block, where some are off the lattice
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
     CaseParticles out_;
 };

@@ -16,6 +16,7 @@ namespace fppg
 struct VtkFile
 {
     std::vector<float> points;                         ///< x, y, z of each
+    std::vector<double> double_points;                 ///< in their place where they are doubles
     std::map<std::string, std::vector<int>> cells;     ///< VERTICES, LINES, POLYGONS as stored
     std::map<std::string, std::vector<double>> arrays; ///< data of points or cells
     std::map<std::string, std::string> types;
@@ -38,8 +39,12 @@ struct VtkFile
             words >> key;
             if (key == "POINTS")
             {
-                words >> n;
-                for (const double v : data("float", 3 * n)) points.push_back(static_cast<float>(v));
+                words >> n >> type;
+                if (type == "double")
+                    double_points = data(type, 3 * n);
+                else
+                    for (const double v : data(type, 3 * n))
+                        points.push_back(static_cast<float>(v));
             }
             else if (key == "VERTICES" || key == "LINES" || key == "POLYGONS")
             {
@@ -90,14 +95,19 @@ private:
     }
     std::vector<double> data(const std::string& type, std::size_t n)
     {
-        const std::size_t size = type == "unsigned_char" ? 1 : type == "unsigned_short" ? 2 : 4;
+        const std::size_t size = type == "unsigned_char"    ? 1
+                                 : type == "unsigned_short" ? 2
+                                 : type == "double"         ? 8
+                                                            : 4;
         std::vector<double> values;
         for (std::size_t i = 0; i < n; ++i)
         {
-            std::uint32_t bits = 0;
+            std::uint64_t bits = 0;
             for (std::size_t b = 0; b < size; ++b)
                 bits = bits << 8U | static_cast<unsigned char>(bytes_.at(at_++));
-            values.push_back(type == "float" ? std::bit_cast<float>(bits)
+            values.push_back(type == "double" ? std::bit_cast<double>(bits)
+                             : type == "float"
+                                 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
                              : type == "int" ? static_cast<std::int32_t>(bits)
                                              : static_cast<double>(bits));
         }

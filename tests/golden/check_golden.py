@@ -10,7 +10,7 @@ NAME.expected.csv.gz (one line a particle) and NAME.expected.json.
 
 nodes/   type, mk and lattice node of every particle, in id order: equal, no tolerance. A position
          stands within 1e-6 dp of its node. Where the record has particles off the lattice, all positions
-         are compared in id order, within 1e-6 dp; with setfrdrawmode see compare_places().
+         are compared in id order, within 1e-6 dp.
 fields/  the particles of equal id: mk equal; positions within 1e-7 dp + 1e-9 m, velocities within
          1e-6 relative + 1e-5 m/s, densities within 2e-6 rhop0 (both are float32 in the
          file), normals within 1e-4 dp. Constants in Case.bi4 within 1e-9 relative; numbers in Case.xml, of which GenCase
@@ -81,7 +81,7 @@ def compare_nodes(case, rows, expected, known):
     _, arrays, types, mks = particles_of(case)
     origin, dp = np.array(expected["lattice_origin"]), expected["dp"]
     if any(not r["i"] for r in rows):
-        # Two particles a node: every place is compared, in id order.
+        # Particles off the lattice or two a node: every place is compared, in id order.
         if [(r["type"], int(r["mk"])) for r in rows] != list(zip(types, mks)):
             yield "types or mks differ"
         elif np.abs(arrays["Posd"] - [[float(r[a]) for a in "xyz"] for r in rows]).max() > 1e-6 * dp:
@@ -107,37 +107,6 @@ def compare_nodes(case, rows, expected, known):
     if order_found != order_wanted:
         at = next((i for i, (a, b) in enumerate(zip(order_found, order_wanted)) if a != b), "the end")
         yield f"the order of ids differs from {at} on"
-
-
-def compare_places(case, rows, expected):
-    """As compare_nodes, for a case with particles off the lattice: equal within 1e-6 dp. Particles whose
-    x differ by rounding only may change places in the order of ids: sines and cosines of the library
-    that GenCase was recorded with differ in the last bit."""
-    _, arrays, types, mks = particles_of(case)
-    unit = 1e-6 * expected["dp"]
-    places = column(rows, "x", "y", "z")
-    kinds, wanted_kinds = list(zip(types, mks)), [(r["type"], int(r["mk"])) for r in rows]
-    if kinds != wanted_kinds:
-        yield f"{len(kinds)} particles, expected {len(wanted_kinds)}; or their types or mks differ"
-        return
-    position_of = {}
-    for kind, p in zip(wanted_kinds, places):
-        position_of.setdefault(kind, []).append(p)
-    last = {}
-    for i, (kind, p) in enumerate(zip(kinds, arrays["Posd"])):
-        if np.abs(np.array(position_of[kind]) - p).max(axis=1).min() > unit:
-            yield f"particle {i} at {p.tolist()} (mk {kind[1]}) stands where none is expected"
-            return
-        if p[0] < last.get(kind, -np.inf) - unit:
-            yield f"particle {i} is not in the order of x"
-            return
-        last[kind] = p[0]
-    for kind in position_of:
-        of_kind = np.array([p for k, p in zip(kinds, arrays["Posd"]) if k == kind])
-        for p in position_of[kind]:
-            if np.abs(of_kind - p).max(axis=1).min() > unit:
-                yield f"no particle at {p.tolist()} (mk {kind[1]})"
-                return
 
 
 def column(rows, *names):
@@ -279,12 +248,7 @@ def main(arguments):
         lines = list(compare_fields(case, rows, expected, read_known_normals(known_file, name)))
     else:
         known = read_known(known_file, name)
-        with open(os.path.join(folder, name + "_Def.xml"), encoding="utf-8") as file:
-            is_free = "setfrdrawmode" in file.read()
-        if is_free and any(r["i"] == "" for r in rows):
-            lines = list(compare_places(case, rows, expected))
-        else:
-            lines = list(compare_nodes(case, rows, expected, known))
+        lines = list(compare_nodes(case, rows, expected, known))
     for line in lines:
         print(f"{name}: {line}")
     print(f"{name}: {len(rows)} particles, {len(lines)} differences from {expected['recorded_with']}")

@@ -321,6 +321,28 @@ RC_GTEST_PROP(FreeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std::uint
     }
 }
 
+// Order of GenCase v5.4.354: 1024 cells of the box that holds all particles of the mk.
+TEST(FreeParticles, OfSetfrdrawmodeAreSortedByCells)
+{
+    const CaseDef def = read(small_case());
+    RunField field;
+    field.grid = def.grid;
+    field.slabs.resize(def.grid.n[0]);
+    FittedWalls& walls = field.walls;
+    walls.free_mks = {10};
+    add_to_volume(walls, {0, 0.3, 0.5}, 10);
+    add_to_volume(walls, {0.5124, 0.4, 0.1}, 10);
+    add_to_volume(walls, {0.5129, 0.2, 0.1}, 10); // beyond by half a cell: still before the last
+    add_to_volume(walls, {1.024, 0.3, 0.5}, 10);
+    add_to_volume(walls, {0.7, 0.30003, 0.5}, 10);
+    add_to_volume(walls, {0.70001, 0.3, 0.50001}, 10); // of one cell with the last one
+    const CaseParticles made = make(def, field).particles;
+    std::vector<double> x;
+    for (const Vec3& p : made.free.positions) x.push_back(p.x);
+    EXPECT_EQ(x, (std::vector<double>{0, 0.5129, 0.5124, 0.7, 0.70001, 1.024}));
+    EXPECT_EQ(made.free_points.positions, made.free.positions);
+}
+
 TEST(FreeParticles, MakeABlockOfAnMkWithoutNodes)
 {
     const CaseDef def = read(small_case());
