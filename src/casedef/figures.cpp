@@ -72,10 +72,19 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
 
 } // namespace
 
-std::vector<FigureOp> make_box(const Vec3& corner, const Vec3& size,
+std::vector<FigureOp> make_box(const Vec3& point, const Vec3& extent,
                                const std::array<bool, 6>& sides, bool is_solid,
                                const std::vector<double>& layers_dp, double dp)
 {
+    // Layers move outwards whichever corner of the box comes first.
+    Vec3 corner = point;
+    Vec3 size = extent;
+    for (int axis = 0; axis < 3; ++axis)
+        if (size[axis] < 0)
+        {
+            corner[axis] += size[axis];
+            size[axis] = -size[axis];
+        }
     // The arithmetic is GenCase's, halves included: 375 random boxes, 3375 coordinates.
     const auto grown = [&](double layer)
     {

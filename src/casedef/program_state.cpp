@@ -66,7 +66,11 @@ bool ProgramRunner::run_state_command(const Element& e)
     const auto next_mk = [&](MkKind kind)
     {
         const int step = read_.flag_or(e, "next", true) ? 1 : -1;
-        set_mk(e, kind, state_.mk.kind == kind ? std::max(0, state_.mk.mk_type + step) : 0);
+        const int next = state_.mk.kind == kind ? state_.mk.mk_type + step : 0;
+        if (next < 0)
+            read_.fail(e,
+                       "there is no mk below 0, expected next=\"true\" or a higher mk before it");
+        set_mk(e, kind, next);
     };
     const auto pop = [](auto& stack, auto& target)
     {

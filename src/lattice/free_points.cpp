@@ -236,8 +236,6 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
         const std::vector<Vec3> points = free_polygon(corners, grid);
         out.insert(out.end(), points.begin(), points.end());
     };
-    std::vector<Node> nodes;
-    for (const Vec3& v : figure.vertices) nodes.push_back(snap(v, grid));
     for (const FigureFace& face : figure.faces)
     {
         if (!face.is_visible) continue;
@@ -248,7 +246,7 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
             add(corners);
             continue;
         }
-        for (const auto& t : face_triangles(figure, face, nodes, grid))
+        for (const auto& t : face_triangles(figure, face))
             add({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
     }
     return out;

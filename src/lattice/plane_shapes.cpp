@@ -405,9 +405,7 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
 }
 
 std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
-                                                       const FigureFace& face,
-                                                       const std::vector<Node>& nodes,
-                                                       const LatticeGrid& grid)
+                                                       const FigureFace& face)
 {
     std::vector<std::array<std::size_t, 3>> out;
     for (const auto& t : face.triangles) out.push_back({t[0], t[1], t[2]});
@@ -418,7 +416,7 @@ std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
             out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
         return out;
     }
-    for (auto t : cut_polygon(nodes, {face.cut.begin(), face.cut.end()}, grid))
+    for (auto t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
     {
         if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
         out.push_back({t[0] + face.cut_offset, t[1] + face.cut_offset, t[2] + face.cut_offset});
@@ -435,7 +433,7 @@ std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const Lat
     for (const FigureFace& face : figure.faces)
     {
         if (only_visible && !face.is_visible) continue;
-        for (const auto& t : face_triangles(figure, face, nodes, grid))
+        for (const auto& t : face_triangles(figure, face))
             out.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
     }
     return out;

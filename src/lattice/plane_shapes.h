@@ -31,12 +31,9 @@ struct SnappedTriangle
 SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
                             double weight_dp, double limits_dp);
 
-/// The triangles of one face of a figure, as indices into its vertices; `nodes` are the snapped
-/// vertices, on which a polygon is cut.
+/// The triangles of one face of a figure, as indices into its vertices.
 std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
-                                                       const FigureFace& face,
-                                                       const std::vector<Node>& nodes,
-                                                       const LatticeGrid& grid);
+                                                       const FigureFace& face);
 
 /// Cuts the faces of a figure into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule P5).
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,

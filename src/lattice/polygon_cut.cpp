@@ -1,5 +1,6 @@
 #include "lattice/polygon_cut.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace fppg
@@ -39,14 +40,33 @@ WholeVec area_of(const std::vector<Node>& nodes, const std::vector<std::size_t>&
     return area;
 }
 
+/// The corners of a polygon on a lattice far finer than any dp, as the cutter works on whole
+/// numbers.
+std::vector<Node> fine_nodes(const std::vector<Vec3>& vertices,
+                             const std::vector<std::size_t>& polygon)
+{
+    Box3 box;
+    for (const std::size_t v : polygon) box.add(vertices[v]);
+    const Vec3 size = box.max - box.min;
+    LatticeGrid fine;
+    fine.origin = box.min;
+    fine.dp = std::max({size.x, size.y, size.z}) / (1 << 26);
+    std::vector<Node> nodes(vertices.size());
+    if (fine.dp > 0)
+        for (const std::size_t v : polygon) nodes[v] = snap(vertices[v], fine);
+    return nodes;
+}
+
 class PolygonCutter
 {
 public:
-    PolygonCutter(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon,
-                  const LatticeGrid& grid)
-        : nodes_(nodes), rest_(polygon), grid_(grid), area_(area_of(nodes, polygon))
+    PolygonCutter(const std::vector<Vec3>& vertices, const std::vector<std::size_t>& polygon)
+        : vertices_(vertices),
+          nodes_(fine_nodes(vertices, polygon)),
+          rest_(polygon),
+          area_(area_of(nodes_, polygon)),
+          slack_(1e-6 * static_cast<double>(dot(area_, area_)))
     {
-        first_ = polygon.size() > 4 && !is_flat(nodes, polygon) ? 1 : 0;
     }
 
     std::vector<std::array<std::size_t, 3>> run()
@@ -68,7 +88,13 @@ private:
 
     double distance(std::size_t i, std::size_t j) const
     {
-        return norm(position(nodes_[i], grid_) - position(nodes_[j], grid_));
+        return norm(vertices_[i] - vertices_[j]);
+    }
+
+    /// Twice the area of a, b, p, times that of the polygon: positive on the inner side of a side.
+    double side(const Node& a, const Node& b, const Node& p) const
+    {
+        return static_cast<double>(dot(cross(minus(b, a), minus(p, a)), area_));
     }
 
     bool is_ear(std::size_t k) const
@@ -76,14 +102,12 @@ private:
         const Node& a = nodes_[before(k)];
         const Node& b = nodes_[rest_[k]];
         const Node& c = nodes_[after(k)];
-        if (dot(cross(minus(b, a), minus(c, b)), area_) <= 0) return false;
+        if (side(a, b, c) <= slack_) return false;
         for (const std::size_t i : rest_)
         {
             const Node& p = nodes_[i];
             if (p == a || p == b || p == c) continue;
-            if (dot(cross(minus(b, a), minus(p, a)), area_) >= 0 &&
-                dot(cross(minus(c, b), minus(p, b)), area_) >= 0 &&
-                dot(cross(minus(a, c), minus(p, c)), area_) >= 0)
+            if (side(a, b, p) >= -slack_ && side(b, c, p) >= -slack_ && side(c, a, p) >= -slack_)
                 return false;
         }
         return true;
@@ -97,7 +121,7 @@ private:
         {
             std::size_t best = rest_.size();
             double least = std::numeric_limits<double>::infinity();
-            for (std::size_t k = first_; k < rest_.size(); ++k)
+            for (std::size_t k = 0; k < rest_.size(); ++k)
             {
                 const double perimeter = distance(before(k), rest_[k]) +
                                          distance(rest_[k], after(k)) +
@@ -110,23 +134,22 @@ private:
             }
             if (best < rest_.size()) return best;
         }
-        return first_;
+        return 0;
     }
 
-    const std::vector<Node>& nodes_;
+    const std::vector<Vec3>& vertices_;
+    std::vector<Node> nodes_;
     std::vector<std::size_t> rest_;
-    LatticeGrid grid_;
     WholeVec area_;
-    std::size_t first_ = 0;
+    double slack_; ///< what rounding to the fine lattice may do to side()
 };
 
 } // namespace
 
-std::vector<std::array<std::size_t, 3>> cut_polygon(const std::vector<Node>& nodes,
-                                                    const std::vector<std::size_t>& polygon,
-                                                    const LatticeGrid& grid)
+std::vector<std::array<std::size_t, 3>> cut_polygon(const std::vector<Vec3>& vertices,
+                                                    const std::vector<std::size_t>& polygon)
 {
-    return PolygonCutter(nodes, polygon, grid).run();
+    return PolygonCutter(vertices, polygon).run();
 }
 
 bool is_flat(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon)

@@ -369,7 +369,7 @@ SlabRegion ellipsoid_region(const EllipsoidOp& ellipsoid, const DrawState& state
     const Node f0 = snap(ellipsoid.focus0, grid);
     const Node f1 = snap(ellipsoid.focus1, grid);
     const double s0 = rounded_radius(ellipsoid.radius, grid.dp);
-    const double width = state.constants.ellipsoid;
+    const double width = state.constants.sphere;
     const double outer_limit =
         state.mode == DrawMode::Solid ? ellipsoid.radius / grid.dp : s0 + width;
     const bool is_open = state.mode != DrawMode::Solid;

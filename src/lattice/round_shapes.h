@@ -24,7 +24,7 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
 
 /// The nodes of an ellipsoid of revolution by the sum s of the distances to its snapped foci (rule
 /// R3): face |s - S0| < width with S0 = floor(R / dp + 0.5), full s < S0 + width, solid s <= R /
-/// dp.
+/// dp. The width is that of spheres, ctesphere; GenCase reads cteellipsoid and uses it nowhere.
 SlabRegion ellipsoid_region(const EllipsoidOp& ellipsoid, const DrawState& state,
                             const LatticeGrid& grid);
 

@@ -26,28 +26,6 @@ void flip(TriangleSoup& soup)
         std::swap(soup.vertices[3 * i + 1], soup.vertices[3 * i + 2]);
 }
 
-/// Cuts a polygon by the rule of the lattice. The rule works on whole numbers, so the corners are
-/// rounded to a lattice far finer than any dp; the triangles are of the corners as drawn.
-std::vector<Corners> cut_true_polygon(const std::vector<Vec3>& vertices,
-                                      const std::vector<std::uint32_t>& polygon)
-{
-    Box3 box;
-    for (const std::uint32_t v : polygon) box.add(vertices[v]);
-    const Vec3 size = box.max - box.min;
-    LatticeGrid fine;
-    fine.origin = box.min;
-    fine.dp = std::max({size.x, size.y, size.z}) / (1 << 26);
-    if (!(fine.dp > 0)) return {};
-    std::vector<Node> nodes;
-    for (const std::uint32_t v : polygon) nodes.push_back(snap(vertices[v], fine));
-    std::vector<std::size_t> all(nodes.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    std::vector<Corners> out;
-    for (const auto& t : cut_polygon(nodes, all, fine))
-        out.push_back({polygon[t[0]], polygon[t[1]], polygon[t[2]]});
-    return out;
-}
-
 /// The triangles of a polygon of a figure, all running around as the polygon does.
 std::vector<Corners> triangles_of(const FigureOp& figure, const FigureFace& face)
 {
@@ -57,9 +35,12 @@ std::vector<Corners> triangles_of(const FigureOp& figure, const FigureFace& face
             out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
     else if (out.empty())
     {
-        out = cut_true_polygon(figure.vertices, face.cut);
-        for (Corners& t : out)
-            for (std::uint32_t& v : t) v += face.cut_offset;
+        for (const auto& t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+        {
+            Corners& corners = out.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = static_cast<std::uint32_t>(t[k]) + face.cut_offset;
+        }
     }
     const auto place = [&](std::uint32_t v)
     { return std::find(face.vertices.begin(), face.vertices.end(), v) - face.vertices.begin(); };

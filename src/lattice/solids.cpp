@@ -36,7 +36,10 @@ public:
     SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
     {
         for (const std::uint32_t v : figure.solid_vertices)
+        {
+            vertices_.push_back(figure.vertices[v]);
             nodes_.push_back(snap(figure.vertices[v], grid));
+        }
         if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box)
             cut_prism(figure.solid == SolidKind::Box);
         if (figure.solid == SolidKind::Pyramid) cut_pyramid();
@@ -96,7 +99,7 @@ private:
         if (is_box)
             cut = {{3, 0, 1}, {1, 2, 3}};
         else
-            cut = cut_polygon(nodes_, polygon, grid_);
+            cut = cut_polygon(vertices_, polygon);
         std::vector<std::vector<Plane>> ends;
         for (const auto& t : cut)
         {
@@ -139,7 +142,7 @@ private:
             return;
         }
         // The base is cut as it is seen from outside.
-        Triangles cut = cut_polygon(nodes_, {base.rbegin(), base.rend()}, grid_);
+        Triangles cut = cut_polygon(vertices_, {base.rbegin(), base.rend()});
         for (auto& t : cut) std::swap(t[0], t[2]);
         for (const auto& t : cut)
         {
@@ -169,6 +172,7 @@ private:
     }
 
     LatticeGrid grid_;
+    std::vector<Vec3> vertices_; ///< as drawn; nodes_ are where they are snapped to
     std::vector<Node> nodes_;
 };
 

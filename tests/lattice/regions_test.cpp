@@ -254,7 +254,7 @@ TEST(SolidRegion, OfAPrismIsItsPartsAndTheNodesBetweenThem)
         }
         std::vector<std::size_t> polygon(n);
         std::iota(polygon.begin(), polygon.end(), std::size_t{0});
-        const auto triangles = cut_polygon(nodes, polygon, grid);
+        const auto triangles = cut_polygon(prism.vertices, polygon);
         const auto plane = [&](std::size_t a, std::size_t b, std::size_t c)
         {
             return plane_through(position(nodes[a], grid), position(nodes[b], grid),
@@ -425,7 +425,7 @@ TEST(EllipsoidRegion, HasTheNodesByTheSumOfTheDistancesToTheFoci)
             };
             const double sum = distance(f0) + distance(f1);
             const double middle = std::floor(radius / grid.dp + 0.5);
-            const double width = state.constants.ellipsoid;
+            const double width = state.constants.sphere;
             if (state.mode == DrawMode::Solid) return sum <= radius / grid.dp;
             return sum < middle + width && (state.mode == DrawMode::Full || sum > middle - width);
         };

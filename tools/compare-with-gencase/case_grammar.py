@@ -240,7 +240,8 @@ class Grammar:
         return self.of_points("drawpolygon", self.ring(self.rng.randint(3, 6)))
 
     def indexed(self, points, facets):
-        return [element("points", {}, *(self.vector("point", p) for p in points)),
+        # GenCase takes no expressions in these.
+        return [element("points", {}, *(element("point", {n: digits(v) for n, v in zip(AXES, p)}) for p in points)),
                 element("triangles", {}, *(element("triangle", dict(zip(AXES, f))) for f in facets))]
 
     def tetrahedron(self):
@@ -346,11 +347,16 @@ class Grammar:
                         self.vector("point", a), self.vector("point", b), *self.layers())]
 
     def drawwave(self):
-        box = self.box_place(5, is_shape=False)
-        x = self.along(0, 0.2)
-        return [element("drawwave", {"depth": self.number(self.length(2, 5)), "hmaxwave": self.number(self.length(1, 3)),
-                                     "x0": self.number(x), "z0": self.number(self.along(2, 0.3))},
-                        box[0], self.vector("size", [self.length(5, 12), self.length(4, 8), self.length(6, 12)]))]
+        # GenCase takes no expressions in it.
+        numbers = {"depth": self.length(2, 5), "hmaxwave": self.length(1, 3), "x0": self.along(0, 0.2),
+                   "z0": self.along(2, 0.3)}
+        at = [self.along(a, 0.05) for a in range(3)]
+        size = [self.length(5, 12), self.length(4, 8), self.length(6, 12)]
+        if self.is_flat:
+            at[1], size[1] = round(self.low[1] - 3 * self.dp, 3), round(6 * self.dp, 3)
+        return [element("drawwave", {n: digits(v) for n, v in numbers.items()},
+                        *(element(tag, {n: digits(v) for n, v in zip(AXES, values)})
+                          for tag, values in (("point", at), ("size", size))))]
 
     # --- Files ---
 
@@ -549,10 +555,15 @@ class Grammar:
         return [element("setboxlimitmode", {"mode": self.rng.choice(("inner", "full"))})]
 
     def setmknextbound(self):
-        return [element("setmknextbound", {"next": self.flag()})]
+        return self.next_mk("bound")
 
     def setmknextfluid(self):
-        return [element("setmknextfluid", {"next": self.flag()})]
+        return self.next_mk("fluid")
+
+    def next_mk(self, kind):
+        # There is none before the first.
+        return [element("setmk" + kind, {"mk": self.rng.randint(1, 3)}),
+                element("setmknext" + kind, {"next": self.flag()})]
 
     def setnormalinvert(self):
         return [element("setnormalinvert", {"invert": self.flag()})]
