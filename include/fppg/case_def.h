@@ -8,6 +8,7 @@
 #include "fppg/mesh_reading.h"
 #include "fppg/normals.h"
 #include "fppg/vec.h"
+#include "fppg/vres.h"
 
 #include <array>
 #include <cstdint>
@@ -517,6 +518,13 @@ struct CaseDef
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
+    VresDef vres;         ///< no zones: one resolution
+    std::size_t zone = 0; ///< which of them this case is
+    /// Of zone 0, where this is another one: GenCase takes its depth and, for rhopgradient 3, its
+    /// surface.
+    std::optional<double> main_hswl;
+    std::optional<double> main_surface;
+    Box3 particles_around; ///< limits of the particles of the zone around this one
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
@@ -547,7 +555,13 @@ struct CaseOptions
     std::optional<double> dp;                               ///< -dp:
     std::vector<std::pair<std::string, std::string>> evars; ///< -evars:
     std::string case_name;                                  ///< of the output
+    /// The zones as zone 0 gave them, to read the case as zone `zone`; null: zone 0.
+    const VresDef* vres = nullptr;
+    std::size_t zone = 0;
 };
+
+/// The name of a zone's case: NAME_vres00 and so on.
+std::string zone_name(const std::string& case_name, std::size_t zone);
 
 /// The settings of a boundary mk; null: its particles stand on the lattice.
 const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk);

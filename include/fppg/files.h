@@ -163,6 +163,12 @@ void write_wall_particles_vtk(OutputFile& file, const WallParticles& particles);
 /// Numbers as a list of ranges, e.g. "10-11,20"; they are sorted first, repeated ones count once.
 std::string format_ranges(std::vector<int> numbers);
 
+/// Writes the boxes of one zone of `<vres>`, or one box of each, as legacy binary VTK: LINES in 2D
+/// and of all zones together, else POLYGONS, with CELL_DATA Zone (int); cells as in GenCase
+/// v5.4.354.
+void write_zone_vtk(OutputFile& file, const VresDef& vres, std::size_t id);
+void write_zones_vtk(OutputFile& file, const VresDef& vres);
+
 /// A line of `<vtkout>` in Case.xml.
 struct VtkOutEntry
 {

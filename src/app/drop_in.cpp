@@ -86,11 +86,8 @@ public:
         {
             prepare_folder();
             read();
-            draw();
-            relax();
-            add_points();
-            prepare();
-            save();
+            make_case();
+            make_other_zones();
         }
         catch (const std::exception& error)
         {
@@ -102,12 +99,102 @@ public:
             fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), threads_));
         log_.line();
         log_.line("Finished execution (code=0).");
+        output_ = options_.output;
         add_file(".out").append(log_.text());
         commit();
         return 0;
     }
 
 private:
+    void make_case()
+    {
+        draw();
+        relax();
+        add_points();
+        prepare();
+        save();
+    }
+
+    /// What the summary of the zones says of one.
+    struct ZoneSummary
+    {
+        double dp = 0;
+        int parent = -1;
+        std::array<std::uint64_t, 4> counts{}; ///< fluid, fixed, moving, floating
+        Box3 limits;                           ///< of its particles
+        CaseConstants constants;
+    };
+
+    /// Zone 0 of a case with `<vres>` is made; the others follow, each a case of its own.
+    void make_other_zones()
+    {
+        if (!def_.vres.is_active()) return;
+        const VresDef vres = def_.vres;
+        std::vector<ZoneSummary> zones{summary_of_zone()};
+        while (zones.size() < vres.zones.size())
+        {
+            const std::size_t id = zones.size();
+            log_.line();
+            log_.line(std::string(72, '#'));
+            read(id, &vres);
+            def_.main_hswl = zones[0].constants.hswl;
+            if (def_.constants.rhop_gradient == 3 && zones[0].counts[0] > 0)
+                def_.main_surface = zones[0].constants.surface;
+            def_.particles_around = zones[static_cast<std::size_t>(vres.zones[id].parent)].limits;
+            make_case();
+            zones.push_back(summary_of_zone());
+        }
+        output_ = options_.output;
+        save_zones(vres);
+        print_zones(zones);
+    }
+
+    ZoneSummary summary_of_zone() const
+    {
+        ZoneSummary out;
+        out.dp = def_.grid.dp;
+        out.parent = def_.vres.zones[def_.zone].parent;
+        out.counts = {particles_.n_fluid, particles_.n_fixed, particles_.n_moving,
+                      particles_.n_floating};
+        out.limits.add(particles_.pos_min);
+        out.limits.add(particles_.pos_max);
+        out.constants = constants_;
+        return out;
+    }
+
+    void save_zones(const VresDef& vres)
+    {
+        for (std::size_t id = 0; id < vres.zones.size(); ++id)
+            timed(fmt::format("_vresDomain{:02}.vtk", id), "",
+                  [&](OutputFile& f) { write_zone_vtk(f, vres, id); });
+        timed("_vresDomains.vtk", "", [&](OutputFile& f) { write_zones_vtk(f, vres); });
+    }
+
+    void print_zones(const std::vector<ZoneSummary>& zones)
+    {
+        log_.line();
+        log_.line("VResolution summary:");
+        log_.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", "Zone",
+                              "Parent", "Dp", "Particles", "Fluid", "Fixed", "Moving", "Floating"));
+        const auto row = [&](const std::string& id, const std::string& parent,
+                             const std::string& dp, const std::array<std::uint64_t, 4>& n)
+        {
+            log_.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", id,
+                                  parent, dp, thousands(n[0] + n[1] + n[2] + n[3]), thousands(n[0]),
+                                  thousands(n[1]), thousands(n[2]), thousands(n[3])));
+        };
+        std::array<std::uint64_t, 4> all{};
+        for (std::size_t id = 0; id < zones.size(); ++id)
+        {
+            const ZoneSummary& zone = zones[id];
+            row(fmt::format("{}", id), id > 0 ? fmt::format("{}", zone.parent) : "",
+                fmt::format("{:g}", zone.dp), zone.counts);
+            for (std::size_t k = 0; k < 4; ++k) all[k] += zone.counts[k];
+        }
+        row("all", "", "", all);
+        log_.line();
+    }
+
     template <typename Body>
     void stage(const char* name, const Body& body)
     {
@@ -132,17 +219,24 @@ private:
                 fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
     }
 
-    void read()
+    void read(std::size_t zone = 0, const VresDef* vres = nullptr)
     {
         stage("LoadXMLInit",
-              [this]
+              [&]
               {
                   CaseOptions case_options;
                   case_options.fit = options_.fit;
                   case_options.dp = options_.dp;
                   case_options.evars = options_.evars;
                   case_options.case_name = fs::path(options_.output).filename().string();
+                  case_options.vres = vres;
+                  case_options.zone = zone;
                   def_ = read_case(options_.input + ".xml", case_options);
+                  output_ =
+                      def_.vres.is_active() ? zone_name(options_.output, zone) : options_.output;
+                  if (def_.vres.is_active())
+                      log_.line(
+                          fmt::format("VResolution: zone {} of {}", zone, def_.vres.zones.size()));
                   log_.line(fmt::format("Total operations: {}", def_.ops.size()));
               });
     }
@@ -164,7 +258,9 @@ private:
                                         grid.n[1] - 1, grid.n[2] - 1));
                   for (const std::string& line : def_.list_log) log_.line(line);
                   LatticeReport report;
+                  mesh_files_.clear();
                   field_ = generate_lattice(def_, threads_, draw_progress(), report);
+                  enter_zone();
                   mesh_files_ = std::move(report.mesh_files);
                   for (const std::string& line : report.log) log_.line(line);
                   node_files_ = std::move(report.node_files);
@@ -173,6 +269,16 @@ private:
                   log_.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
                                         report.triangles_ignored));
               });
+    }
+
+    void enter_zone()
+    {
+        if (!def_.vres.is_active()) return;
+        if (field_.walls.volume.size() > 0)
+            throw CaseError(def_.file, def_.vres.zones[0].line,
+                            "<vres>: regions of other resolution together with particles off the "
+                            "lattice (<setfrdrawmode>) are not supported yet");
+        clip_to_zone(def_.vres, def_.zone, field_);
     }
 
     /// A line on the terminal that shows how far a long drawing is; nothing where the output is a
@@ -198,7 +304,7 @@ private:
         stage("Relax",
               [this]
               {
-                  RelaxOutcome done = run_relaxation(def_, field_, options_.output, threads_, log_);
+                  RelaxOutcome done = run_relaxation(def_, field_, output_, threads_, log_);
                   relax_history_ = std::move(done.history);
                   for (std::string& w : done.warnings) warn(std::move(w));
               });
@@ -307,7 +413,7 @@ private:
     /// A new output file; it gets its name in commit().
     OutputFile& add_file(const std::string& ending)
     {
-        files_.emplace_back(options_.output + ending);
+        files_.emplace_back(output_ + ending);
         return files_.back();
     }
 
@@ -316,7 +422,7 @@ private:
         stage("SaveCase3D",
               [this]
               {
-                  files_.reserve(1024);
+                  files_.reserve(files_.size() + 1024);
                   const FileOrigin origin{full_name(), date_of_run(), def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
                   copy_data_files();
@@ -387,6 +493,9 @@ private:
             const fs::path target = fs::path(options_.output).parent_path() / name;
             std::error_code error;
             if (fs::exists(target, error) && fs::equivalent(target, mesh.path, error)) continue;
+            if (std::any_of(files_.begin(), files_.end(),
+                            [&](const OutputFile& f) { return f.path() == target.string(); }))
+                continue; // of another zone
             if (!target.parent_path().empty()) fs::create_directories(target.parent_path(), error);
             OutputFile& file = files_.emplace_back(target.string());
             std::ifstream in(mesh.path, std::ios::binary);
@@ -465,7 +574,7 @@ private:
                   });
             if (faces > 0) continue;
             files_.pop_back();
-            log_.line(fmt::format("{}{} is empty and not saved", options_.output, node_file.name));
+            log_.line(fmt::format("{}{} is empty and not saved", output_, node_file.name));
         }
         node_files_.clear();
     }
@@ -489,7 +598,7 @@ private:
                     .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first
                                                                    : def_.mk_fluid_first));
             }
-            vtk_out.push_back({fs::path(options_.output + shape_file.name).filename().string(),
+            vtk_out.push_back({fs::path(output_ + shape_file.name).filename().string(),
                                format_ranges(mk), format_ranges(mk_bound),
                                format_ranges(mk_fluid)});
         }
@@ -545,7 +654,7 @@ private:
     void keep_overwritten_definition()
     {
         const std::string source = options_.input + ".xml";
-        const std::string target = options_.output + ".xml";
+        const std::string target = output_ + ".xml";
         std::error_code error;
         if (!fs::exists(target, error) || !fs::equivalent(source, target, error)) return;
         const std::string kept = target + ".orig";
@@ -589,6 +698,7 @@ private:
         std::error_code ignored;
         if (fs::exists(path, ignored)) return;
         files_.clear();
+        output_ = options_.output;
         try
         {
             const auto* known = dynamic_cast<const Error*>(&error);
@@ -625,6 +735,7 @@ private:
     DropInOptions options_;
     int threads_;
     RunLog log_;
+    std::string output_; ///< as options_.output, of the zone that is made
     CaseDef def_;
     RunField field_;
     std::string relax_history_;

@@ -10,6 +10,7 @@
 #include "casedef/patterns.h"
 #include "casedef/program.h"
 #include "casedef/variable_commands.h"
+#include "casedef/vres.h"
 #include "casedef/xml_document.h"
 
 #include <fmt/format.h>
@@ -54,9 +55,16 @@ public:
         set_early_variables();
         if (const Element* before = geometry.find_child("predefinition"))
             run_predefinition(*before);
-        read_definition(read_.child(geometry, "definition"));
+        const Element* vres = casedef.find_child("vres");
+        if (vres != nullptr && !read_.flag_or(*vres, "active", true)) vres = nullptr;
+        if (vres != nullptr) def_.case_name = zone_name(options_.case_name, options_.zone);
+        const Element& definition = read_.child(geometry, "definition");
+        read_definition(definition);
+        if (options_.vres != nullptr) enter_zone(definition);
         apply_formulas();
         set_case_variables();
+        if (vres != nullptr && options_.vres == nullptr)
+            def_.vres = read_vres(*vres, definition, read_, variables_, def_, pointref_);
 
         PatternTable patterns;
         if (const Element* e = casedef.find_child("patterns")) patterns = read_patterns(*e, read_);
@@ -73,12 +81,6 @@ public:
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
-        if (const Element* e = casedef.find_child("vres"))
-            if (read_.flag_or(*e, "active", true))
-                read_.fail(*e,
-                           "variable resolution is not supported yet; GenCase makes a case of its "
-                           "own of every zone (CASE_vres00.bi4, CASE_vres01.bi4, ...) from it. "
-                           "active=\"false\" makes one case of a single resolution");
         note_data_files(casedef);
         read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
@@ -87,6 +89,7 @@ public:
             read_.fail(casedef,
                        "<lattice> with two particles a node is not possible together with "
                        "body-fitted walls");
+        if (vres != nullptr) check_vres(*vres);
         apply_overrides(def_.casedef);
         for (const Variable& v : variables_.exported())
         {
@@ -251,7 +254,7 @@ private:
         variables_.predefine("Gravity_y", def_.constants.gravity.y);
         variables_.predefine("Gravity_z", def_.constants.gravity.z);
         variables_.predefine("Rhop0", def_.constants.rhop0);
-        variables_.predefine("VResId", 0.0, true);
+        variables_.predefine("VResId", static_cast<double>(options_.zone), true);
     }
 
     void run_predefinition(const Element& e)
@@ -274,6 +277,8 @@ private:
         grid.dp = options_.dp ? *options_.dp : read_.number(e, "dp");
         if (!(grid.dp > 0) || !std::isfinite(grid.dp))
             read_.fail(e, fmt::format("dp is {:g}, expected a particle distance above 0", grid.dp));
+        // GenCase knows it in the attributes of the children.
+        variables_.predefine("Dp", zone_dp());
         const Vec3 low = read_.child_vec3(e, "pointmin");
         const Vec3 high = read_.child_vec3(e, "pointmax");
         grid.is_2d = low.y == high.y;
@@ -289,11 +294,55 @@ private:
         if (const Element* ref = e.find_child("pointref"))
         {
             const Vec3 r = read_.vec3_or(*ref, {});
+            pointref_ = r;
             for (int axis = 0; axis < 3; ++axis)
                 if (!(grid.is_2d && axis == 1))
                     grid.origin[axis] =
                         r[axis] + std::floor((low[axis] - r[axis]) / grid.dp) * grid.dp;
         }
+        set_nodes(e, high);
+    }
+
+    double zone_dp() const
+    {
+        return options_.vres != nullptr ? options_.vres->zones[options_.zone].dp : def_.grid.dp;
+    }
+
+    /// The lattice of a zone: from the lowest corner of its buffer's limits to the highest, which
+    /// has a node.
+    void enter_zone(const Element& e)
+    {
+        def_.vres = *options_.vres;
+        def_.zone = options_.zone;
+        const VresZone& zone = def_.vres.zones[def_.zone];
+        const Box3 limits = limits_of(zone.buffer);
+        def_.grid.dp = zone.dp;
+        def_.grid.origin = limits.min;
+        Vec3 high = limits.max;
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(def_.grid.is_2d && axis == 1)) high[axis] += zone.dp * 1.001;
+        set_nodes(e, high);
+        def_.casedef.find_child("geometry")
+            ->find_child("definition")
+            ->set_attribute("dp", fmt::format("#{}", zone.dp));
+    }
+
+    void check_vres(const Element& e) const
+    {
+        if (!def_.fit.is_empty())
+            read_.fail(e,
+                       "regions of other resolution together with body-fitted walls are not "
+                       "supported yet");
+        if (!def_.point_files.empty())
+            read_.fail(e,
+                       "regions of other resolution together with <fppg><points> are not "
+                       "supported yet");
+    }
+
+    /// Nodes up to the highest limits, which have none themselves.
+    void set_nodes(const Element& e, const Vec3& high)
+    {
+        LatticeGrid& grid = def_.grid;
         for (int axis = 0; axis < 3; ++axis)
         {
             const double n = std::floor((high[axis] - grid.origin[axis]) / grid.dp);
@@ -334,7 +383,6 @@ private:
     void set_case_variables()
     {
         const LatticeGrid& grid = def_.grid;
-        variables_.predefine("Dp", grid.dp);
         variables_.predefine("PosMin_x", def_.case_pos_min.x);
         variables_.predefine("PosMin_y", def_.case_pos_min.y);
         variables_.predefine("PosMin_z", def_.case_pos_min.z);
@@ -593,12 +641,18 @@ private:
 
     CaseOptions options_;
     CaseDef def_;
+    Vec3 pointref_;
     Variables variables_;
     AttributeReader read_;
     VariableCommands commands_;
 };
 
 } // namespace
+
+std::string zone_name(const std::string& case_name, std::size_t zone)
+{
+    return fmt::format("{}_vres{:02}", case_name, zone);
+}
 
 CaseDef read_case(const std::string& path, const CaseOptions& options)
 {

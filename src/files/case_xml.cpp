@@ -9,12 +9,13 @@
 //       <particles>  _summary, then a line a block in id order, floating ones with mass, center,
 //                    inertia (short form where the off-diagonal entries are zero) and their
 //                    restrictions and velocities, then the properties that are in use
-//       <constants>  <uservars>  <motion> (case_motion.h)  <vtkout>
+//       <constants>  <vres> (of a zone)  <uservars>  <motion> (case_motion.h)  <vtkout>
 //
 // Numbers are the shortest text that reads back exactly, where GenCase keeps six to eleven digits:
 // the solver compares data2dposy with the number in Case.bi4 and refuses a rounded one.
 
 #include "files/case_motion.h"
+#include "files/vres_xml.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
@@ -117,6 +118,12 @@ Element complete_domain(const Element& given)
     domain.children.back().set_attribute("comment", "e.g.: x=0.5, y=default-1, z=default-10%");
     domain.children.push_back(complete_limit(given, "posmax"));
     return domain;
+}
+
+/// Puts the domain of a zone in the place of that of the case.
+void set_domain(Element& parameters, const Element& domain)
+{
+    *parameters.find_child("simulationdomain") = domain;
 }
 
 Element case_parameters(const Element& given)
@@ -432,8 +439,12 @@ void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& p
         execution.children.push_back(child.kind == Element::Kind::Tag && child.name == "parameters"
                                          ? case_parameters(child)
                                          : child);
+    if (def.vres.is_active())
+        if (const auto domain = zone_domain_tag(def))
+            set_domain(*execution.find_child("parameters"), *domain);
     execution.children.push_back(particles_tag(def, particles));
     execution.children.push_back(constants_tag(constants));
+    if (def.vres.is_active()) execution.children.push_back(vres_tag(def));
     execution.children.push_back(user_variables_tag(def.user_variables));
     execution.children.push_back(case_motion(def.motion, particles.blocks));
     execution.children.push_back(vtk_out_tag(def, vtk_out));

@@ -456,7 +456,10 @@ void compute_densities(const CaseDef& def, const RunField& field,
                 s_max = std::max(s_max, height(p.x, p.y, p.z));
                 s_min = std::min(s_min, height(p.x, p.y, p.z));
             });
+        // Where GenCase v5.4.354 has several zones, the surface of the first is that of all.
+        if (def.main_surface && particles.n_fluid > 0) s_max = *def.main_surface;
         if (std::isfinite(of_nodes)) excess = s_max - of_nodes;
+        if (std::isfinite(s_max)) constants.surface = s_max;
     }
     else if (g > 0 && is_vertical)
         free.measure_along_z(top, dp);
@@ -465,6 +468,8 @@ void compute_densities(const CaseDef& def, const RunField& field,
 
     if (c.hswl)
         constants.hswl = *c.hswl;
+    else if (def.main_hswl)
+        constants.hswl = *def.main_hswl;
     else if (particles.n_fluid == 0 || g == 0)
         constants.hswl = 0;
     else if (by_height)

@@ -1,0 +1,121 @@
+#include "fppg/vres.h"
+
+#include "lattice/spans.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+Vec3 node_place(const LatticeGrid& grid, std::uint32_t x, std::uint32_t y, std::uint32_t z)
+{
+    return grid.origin + Vec3{x * grid.dp, y * grid.dp, z * grid.dp};
+}
+
+/// Whether a place is in a box, its faces included. The arithmetic, a plane a pair of faces with
+/// values from 0 to 1, is one that gives the nodes of GenCase where faces go through nodes.
+class BoxTest
+{
+public:
+    BoxTest(const ZoneBox& box, bool is_2d)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            if (is_2d && axis == 1) continue;
+            const Vec3& edge = box.edges[axis];
+            const double scale = norm(edge) * norm(edge);
+            planes_.push_back({edge / scale, -dot(edge, box.corner) / scale});
+        }
+    }
+
+    bool operator()(const Vec3& p) const
+    {
+        return std::all_of(planes_.begin(), planes_.end(),
+                           [&](const Plane& plane)
+                           {
+                               const double value = dot(plane.normal, p) + plane.offset;
+                               return value >= 0 && value <= 1;
+                           });
+    }
+
+private:
+    struct Plane
+    {
+        Vec3 normal;
+        double offset = 0;
+    };
+    std::vector<Plane> planes_;
+};
+
+/// The nodes of a plain box without those on its faces, which stand on their nearest nodes.
+NodeBox nodes_within(const ZoneBox& box, const LatticeGrid& grid)
+{
+    const Vec3 far = box.far_corner();
+    NodeBox out = whole_lattice(grid);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (grid.is_2d && axis == 1) continue;
+        const auto step = [&](double x)
+        { return static_cast<std::int64_t>(std::round((x - grid.origin[axis]) / grid.dp)); };
+        const auto k = static_cast<std::size_t>(axis);
+        out.begin[k] = std::max<std::int64_t>(out.begin[k], step(box.corner[axis]) + 1);
+        out.end[k] = std::min<std::int64_t>(out.end[k], step(far[axis]));
+    }
+    return out;
+}
+
+void erase_box(const NodeBox& box, RunField& field)
+{
+    if (box.is_empty()) return;
+    for (std::int64_t x = box.begin[0]; x < box.end[0]; ++x)
+    {
+        std::vector<Run>& runs = field.slabs[static_cast<std::size_t>(x)];
+        const Spans inside = clip_to_box(occupied(runs), box);
+        if (!inside.empty()) paint(runs, inside, 0);
+    }
+}
+
+/// Takes out the nodes that are in a turned box, or with `keep` those that are not.
+void erase_nodes(const ZoneBox& box, bool keep, RunField& field)
+{
+    const BoxTest is_inside(box, field.grid.is_2d);
+    Spans out;
+    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+    {
+        out.clear();
+        for (const Span& span : occupied(field.slabs[x]))
+            for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+            {
+                const bool inside =
+                    is_inside(node_place(field.grid, static_cast<std::uint32_t>(x), span.y, z));
+                if (inside == keep) continue;
+                if (!out.empty() && out.back().y == span.y && out.back().z_end == z)
+                    ++out.back().z_end;
+                else
+                    out.push_back({span.y, z, z + 1});
+            }
+        if (!out.empty()) paint(field.slabs[x], out, 0);
+    }
+}
+
+} // namespace
+
+void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
+{
+    const VresZone& own = vres.zones[zone];
+    if (zone > 0 && !own.inner.is_plain)
+        erase_nodes(resized(own.buffer, own.dp, vres.is_2d), true, field);
+    for (const VresZone& inner : vres.zones)
+    {
+        if (inner.parent != static_cast<int>(zone)) continue;
+        if (inner.outer_end.is_plain)
+            erase_box(nodes_within(inner.outer_end, field.grid), field);
+        else
+            erase_nodes(resized(inner.outer_end, -own.dp, vres.is_2d), false, field);
+    }
+}
+
+} // namespace fppg
