@@ -64,7 +64,7 @@ class MakeMeshes(unittest.TestCase):
             for file, _, _ in make_meshes.CASE_MESHES:
                 kept = os.path.join(ROOT, "cases", file)
                 self.assertTrue(filecmp.cmp(os.path.join(folder, file), kept, shallow=False), file)
-                self.assertLess(os.path.getsize(kept), 200000)
+                self.assertLess(os.path.getsize(kept), 400000)
 
     def test_the_meshes_of_the_templates_are_the_ones_it_makes(self):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
