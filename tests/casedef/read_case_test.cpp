@@ -547,6 +547,11 @@ TEST(State, CountsMksOnWithSetmknext)
     EXPECT_EQ(def.ops.at(3).state->mk, (MkValue{MkKind::Fluid, 1, 0}));
 }
 
+TEST(State, RefusesTheMkBeforeTheFirst)
+{
+    EXPECT_THROW(run(R"(<setmkfluid mk="0" /><setmknextfluid next="false" />)"), CaseError);
+}
+
 TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
 {
     const std::string points =

@@ -71,6 +71,26 @@ const std::string checker =
 const std::string all_nodes =
     test::box_command(R"(x="-0.5" y="-0.5" z="-0.5")", R"(x="1.9" y="1.9" z="1.9")");
 
+TEST(Layers, MoveOutwardsWhicheverCornerOfABoxComesFirst)
+{
+    const auto box = [](const std::string& corners)
+    {
+        return nodes_of("<drawbox><boxfill>top | left</boxfill><layers vdp=\"-1,2\" />" + corners +
+                        "</drawbox>");
+    };
+    EXPECT_EQ(box(R"(<point x="0.8" y="0.3" z="0.9" /><endpoint x="0.3" y="0.8" z="0.3" />)"),
+              box(R"(<point x="0.3" y="0.3" z="0.3" /><endpoint x="0.8" y="0.8" z="0.9" />)"));
+}
+
+TEST(SetDpCtes, OfSpheresCountForEllipsoidsAndTheirOwnDoesNot)
+{
+    const std::string ellipsoid =
+        R"(<drawellipsoid radius="0.9"><point x="0.5" y="0.5" z="0.5" /><point x="0.5" y="0.6" z="0.7" /></drawellipsoid>)";
+    const Counts plain = nodes_of(ellipsoid);
+    EXPECT_EQ(nodes_of("<setdpctes cteellipsoid=\"1.1\" />" + ellipsoid), plain);
+    EXPECT_GT(nodes_of("<setdpctes ctesphere=\"1.1\" />" + ellipsoid).at(10), plain.at(10));
+}
+
 TEST(Patterns, LeaveTheOtherNodesAsTheyAre)
 {
     EXPECT_EQ(nodes_of(all_nodes + R"(<setmkbound mk="3" /><setpattern name="p" />)" + all_nodes,

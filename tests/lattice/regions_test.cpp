@@ -230,6 +230,23 @@ TEST(SolidRegion, OfFacesIsWhatLiesBehindAllOfThem)
     }
 }
 
+TEST(CutPolygon, GoesByTheCornersAsTheyAreDrawn)
+{
+    // On a lattice of 0.1 the second corner would be cut off first; GenCase v5.4.354 takes the
+    // third.
+    const std::vector<Vec3> corners{
+        {0.718, 0, 0.602}, {0.647, 0, -0.1}, {-0.042, 0, -0.249}, {-0.397, 0, 0.36}};
+    const std::array<std::size_t, 3> expected{1, 2, 3};
+    EXPECT_EQ(cut_polygon(corners, {0, 1, 2, 3}).at(0), expected);
+}
+
+TEST(Snap, RoundsHalvesAwayFromTheOrigin)
+{
+    LatticeGrid grid;
+    grid.dp = 0.1;
+    EXPECT_EQ(snap({0.05, -0.05, -0.049}, grid), (Node{1, -1, 0}));
+}
+
 TEST(SolidRegion, OfAPrismIsItsPartsAndTheNodesBetweenThem)
 {
     Dice dice(6);
