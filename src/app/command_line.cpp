@@ -193,6 +193,8 @@ std::string help_text()
         "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
         "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
+        "  fppg compare A B [--html page.html]   what differs between two results; fppg compare "
+        "--help\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
