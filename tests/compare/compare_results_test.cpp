@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace fppg
 {
@@ -115,7 +116,7 @@ TEST(CompareResults, NamesSwappedIds)
     std::vector<TestParticle> changed = box_of(6, 5, 4);
     std::swap(changed[3].id, changed[47].id);
     const Comparison found = compare_sets(box_of(6, 5, 4), changed);
-    EXPECT_EQ(found.findings.size(), 2U) << "one of either mk" << to_text(found);
+    EXPECT_EQ(found.findings.size(), 1U) << to_text(found);
     const auto swapped = examples_of(found, ChangeKind::IdChanged);
     ASSERT_EQ(swapped.size(), 2U);
     EXPECT_EQ(swapped[0].id, (std::array<std::uint32_t, 2>{3, 47}));
@@ -203,18 +204,18 @@ TEST(CompareResults, NamesElementsThatOneXmlLacks)
     write_case(folder, "a", small_particles(), small_constants());
     write_case(folder, "b", small_particles(), small_constants());
     std::string xml = read_whole(folder / "b.xml");
-    xml.replace(xml.find("</execution>"), 0,
-                "<parameters><parameter key=\"Visco\" /></parameters>");
+    xml.replace(xml.find("</execution>"), 0, "<beside key=\"Visco\" />");
     save(folder / "b.xml", xml);
     const Comparison found = compare_results(folder / "a", folder / "b", {});
     ASSERT_EQ(found.values.size(), 1U) << to_text(found);
-    EXPECT_EQ(found.values[0].place, "execution/parameters");
+    EXPECT_EQ(found.values[0].place, "execution/beside[key=Visco]");
     EXPECT_FALSE(found.values[0].a.has_value());
 }
 
 TEST(CompareResults, CutsSpaceIntoSlabsWithoutChangingTheResult)
 {
-    for (const auto& [nx, ny, nz] : {std::tuple(60, 6, 5), {5, 60, 6}, {6, 5, 60}})
+    for (const auto& [nx, ny, nz] :
+         {std::tuple(60, 6, 5), std::tuple(5, 60, 6), std::tuple(6, 5, 60)})
     {
         const std::vector<TestParticle> a = shaken(box_of(nx, ny, nz), 0.05);
         const std::vector<TestParticle> b = shaken(box_of(nx, ny, nz), 0.6);
