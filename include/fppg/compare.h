@@ -1,12 +1,14 @@
 #pragma once
 
 #include "fppg/error.h"
+#include "fppg/read_particles.h"
 #include "fppg/vec.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -188,7 +190,6 @@ Comparison compare_results(const std::string& name_a, const std::string& name_b,
 
 /// Particles of a result for a picture: all, or where there are more than `most`, the first of
 /// every cube of some dp, with this size as dp. throws CompareError
-struct ParticleCloud;
 std::array<ParticleCloud, 2> clouds_for_picture(const Comparison& comparison, std::size_t most);
 
 /// For people. Neither threads nor memory nor time are in it.
@@ -200,7 +201,8 @@ std::string to_json(const Comparison& comparison);
 struct ComparePicture
 {
     std::string caption;
-    std::string png; ///< the bytes of the file
+    std::vector<std::pair<std::string, std::string>> legend; ///< colour as "#rrggbb", meaning
+    std::string png;                                         ///< the bytes of the file
 };
 
 /// One HTML page that needs no other file: what to_text() says, with pictures and histograms.

@@ -194,6 +194,8 @@ std::string help_text()
         "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
         "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
+        "  fppg compare A B [--html page.html]   what differs between two results; fppg compare "
+        "--help\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"

@@ -119,9 +119,8 @@ std::uint8_t colour_of(ChangeKind kind)
     }
 }
 
-std::string hex(std::uint8_t kind)
+std::string hex(const Rgb& c)
 {
-    const Rgb c = colour_of_kind(kind);
     return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
 }
 
@@ -144,11 +143,23 @@ void draw_changed(const Comparison& comparison, std::vector<ComparePicture>& pic
     RenderOptions options = picture_options(comparison);
     options.colour = RenderColour::Kind;
     pictures.push_back(
-        {fmt::format("Only what differs{}, A on the left, B on the right: {} missing, {} extra, {} "
-                     "moved, {} another mk",
-                     comparison.changed.size() < most_changed ? "" : " (the first 200,000)", hex(0),
-                     hex(1), hex(2), hex(3)),
+        {fmt::format("Only what differs{}, A on the left, B on the right:",
+                     comparison.changed.size() < most_changed ? "" : " (the first 200,000)"),
+         {{hex(colour_of_kind(0)), "missing"},
+          {hex(colour_of_kind(1)), "extra"},
+          {hex(colour_of_kind(2)), "moved"},
+          {hex(colour_of_kind(3)), "another mk"}},
          png_bytes(render_particles(clouds, options, comparison.options.threads), true)});
+}
+
+/// The mks of both files with their colours.
+std::vector<std::pair<std::string, std::string>> mk_legend(const Comparison& comparison)
+{
+    std::vector<std::pair<std::string, std::string>> legend;
+    for (const MkComparison& of : comparison.mks)
+        legend.emplace_back(hex(colour_of_mk(of.mk)), fmt::format("mk {}", of.mk));
+    if (legend.size() > 30) legend.resize(30);
+    return legend;
 }
 
 std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
@@ -164,7 +175,8 @@ std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
             thinned = fmt::format("; one particle for every cube of {:g} dp",
                                   clouds[0].dp / comparison.dp);
         if (clouds[0].positions.empty() && clouds[1].positions.empty()) return pictures;
-        pictures.push_back({"A on the left, B on the right, by mk" + thinned,
+        pictures.push_back({"A on the left, B on the right, by mk" + thinned + ":",
+                            mk_legend(comparison),
                             png_bytes(render_particles(clouds, options, threads), true)});
         Box3 bounds;
         for (const ComparedFile& file : comparison.files)
@@ -179,7 +191,8 @@ std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
             const double middle = 0.5 * (bounds.min.y + bounds.max.y) - 0.25 * comparison.dp;
             options.cuts = {{1, true, middle}};
             options.view = parse_view("front");
-            pictures.push_back({fmt::format("Cut at y = {:.4g} m", middle) + thinned,
+            pictures.push_back({fmt::format("Cut at y = {:.4g} m", middle) + thinned + ":",
+                                mk_legend(comparison),
                                 png_bytes(render_particles(clouds, options, threads), true)});
         }
     }

@@ -9,7 +9,6 @@
 #include "core/parallel.h"
 #include "files/particle_source.h"
 #include "files/typical_distance.h"
-#include "fppg/read_particles.h"
 #include "fppg/shapes.h"
 #include "shapes/mesh_query.h"
 

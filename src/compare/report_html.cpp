@@ -235,10 +235,17 @@ std::string to_html(const Comparison& comparison, const std::vector<ComparePictu
     }
     if (!pictures.empty()) html += "<h2>Pictures</h2>\n";
     for (const ComparePicture& picture : pictures)
+    {
         html += fmt::format(
-            "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}"
-            "</figcaption></figure>\n",
+            "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}",
             escaped(picture.caption), base64(picture.png));
+        for (const auto& [colour, meaning] : picture.legend)
+            html += fmt::format(
+                " <svg width=\"12\" height=\"12\"><circle cx=\"6\" cy=\"6\" r=\"6\" "
+                "fill=\"{}\"/></svg> {}",
+                escaped(colour), escaped(meaning));
+        html += "</figcaption></figure>\n";
+    }
     html += "<h2>Particles</h2>\n" + particles_table(comparison);
     html +=
         "<h2>Histograms</h2>\n<p><svg width=\"12\" height=\"12\"><rect class=\"a\" width=\"12\" "

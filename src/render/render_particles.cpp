@@ -137,10 +137,11 @@ void check_options(const std::vector<ParticleCloud>& clouds, const RenderOptions
             fmt::format("{} samples, expected 1 to 8", options.samples));
     for (const ParticleCloud& cloud : clouds)
     {
-        require(options.colour != RenderColour::Kind || !cloud.kind.empty(),
-                fmt::format("'{}' has no array Kind to colour by; _All.vtk of a body-fitted case "
-                            "has one",
-                            cloud.file));
+        require(
+            options.colour != RenderColour::Kind || !cloud.kind.empty() || cloud.positions.empty(),
+            fmt::format("'{}' has no array Kind to colour by; _All.vtk of a body-fitted case "
+                        "has one",
+                        cloud.file));
         require(cloud.positions.size() <= std::numeric_limits<std::uint32_t>::max() - 1,
                 fmt::format("'{}' has {} particles, a picture takes up to 4,294,967,294",
                             cloud.file, cloud.positions.size()));
