@@ -19,11 +19,8 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command},
-    {"estimate", run_estimate},
-    {"inspect", run_inspect},
-    {"render", run_render},
-    {"templates", run_templates},
+    {"batch", run_batch_command}, {"estimate", run_estimate},   {"inspect", run_inspect},
+    {"render", run_render},       {"templates", run_templates},
 };
 
 } // namespace
