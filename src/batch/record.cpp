@@ -160,7 +160,7 @@ std::vector<std::pair<std::string, std::uint64_t>> list_outputs(const BatchRun& 
     {
         const fs::path name = entry.path().lexically_relative(folder);
         const std::string text = name.string();
-        if (!entry.is_regular_file() || text.starts_with(own + ".batch.") ||
+        if (!entry.is_regular_file() || text.starts_with(own + ".batch.") || text == own + ".png" ||
             name.filename().string().find(".part-") != std::string::npos)
             continue;
         out.emplace_back(text, entry.file_size());

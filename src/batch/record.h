@@ -62,7 +62,7 @@ RunRecord read_record(const BatchRun& run);
 /// inputs have the same content, and its outputs are there with their sizes.
 bool is_current(const BatchRun& run, const RunRecord& record, const std::string& program);
 
-/// The files in the folder of a result that belong to it.
+/// The files in the folder of a result that belong to it, without those of the batch.
 std::vector<std::pair<std::string, std::uint64_t>> list_outputs(const BatchRun& run);
 
 /// Takes counts, warnings and the error out of what a run printed.

@@ -130,7 +130,8 @@ private:
             if (is_current(*job.run, job.record, program_))
             {
                 job.record.is_reused = true;
-                finish(job);
+                job.step = Step::Picture;
+                if (!wants_picture(job)) finish(job);
                 return;
             }
         }
@@ -143,6 +144,15 @@ private:
             throw IoError(
                 fmt::format("{}: cannot create the folder: {}", job.folder(), error.message()));
         remove_leftovers(job);
+    }
+
+    /// Whether a run that is done still lacks its picture, and there is memory to draw it.
+    bool wants_picture(const Job& job) const
+    {
+        const bool has_picture =
+            !job.record.picture.empty() && fs::exists(job.run->output + ".png");
+        return options_.has_pictures && !has_picture && job.record.np > 0 &&
+               needed_bytes(job) <= options_.memory_bytes;
     }
 
     /// Temporary files of a run that was killed.
@@ -318,14 +328,11 @@ private:
         {
             record.state = RunState::Done;
             fs::remove(job.log());
-            const bool fits =
-                small_bytes + picture_bytes_a_particle * static_cast<double>(record.np) <=
-                options_.memory_bytes;
-            if (options_.has_pictures && record.np > 0 && fits)
-            {
-                job.step = Step::Picture;
-                return;
-            }
+            record.outputs = list_outputs(*job.run);
+            // Kept whatever becomes of the picture.
+            write_record(*job.run, record);
+            job.step = Step::Picture;
+            if (wants_picture(job)) return;
         }
         finish(job);
     }
@@ -336,18 +343,15 @@ private:
         if (child.exit_code() == 0)
             job.record.picture = fs::path(job.run->output + ".png").filename().string();
         fs::remove(job.log());
-        if (is_stopped_) job.record.state = RunState::Stopped;
+        write_record(*job.run, job.record);
         finish(job);
     }
 
     void finish(Job& job)
     {
         job.step = Step::End;
-        if (!job.record.is_reused)
-        {
-            if (job.record.state == RunState::Done) job.record.outputs = list_outputs(*job.run);
+        if (job.record.state != RunState::Done && job.record.state != RunState::Waiting)
             write_record(*job.run, job.record);
-        }
         if (job.record.state != RunState::Waiting) progress_.finished(*job.run, job.record);
     }
 
@@ -361,6 +365,8 @@ private:
         {
             if (job.child)
                 job.child->stop();
+            else if (job.step == Step::Picture)
+                finish(job);
             else
                 job.step = Step::End;
         }

@@ -159,6 +159,21 @@ TEST(Batch, RunsACaseAgainWhenOptionsOrOutputsAreOthers)
     EXPECT_EQ(starts({"--", "-save:all"}), 1U);
 }
 
+TEST(Batch, DrawsMissingPicturesWithoutRunningAgain)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", box_case().text());
+    ASSERT_EQ(batch(folder, ".", {"--no-pictures"}).code, 0);
+    const auto before = times_of_results(folder);
+    const std::string output = batch(folder, ".", {"--resume", "--log-json"}).output;
+    EXPECT_EQ(count_events(output, "started").size(), 0U);
+    EXPECT_EQ(times_of_results(folder), before);
+    EXPECT_TRUE(fs::exists(folder / "out/Case/Case.png"));
+    EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("data:image/png"));
+    ASSERT_EQ(batch(folder, ".", {"--resume"}).code, 0);
+    EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("data:image/png"));
+}
+
 TEST(Batch, StopsItsChildrenOnCtrlCAndGoesOnLater)
 {
     const TemporaryFolder folder;
