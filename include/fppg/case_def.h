@@ -518,13 +518,6 @@ struct CaseDef
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
-    VresDef vres;         ///< no zones: one resolution
-    std::size_t zone = 0; ///< which of them this case is
-    /// Of zone 0, where this is another one: GenCase takes its depth and, for rhopgradient 3, its
-    /// surface.
-    std::optional<double> main_hswl;
-    std::optional<double> main_surface;
-    Box3 particles_around; ///< limits of the particles of the zone around this one
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
@@ -537,6 +530,14 @@ struct CaseDef
     std::vector<UserVariable> user_variables; ///< in printing order
     std::string variables_log; ///< "List of available variables: ..." at the end of reading
     std::vector<std::string> warnings;
+
+    VresDef vres;         ///< no zones: one resolution
+    std::size_t zone = 0; ///< which of them this case is
+    /// Of zone 0, where this is another one: GenCase takes its depth and, for rhopgradient 3, its
+    /// surface.
+    std::optional<double> main_hswl;
+    std::optional<double> main_surface;
+    Box3 particles_around; ///< limits of the particles of the zone around this one
 };
 
 /// -fit: which walls are body-fitted.

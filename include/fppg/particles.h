@@ -99,9 +99,9 @@ struct CaseConstants
     double mass_fluid = 0;
     // Not stored in the files, printed:
     double hswl = 0;
-    double surface = 0; ///< highest fluid against gravity, metres; set for rhopgradient 3
     double speed_system = 0;
     double speed_sound = 0;
+    double surface = 0; ///< highest fluid against gravity, metres; set for rhopgradient 3
 };
 
 /// Particles as `_FreePt.vtk` shows them, one entry each in all arrays.

@@ -112,7 +112,7 @@ public:
         op_ = &op;
         if (const auto* file = std::get_if<MeshFileOp>(&op.what))
             check_mesh(mesh(*file), file->transform);
-        else
+        else if (def_.zone == 0) // the limits of other zones are meant to cut shapes
             checks_.check_shape(op, bounds_of(op, grid().dp));
         if (fits_walls_ && draw_fitted(op)) return;
         std::visit([this](const auto& what) { draw(what); }, op.what);

@@ -509,7 +509,7 @@ INSTANTIATE_TEST_SUITE_P(
             "has a value v already"},
         Section{R"(<floatings><Floating mkbound="0" rhopbody="1" /></floatings>)", ""},
         Section{R"(<vres active="false" />)", ""},
-        Section{R"(<vres><bufferbox /></vres>)", "variable resolution is not supported yet"}));
+        Section{R"(<vres><bufferbox /></vres>)", "the element <dpratio> is missing in it"}));
 
 TEST(PropertyFile, GivesPropertiesToLinkedMks)
 {
