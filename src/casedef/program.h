@@ -59,6 +59,7 @@ private:
     void add_clip(const ClipPlane& plane);
     /// Puts the clips where the current matrix moves them.
     void place_clips();
+    void put_clips(const Transform& matrix);
     void add(const Element& e, DrawVariant what);
     void add_whole(const Element& e, DrawVariant what);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.

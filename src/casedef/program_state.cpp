@@ -294,15 +294,20 @@ void ProgramRunner::place_clips()
 {
     if (defined_clips_.empty()) return;
     clip_matrix_ = matrix_;
+    put_clips(matrix_);
+}
+
+void ProgramRunner::put_clips(const Transform& matrix)
+{
     for (std::size_t i = 0; i < defined_clips_.size(); ++i)
-        state_.clips[i] = placed(defined_clips_[i], matrix_);
+        state_.clips[i] = placed(defined_clips_[i], matrix);
     shared_state_.reset();
 }
 
 /// The angles of a clipbox turn it about its lowest corner, about y, x and z in this order,
 /// right-handed (found by experiment with GenCase v5.4.354: of the orders, signs and centres tried
-/// only this one fits). clipdomain as a command changes nothing there, which is all that it does
-/// here.
+/// only this one fits). clipdomain clips at <pointmin> and <pointmax>, farther out by resize; a
+/// resize below 0 counts as 0 (a ball on the border of the domain, resize 0, 0.1, -0.1, -0.3).
 bool ProgramRunner::run_clip(const Element& e)
 {
     const std::string& name = e.name;
@@ -313,7 +318,20 @@ bool ProgramRunner::run_clip(const Element& e)
         clip_matrix_ = {};
     }
     else if (name == "clipdomain")
-        return true;
+    {
+        const double resize = std::max(0.0, read_.number_or(e, "resize", 0));
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            Vec3 low = def_.case_pos_min;
+            Vec3 high = def_.case_pos_max;
+            low[axis] -= resize;
+            high[axis] += resize;
+            Vec3 upwards;
+            upwards[axis] = 1;
+            add_clip({low, upwards * -1.0});
+            add_clip({high, upwards});
+        }
+    }
     else if (name == "clipplane")
     {
         ClipPlane plane;
