@@ -2,6 +2,7 @@
 
 #include "app/command_line.h"
 #include "app/stop_signals.h"
+#include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "batch/plan.h"
 #include "batch/report.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -95,21 +95,7 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
         call.of_runs.assign(divider + 1, arguments.end());
         arguments.erase(divider, arguments.end());
     }
-    try
-    {
-        // CLI11 takes the arguments from the back.
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        fmt::print("{}", app.help());
-        return false;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        throw UsageError(fmt::format("{}; fppg batch --help shows the form", error.what()));
-    }
-    return true;
+    return read_subcommand_line(app, arguments);
 }
 
 /// Refuses options of runs that a run would refuse, before anything begins.

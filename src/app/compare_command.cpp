@@ -1,9 +1,9 @@
 #include "app/compare_command.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/compare.h"
 #include "fppg/files.h"
@@ -73,20 +73,7 @@ bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call
                    "default 0: what the machine or its scheduler allows")
         ->check(CLI::Range(0, 4096));
     options.threads = 0;
-    try
-    {
-        // CLI11 takes the arguments from the back.
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        fmt::print("{}", app.help());
-        return false;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        throw UsageError(fmt::format("{}; fppg compare --help shows the form", error.what()));
-    }
+    if (!read_subcommand_line(app, arguments)) return false;
     if (options.threads == 0) options.threads = default_threads();
     options.particles_at_once = std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(call.memory_mib * (1 << 20)) / bytes_a_particle);

@@ -181,7 +181,8 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     op.transform = file_transform(e);
     if (op.advanced) read_depth(e, op);
     // The file's own placement is a later transform: it takes the clips along, for this draw only
-    // (a ball moved by drawmove behind a clipplane, a clipbox and a clipdomain, 10 cases).
+    // (a ball moved by drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the
+    // template ClipDomain).
     const std::vector<ClipPlane> clips = state_.clips;
     const bool is_placed = std::any_of(
         e.children.begin(), e.children.end(),
