@@ -21,7 +21,8 @@ struct FeatureSite
 
 /// The sites of feature particles, in their order.
 std::vector<FeatureSite> make_feature_sites(const SurfaceMesh& mesh, const WorkMesh& work,
-                                            const std::vector<FeatureParticle>& particles);
+                                            const std::vector<FeatureParticle>& particles,
+                                            int threads);
 
 /// What is known of a surface particle while its surroundings are still being filled.
 struct SurfaceSite

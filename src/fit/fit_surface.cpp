@@ -57,10 +57,12 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
 {
     const WorkMesh work = make_work_mesh(mesh, features, longest_chart_side * dp);
     const Charts charts(work, dp);
-    const std::vector<FeatureSite> sites = make_feature_sites(mesh, work, feature_particles);
+    const std::vector<FeatureSite> sites =
+        make_feature_sites(mesh, work, feature_particles, threads);
     FillState state{work, charts, sites, dp, std::vector<ChartParticles>(charts.size())};
     state.share_out_features();
-    for (const SurfaceRay& row : lay_first_rows(mesh, work, features, feature_particles, dp))
+    for (const SurfaceRay& row :
+         lay_first_rows(mesh, work, features, feature_particles, dp, threads))
         state.particles[charts.of_facet(row.facet)].rows.push_back(row);
 
     for_each_chart(state, threads,

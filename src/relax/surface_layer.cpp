@@ -196,7 +196,7 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
                 p.place.facet = work_.locate(p.place.facet, p.place.position);
         },
         chunk_size);
-    sites_ = make_feature_sites(body.mesh, work_, on_features);
+    sites_ = make_feature_sites(body.mesh, work_, on_features, threads);
     velocities_.resize(particles_.size());
     sort();
 }
