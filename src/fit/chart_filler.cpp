@@ -1,5 +1,6 @@
 #include "fit/chart_filler.h"
 
+#include "core/parallel.h"
 #include "fit/chart_grid.h"
 
 #include <algorithm>

@@ -4,9 +4,11 @@ Geometry is that of `cases/`, as drawn there, and two meshes made here: a sphere
 lumpy body that stands in a tank. `dp` in the files is a beginning; the ladder sets it.
 """
 
+import json
 import math
 import os
 import struct
+import sys
 
 HEAD = """<?xml version="1.0" encoding="UTF-8" ?>
 <!-- Made by tools/bench: {what} -->
@@ -192,3 +194,10 @@ def write_ladder_cases(work, repository):
           '                        <size x="0.19" y="0.07" z="0.06" />\n'
           "                    </fillbox>\n")
     return made
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: ladder_cases.py FOLDER")
+    here = os.path.dirname(os.path.abspath(__file__))
+    print(json.dumps(write_ladder_cases(sys.argv[1], os.path.dirname(os.path.dirname(here)))))
