@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 namespace fppg
@@ -70,14 +71,23 @@ private:
                            [&](const BooleanDef::Part& part) { return part.op <= op; });
     }
 
+    /// Beside the definition first: that is the mesh that the case was made with, even where the
+    /// working directory has another one of that name.
+    std::string place_of(const DrawOp& op, const std::string& file) const
+    {
+        std::error_code ignored;
+        std::string beside = (std::filesystem::path(def_.file).parent_path() / file).string();
+        if (std::filesystem::exists(beside, ignored)) return beside;
+        return find_mesh_file(def_, op.source, file);
+    }
+
     std::vector<ShapeMesh> shapes_of(const DrawOp& op) const
     {
         try
         {
             if (const auto* file = std::get_if<MeshFileOp>(&op.what))
             {
-                const MeshFile mesh =
-                    read_mesh_file(find_mesh_file(def_, op.source, file->file), file->reading);
+                const MeshFile mesh = read_mesh_file(place_of(op, file->file), file->reading);
                 if (mesh.soup.vertices.empty()) return {};
                 return shape_meshes(op, &mesh.soup, def_.grid.dp);
             }
