@@ -4,6 +4,7 @@
 #include "app/compare_command.h"
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
+#include "app/leak_command.h"
 #include "app/render_command.h"
 #include "app/templates_command.h"
 
@@ -21,7 +22,8 @@ struct Entry
 
 constexpr Entry entries[] = {
     {"batch", run_batch_command}, {"compare", run_compare}, {"estimate", run_estimate},
-    {"inspect", run_inspect},     {"render", run_render},   {"templates", run_templates},
+    {"inspect", run_inspect},     {"leak", run_leak},       {"render", run_render},
+    {"templates", run_templates},
 };
 
 } // namespace
