@@ -28,6 +28,26 @@ void for_each_block(std::size_t n, int threads, const Body& body)
 
 } // namespace
 
+CompareFrame frame_around(const Box3& bounds, double dp)
+{
+    CompareFrame frame;
+    frame.dp = dp;
+    frame.cell = CompareFrame::cell_dp * dp;
+    if (bounds.is_empty()) return frame;
+    frame.origin = bounds.min;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double extent = bounds.max[axis] - bounds.min[axis];
+        if (!(extent / frame.cell < 4e9))
+            throw CompareError(fmt::format(
+                "they reach over {:g} m, more than 4e9 cells of 1.3 dp", extent));
+        // Files are in the order of x, so slabs across it are read fastest.
+        const double longest = bounds.max[frame.axis] - bounds.min[frame.axis];
+        if (extent > (frame.axis == 0 ? 2 : 1) * longest) frame.axis = axis;
+    }
+    return frame;
+}
+
 FileIndex::FileIndex(const ParticleSource& source, int threads)
     : source_(&source),
       boxes_((source.size() + particles_a_block - 1) / particles_a_block),
