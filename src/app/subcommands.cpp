@@ -5,6 +5,7 @@
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
 #include "app/render_command.h"
+#include "app/report_command.h"
 #include "app/templates_command.h"
 
 namespace fppg
@@ -21,7 +22,8 @@ struct Entry
 
 constexpr Entry entries[] = {
     {"batch", run_batch_command}, {"compare", run_compare}, {"estimate", run_estimate},
-    {"inspect", run_inspect},     {"render", run_render},   {"templates", run_templates},
+    {"inspect", run_inspect},     {"render", run_render},   {"report", run_report},
+    {"templates", run_templates},
 };
 
 } // namespace

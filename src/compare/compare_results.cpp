@@ -162,6 +162,7 @@ public:
             tally_columns(b, total,
                           [&](std::size_t c, Tally& tally)
                           { count_extras(b, c, a, partners, tally); });
+            for (const ParticleSource& source : sources_) source.release();
             tally_columns(a, total, [&](std::size_t c, Tally& tally) { measure(a, c, 0, tally); });
             tally_columns(b, total, [&](std::size_t c, Tally& tally) { measure(b, c, 1, tally); });
         }
@@ -394,7 +395,8 @@ private:
     void measure(const CellGrid& grid, std::size_t column, std::size_t f, Tally& tally) const
     {
         const Measuring measuring{out_.dp, out_.is_2d, geometry_.get()};
-        measuring.measure_column(grid, column, [&](std::uint16_t mk) -> MkMeasures&
+        measuring.measure_column(grid, column,
+                                 [&](std::uint16_t mk) -> MkMeasures&
                                  { return of_mk(tally, mk).measures[f]; });
     }
 

@@ -74,7 +74,8 @@ MeasuredResult measure_result(const std::string& name, const TriangleSoup& geome
                          std::vector<MkMeasures> part(total.size());
                          const std::size_t end = grid.columns() * (chunk + 1) / chunks;
                          for (std::size_t c = grid.columns() * chunk / chunks; c < end; ++c)
-                             measuring.measure_column(grid, c, [&](std::uint16_t mk) -> MkMeasures&
+                             measuring.measure_column(grid, c,
+                                                      [&](std::uint16_t mk) -> MkMeasures&
                                                       { return part[index[mk]]; });
                          const std::lock_guard lock(guard);
                          for (std::size_t m = 0; m < total.size(); ++m) total[m].add(part[m]);

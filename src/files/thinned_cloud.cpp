@@ -10,6 +10,9 @@ namespace fppg
 namespace
 {
 
+/// After so many particles the pages of the file are given back.
+constexpr std::size_t particles_held = std::size_t{1} << 20;
+
 struct MkCube
 {
     std::uint64_t cube = 0;
@@ -39,6 +42,7 @@ std::optional<ParticleCloud> one_of_every_cube(const ParticleSource& source, con
     std::unordered_set<MkCube, MkCubeHash> taken;
     for (std::size_t i = 0; i < source.size(); ++i)
     {
+        if (i % particles_held == particles_held - 1) source.release();
         const Vec3 p = source.position(i);
         const std::uint16_t mk = source.mk(i);
         if (step > 1)
