@@ -4,6 +4,7 @@
 #include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "batch/folder_lock.h"
 #include "batch/plan.h"
 #include "batch/report.h"
 #include "batch/run_batch.h"
@@ -133,6 +134,7 @@ public:
                                           : std::max(1, processors / runs);
         plan_.jobs = call_.jobs > 0 ? call_.jobs : std::max(1, processors / plan_.threads);
         make_folder();
+        const FolderLock lock(out_, false);
         if (call_.slurm) return write_slurm();
         if (!call_.plan.empty()) return print_tasks();
         write_plan(out_, plan_);
@@ -208,6 +210,7 @@ private:
         if (call_.task > plan_.runs.size())
             throw UsageError(fmt::format("--task: {} is out of range, the plan has {} runs",
                                          call_.task, plan_.runs.size()));
+        const FolderLock lock(out_, true);
         const std::vector<BatchRun> one{plan_.runs[call_.task - 1]};
         const StopSignalsAsk stop;
         BatchOptions run_options = options();
