@@ -1,7 +1,10 @@
 #include "casedef/figures.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace fppg
 {
@@ -261,6 +264,43 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 void transform_figure(FigureOp& figure, const Transform& transform)
 {
     for (Vec3& v : figure.vertices) v = transform(v);
+}
+
+bool keeps_boxes(const Transform& t)
+{
+    for (const Vec3& row : t.linear)
+    {
+        int entries = 0;
+        for (int axis = 0; axis < 3; ++axis) entries += std::fabs(row[axis]) > 1e-12 * norm(row);
+        if (entries > 1) return false;
+    }
+    return true;
+}
+
+FigureOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t)
+{
+    FigureOp figure;
+    figure.solid = SolidKind::Faces;
+    for (unsigned corner = 0; corner < 8; ++corner)
+    {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = ((corner >> axis) & 1U) != 0 ? std::max(corner0[axis], corner1[axis])
+                                                   : std::min(corner0[axis], corner1[axis]);
+        figure.vertices.push_back(t(p));
+    }
+    // Corners by bits: 1 is the far one along x, 2 along y, 4 along z.
+    constexpr std::array<std::array<std::uint32_t, 3>, 6> sides{
+        {{0, 3, 1}, {4, 5, 7}, {0, 1, 5}, {3, 2, 6}, {1, 3, 7}, {0, 4, 2}}};
+    const bool is_mirrored = dot(t.linear[0], cross(t.linear[1], t.linear[2])) < 0;
+    for (const auto& side : sides)
+    {
+        FigureFace face;
+        face.vertices = {side[0], side[1], side[2]};
+        if (is_mirrored) std::swap(face.vertices[1], face.vertices[2]);
+        figure.faces.push_back(std::move(face));
+    }
+    return figure;
 }
 
 } // namespace fppg

@@ -57,9 +57,15 @@ BoxRegion ProgramRunner::box_of(const Element& e) const
         box.corner1 = read_.vec3(*end);
     else
         box.corner1 = box.corner0 + read_.child_vec3(e, "size");
-    box.corner0 = matrix_(box.corner0);
-    box.corner1 = matrix_(box.corner1);
     return box;
+}
+
+/// The box of a redraw under the current matrix, as long as that leaves it a box.
+BoxRegion ProgramRunner::limits_of(const Element& e) const
+{
+    if (!keeps_boxes(matrix_)) read_.fail_unsupported(e, "a box that the matrix turns");
+    const BoxRegion box = box_of(e);
+    return {matrix_(box.corner0), matrix_(box.corner1)};
 }
 
 std::vector<double> ProgramRunner::layers_of(const Element& e) const
@@ -355,7 +361,14 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         op.seed = matrix_(read_.vec3(e));
         op.filter =
             fill_filter(e, name == "fillvoidpoint" ? "void" : read_.child(e, "modefill").text);
-        if (name == "fillbox") op.region = box_of(e);
+        if (name == "fillbox" && keeps_boxes(matrix_)) op.region = limits_of(e);
+        if (name == "fillbox" && !keeps_boxes(matrix_))
+        {
+            if (state_.box_limit_full)
+                read_.fail_unsupported(e, "a box that the matrix turns, with its limits");
+            const BoxRegion box = box_of(e);
+            op.region = turned_box(box.corner0, box.corner1, matrix_);
+        }
         if (name == "fillfigure")
         {
             FigureOp figure = figure_of(e);
@@ -377,7 +390,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         {
             // Without an mk it is for void nodes alone (seen with GenCase v5.4).
             if (op.filters.empty()) op.filters.push_back({MkKind::Void, std::nullopt});
-            op.region = box_of(e);
+            op.region = limits_of(e);
         }
         add(e, std::move(op));
     }
@@ -398,7 +411,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
                 for (std::size_t d = 0; d < 6; ++d)
                     if (w == "all" || w == names[d]) op.directions[d] = true;
             }
-        if (name == "redrawnearbox") op.region = box_of(e);
+        if (name == "redrawnearbox") op.region = limits_of(e);
         add(e, op);
     }
     else

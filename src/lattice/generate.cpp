@@ -3,6 +3,7 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/figures.h"
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -781,7 +782,14 @@ private:
                 for (const std::uint32_t v :
                      {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
                     soup.vertices.push_back(cut.vertices[v]);
-        autofill(soup, file, op.transform);
+        MeshFile placed;
+        for (const Vec3& p : file.points) placed.points.push_back(op.transform(p));
+        for (std::vector<Vec3> line : file.lines)
+        {
+            for (Vec3& p : line) p = op.transform(p);
+            placed.lines.push_back(std::move(line));
+        }
+        autofill(soup, soup, placed, {});
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
@@ -793,13 +801,13 @@ private:
             draw_free_mesh(file, op.transform);
             const TriangleSoup moved = moved_soup(source, op.transform);
             if (op.fill_inside) paint_region(region_of(inside_spans(moved, grid(), threads_)));
-            if (op.autofill) autofill(moved, file, op.transform);
+            if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
         if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(file, op.transform);
-            if (op.autofill) autofill(moved_soup(source, op.transform), file, op.transform);
+            if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);
             return;
         }
         std::vector<SnappedTriangle> triangles(source.size());
@@ -831,7 +839,7 @@ private:
             return;
         }
         draw_triangles(std::move(triangles));
-        if (op.autofill) autofill(moved, file, op.transform);
+        if (op.autofill) autofill(moved, source, file, op.transform);
     }
 
     void check_mesh(const MeshFile& file, const Transform& transform)
@@ -855,37 +863,45 @@ private:
         return region;
     }
 
-    /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
-    /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
-    /// so.
-    void autofill(const TriangleSoup& soup, const MeshFile& file, const Transform& transform)
+    /// A flood over void nodes from the centre of the file's own box, inside that box grown by dp,
+    /// both moved by `transform` (rule X2). It is no inside test: the notch of an L or the hole of
+    /// a torus is filled. Says so.
+    ///
+    /// soup    the surface where it is drawn
+    /// source  the surface in the coordinates of the box
+    void autofill(const TriangleSoup& soup, const TriangleSoup& source, const MeshFile& file,
+                  const Transform& transform)
     {
         Box3 bounds;
-        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const Vec3& p : file.points) bounds.add(p);
         for (const std::vector<Vec3>& line : file.lines)
-            for (const Vec3& p : line) bounds.add(transform(p));
-        for (const Vec3& v : soup.vertices) bounds.add(v);
+            for (const Vec3& p : line) bounds.add(p);
+        for (const Vec3& v : source.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
-        NodeBox box;
+        // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
+        // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
+        Box3 grown;
         for (int axis = 0; axis < 3; ++axis)
         {
-            // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
-            // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
             const auto dp = static_cast<float>(grid().dp);
             const float low = static_cast<float>(bounds.min[axis]) - dp;
             const float high = static_cast<float>(bounds.max[axis]) + dp;
             const float size = high - low;
-            const auto k = static_cast<std::size_t>(axis);
-            const double origin = grid().origin[axis];
-            box.begin[k] = snap(low, origin, grid().dp) + 1;
-            box.end[k] =
-                snap(static_cast<double>(low) + static_cast<double>(size), origin, grid().dp);
+            grown.min[axis] = low;
+            grown.max[axis] = static_cast<double>(low) + static_cast<double>(size);
         }
-        const Node seed = snap((bounds.min + bounds.max) * 0.5, grid());
+        NodeBox box = whole_lattice(grid());
+        SpanSet mask;
+        const bool is_box = keeps_boxes(transform);
+        if (is_box)
+            box = node_box({transform(grown.min), transform(grown.max)}, false);
+        else
+            mask = mask_of(turned_box(grown.min, grown.max, transform));
+        const Node seed = snap(transform((bounds.min + bounds.max) * 0.5), grid());
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
         const std::vector<Spans> filled =
-            flood(field_, seed, fillable(filter), box, nullptr, threads_);
+            flood(field_, seed, fillable(filter), box, is_box ? nullptr : &mask, threads_);
 
         const SpanSet inside = inside_spans(soup, grid(), threads_);
         std::vector<Spans> wrong(filled.size());
@@ -931,6 +947,17 @@ private:
         return intersect(box, whole_lattice(grid()));
     }
 
+    /// The inside of a figure as one entry a slab of the lattice.
+    SpanSet mask_of(const FigureOp& figure) const
+    {
+        SpanSet mask;
+        mask.slabs.resize(grid().n[0]);
+        const SlabRegion inside = solid_of(figure);
+        for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
+            mask.slabs[x] = listed(inside, x, false);
+        return mask;
+    }
+
     /// An index of all columns of a fill's box is kept while it runs.
     void check_columns(const NodeBox& box) const
     {
@@ -962,10 +989,7 @@ private:
             box = node_box(*region, state().box_limit_full);
         else if (const auto* figure = std::get_if<FigureOp>(&op.region))
         {
-            mask.slabs.resize(grid().n[0]);
-            const SlabRegion inside = solid_of(*figure);
-            for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
-                mask.slabs[x] = listed(inside, x, false);
+            mask = mask_of(*figure);
             mask_used = &mask;
         }
         check_columns(box);
