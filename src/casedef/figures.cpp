@@ -125,6 +125,22 @@ FigureOp make_prism(const std::vector<Vec3>& points)
     return prism;
 }
 
+FigureOp prism_limits(const std::vector<Vec3>& points)
+{
+    FigureOp prism;
+    prism.vertices = points;
+    prism.solid = SolidKind::Faces;
+    const auto n = static_cast<std::uint32_t>(points.size() / 2);
+    prism.faces.push_back({{0, 2, 1}, true, {}, 0, {}});
+    prism.faces.push_back({{n, n + 1, n + 2}, true, {}, 0, {}});
+    for (std::uint32_t i = 0; i < n; ++i)
+    {
+        const std::uint32_t j = (i + 1) % n;
+        prism.faces.push_back({{i, j, n + j}, true, {}, 0, {}});
+    }
+    return prism;
+}
+
 FigureOp make_pyramid(const std::vector<Vec3>& points)
 {
     FigureOp pyramid;
@@ -274,7 +290,7 @@ bool keeps_boxes(const Transform& t)
         for (int axis = 0; axis < 3; ++axis) entries += std::fabs(row[axis]) > 1e-12 * norm(row);
         if (entries > 1) return false;
     }
-    return true;
+    return dot(t.linear[0], cross(t.linear[1], t.linear[2])) > 0;
 }
 
 FigureOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t)
@@ -291,15 +307,9 @@ FigureOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t
     }
     // Corners by bits: 1 is the far one along x, 2 along y, 4 along z.
     constexpr std::array<std::array<std::uint32_t, 3>, 6> sides{
-        {{0, 3, 1}, {4, 5, 7}, {0, 1, 5}, {3, 2, 6}, {1, 3, 7}, {0, 4, 2}}};
-    const bool is_mirrored = dot(t.linear[0], cross(t.linear[1], t.linear[2])) < 0;
+        {{0, 3, 1}, {4, 5, 7}, {0, 1, 5}, {3, 2, 6}, {1, 3, 7}, {2, 0, 4}}};
     for (const auto& side : sides)
-    {
-        FigureFace face;
-        face.vertices = {side[0], side[1], side[2]};
-        if (is_mirrored) std::swap(face.vertices[1], face.vertices[2]);
-        figure.faces.push_back(std::move(face));
-    }
+        figure.faces.push_back({{side[0], side[1], side[2]}, true, {}, 0, {}});
     return figure;
 }
 

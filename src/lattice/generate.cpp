@@ -894,7 +894,7 @@ private:
         SpanSet mask;
         const bool is_box = keeps_boxes(transform);
         if (is_box)
-            box = node_box({transform(grown.min), transform(grown.max)}, false);
+            box = node_box({transform(grown.min), transform(grown.max)});
         else
             mask = mask_of(turned_box(grown.min, grown.max, transform));
         const Node seed = snap(transform((bounds.min + bounds.max) * 0.5), grid());
@@ -931,18 +931,17 @@ private:
         paint_nodes(filled);
     }
 
-    /// Nodes of a snapped box: its strict interior, or with its limits.
-    NodeBox node_box(const BoxRegion& region, bool with_limits) const
+    /// Nodes strictly inside a snapped box.
+    NodeBox node_box(const BoxRegion& region) const
     {
         const Node a = snap(region.corner0, grid());
         const Node b = snap(region.corner1, grid());
-        const std::int64_t inset = with_limits ? 0 : 1;
         NodeBox box;
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
-            box.begin[k] = std::min(a[axis], b[axis]) + inset;
-            box.end[k] = std::max(a[axis], b[axis]) + 1 - inset;
+            box.begin[k] = std::min(a[axis], b[axis]) + 1;
+            box.end[k] = std::max(a[axis], b[axis]);
         }
         return intersect(box, whole_lattice(grid()));
     }
@@ -956,6 +955,32 @@ private:
         for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
             mask.slabs[x] = listed(inside, x, false);
         return mask;
+    }
+
+    /// The nodes that a redraw may change: a box, and those of `mask` alone where there is one.
+    struct Limits
+    {
+        NodeBox box;
+        std::optional<SpanSet> mask;
+
+        std::vector<Spans> kept(std::vector<Spans> nodes) const
+        {
+            if (mask)
+                for (std::size_t x = 0; x < nodes.size(); ++x)
+                    nodes[x] = intersect(nodes[x], mask->slabs[x]);
+            return nodes;
+        }
+    };
+
+    Limits limits_of(const std::optional<BoxLimits>& region) const
+    {
+        Limits limits{whole_lattice(grid()), {}};
+        if (!region) return limits;
+        if (const auto* box = std::get_if<BoxRegion>(&*region))
+            limits.box = node_box(*box);
+        else
+            limits.mask = mask_of(std::get<FigureOp>(*region));
+        return limits;
     }
 
     /// An index of all columns of a fill's box is kept while it runs.
@@ -986,7 +1011,7 @@ private:
         SpanSet mask;
         const SpanSet* mask_used = nullptr;
         if (const auto* region = std::get_if<BoxRegion>(&op.region))
-            box = node_box(*region, state().box_limit_full);
+            box = node_box(*region);
         else if (const auto* figure = std::get_if<FigureOp>(&op.region))
         {
             mask = mask_of(*figure);
@@ -1055,16 +1080,17 @@ private:
 
     void draw(const RedrawOp& op)
     {
-        const NodeBox box = op.region ? node_box(*op.region, false) : whole_lattice(grid());
-        repaint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
+        const Limits limits = limits_of(op.region);
+        repaint_nodes(
+            limits.kept(redraw_nodes(field_, op, limits.box, def_.mk_bound_first, threads_)));
     }
 
     void draw(const RedrawNearOp& op)
     {
-        const NodeBox box =
-            op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
+        const Limits limits = limits_of(op.region);
         for (int i = 0; i < op.times; ++i)
-            repaint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
+            repaint_nodes(limits.kept(
+                redraw_near_nodes(field_, op, limits.box, def_.mk_bound_first, threads_)));
     }
 
     void draw(const ResetOp&)
