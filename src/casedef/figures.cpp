@@ -146,9 +146,11 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     FigureOp pyramid;
     pyramid.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
-    Face base;
-    for (std::uint32_t i = 0; i < n; ++i) base.push_back(n - i);
-    pyramid.faces.push_back({base, true, base, 0, {}});
+    // The base is a fan from its first corner.
+    FigureFace base;
+    for (std::uint32_t i = 1; i <= n; ++i) base.vertices.push_back(i);
+    for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
