@@ -141,9 +141,8 @@ private:
             add_part(std::move(planes), nodes_);
             return;
         }
-        // The base is cut as it is seen from outside.
-        Triangles cut = cut_polygon(vertices_, {base.rbegin(), base.rend()});
-        for (auto& t : cut) std::swap(t[0], t[2]);
+        Triangles cut;
+        for (std::size_t i = 3; i <= n; ++i) cut.push_back({1, i - 1, i});
         for (const auto& t : cut)
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
