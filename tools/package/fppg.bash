@@ -16,8 +16,8 @@ _fppg()
         *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:render)
-            options="--output --view --color --mk --cut --zoom --center --size --radius --samples --palette --threads
-                --help" ;;
+            options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette
+                --threads --help" ;;
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
         *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -save3vtk: -createdirs: -debug:
