@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 namespace fppg
 {
@@ -130,8 +131,8 @@ public:
                                           : std::max(1, processors / runs);
         plan_.jobs = call_.jobs > 0 ? call_.jobs : std::max(1, processors / plan_.threads);
         make_folder();
-        const FolderLock lock(out_, false);
-        if (call_.slurm) return write_slurm();
+        std::optional<FolderLock> lock(std::in_place, out_, false);
+        if (call_.slurm) return write_slurm(lock);
         if (!call_.plan.empty()) return print_tasks();
         write_plan(out_, plan_);
         return run_all();
@@ -234,7 +235,7 @@ private:
     }
 
     /// Tasks of a scheduler may be handed in twice, so they always leave out what is done.
-    int write_slurm()
+    int write_slurm(std::optional<FolderLock>& lock)
     {
         plan_.resumes = true;
         std::vector<RunRecord> estimates;
@@ -257,6 +258,8 @@ private:
             return 0;
         }
         std::fflush(stdout);
+        // The first tasks may begin before sbatch ends, and they lock the folder themselves.
+        lock.reset();
         const int status = std::system(shell_word(script).c_str());
         if (status != 0)
             throw IoError(fmt::format("{} ended with exit code {}; is sbatch there?", script,

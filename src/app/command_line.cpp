@@ -203,6 +203,8 @@ std::string help_text()
         "  fppg report RESULT...                a page with pictures, histograms and a 3-D view\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
+        "  fppg leak CASE PART_FILES            counts fluid where none can be in the solver's "
+        "output\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"
         "  fppg batch FOLDER                    many cases side by side; fppg batch --help\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"

@@ -17,8 +17,8 @@ namespace
 /// More nodes than this are no bathymetry but a wrong number.
 constexpr double most_nodes = 1e8;
 
-/// GenCase keeps points as float32, rounded after their transform: 0.35 falls below the tie of a
-/// lattice of dp 0.1 (golden file_bathy_periodic; 0.3 * 1.5 - 0.1 does as well).
+/// GenCase gives heights as float32, rounded at the end: 0.35 falls below the tie of a lattice of
+/// dp 0.1 (golden file_bathy_periodic; 0.3 * 1.5 - 0.1 does as well).
 Vec3 rounded(const Vec3& p)
 {
     Vec3 out;
@@ -57,15 +57,22 @@ struct HeightGrid
     }
 };
 
-/// Lines from `begin` on, `spacing` apart, as many as fit, and one at the end where they do not
-/// reach it.
-std::vector<double> lines_between(double begin, double size, double spacing, bool is_cut_at_end)
+/// Lines from `begin` on, `spacing` apart, the last one less than 0.1 spacing before the end or
+/// beyond it.
+std::vector<double> lines_over(double begin, double size, double spacing)
 {
-    const double cells = size / spacing;
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(cells - 1e-5)));
+    const auto n = static_cast<std::size_t>(std::max(1.0, std::floor(size / spacing + 0.9)));
     std::vector<double> lines;
     for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
-    if (is_cut_at_end && lines.back() > begin + size) lines.back() = begin + size;
+    return lines;
+}
+
+/// The same, with the last one at the end or beyond it.
+std::vector<double> lines_up_to(double begin, double size, double spacing)
+{
+    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(size / spacing - 1e-5)));
+    std::vector<double> lines;
+    for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
     return lines;
 }
 
@@ -145,7 +152,7 @@ private:
         std::vector<Vec3> used;
         for (const Vec3& p : points_)
         {
-            const Vec3 q = rounded(settings_.transform(p));
+            const Vec3 q = settings_.transform(p);
             if (settings_.selection && !is_in(*settings_.selection, q)) continue;
             used.push_back(q);
         }
@@ -163,10 +170,15 @@ private:
             fail(fmt::format("a grid of {:g} x {:g} m with dp={:g} has more than {:g} nodes",
                              area.x_size, area.y_size, spacing, most_nodes));
         HeightGrid grid;
-        grid.xs = lines_between(area.x_min, area.x_size, spacing, has_domain);
-        grid.ys = lines_between(area.y_min, area.y_size, spacing, has_domain);
+        const auto lines = has_domain ? lines_over : lines_up_to;
+        grid.xs = lines(area.x_min, area.x_size, spacing);
+        grid.ys = lines(area.y_min, area.y_size, spacing);
         grid.z = heights_at(used, grid.xs, grid.ys, spacing, threads_);
-        return grid;
+        if (!has_domain) return grid;
+        end_at(grid, area.x_min + area.x_size);
+        grid = grid.transposed();
+        end_at(grid, area.y_min + area.y_size);
+        return grid.transposed();
     }
 
     bool is_in(const GroundRectangle& r, const Vec3& p) const
@@ -174,6 +186,24 @@ private:
         const double slack = 1e-9 * settings_.spacing;
         return p.x >= r.x_min - slack && p.x <= r.x_min + r.x_size + slack &&
                p.y >= r.y_min - slack && p.y <= r.y_min + r.y_size + slack;
+    }
+
+    /// Cuts the last column off at x, the height there interpolated, or adds one at x with the same
+    /// heights; within 0.01 spacing it is moved.
+    void end_at(HeightGrid& grid, double x) const
+    {
+        const double beyond = x - grid.xs.back();
+        if (std::fabs(beyond) <= 0.01 * settings_.spacing)
+        {
+            grid.xs.back() = x;
+            return;
+        }
+        grid = grid.turned();
+        if (beyond < 0)
+            cut_begin(grid, -x);
+        else
+            add_begin(grid, beyond, std::nullopt);
+        grid = grid.turned();
     }
 
     /// Cuts off all columns before x; the column there is interpolated.

@@ -24,7 +24,9 @@ set(render_may_see files particles shapes core)
 set(compare_may_see report files casedef particles shapes core)
 # Cases beforehand and many at a time.
 set(batch_may_see report lattice files casedef shapes particles core)
-set(app_may_see batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
+# What the solver made of a case, against the true shapes of its draws.
+set(leak_may_see lattice files casedef shapes particles core)
+set(app_may_see leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
