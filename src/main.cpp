@@ -2,9 +2,11 @@
 
 #include "app/command_line.h"
 #include "app/drop_in.h"
+#include "app/run_log.h"
 #include "app/stop_signals.h"
 #include "app/subcommands.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string>
@@ -13,9 +15,17 @@
 namespace
 {
 
+/// Whoever asked for JSON lines gets the error as one.
+bool wants_json = false;
+
 int fail(const char* text, int code)
 {
     std::fflush(stdout);
+    if (wants_json)
+    {
+        fppg::print_json_error(text, code);
+        return code;
+    }
     std::printf("\n*** Error: %s\n\nFinished execution (code=%d).\n", text, code);
     return code;
 }
@@ -28,6 +38,9 @@ int main(int argc, char** argv)
     try
     {
         const std::vector<std::string> arguments(argv + 1, argv + argc);
+        wants_json =
+            std::any_of(arguments.begin(), arguments.end(),
+                        [](const std::string& a) { return a == "-log-json" || a == "--log-json"; });
         if (!arguments.empty())
             if (const fppg::Subcommand run = fppg::find_subcommand(arguments.front()))
                 return run({arguments.begin() + 1, arguments.end()});

@@ -751,10 +751,33 @@ def impeller(radius=0.06, hub_radius=0.014, height=0.03, thickness=0.006, blades
     return loft([loop(level) for level in range(levels + 1)])
 
 
+def basin(length=0.5, width=0.1, height=0.24, bottom=0.06, swing=0.04, wall=0.04, sides=48):
+    """An open tank along x whose floor rises and falls once, extruded along z; up is y.
+
+    bottom, swing  the floor is at bottom + swing * sin(2 pi x / length)
+    height         of the rim, over y = 0
+    wall           of the four sides; the underside is at y = -wall
+    """
+    inner = [(0, height)] + [(length * i / sides,
+                              bottom + swing * math.sin(2 * math.pi * i / sides))
+                             for i in range(sides + 1)] + [(length, height)]
+    outer = [(-wall, height), (-wall, -wall), (length + wall, -wall), (length + wall, height)]
+    levels = [-width / 2 - wall, -width / 2, width / 2, width / 2 + wall]
+    mesh = Mesh()
+    # The rim of the two long walls has corners where the basin between them begins.
+    whole = outer + [inner[-1], inner[0]]
+    for z, outline, up in ((levels[0], whole, False), (levels[3], whole, True),
+                           (levels[1], inner, True), (levels[2], inner, False)):
+        ring_on(mesh, outline, [], z, up)
+    for low, high in ((levels[0], levels[1]), (levels[2], levels[3])):
+        walls_along(mesh, whole, low, high)
+    walls_along(mesh, outer + inner[::-1], levels[1], levels[2])
+    return mesh
+
 
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
                                   vehicle_body, housing, gearbox_case, lid, shaft, bearing,
-                                  road_wheel, estate_body, estate_panels, pipe_bend, impeller)}
+                                  road_wheel, estate_body, estate_panels, pipe_bend, impeller, basin)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -780,6 +803,7 @@ CASE_MESHES = (
     ("wading/wheel.stl", "road_wheel", {}),
     ("pipe/pipe.stl", "pipe_bend", {}),
     ("stirred/impeller.stl", "impeller", {}),
+    ("rest/basin.stl", "basin", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.

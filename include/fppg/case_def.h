@@ -237,6 +237,9 @@ struct BoxRegion
     Vec3 corner1;
 };
 
+/// A box, or one that a map turns or slants, as a figure.
+using BoxLimits = std::variant<BoxRegion, FigureOp>;
+
 /// `fillpoint`, `fillvoidpoint`, `fillbox`, `fillfigure`, `fillprism`: a 6-connected flood.
 struct FillOp
 {
@@ -256,7 +259,7 @@ struct MkFilter
 struct RedrawOp
 {
     std::vector<MkFilter> filters;   ///< empty: every node
-    std::optional<BoxRegion> region; ///< strict interior of the snapped box
+    std::optional<BoxLimits> region; ///< strict interior of the snapped box
 };
 
 /// `redrawnear`, `redrawnearbox` (rules D3 to D5).
@@ -268,7 +271,7 @@ struct RedrawNearOp
     /// top, bottom, right, left, back, front, seen from the border node; none set: all 26
     /// neighbours
     std::array<bool, 6> directions{};
-    std::optional<BoxRegion> region;
+    std::optional<BoxLimits> region;
 };
 
 /// `resetdraw`: forgets what was drawn.

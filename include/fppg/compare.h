@@ -205,7 +205,11 @@ struct ComparePicture
     std::string png;                                         ///< the bytes of the file
 };
 
-/// One HTML page that needs no other file: what to_text() says, with pictures and histograms.
-std::string to_html(const Comparison& comparison, const std::vector<ComparePicture>& pictures);
+/// One HTML page that needs no other file: what to_text() says, with pictures and histograms, and
+/// the times and warnings of Case.out where it stands beside a result.
+///
+/// view  HTML that is shown behind the pictures; may be empty
+std::string to_html(const Comparison& comparison, const std::vector<ComparePicture>& pictures,
+                    const std::string& view = {});
 
 } // namespace fppg

@@ -79,6 +79,35 @@ struct WallParticles
         mk.push_back(from.mk[i]);
         held.push_back(from.held[i]);
     }
+    /// All of another set, behind the others.
+    void append(const WallParticles& from)
+    {
+        positions.insert(positions.end(), from.positions.begin(), from.positions.end());
+        kinds.insert(kinds.end(), from.kinds.begin(), from.kinds.end());
+        bodies.insert(bodies.end(), from.bodies.begin(), from.bodies.end());
+        facets.insert(facets.end(), from.facets.begin(), from.facets.end());
+        mk.insert(mk.end(), from.mk.begin(), from.mk.end());
+        held.insert(held.end(), from.held.begin(), from.held.end());
+    }
+    /// Takes particles out; the others keep their order.
+    ///
+    /// is_out  one entry a particle
+    void erase(const std::vector<char>& is_out)
+    {
+        const auto compact = [&](auto& values)
+        {
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                if (!is_out[i]) values[count++] = values[i];
+            values.resize(count);
+        };
+        compact(positions);
+        compact(kinds);
+        compact(bodies);
+        compact(facets);
+        compact(mk);
+        compact(held);
+    }
 };
 
 /// Particles off the lattice that belong to no wall, one entry each in all arrays: those near walls

@@ -4,6 +4,7 @@
 #include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "batch/folder_lock.h"
 #include "batch/plan.h"
 #include "batch/report.h"
 #include "batch/run_batch.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 namespace fppg
 {
@@ -133,7 +135,8 @@ public:
                                           : std::max(1, processors / runs);
         plan_.jobs = call_.jobs > 0 ? call_.jobs : std::max(1, processors / plan_.threads);
         make_folder();
-        if (call_.slurm) return write_slurm();
+        std::optional<FolderLock> lock(std::in_place, out_, false);
+        if (call_.slurm) return write_slurm(lock);
         if (!call_.plan.empty()) return print_tasks();
         write_plan(out_, plan_);
         return run_all();
@@ -208,6 +211,7 @@ private:
         if (call_.task > plan_.runs.size())
             throw UsageError(fmt::format("--task: {} is out of range, the plan has {} runs",
                                          call_.task, plan_.runs.size()));
+        const FolderLock lock(out_, true);
         const std::vector<BatchRun> one{plan_.runs[call_.task - 1]};
         const StopSignalsAsk stop;
         BatchOptions run_options = options();
@@ -235,7 +239,7 @@ private:
     }
 
     /// Tasks of a scheduler may be handed in twice, so they always leave out what is done.
-    int write_slurm()
+    int write_slurm(std::optional<FolderLock>& lock)
     {
         plan_.resumes = true;
         std::vector<RunRecord> estimates;
@@ -258,6 +262,8 @@ private:
             return 0;
         }
         std::fflush(stdout);
+        // The first tasks may begin before sbatch ends, and they lock the folder themselves.
+        lock.reset();
         const int status = std::system(shell_word(script).c_str());
         if (status != 0)
             throw IoError(fmt::format("{} ended with exit code {}; is sbatch there?", script,

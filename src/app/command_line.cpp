@@ -121,6 +121,10 @@ void read_option(const std::string& argument, DropInOptions& options)
         options.fit = fit_choice_of(value, colon != std::string::npos);
     else if (name == "-strict" || name == "--strict")
         options.strict = flag_of(name, value);
+    else if (name == "-quiet" || name == "--quiet")
+        options.is_quiet = flag_of(name, value);
+    else if (name == "-log-json" || name == "--log-json")
+        options.log_json = flag_of(name, value);
     else if (name == "-threads" || name == "-ompthreads")
     {
         options.threads = number_of<int>(name, value, "a number of threads, 0 for all");
@@ -196,8 +200,11 @@ std::string help_text()
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
         "  fppg compare A B [--html page.html]   what differs between two results; fppg compare "
         "--help\n"
+        "  fppg report RESULT...                a page with pictures, histograms and a 3-D view\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
+        "  fppg leak CASE PART_FILES            counts fluid where none can be in the solver's "
+        "output\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"
         "  fppg batch FOLDER                    many cases side by side; fppg batch --help\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
@@ -206,7 +213,8 @@ std::string help_text()
         "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
-        "Options (GenCase's own, but for -fit, -strict, vtkfeatures and -overwrite):\n"
+        "Options (GenCase's own, but for -fit, -strict, -quiet, -log-json, vtkfeatures and "
+        "-overwrite):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -fit                   body-fitted walls: every boundary mk gets its particles on its "
@@ -215,6 +223,8 @@ std::string help_text()
         "  -fit:raw               the same without relaxation\n"
         "  -fit:off               no body-fitted walls, whatever <fppg> says\n"
         "  -strict                warnings where GenCase says nothing are errors (exit code 3)\n"
+        "  -quiet                 print warnings and errors only; OUTPUT.out holds all\n"
+        "  -log-json              print a JSON object a line: stages, warnings, counts, errors\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
         "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
         "each:\n"

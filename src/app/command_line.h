@@ -43,6 +43,8 @@ struct DropInOptions
     bool save_three_vtk = false;
     bool create_folders = true;
     bool strict = false;    ///< warnings where GenCase is silent are errors
+    bool is_quiet = false;  ///< print warnings and errors only
+    bool log_json = false;  ///< print a JSON object a line
     bool overwrite = false; ///< templates that exist and differ
 };
 

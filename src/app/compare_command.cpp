@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "app/cloud_scene.h"
+#include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/compare.h"
 #include "fppg/files.h"
 #include "fppg/render.h"
+#include "report/scene.h"
+
+#include <optional>
 
 namespace fppg
 {
@@ -15,9 +20,13 @@ namespace fppg
 namespace
 {
 
+/// Ways to change that pictures tell apart, in the order of their colours.
+constexpr const char* changes[] = {"missing", "extra", "moved", "another mk"};
+
 constexpr std::size_t most_in_picture = 1500000;
 constexpr std::size_t most_changed = 200000;
-constexpr std::uint64_t bytes_a_particle = 100;
+/// In grids, and mapped of the files.
+constexpr std::uint64_t bytes_a_particle = 160;
 
 struct CompareCall
 {
@@ -25,7 +34,8 @@ struct CompareCall
     std::string b;
     std::string json;
     std::string html;
-    double memory_mib = 2048;
+    bool is_quiet = false;
+    double memory_mib = 1536;
     CompareOptions options;
 };
 
@@ -69,6 +79,7 @@ bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call
     app.add_option("--memory", call.memory_mib, "MiB for particles; files of any size are compared")
         ->check(CLI::Range(1.0, 1e9))
         ->capture_default_str();
+    app.add_flag("--quiet", call.is_quiet, "print nothing: the exit code tells");
     app.add_option("--threads", options.threads,
                    "default 0: what the machine or its scheduler allows")
         ->check(CLI::Range(0, 4096));
@@ -106,11 +117,6 @@ std::uint8_t colour_of(ChangeKind kind)
     }
 }
 
-std::string hex(const Rgb& c)
-{
-    return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-}
-
 void draw_changed(const Comparison& comparison, std::vector<ComparePicture>& pictures)
 {
     if (comparison.changed.empty()) return;
@@ -129,14 +135,51 @@ void draw_changed(const Comparison& comparison, std::vector<ComparePicture>& pic
     }
     RenderOptions options = picture_options(comparison);
     options.colour = RenderColour::Kind;
+    std::vector<std::pair<std::string, std::string>> legend;
+    for (std::uint8_t c = 0; c < std::size(changes); ++c)
+        legend.emplace_back(hex_of(colour_of_kind(c)), changes[c]);
     pictures.push_back(
         {fmt::format("Only what differs{}, A on the left, B on the right:",
                      comparison.changed.size() < most_changed ? "" : " (the first 200,000)"),
-         {{hex(colour_of_kind(0)), "missing"},
-          {hex(colour_of_kind(1)), "extra"},
-          {hex(colour_of_kind(2)), "moved"},
-          {hex(colour_of_kind(3)), "another mk"}},
-         png_bytes(render_particles(clouds, options, comparison.options.threads), true)});
+         legend, png_bytes(render_particles(clouds, options, comparison.options.threads), true)});
+}
+
+/// What differs in one file, a part a way to change.
+SceneSet scene_of_changed(const Comparison& comparison, std::size_t f)
+{
+    SceneSet set;
+    set.name = f == 0 ? "A, only what differs" : "B, only what differs";
+    set.dp = comparison.dp;
+    for (std::uint8_t c = 0; c < std::size(changes); ++c)
+        set.parts.push_back({changes[c], hex_of(colour_of_kind(c)), {}});
+    for (const ChangedParticle& p : comparison.changed)
+        if (p.kind != (f == 0 ? ChangeKind::Extra : ChangeKind::Missing))
+            set.parts[colour_of(p.kind)].positions.push_back(p.position[f]);
+    std::erase_if(set.parts, [](const ScenePart& part) { return part.positions.empty(); });
+    return set;
+}
+
+/// Both results side by side, to be turned.
+std::string view_of(const Comparison& comparison)
+{
+    const auto clouds = clouds_for_picture(comparison, most_in_scene);
+    std::vector<std::string> sets;
+    std::vector<SceneView> views;
+    std::string title = "all particles";
+    if (clouds[0].dp > comparison.dp)
+        title = fmt::format("one of every mk in cubes of {:g} dp", clouds[0].dp / comparison.dp);
+    if (clouds[0].positions.size() + clouds[1].positions.size() > 0)
+    {
+        sets = {to_json(scene_by_mk(clouds[0], "A")), to_json(scene_by_mk(clouds[1], "B"))};
+        views = {{title, {0, 1}}};
+    }
+    if (!comparison.changed.empty())
+    {
+        views.push_back({"only what differs", {sets.size(), sets.size() + 1}});
+        for (const std::size_t f : {0U, 1U})
+            sets.push_back(to_json(scene_of_changed(comparison, f)));
+    }
+    return scene_html(sets, views);
 }
 
 /// The mks of both files with their colours.
@@ -144,7 +187,7 @@ std::vector<std::pair<std::string, std::string>> mk_legend(const Comparison& com
 {
     std::vector<std::pair<std::string, std::string>> legend;
     for (const MkComparison& of : comparison.mks)
-        legend.emplace_back(hex(colour_of_mk(of.mk)), fmt::format("mk {}", of.mk));
+        legend.emplace_back(hex_of(colour_of_mk(of.mk)), fmt::format("mk {}", of.mk));
     if (legend.size() > 30) legend.resize(30);
     return legend;
 }
@@ -159,7 +202,7 @@ std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
         RenderOptions options = picture_options(comparison);
         std::string thinned;
         if (clouds[0].dp > comparison.dp)
-            thinned = fmt::format("; one particle for every cube of {:g} dp",
+            thinned = fmt::format("; one particle of every mk in cubes of {:g} dp",
                                   clouds[0].dp / comparison.dp);
         if (clouds[0].positions.empty() && clouds[1].positions.empty()) return pictures;
         pictures.push_back({"A on the left, B on the right, by mk" + thinned + ":",
@@ -200,6 +243,7 @@ int run_compare(const std::vector<std::string>& arguments)
         std::optional<OutputFile> html;
         if (!call.json.empty()) json.emplace(call.json);
         if (!call.html.empty()) html.emplace(call.html);
+        std::optional<StageBar> bar(std::in_place, "compare", !call.is_quiet);
         const Comparison comparison = compare_results(call.a, call.b, call.options);
         if (json)
         {
@@ -208,10 +252,13 @@ int run_compare(const std::vector<std::string>& arguments)
         }
         if (html)
         {
-            html->append(to_html(comparison, draw_pictures(comparison)));
+            bar.reset();
+            bar.emplace("pictures", !call.is_quiet);
+            html->append(to_html(comparison, draw_pictures(comparison), view_of(comparison)));
             html->commit();
         }
-        fmt::print("{}", to_text(comparison));
+        bar.reset();
+        if (!call.is_quiet) fmt::print("{}", to_text(comparison));
         return comparison.is_equal() ? 0 : 1;
     }
     catch (const IoError& error)

@@ -14,6 +14,7 @@
 #include "app/motion_check.h"
 #include "app/relax_stage.h"
 #include "app/run_log.h"
+#include "app/stage_bar.h"
 #include "app/stop_signals.h"
 #include "app/stopwatch.h"
 #include "app/templates_command.h"
@@ -22,8 +23,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -72,7 +71,11 @@ class DropInRun
 {
 public:
     explicit DropInRun(const DropInOptions& options)
-        : options_(options), threads_(options.threads > 0 ? options.threads : default_threads())
+        : options_(options),
+          threads_(options.threads > 0 ? options.threads : default_threads()),
+          log_(options.log_json   ? LogStyle::Json
+               : options.is_quiet ? LogStyle::Quiet
+                                  : LogStyle::Text)
     {
     }
 
@@ -102,6 +105,11 @@ public:
         output_ = options_.output;
         add_file(".out").append(log_.text());
         commit();
+        log_.finished(total.seconds(), {{"particles", particles_.np},
+                                        {"fixed", particles_.n_fixed},
+                                        {"moving", particles_.n_moving},
+                                        {"floating", particles_.n_floating},
+                                        {"fluid", particles_.n_fluid}});
         return 0;
     }
 
@@ -199,10 +207,12 @@ private:
     void stage(const char* name, const Body& body)
     {
         const Stopwatch time;
-        log_.line();
-        log_.line(fmt::format("[{}]", name));
-        body();
-        log_.line(fmt::format("[{}-End  time:{:.3f}s]", name, time.seconds()));
+        log_.begin_stage(name);
+        {
+            const StageBar bar(name, log_.style() == LogStyle::Text);
+            body();
+        }
+        log_.end_stage(name, time.seconds());
     }
 
     void prepare_folder() const
@@ -281,17 +291,12 @@ private:
         clip_to_zone(def_.vres, def_.zone, field_);
     }
 
-    /// A line on the terminal that shows how far a long drawing is; nothing where the output is a
-    /// file.
-    LatticeProgress draw_progress() const
+    static LatticeProgress draw_progress()
     {
-        if (isatty(STDERR_FILENO) == 0) return {};
-        return [time = Stopwatch(), shown = 0.0](std::size_t done, std::size_t all) mutable
+        return [](std::size_t done, std::size_t all)
         {
-            if (time.seconds() < shown + 0.5) return;
-            shown = time.seconds();
-            fmt::print(stderr, "\rdraw {} of {}  ({:.0f} s)\x1b[K", done, all, shown);
-            if (done + 1 >= all) fmt::print(stderr, "\r\x1b[K");
+            StageBar::show(static_cast<double>(done) / static_cast<double>(all),
+                           fmt::format("{} of {}", done, all));
         };
     }
 
@@ -671,7 +676,7 @@ private:
 
     void warn(std::string text)
     {
-        log_.line("*** WARNING: " + text);
+        log_.warning(text);
         warnings_.push_back(std::move(text));
     }
 

@@ -1,6 +1,7 @@
 #include "app/estimate_command.h"
 
 #include "app/command_line.h"
+#include "app/stage_bar.h"
 #include "app/threads.h"
 #include "batch/estimate.h"
 #include "fppg/error.h"
@@ -9,6 +10,8 @@
 
 #include <algorithm>
 #include <filesystem>
+
+#include <optional>
 
 namespace fppg
 {
@@ -47,7 +50,9 @@ int run_estimate(const std::vector<std::string>& arguments)
     options.saves_bi4 = run.save_bi4;
     options.saves_all = run.save_all;
     options.saves_parts = run.save_bound || run.save_fluid;
+    std::optional<StageBar> bar(std::in_place, "estimate");
     const Estimate estimate = estimate_case(run.input + ".xml", options);
+    bar.reset();
     fmt::print("{}", as_json ? to_json(estimate) : to_text(estimate));
     return 0;
 }

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include "app/inspect.h"
+#include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/error.h"
+
+#include <optional>
 
 namespace fppg
 {
@@ -30,7 +33,9 @@ int run_inspect(const std::vector<std::string>& arguments)
     app.add_flag("--json", as_json, "print JSON");
     if (!read_subcommand_line(app, arguments)) return 0;
     if (inspect.threads <= 0) inspect.threads = default_threads();
+    std::optional<StageBar> bar(std::in_place, "inspect");
     const Inspection inspection = inspect_mesh(inspect);
+    bar.reset();
     fmt::print("{}", as_json ? to_json(inspection) : to_text(inspection));
     return 0;
 }

@@ -4,13 +4,12 @@
 #include "fppg/relax_walls.h"
 
 #include "app/run_log.h"
+#include "app/stage_bar.h"
 #include "app/stop_signals.h"
 #include "app/stopwatch.h"
 #include "app/thousands.h"
 
 #include <fmt/format.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -89,10 +88,8 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
     RelaxOutcome done;
     RelaxReport report;
     const Stopwatch time;
-    double shown = 0;
     int snapshots = 0;
     TimeLeft left;
-    const bool is_terminal = isatty(STDERR_FILENO) != 0;
     done.history = "what,iteration,particles,mean,deviation,largest_step_dp\n";
     const auto observe = [&](const RelaxStep& step)
     {
@@ -101,16 +98,11 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
         done.history +=
             fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
                         step.particles, step.mean, step.deviation, step.largest_step_dp);
-        if (is_terminal && now > shown + 0.2)
-        {
-            shown = now;
-            fmt::print(
-                stderr,
-                "\rrelax {}: {} of at most {}, spread {:.3f}, largest step {:.3f} dp ({:.0f} "
-                "s, at most {:.0f} s more)\x1b[K",
-                step.what, step.iteration, step.last_iteration, step.deviation,
-                step.largest_step_dp, now, left.seconds(step, now));
-        }
+        const double rest = left.seconds(step, now);
+        StageBar::show(
+            now + rest > 0 ? now / (now + rest) : 0,
+            fmt::format("{}: {} of at most {}, spread {:.3f}, largest step {:.3f} dp", step.what,
+                        step.iteration, step.last_iteration, step.deviation, step.largest_step_dp));
         return !stop.is_asked();
     };
     const auto snapshot = [&](int iteration, const WallParticles& particles)
@@ -121,7 +113,6 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
         ++snapshots;
     };
     relax_walls(def, field, threads, observe, report, snapshot);
-    if (is_terminal) fmt::print(stderr, "\r\x1b[K");
     for (const RelaxedPart& part : report.parts) log_relaxed(part, log);
     if (snapshots > 0)
         log.line(fmt::format("{}_Relax_*.vtk: {} pictures of the relaxation", output, snapshots));

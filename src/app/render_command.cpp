@@ -1,5 +1,6 @@
 #include "app/render_command.h"
 
+#include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/error.h"
@@ -9,6 +10,8 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+
+#include <optional>
 
 namespace fppg
 {
@@ -179,6 +182,7 @@ int run_render(const std::vector<std::string>& arguments)
     RenderCall call;
     if (!read_arguments(arguments, call)) return 0;
     OutputFile file(call.output);
+    std::optional<StageBar> bar(std::in_place, "render");
     std::vector<ParticleCloud> clouds;
     for (const std::string& name : call.cases)
         clouds.push_back(
@@ -188,6 +192,7 @@ int run_render(const std::vector<std::string>& arguments)
     const Image image = render_particles(clouds, call.options, call.threads);
     write_png(file, image, call.has_palette);
     file.commit();
+    bar.reset();
     print_colours(clouds, call.options);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     fmt::print("{}: {} x {} pixels, {:.2f} s\n", call.output, image.width, image.height,

@@ -1,17 +1,79 @@
 #include "app/run_log.h"
 
+#include "app/stage_bar.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <cstdio>
 
 namespace fppg
 {
 
-void RunLog::line(std::string_view text)
+namespace
 {
-    const std::size_t begin = text_.size();
+
+using Json = nlohmann::ordered_json;
+
+void print_json(const Json& json)
+{
+    StageBar::clear();
+    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    std::fflush(stdout);
+}
+
+} // namespace
+
+void RunLog::keep(std::string_view text, bool is_printed)
+{
     text_.append(text);
     text_ += '\n';
-    std::fwrite(text_.data() + begin, 1, text_.size() - begin, stdout);
+    if (!is_printed) return;
+    StageBar::clear();
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fputc('\n', stdout);
     std::fflush(stdout);
+}
+
+void RunLog::line(std::string_view text)
+{
+    keep(text, style_ == LogStyle::Text);
+    if (style_ == LogStyle::Json && !text.empty())
+        print_json({{"event", "log"}, {"text", std::string(text)}});
+}
+
+void RunLog::warning(std::string_view text)
+{
+    keep(fmt::format("*** WARNING: {}", text), style_ != LogStyle::Json);
+    if (style_ == LogStyle::Json) print_json({{"event", "warning"}, {"text", std::string(text)}});
+}
+
+void RunLog::begin_stage(std::string_view name)
+{
+    keep({}, style_ == LogStyle::Text);
+    keep(fmt::format("[{}]", name), style_ == LogStyle::Text);
+    if (style_ == LogStyle::Json) print_json({{"event", "stage"}, {"name", std::string(name)}});
+}
+
+void RunLog::end_stage(std::string_view name, double seconds)
+{
+    keep(fmt::format("[{}-End  time:{:.3f}s]", name, seconds), style_ == LogStyle::Text);
+    if (style_ == LogStyle::Json)
+        print_json({{"event", "stage_end"}, {"name", std::string(name)}, {"seconds", seconds}});
+}
+
+void RunLog::finished(double seconds,
+                      const std::vector<std::pair<std::string, std::uint64_t>>& counts)
+{
+    if (style_ != LogStyle::Json) return;
+    Json json = {{"event", "finished"}, {"code", 0}, {"seconds", seconds}};
+    for (const auto& [name, count] : counts) json[name] = count;
+    print_json(json);
+}
+
+void print_json_error(std::string_view text, int code)
+{
+    print_json({{"event", "error"}, {"code", code}, {"text", std::string(text)}});
 }
 
 } // namespace fppg

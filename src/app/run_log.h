@@ -1,20 +1,46 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace fppg
 {
+
+/// What a run prints.
+enum class LogStyle : std::uint8_t
+{
+    Text,  ///< what GenCase prints
+    Quiet, ///< warnings only
+    Json,  ///< a JSON object a line: its "event" is stage, stage_end, warning, log or finished
+};
 
 /// What a run says: printed at once, kept for Case.out.
 class RunLog
 {
 public:
+    explicit RunLog(LogStyle style = LogStyle::Text) : style_(style) {}
+
     void line(std::string_view text = {});
+    void warning(std::string_view text);
+    void begin_stage(std::string_view name);
+    void end_stage(std::string_view name, double seconds);
+    /// The last event of a run that went well; prints nothing but in JSON.
+    void finished(double seconds, const std::vector<std::pair<std::string, std::uint64_t>>& counts);
+
+    LogStyle style() const { return style_; }
     const std::string& text() const { return text_; }
 
 private:
+    void keep(std::string_view text, bool is_printed);
+
+    LogStyle style_;
     std::string text_;
 };
+
+/// Prints the event of a run that failed. For callers that asked for JSON.
+void print_json_error(std::string_view text, int code);
 
 } // namespace fppg

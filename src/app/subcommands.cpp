@@ -4,7 +4,9 @@
 #include "app/compare_command.h"
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
+#include "app/leak_command.h"
 #include "app/render_command.h"
+#include "app/report_command.h"
 #include "app/templates_command.h"
 
 namespace fppg
@@ -20,8 +22,9 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command}, {"compare", run_compare}, {"estimate", run_estimate},
-    {"inspect", run_inspect},     {"render", run_render},   {"templates", run_templates},
+    {"batch", run_batch_command}, {"compare", run_compare},     {"estimate", run_estimate},
+    {"inspect", run_inspect},     {"leak", run_leak},           {"render", run_render},
+    {"report", run_report},       {"templates", run_templates},
 };
 
 } // namespace

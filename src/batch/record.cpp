@@ -59,6 +59,11 @@ std::string record_path(const BatchRun& run)
     return run.output + ".batch.json";
 }
 
+std::string look_path(const BatchRun& run)
+{
+    return run.output + ".batch.look";
+}
+
 void write_record(const BatchRun& run, const RunRecord& record)
 {
     Json inputs = Json::array();

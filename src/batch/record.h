@@ -52,6 +52,9 @@ std::string program_identity();
 
 std::string record_path(const BatchRun& run);
 
+/// What the report shows of a run besides its picture (read_look()).
+std::string look_path(const BatchRun& run);
+
 /// throws IoError
 void write_record(const BatchRun& run, const RunRecord& record);
 

@@ -3,9 +3,13 @@
 #include "fppg/files.h"
 #include "fppg/version.h"
 
+#include "report/html.h"
+#include "report/result_look.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -94,76 +98,24 @@ std::string to_json(const std::vector<BatchRun>& runs, const std::vector<RunReco
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string html_text(const std::string& text)
+std::string read_whole(const fs::path& path)
 {
-    std::string out;
-    for (const char c : text)
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+ResultLook look_of(const BatchRun& run, const RunRecord& record)
+{
+    ResultLook look;
+    if (record.state == RunState::Done && !record.picture.empty())
     {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
+        look = read_look(read_whole(look_path(run)));
+        look.picture = read_whole(fs::path(run.output).parent_path() / record.picture);
+        look.note = fmt::format(": {} particles", grouped_digits(record.np));
     }
-    return out;
+    look.name = run.name;
+    return look;
 }
-
-std::string base64(const std::string& bytes)
-{
-    static constexpr char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (std::size_t i = 0; i < bytes.size(); i += 3)
-    {
-        const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-        unsigned three = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            three = three << 8U | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            out += k <= n ? digits[three >> (18 - 6 * k) & 63U] : '=';
-    }
-    return out;
-}
-
-std::string picture_of(const BatchRun& run, const RunRecord& record)
-{
-    if (record.picture.empty()) return "";
-    std::ifstream in(fs::path(run.output).parent_path() / record.picture, std::ios::binary);
-    if (!in) return "";
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", html_text(run.name),
-                       base64(bytes));
-}
-
-std::string grouped(std::uint64_t n)
-{
-    std::string text = std::to_string(n);
-    for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
-        text.insert(static_cast<std::size_t>(at), 1, ',');
-    return text;
-}
-
-constexpr const char* head = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>fppg batch</title>
-<style>
-body { font: 15px/1.4 system-ui, sans-serif; margin: 2em; color: #222; }
-table { border-collapse: collapse; }
-th, td { padding: 4px 10px; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-img { width: 240px; height: 180px; }
-.done { color: #17692b; } .failed, .refused { color: #b3261e; } .stopped, .waiting { color: #8a5a00; }
-.small { font-size: 13px; max-width: 40em; white-space: pre-wrap; }
-@media (prefers-color-scheme: dark) {
-  body { background: #1b1b1b; color: #ddd; } th, td { border-color: #444; }
-  .done { color: #7cc58d; } .failed, .refused { color: #f2958e; } .stopped, .waiting { color: #e0b45c; }
-}
-</style></head><body>
-)";
 
 std::string to_html(const std::vector<BatchRun>& runs, const std::vector<RunRecord>& records)
 {
@@ -175,31 +127,41 @@ std::string to_html(const std::vector<BatchRun>& runs, const std::vector<RunReco
         if (r.state == RunState::Done) particles += r.np;
         seconds += r.seconds;
     }
-    std::string text = head;
+    std::vector<ResultLook> looks;
+    for (std::size_t i = 0; i < runs.size(); ++i) looks.push_back(look_of(runs[i], records[i]));
+    std::string text = page_head("fppg batch");
     text += fmt::format(
         "<h1>{} runs: {} done, {} failed, {} open</h1>\n<p>{} particles, {:.1f} s of all runs "
         "together. fppg {}.</p>\n",
-        runs.size(), counts.done, counts.failed, counts.open, grouped(particles), seconds, version);
+        runs.size(), counts.done, counts.failed, counts.open, grouped_digits(particles), seconds,
+        version);
+    text += pictures_html(looks);
     text +=
-        "<table><thead><tr><th></th><th>run</th><th>state</th><th>particles</th><th>fixed</th>"
-        "<th>moving</th><th>floating</th><th>fluid</th><th>time</th><th>memory</th>"
-        "<th>warnings and errors</th></tr></thead><tbody>\n";
+        "<h2>Runs</h2>\n<div class=\"scroll\"><table><thead><tr><th>run</th><th>state</th>"
+        "<th>particles</th><th>fixed</th><th>moving</th><th>floating</th><th>fluid</th>"
+        "<th>time</th><th>memory</th><th class=\"text\">warnings and errors</th></tr></thead>"
+        "<tbody>\n";
     for (std::size_t i = 0; i < runs.size(); ++i)
     {
         const RunRecord& r = records[i];
-        text += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"{}\">{}</td>",
-                            picture_of(runs[i], r), html_text(runs[i].name), name_of(r.state),
-                            name_of(r.state));
+        text += fmt::format("<tr><td>{}</td><td class=\"{}\">{}</td>", escaped_html(runs[i].name),
+                            name_of(r.state), name_of(r.state));
         for (const std::uint64_t n : {r.np, r.n_fixed, r.n_moving, r.n_floating, r.n_fluid})
-            text += fmt::format("<td class=\"n\">{}</td>", grouped(n));
-        text += fmt::format("<td class=\"n\">{:.2f} s</td><td class=\"n\">{:.0f} MB</td>",
-                            r.seconds, r.memory_bytes / 1e6);
+            text += fmt::format("<td>{}</td>", grouped_digits(n));
+        text += fmt::format("<td>{:.2f} s</td><td>{:.0f} MB</td>", r.seconds, r.memory_bytes / 1e6);
         std::string notes = r.error;
         for (const std::string& warning : r.warnings)
             notes += (notes.empty() ? "" : "\n") + warning;
-        text += fmt::format("<td class=\"small\">{}</td></tr>\n", html_text(notes));
+        text += fmt::format("<td class=\"text\"><div class=\"small\">{}</div></td></tr>\n",
+                            escaped_html(notes));
     }
-    return text + "</tbody></table>\n</body></html>\n";
+    text += "</tbody></table></div>\n";
+    const bool has_views = std::any_of(looks.begin(), looks.end(),
+                                       [](const ResultLook& look) { return !look.set.empty(); });
+    if (has_views)
+        text += "<h2>In space</h2>\n" + views_html(looks) + "<h2>Particles</h2>\n" +
+                details_html(looks);
+    return text + "</body></html>\n";
 }
 
 } // namespace

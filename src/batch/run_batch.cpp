@@ -27,8 +27,12 @@ namespace fs = std::filesystem;
 /// What a child counts where nothing is known of it: an estimate, or a run whose estimate failed,
 /// which fails as early itself.
 constexpr double small_bytes = 32e6;
-/// A picture needs the particles, their spheres and the tree over them.
+/// A picture needs the particles, their spheres and the tree over them; of large results it shows
+/// a part, and they are measured piece by piece.
 constexpr double picture_bytes_a_particle = 200;
+constexpr std::uint64_t picture_particles = 4000000;
+/// Of all runs together in the 3-D view of the report.
+constexpr std::size_t view_particles = 1000000;
 constexpr auto poll_interval = std::chrono::milliseconds(5);
 /// Between two requests to stop; the first one ends a relaxation early, the second the program.
 constexpr auto stop_interval = std::chrono::milliseconds(200);
@@ -149,8 +153,9 @@ private:
     /// Whether a run that is done still lacks its picture, and there is memory to draw it.
     bool wants_picture(const Job& job) const
     {
-        const bool has_picture =
-            !job.record.picture.empty() && fs::exists(job.run->output + ".png");
+        const bool has_picture = !job.record.picture.empty() &&
+                                 fs::exists(job.run->output + ".png") &&
+                                 fs::exists(look_path(*job.run));
         return options_.has_pictures && !has_picture && job.record.np > 0 &&
                needed_bytes(job) <= options_.memory_bytes;
     }
@@ -192,7 +197,8 @@ private:
     {
         if (job.step == Step::Run) return std::max(small_bytes, job.record.estimated_memory_bytes);
         if (job.step == Step::Picture)
-            return small_bytes + picture_bytes_a_particle * static_cast<double>(job.record.np);
+            return small_bytes + picture_bytes_a_particle * static_cast<double>(std::min(
+                                                                job.record.np, picture_particles));
         return small_bytes;
     }
 
@@ -230,9 +236,22 @@ private:
         }
         else
         {
-            words = {"render", job.run->output, "-o",        job.run->output + ".png",
-                     "--size", "480x360",       "--palette", "--threads",
-                     threads};
+            const std::size_t particles =
+                std::clamp<std::size_t>(view_particles / jobs_.size(), 2000, 200000);
+            words = {"report",
+                     job.run->output,
+                     "--picture",
+                     job.run->output + ".png",
+                     "--data",
+                     look_path(*job.run),
+                     "--definition",
+                     definition.filename().string(),
+                     "--particles",
+                     std::to_string(particles),
+                     "--threads",
+                     threads,
+                     "--"};
+            words.insert(words.end(), job.run->options.begin(), job.run->options.end());
         }
         job.child = std::make_unique<ChildProcess>(words, folder, log);
     }

@@ -12,11 +12,11 @@ namespace fppg
 
 struct BatchOptions
 {
-    int jobs = 1;            ///< runs side by side
-    int threads = 1;         ///< of each
-    double memory_bytes = 0; ///< that the estimates of runs side by side may add up to
-    bool resumes = false;    ///< runs that are current are not done again
-    bool has_pictures = true;
+    int jobs = 1;             ///< runs side by side
+    int threads = 1;          ///< of each
+    double memory_bytes = 0;  ///< that the estimates of runs side by side may add up to
+    bool resumes = false;     ///< runs that are current are not done again
+    bool has_pictures = true; ///< and what else the report shows of a run
     std::function<bool()> is_asked_to_stop; ///< asked often; may be empty
 };
 

@@ -1,7 +1,10 @@
 #include "casedef/figures.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace fppg
 {
@@ -122,14 +125,32 @@ FigureOp make_prism(const std::vector<Vec3>& points)
     return prism;
 }
 
+FigureOp prism_limits(const std::vector<Vec3>& points)
+{
+    FigureOp prism;
+    prism.vertices = points;
+    prism.solid = SolidKind::Faces;
+    const auto n = static_cast<std::uint32_t>(points.size() / 2);
+    prism.faces.push_back({{0, 2, 1}, true, {}, 0, {}});
+    prism.faces.push_back({{n, n + 1, n + 2}, true, {}, 0, {}});
+    for (std::uint32_t i = 0; i < n; ++i)
+    {
+        const std::uint32_t j = (i + 1) % n;
+        prism.faces.push_back({{i, j, n + j}, true, {}, 0, {}});
+    }
+    return prism;
+}
+
 FigureOp make_pyramid(const std::vector<Vec3>& points)
 {
     FigureOp pyramid;
     pyramid.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
-    Face base;
-    for (std::uint32_t i = 0; i < n; ++i) base.push_back(n - i);
-    pyramid.faces.push_back({base, true, base, 0, {}});
+    // The base is a fan from its first corner.
+    FigureFace base;
+    for (std::uint32_t i = 1; i <= n; ++i) base.vertices.push_back(i);
+    for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
@@ -286,6 +307,37 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 void transform_figure(FigureOp& figure, const Transform& transform)
 {
     for (Vec3& v : figure.vertices) v = transform(v);
+}
+
+bool keeps_boxes(const Transform& t)
+{
+    for (const Vec3& row : t.linear)
+    {
+        int entries = 0;
+        for (int axis = 0; axis < 3; ++axis) entries += std::fabs(row[axis]) > 1e-12 * norm(row);
+        if (entries > 1) return false;
+    }
+    return dot(t.linear[0], cross(t.linear[1], t.linear[2])) > 0;
+}
+
+FigureOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t)
+{
+    FigureOp figure;
+    figure.solid = SolidKind::Faces;
+    for (unsigned corner = 0; corner < 8; ++corner)
+    {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = ((corner >> axis) & 1U) != 0 ? std::max(corner0[axis], corner1[axis])
+                                                   : std::min(corner0[axis], corner1[axis]);
+        figure.vertices.push_back(t(p));
+    }
+    // Corners by bits: 1 is the far one along x, 2 along y, 4 along z.
+    constexpr std::array<std::array<std::uint32_t, 3>, 6> sides{
+        {{0, 3, 1}, {4, 5, 7}, {0, 1, 5}, {3, 2, 6}, {1, 3, 7}, {2, 0, 4}}};
+    for (const auto& side : sides)
+        figure.faces.push_back({{side[0], side[1], side[2]}, true, {}, 0, {}});
+    return figure;
 }
 
 } // namespace fppg

@@ -69,6 +69,7 @@ private:
                                          std::size_t at_most) const;
     FigureOp figure_of(const Element& e) const;
     BoxRegion box_of(const Element& e) const;
+    BoxLimits limits_of(const Element& e, bool with_limits) const;
     std::vector<double> layers_of(const Element& e) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;

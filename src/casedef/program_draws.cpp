@@ -57,9 +57,24 @@ BoxRegion ProgramRunner::box_of(const Element& e) const
         box.corner1 = read_.vec3(*end);
     else
         box.corner1 = box.corner0 + read_.child_vec3(e, "size");
-    box.corner0 = matrix_(box.corner0);
-    box.corner1 = matrix_(box.corner1);
     return box;
+}
+
+/// The box of a fill or redraw under the current matrix. Only its strict interior counts: to take
+/// in its limits (setboxlimitmode full), it grows by dp before the matrix applies.
+BoxLimits ProgramRunner::limits_of(const Element& e, bool with_limits) const
+{
+    BoxRegion box = box_of(e);
+    if (with_limits)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double low = std::min(box.corner0[axis], box.corner1[axis]);
+            const double high = std::max(box.corner0[axis], box.corner1[axis]);
+            box.corner0[axis] = low - def_.grid.dp;
+            box.corner1[axis] = high + def_.grid.dp;
+        }
+    if (!keeps_boxes(matrix_)) return turned_box(box.corner0, box.corner1, matrix_);
+    return BoxRegion{matrix_(box.corner0), matrix_(box.corner1)};
 }
 
 std::vector<double> ProgramRunner::layers_of(const Element& e) const
@@ -356,7 +371,9 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         op.seed = matrix_(read_.vec3(e));
         op.filter =
             fill_filter(e, name == "fillvoidpoint" ? "void" : read_.child(e, "modefill").text);
-        if (name == "fillbox") op.region = box_of(e);
+        if (name == "fillbox")
+            std::visit([&](auto&& limits) { op.region = std::move(limits); },
+                       limits_of(e, state_.box_limit_full));
         if (name == "fillfigure")
         {
             FigureOp figure = figure_of(e);
@@ -364,7 +381,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
             transform_figure(figure, matrix_);
             op.region = std::move(figure);
         }
-        if (name == "fillprism") op.region = make_prism(transformed_points(e, 6, 100'000'000));
+        if (name == "fillprism") op.region = prism_limits(transformed_points(e, 6, 100'000'000));
         add(e, std::move(op));
     }
     else if (name == "redraw" || name == "redrawbox")
@@ -378,7 +395,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         {
             // Without an mk it is for void nodes alone (seen with GenCase v5.4).
             if (op.filters.empty()) op.filters.push_back({MkKind::Void, std::nullopt});
-            op.region = box_of(e);
+            op.region = limits_of(e, false);
         }
         add(e, std::move(op));
     }
@@ -399,7 +416,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
                 for (std::size_t d = 0; d < 6; ++d)
                     if (w == "all" || w == names[d]) op.directions[d] = true;
             }
-        if (name == "redrawnearbox") op.region = box_of(e);
+        if (name == "redrawnearbox") op.region = limits_of(e, state_.box_limit_full);
         add(e, op);
     }
     else

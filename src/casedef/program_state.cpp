@@ -366,10 +366,7 @@ bool ProgramRunner::run_clip(const Element& e)
                 if (w == "back") faces[BoxBack] = true;
             }
         }
-        const Transform matrix = matrix_;
-        matrix_ = {};
         const BoxRegion box = box_of(e);
-        matrix_ = matrix;
         Vec3 low;
         Vec3 high;
         for (int axis = 0; axis < 3; ++axis)

@@ -2,14 +2,15 @@
 
 #include "compare/exact_spread.h"
 #include "compare/first_few.h"
+#include "compare/measure.h"
 #include "compare/pair_particles.h"
 #include "compare/report_words.h"
 #include "compare/slabs.h"
 #include "compare/value_differences.h"
 #include "core/parallel.h"
 #include "files/particle_source.h"
+#include "files/thinned_cloud.h"
 #include "files/typical_distance.h"
-#include "fppg/shapes.h"
 #include "shapes/mesh_query.h"
 
 #include <fmt/format.h>
@@ -17,9 +18,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <tuple>
-#include <unordered_set>
 
 namespace fppg
 {
@@ -28,8 +27,6 @@ namespace
 {
 
 constexpr std::size_t kinds = 8;
-constexpr double shepard_h_dp = 1.3;
-constexpr double neighbour_reach_dp = 2.6; ///< two cells, and 2 h
 
 struct Larger
 {
@@ -53,9 +50,8 @@ struct MkTally
 {
     std::uint64_t same = 0, moved = 0, missing = 0, extra = 0, mk_changed = 0, mk_gained = 0,
                   id_changed = 0;
-    std::array<std::uint64_t, 2> alone{};
     ExactSpread moved_dp;
-    std::array<ExactSpread, 2> spacing, shepard, distance;
+    std::array<MkMeasures, 2> measures;
     ArrayDifference density, velocity, normal;
     std::array<std::optional<ChangedParticle>, kinds> foremost; ///< by Larger
 
@@ -74,13 +70,7 @@ struct MkTally
         mk_gained += o.mk_gained;
         id_changed += o.id_changed;
         moved_dp.add(o.moved_dp);
-        for (std::size_t f = 0; f < 2; ++f)
-        {
-            alone[f] += o.alone[f];
-            spacing[f].add(o.spacing[f]);
-            shepard[f].add(o.shepard[f]);
-            distance[f].add(o.distance[f]);
-        }
+        for (std::size_t f = 0; f < 2; ++f) measures[f].add(o.measures[f]);
         for (auto [to, from] : {std::pair(&density, &o.density), std::pair(&velocity, &o.velocity),
                                 std::pair(&normal, &o.normal)})
         {
@@ -146,7 +136,9 @@ public:
         describe_files();
         set_frame();
         list_mks();
-        read_geometry();
+        if (!options.geometry.empty())
+            geometry_ = std::make_unique<MeshQuery>(
+                read_geometry(options.geometry, options.threads), options.threads);
         out_.values = value_differences(sources_[0], sources_[1], options, out_.dp, out_.notes);
         note_arrays();
     }
@@ -170,6 +162,7 @@ public:
             tally_columns(b, total,
                           [&](std::size_t c, Tally& tally)
                           { count_extras(b, c, a, partners, tally); });
+            for (const ParticleSource& source : sources_) source.release();
             tally_columns(a, total, [&](std::size_t c, Tally& tally) { measure(a, c, 0, tally); });
             tally_columns(b, total, [&](std::size_t c, Tally& tally) { measure(b, c, 1, tally); });
         }
@@ -209,8 +202,6 @@ private:
         out_.dp = sources_[0].dp() > 0   ? sources_[0].dp()
                   : sources_[1].dp() > 0 ? sources_[1].dp()
                                          : guess(sources_[0].size() > 0 ? 0 : 1);
-        frame_.dp = out_.dp;
-        frame_.cell = CompareFrame::cell_dp * out_.dp;
         Box3 both;
         for (const FileIndex& file : files_)
             if (!file.bounds().is_empty())
@@ -218,25 +209,20 @@ private:
                 both.add(file.bounds().min);
                 both.add(file.bounds().max);
             }
+        try
+        {
+            frame_ = frame_around(both, out_.dp);
+        }
+        catch (const CompareError& error)
+        {
+            throw CompareError(fmt::format("cannot compare '{}' and '{}': {}", sources_[0].path(),
+                                           sources_[1].path(), error.what()));
+        }
+        out_.is_2d = is_in_plane(both, out_.dp);
         double largest = 0;
         if (!both.is_empty())
-        {
-            frame_.origin = both.min;
-            out_.is_2d = both.max.y - both.min.y <= 1e-6 * out_.dp;
             for (int axis = 0; axis < 3; ++axis)
-            {
-                const double extent = both.max[axis] - both.min[axis];
                 largest = std::max({largest, std::abs(both.min[axis]), std::abs(both.max[axis])});
-                if (!(extent / frame_.cell < 4e9))
-                    throw CompareError(fmt::format(
-                        "cannot compare '{}' and '{}': they reach over {:g} m, more than 4e9 cells "
-                        "of 1.3 dp",
-                        sources_[0].path(), sources_[1].path(), extent));
-                // Files are in the order of x, so slabs across it are read fastest.
-                const double longest = both.max[frame_.axis] - both.min[frame_.axis];
-                if (extent > (frame_.axis == 0 ? 2 : 1) * longest) frame_.axis = axis;
-            }
-        }
         const bool is_single = sources_[0].is_single() || sources_[1].is_single();
         out_.same_place_m = std::min(0.5 * out_.dp, out_.options.same_place_dp * out_.dp +
                                                         (is_single ? 1.2e-7 * largest : 0));
@@ -258,24 +244,6 @@ private:
             }
             out_.mks.push_back(of);
         }
-    }
-
-    void read_geometry()
-    {
-        TriangleSoup soup;
-        for (const std::string& path : out_.options.geometry)
-        {
-            MeshReading reading;
-            reading.format = mesh_format_of(path);
-            const MeshFile mesh = read_mesh_file(path, reading, out_.options.threads);
-            if (mesh.soup.size() == 0)
-                throw CompareError(
-                    fmt::format("cannot compare with '{}': it has no surface", path));
-            soup.vertices.insert(soup.vertices.end(), mesh.soup.vertices.begin(),
-                                 mesh.soup.vertices.end());
-        }
-        if (soup.size() > 0)
-            geometry_ = std::make_unique<MeshQuery>(std::move(soup), out_.options.threads);
     }
 
     void note_arrays()
@@ -424,46 +392,12 @@ private:
         }
     }
 
-    /// Spacing, Shepard sum and distance to the geometry.
     void measure(const CellGrid& grid, std::size_t column, std::size_t f, Tally& tally) const
     {
-        const double dp = out_.dp;
-        const double h = shepard_h_dp * dp;
-        const double reach_squared = neighbour_reach_dp * neighbour_reach_dp * dp * dp;
-        // Wendland's kernel: the integral of (1 - q / 2)^4 (2 q + 1) is 16 pi / 21 h^3 in space,
-        // 4 pi / 7 h^2 in the plane.
-        const double share =
-            out_.is_2d ? 7 / (4 * std::numbers::pi * shepard_h_dp * shepard_h_dp)
-                       : 21 / (16 * std::numbers::pi * shepard_h_dp * shepard_h_dp * shepard_h_dp);
-        const auto visit = [&](std::uint32_t i, const CellGrid::Stretch* stretches, std::size_t n)
-        {
-            const SlabParticle& p = grid.particles()[i];
-            if (!p.is_core) return;
-            double sum = 0;
-            double nearest = reach_squared;
-            for (std::size_t s = 0; s < n; ++s)
-                for (std::uint32_t j = stretches[s].begin; j < stretches[s].end; ++j)
-                {
-                    const Vec3 way = grid.particles()[j].position - p.position;
-                    const double squared = dot(way, way);
-                    if (!(squared < reach_squared)) continue;
-                    const double q = std::sqrt(squared) / h;
-                    const double rest = 1 - q / 2;
-                    sum += rest * rest * rest * rest * (2 * q + 1);
-                    if (j != i) nearest = std::min(nearest, squared);
-                }
-            MkTally& of = of_mk(tally, p.mk);
-            of.shepard[f].add(share * sum, shepard_range);
-            if (nearest < reach_squared)
-                of.spacing[f].add(std::sqrt(nearest) / dp, spacing_range);
-            else
-                ++of.alone[f];
-            if (!geometry_) return;
-            const double limit = distance_range.end * dp;
-            const double distance = geometry_->closest_point(p.position, limit).distance;
-            if (distance <= limit) of.distance[f].add(distance / dp, distance_range);
-        };
-        grid.for_each_in_column(column, grid, 2, visit);
+        const Measuring measuring{out_.dp, out_.is_2d, geometry_.get()};
+        measuring.measure_column(grid, column,
+                                 [&](std::uint16_t mk) -> MkMeasures&
+                                 { return of_mk(tally, mk).measures[f]; });
     }
 
     void take(const Tally& total)
@@ -480,12 +414,12 @@ private:
             to.mk_gained = from.mk_gained;
             to.id_changed = from.id_changed;
             to.moved_dp = from.moved_dp.spread();
-            to.alone = from.alone;
             for (std::size_t f = 0; f < 2; ++f)
             {
-                to.spacing_dp[f] = from.spacing[f].spread();
-                to.shepard[f] = from.shepard[f].spread();
-                to.distance_dp[f] = from.distance[f].spread();
+                to.alone[f] = from.measures[f].alone;
+                to.spacing_dp[f] = from.measures[f].spacing.spread();
+                to.shepard[f] = from.measures[f].shepard.spread();
+                to.distance_dp[f] = from.measures[f].distance.spread();
             }
             to.density = from.density;
             to.velocity = from.velocity;
@@ -635,43 +569,16 @@ Comparison compare_results(const std::string& name_a, const std::string& name_b,
 
 std::array<ParticleCloud, 2> clouds_for_picture(const Comparison& comparison, std::size_t most)
 {
-    std::array<ParticleCloud, 2> clouds;
+    const ParticleSource a(comparison.files[0].path);
+    const ParticleSource b(comparison.files[1].path);
     // Cubes of the same size in both, so that the pictures can be compared.
-    std::uint64_t step = 1;
-    for (std::size_t f = 0; f < 2;)
+    for (std::uint64_t step = 1;; ++step)
     {
-        const ParticleSource source(comparison.files[f].path);
-        ParticleCloud& cloud = clouds[f];
-        cloud = {};
-        cloud.file = source.path();
-        cloud.dp = comparison.dp * static_cast<double>(step);
-        std::unordered_set<std::uint64_t> taken;
-        const Vec3 from = comparison.files[f].bounds.min;
-        bool is_too_many = false;
-        for (std::size_t i = 0; i < source.size() && !is_too_many; ++i)
-        {
-            const Vec3 p = source.position(i);
-            if (step > 1)
-            {
-                const Vec3 cell = (p - from) / cloud.dp;
-                const std::uint64_t key = static_cast<std::uint64_t>(cell.x) << 42U |
-                                          static_cast<std::uint64_t>(cell.y) << 21U |
-                                          static_cast<std::uint64_t>(cell.z);
-                if (!taken.insert(key).second) continue;
-            }
-            is_too_many = cloud.positions.size() >= most;
-            cloud.positions.push_back(p);
-            cloud.mk.push_back(source.mk(i));
-        }
-        if (is_too_many)
-        {
-            ++step;
-            f = 0;
-            continue;
-        }
-        ++f;
+        auto of_a = one_of_every_cube(a, comparison.files[0].bounds.min, comparison.dp, step, most);
+        if (!of_a) continue;
+        auto of_b = one_of_every_cube(b, comparison.files[1].bounds.min, comparison.dp, step, most);
+        if (of_b) return {std::move(*of_a), std::move(*of_b)};
     }
-    return clouds;
 }
 
 } // namespace fppg

@@ -1,6 +1,8 @@
 #include "fppg/compare.h"
 
 #include "compare/report_words.h"
+#include "report/html.h"
+#include "report/run_facts.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -15,109 +17,14 @@ namespace
 constexpr std::size_t values_shown = 300;
 constexpr std::size_t mks_with_histograms = 12;
 
-constexpr std::string_view style = R"(
-body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:1240px;padding:0 1em;color:#222}
-h1{font-size:1.5em}h2{font-size:1.15em;margin-top:1.8em}
-table{border-collapse:collapse;font-size:13px}td,th{padding:3px 9px;border-bottom:1px solid #ddd;text-align:right}
-td:nth-child(-n+2),th:nth-child(-n+2),table.left td,table.left th{text-align:left}
-.scroll{overflow-x:auto}img{max-width:100%;border:1px solid #ddd}figure{margin:1em 0}
-figcaption{font-size:13px;color:#555}.equal{color:#17692a}.different{color:#a33}
-.a{fill:#2b6cb0}.b{fill:#dd6b20}svg text{font:11px system-ui,sans-serif;fill:#444}
-.histograms{display:flex;flex-wrap:wrap;gap:14px}code{font-size:12px}
-)";
-
-std::string escaped(std::string_view text)
-{
-    std::string out;
-    for (const char c : text) switch (c)
-        {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    return out;
-}
-
-std::string base64(std::string_view bytes)
-{
-    static constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    out.reserve(4 * (bytes.size() + 2) / 3);
-    for (std::size_t i = 0; i < bytes.size(); i += 3)
-    {
-        const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t bits = 0;
-        for (std::size_t b = 0; b < 3; ++b)
-            bits = bits << 8U | (b < n ? static_cast<unsigned char>(bytes[i + b]) : 0U);
-        for (std::size_t d = 0; d < 4; ++d)
-            out += d <= n ? digits[bits >> (18 - 6 * d) & 63U] : '=';
-    }
-    return out;
-}
-
-/// Bars of A and B side by side; heights as shares of the larger number of particles.
+/// Bars of A and B side by side; either may be missing.
 std::string histogram(const std::string& title, const Spread* a, const Spread* b,
                       const HistogramRange& range)
 {
-    constexpr double width = 300;
-    constexpr double height = 110;
-    constexpr double left = 6;
-    constexpr double top = 20;
-    std::uint64_t most = 1;
-    for (const Spread* spread : {a, b})
-        if (spread != nullptr)
-            most = std::max(most,
-                            *std::max_element(spread->histogram.begin(), spread->histogram.end()));
-    std::string svg = fmt::format(
-        "<svg width=\"{:g}\" height=\"{:g}\" role=\"img\" aria-label=\"{}\"><text x=\"{:g}\" "
-        "y=\"13\">{}</text>",
-        width + 2 * left, height + top + 18, escaped(title), left, escaped(title));
-    const double bin = width / Spread::bins;
-    const int shown = (a != nullptr ? 1 : 0) + (b != nullptr ? 1 : 0);
-    int at = 0;
-    for (const Spread* spread : {a, b})
-    {
-        if (spread == nullptr) continue;
-        svg += fmt::format("<g class=\"{}\">", spread == a ? "a" : "b");
-        for (std::size_t i = 0; i < Spread::bins; ++i)
-        {
-            const auto n = static_cast<double>(spread->histogram[i]);
-            if (n == 0) continue;
-            const double tall = std::max(1.0, height * n / static_cast<double>(most));
-            svg +=
-                fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>",
-                            left + bin * (static_cast<double>(i) + 1.0 * at / shown),
-                            top + height - tall, bin / shown, tall);
-        }
-        svg += "</g>";
-        ++at;
-    }
-    svg +=
-        fmt::format("<line x1=\"{0:g}\" y1=\"{1:g}\" x2=\"{2:g}\" y2=\"{1:g}\" stroke=\"#888\"/>",
-                    left, top + height, left + width);
-    for (const int tick : {0, 1, 2, 3})
-    {
-        const double share = tick / 3.0;
-        svg += fmt::format("<text x=\"{:g}\" y=\"{:g}\" text-anchor=\"{}\">{:.3g}</text>",
-                           left + share * width, top + height + 14,
-                           tick == 0   ? "start"
-                           : tick == 3 ? "end"
-                                       : "middle",
-                           range.begin + share * (range.end - range.begin));
-    }
-    return svg + "</svg>\n";
+    std::vector<HistogramSeries> series;
+    if (a != nullptr) series.push_back({"a", a->histogram});
+    if (b != nullptr) series.push_back({"b", b->histogram});
+    return histogram_svg(title, series, range.begin, range.end);
 }
 
 std::string spread_cells(const Spread& spread)
@@ -195,8 +102,8 @@ std::string values_table(const Comparison& comparison)
     {
         const ValueDifference& value = comparison.values[i];
         html += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td></tr>\n",
-                            escaped(value.place), escaped(value.a.value_or("none")),
-                            escaped(value.b.value_or("none")));
+                            escaped_html(value.place), escaped_html(value.a.value_or("none")),
+                            escaped_html(value.b.value_or("none")));
     }
     html += "</table></div>\n";
     if (comparison.values.size() > values_shown)
@@ -204,48 +111,58 @@ std::string values_table(const Comparison& comparison)
     return html;
 }
 
+/// How long the runs took and what they warned of, where Case.out stands beside a result.
+std::string runs(const Comparison& comparison)
+{
+    std::string html;
+    for (std::size_t f = 0; f < 2; ++f)
+    {
+        const std::optional<RunFacts> facts = facts_of_result(comparison.files[f].path);
+        if (!facts) continue;
+        html += fmt::format("<h3>{}</h3>\n{}", f == 0 ? "A" : "B", run_facts_html(*facts));
+    }
+    return html.empty() ? "" : "<h2>Timings and warnings</h2>\n" + html;
+}
+
 } // namespace
 
-std::string to_html(const Comparison& comparison, const std::vector<ComparePicture>& pictures)
+std::string to_html(const Comparison& comparison, const std::vector<ComparePicture>& pictures,
+                    const std::string& view)
 {
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>fppg "
-        "compare</title><style>";
-    html += style;
-    html += "</style></head><body>\n";
+    std::string html = page_head("fppg compare");
     html += comparison.is_equal() ? "<h1 class=\"equal\">Equal</h1>\n"
                                   : "<h1 class=\"different\">Different</h1>\n";
     html += "<table class=\"left\">\n";
     for (std::size_t f = 0; f < 2; ++f)
     {
         const ComparedFile& file = comparison.files[f];
-        html +=
-            fmt::format("<tr><td>{}</td><td>{}</td><td>{} particles</td><td>{}</td></tr>\n",
-                        f == 0 ? "A" : "B", escaped(file.path), file.np, escaped(file.app_name));
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{} particles</td><td>{}</td></tr>\n",
+                            f == 0 ? "A" : "B", escaped_html(file.path), file.np,
+                            escaped_html(file.app_name));
     }
     html += "</table>\n";
     if (!comparison.is_equal())
     {
         html += "<h2>Differences, largest first</h2>\n<div class=\"scroll\"><table class=\"left\">";
         for (const Finding& finding : comparison.findings)
-            html +=
-                fmt::format("<tr><td>{:.3g} %</td><td>{}</td><td>{}</td></tr>\n",
-                            100 * finding.size, escaped(finding.category), escaped(finding.text));
+            html += fmt::format("<tr><td>{:.3g} %</td><td>{}</td><td>{}</td></tr>\n",
+                                100 * finding.size, escaped_html(finding.category),
+                                escaped_html(finding.text));
         html += "</table></div>\n";
     }
     if (!pictures.empty()) html += "<h2>Pictures</h2>\n";
     for (const ComparePicture& picture : pictures)
     {
-        html += fmt::format(
-            "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}",
-            escaped(picture.caption), base64(picture.png));
+        html += fmt::format("<figure>{}<figcaption>{}", picture_html(picture.png, picture.caption),
+                            escaped_html(picture.caption));
         for (const auto& [colour, meaning] : picture.legend)
             html += fmt::format(
                 " <svg width=\"12\" height=\"12\"><circle cx=\"6\" cy=\"6\" r=\"6\" "
                 "fill=\"{}\"/></svg> {}",
-                escaped(colour), escaped(meaning));
+                escaped_html(colour), escaped_html(meaning));
         html += "</figcaption></figure>\n";
     }
+    if (!view.empty()) html += "<h2>In space</h2>\n" + view;
     html += "<h2>Particles</h2>\n" + particles_table(comparison);
     html +=
         "<h2>Histograms</h2>\n<p><svg width=\"12\" height=\"12\"><rect class=\"a\" width=\"12\" "
@@ -256,15 +173,16 @@ std::string to_html(const Comparison& comparison, const std::vector<ComparePictu
     {
         html += "<h2>Examples</h2>\n<div class=\"scroll\"><table class=\"left\">";
         for (const ChangedParticle& p : comparison.examples)
-            html +=
-                fmt::format("<tr><td>{}</td><td>mk {}</td><td>{}</td></tr>\n", change_name(p.kind),
-                            p.mk[p.kind == ChangeKind::Extra ? 1 : 0], escaped(describe_change(p)));
+            html += fmt::format("<tr><td>{}</td><td>mk {}</td><td>{}</td></tr>\n",
+                                change_name(p.kind), p.mk[p.kind == ChangeKind::Extra ? 1 : 0],
+                                escaped_html(describe_change(p)));
         html += "</table></div>\n";
     }
     html +=
         "<h2>Values in Case.bi4 and Case.xml, constants first</h2>\n" + values_table(comparison);
+    html += runs(comparison);
     for (const std::string& note : comparison.notes)
-        html += fmt::format("<p>{}</p>\n", escaped(note));
+        html += fmt::format("<p>{}</p>\n", escaped_html(note));
     return html + "</body></html>\n";
 }
 

@@ -16,17 +16,44 @@ namespace
 
 constexpr std::uint64_t most_layers = std::uint64_t{1} << 20;
 
+/// After so many blocks the pages of the file are given back, so that memory does not grow with it.
+constexpr std::size_t blocks_held = 32;
+
 /// Calls body(begin, end, block) for all blocks of a file.
 template <typename Body>
-void for_each_block(std::size_t n, int threads, const Body& body)
+void for_each_block(const ParticleSource& source, int threads, const Body& body)
 {
     constexpr std::size_t size = FileIndex::particles_a_block;
+    const std::size_t n = source.size();
     parallel_for((n + size - 1) / size, threads,
                  [&](std::size_t block)
-                 { body(block * size, std::min(n, (block + 1) * size), block); });
+                 {
+                     body(block * size, std::min(n, (block + 1) * size), block);
+                     if (block % blocks_held == blocks_held - 1) source.release();
+                 });
 }
 
 } // namespace
+
+CompareFrame frame_around(const Box3& bounds, double dp)
+{
+    CompareFrame frame;
+    frame.dp = dp;
+    frame.cell = CompareFrame::cell_dp * dp;
+    if (bounds.is_empty()) return frame;
+    frame.origin = bounds.min;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double extent = bounds.max[axis] - bounds.min[axis];
+        if (!(extent / frame.cell < 4e9))
+            throw CompareError(
+                fmt::format("they reach over {:g} m, more than 4e9 cells of 1.3 dp", extent));
+        // Files are in the order of x, so slabs across it are read fastest.
+        const double longest = bounds.max[frame.axis] - bounds.min[frame.axis];
+        if (extent > (frame.axis == 0 ? 2 : 1) * longest) frame.axis = axis;
+    }
+    return frame;
+}
 
 FileIndex::FileIndex(const ParticleSource& source, int threads)
     : source_(&source),
@@ -36,7 +63,7 @@ FileIndex::FileIndex(const ParticleSource& source, int threads)
 {
     std::mutex guard;
     for_each_block(
-        source.size(), threads,
+        source, threads,
         [&](std::size_t begin, std::size_t end, std::size_t block)
         {
             struct OfMk
@@ -100,7 +127,7 @@ std::vector<Slab> plan_slabs(const CompareFrame& frame, const FileIndex& a, cons
     std::mutex guard;
     for (const FileIndex* file : {&a, &b})
         for_each_block(
-            file->source().size(), threads,
+            file->source(), threads,
             [&](std::size_t begin, std::size_t end, std::size_t block)
             {
                 const Box3& box = file->boxes()[block];
@@ -153,7 +180,9 @@ CellGrid::CellGrid(const CompareFrame& frame, const FileIndex& file, const Slab&
             const Vec3 p = source.position(i);
             if (is_in(p)) body(i, p);
         }
+        if (which % blocks_held == blocks_held - 1) source.release();
     };
+    source.release();
     std::vector<std::size_t> starts(blocks.size() + 1);
     parallel_for(
         blocks.size(), threads,

@@ -28,6 +28,15 @@ struct CompareFrame
     }
 };
 
+/// throws CompareError if the particles reach over more cells than can be counted
+CompareFrame frame_around(const Box3& bounds, double dp);
+
+/// Whether particles are those of a two-dimensional case.
+inline bool is_in_plane(const Box3& bounds, double dp)
+{
+    return !bounds.is_empty() && bounds.max.y - bounds.min.y <= 1e-6 * dp;
+}
+
 /// A file cut into stretches, with the box of each: what a slab needs is read without the rest.
 class FileIndex
 {

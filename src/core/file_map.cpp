@@ -77,6 +77,12 @@ FileMap::FileMap(const std::string& path)
     size_ = buffer_.size();
 }
 
+void FileMap::release() const
+{
+    // Advice only: where it is not taken, nothing but memory is lost.
+    if (mapping_ != nullptr) (void)::madvise(mapping_, size_, MADV_DONTNEED);
+}
+
 FileMap::~FileMap()
 {
     if (mapping_ != nullptr) ::munmap(mapping_, size_);

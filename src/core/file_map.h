@@ -23,6 +23,10 @@ public:
     /// Valid as long as the object lives.
     std::string_view bytes() const { return {data_, size_}; }
 
+    /// Takes the pages that were read out of this program's memory; they are read again, mostly
+    /// from the system's cache, when they are asked for. From any thread, at any time.
+    void release() const;
+
 private:
     const char* data_ = nullptr;
     std::size_t size_ = 0;

@@ -46,6 +46,9 @@ public:
     bool has_velocity() const { return !velocity_.empty(); }
     bool has_normals() const { return !normals_.empty(); }
 
+    /// FileMap::release() of the file of the particles.
+    void release() const { file_->release(); }
+
     std::size_t size() const { return size_; }
     /// Metres, as the file says: not checked to be finite.
     Vec3 position(std::size_t i) const

@@ -1,5 +1,8 @@
 #include "fit/chart_filler.h"
 
+#include "core/parallel.h"
+#include "fit/chart_grid.h"
+
 #include <algorithm>
 #include <numbers>
 #include <queue>
@@ -14,16 +17,14 @@ namespace
 // at one particle a dp squared.
 constexpr double front_spacing = 1.075;
 constexpr double least_distance = 0.86;
-constexpr double same_site = 0.25;     ///< a front meets a particle where it would put one
-constexpr double clearly_taken = 0.50; ///< the walk there can be saved
-constexpr double reach = 2.0;          ///< of everything that looks for neighbours
+constexpr double same_site = 0.25;         ///< a front meets a particle where it would put one
+constexpr double clearly_taken = 0.50;     ///< the walk there can be saved
+constexpr double reach = ChartGrid::reach; ///< of everything that looks for neighbours
 
-struct Neighbour
+constexpr float square(double x)
 {
-    Vec3 offset;
-    double squared;
-    std::uint32_t index;
-};
+    return static_cast<float>(x * x);
+}
 
 struct PlanePoint
 {
@@ -56,13 +57,17 @@ Vec3 any_direction(const WorkFacet& facet)
     return side / norm(side);
 }
 
-Vec3 turned(const Vec3& direction, const Vec3& normal, int sixths)
+constexpr double half_root = std::numbers::sqrt3 / 2;
+constexpr std::array<double, 6> sixth_cosines{1, 0.5, -0.5, -1, -0.5, 0.5};
+constexpr std::array<double, 6> sixth_sines{0, half_root, half_root, 0, -half_root, -half_root};
+
+/// A direction and the one left of it, turned by sixths of a circle; the last two lanes repeat.
+EightNumbers turned_by_sixths(double along, double left)
 {
-    constexpr double half_root = std::numbers::sqrt3 / 2;
-    constexpr std::array<double, 6> cosines{1, 0.5, -0.5, -1, -0.5, 0.5};
-    constexpr std::array<double, 6> sines{0, half_root, half_root, 0, -half_root, -half_root};
-    const auto at = static_cast<std::size_t>(sixths);
-    return direction * cosines[at] + cross(normal, direction) * sines[at];
+    EightNumbers result;
+    for (std::size_t l = 0; l < result.size(); ++l)
+        result[l] = static_cast<float>(along * sixth_cosines[l % 6] + left * sixth_sines[l % 6]);
+    return result;
 }
 
 /// Keeps of a convex polygon what is nearer to the origin than to a point over `other`, which is
@@ -92,20 +97,24 @@ void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, double squa
 } // namespace
 
 std::vector<FeatureSite> make_feature_sites(const SurfaceMesh& mesh, const WorkMesh& work,
-                                            const std::vector<FeatureParticle>& particles)
+                                            const std::vector<FeatureParticle>& particles,
+                                            int threads)
 {
-    std::vector<std::uint32_t> site_of_vertex(mesh.vertices.size(), no_index);
     std::vector<FeatureSite> sites(particles.size());
-    for (std::uint32_t p = 0; p < particles.size(); ++p)
-    {
-        sites[p].position = particles[p].position;
-        if (particles[p].vertex != no_index)
-            site_of_vertex[particles[p].vertex] = p;
-        else
+    parallel_for(
+        particles.size(), threads,
+        [&](std::size_t p)
+        {
+            sites[p].position = particles[p].position;
+            if (particles[p].vertex != no_index) return;
             for (const std::uint32_t facet : mesh.edge_facets[particles[p].edge])
                 if (facet != no_index)
                     sites[p].facets.push_back(work.locate(facet, particles[p].position));
-    }
+        },
+        64);
+    std::vector<std::uint32_t> site_of_vertex(mesh.vertices.size(), no_index);
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+        if (particles[p].vertex != no_index) site_of_vertex[particles[p].vertex] = p;
     for (std::uint32_t f = 0; f < work.facets.size(); ++f)
         for (const std::uint32_t v : work.facets[f].vertices)
             if (v < mesh.vertices.size() && site_of_vertex[v] != no_index)
@@ -135,9 +144,10 @@ struct ChartFiller::Work
     double dp;
     std::uint32_t chart = 0;
     ChartParticles* own = nullptr;
-    NeighbourGrid grid;
+    ChartGrid grid;
     std::vector<Vec3> normals; ///< of all in the grid
-    std::vector<Neighbour> near;
+    NearPoints near;
+    mutable NearPoints looked_at;
     std::vector<PlanePoint> polygon, spare;
     std::priority_queue<Hole> holes;
     std::uint32_t order = 0;
@@ -146,7 +156,7 @@ struct ChartFiller::Work
     {
         chart = which;
         own = &state.particles[which];
-        grid.start(reach * dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
+        grid.start(dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
         normals.clear();
         for (const std::uint32_t f : own->features)
             note(state.features[f].position, state.features[f].normal);
@@ -166,25 +176,23 @@ struct ChartFiller::Work
                     note(site.position, mesh.facets[site.facet].normal);
     }
 
-    void find_near(const Vec3& p, double radius)
+    bool is_other_sheet_at(const Vec3& normal, std::size_t at) const
     {
-        near.clear();
-        grid.for_each_near(p, radius * dp,
-                           [&](std::uint32_t index, const Vec3& offset, double squared) {
-                               near.push_back({offset, squared, index});
-                           });
+        return is_other_sheet(normal, normals[near.index[at]]);
     }
 
-    /// Squared distance to the nearest particle of the same sheet among those found around a point
-    /// at -shift from here; no more than that of `start`.
-    double nearest_squared(const Vec3& shift, const Vec3& normal, double start) const
+    /// Squared distance (dp) to the nearest particle of the same sheet among those found, from a
+    /// place `shift` (dp) away from where they were looked for.
+    float nearest_squared(const Vec3& shift, const Vec3& normal) const
     {
-        double best = start;
-        for (const Neighbour& n : near)
+        const NearestPoint nearest = nearest_to(near, shift);
+        if (near.count == 0 || !is_other_sheet_at(normal, nearest.at)) return nearest.squared;
+        float best = far_away_dp;
+        for (std::size_t n = 0; n < near.count; ++n)
         {
-            const Vec3 d = n.offset - shift;
-            const double squared = dot(d, d);
-            if (squared < best && !is_other_sheet(normal, normals[n.index])) best = squared;
+            const Vec3 d = near.offset(n) - shift;
+            const auto squared = static_cast<float>(dot(d, d));
+            if (squared < best && !is_other_sheet_at(normal, n)) best = squared;
         }
         return best;
     }
@@ -209,13 +217,12 @@ struct ChartFiller::Work
     void try_to_begin(const SurfaceRay& ray)
     {
         if (ray.facet == no_index || state.charts.of_facet(ray.facet) != chart) return;
-        find_near(ray.position, least_distance);
-        const double least = least_distance * dp;
-        if (nearest_squared({}, mesh.facets[ray.facet].normal, least * least) < least * least)
-            return;
+        grid.find_near(ray.position, least_distance, near);
+        if (nearest_squared({}, mesh.facets[ray.facet].normal) < square(least_distance)) return;
         place(ray, false, is_seam(ray.position));
     }
 
+    /// Puts particles where the hexagon around one wants them and nobody is.
     void advance_from(std::size_t index)
     {
         const SurfaceSite site = own->sites[index];
@@ -223,33 +230,40 @@ struct ChartFiller::Work
         Vec3 direction{site.direction[0], site.direction[1], site.direction[2]};
         direction = direction - normal * dot(direction, normal);
         direction = direction / norm(direction);
-        find_near(site.position, front_spacing + least_distance);
+        const Vec3 left = cross(normal, direction);
+        grid.find_near(site.position, front_spacing + least_distance, near);
+        const NearestPoints guesses = nearest_to_each(
+            near, turned_by_sixths(front_spacing * direction.x, front_spacing * left.x),
+            turned_by_sixths(front_spacing * direction.y, front_spacing * left.y),
+            turned_by_sixths(front_spacing * direction.z, front_spacing * left.z));
         bool is_irregular = false;
-        for (int k = 0; k < 6; ++k)
-            is_irregular |= !advance_to({site.position, site.facet, turned(direction, normal, k)});
+        for (std::size_t k = 0; k < 6; ++k)
+        {
+            const bool is_taken = guesses.squared[k] < square(clearly_taken) &&
+                                  !is_other_sheet_at(normal, guesses.at[k]);
+            const bool is_there =
+                is_taken ? guesses.squared[k] < square(same_site)
+                         : advance_to({site.position, site.facet,
+                                       direction * sixth_cosines[k] + left * sixth_sines[k]});
+            is_irregular |= !is_there;
+        }
         own->sites[index].is_irregular = is_irregular;
     }
 
     /// Returns whether there is now a particle where the hexagon wants one.
     bool advance_to(const SurfaceRay& from)
     {
-        const double far = reach * reach * dp * dp;
-        const Vec3 step = from.direction * (front_spacing * dp);
-        const double guess = nearest_squared(step, mesh.facets[from.facet].normal, far);
-        if (guess < clearly_taken * clearly_taken * dp * dp)
-            return guess < same_site * same_site * dp * dp;
         const SurfaceRay to = walk(mesh, from, front_spacing * dp);
         if (to.facet == no_index) return false;
-        const Vec3 shift = to.position - from.position;
-        const double squared = nearest_squared(shift, mesh.facets[to.facet].normal, far);
-        if (squared < least_distance * least_distance * dp * dp)
-            return squared < same_site * same_site * dp * dp;
+        const Vec3 shift = (to.position - from.position) / dp;
+        const float squared = nearest_squared(shift, mesh.facets[to.facet].normal);
+        if (squared < square(least_distance)) return squared < square(same_site);
         if (state.charts.of_facet(to.facet) != chart)
         {
             own->leaving.push_back(to);
             return false;
         }
-        near.push_back({shift, dot(shift, shift), grid.size()});
+        near.push_back(shift, grid.size());
         place(to, false, is_seam(to.position));
         return true;
     }
@@ -263,22 +277,24 @@ struct ChartFiller::Work
         const Vec3& normal = mesh.facets[facet].normal;
         const Vec3 x_axis = any_direction(mesh.facets[facet]);
         const Vec3 y_axis = cross(normal, x_axis);
-        find_near(position, reach);
-        const double box = 1.3 * dp;
-        const double limit = state.hole_radius * state.hole_radius * dp * dp;
+        // In dp around the particle.
+        grid.find_near(position, reach, near);
+        constexpr double box = 1.3;
+        const double limit = state.hole_radius * state.hole_radius;
         polygon.assign({{-box, -box}, {box, -box}, {box, box}, {-box, box}});
         const auto is_far = [&](const PlanePoint& p) { return p.x * p.x + p.y * p.y > limit; };
         // The nearest first, after which there is mostly nothing left to cut.
         for (const bool is_close : {true, false})
         {
-            for (const Neighbour& n : near)
+            for (std::size_t n = 0; n < near.count; ++n)
             {
-                if ((n.squared < 1.7 * dp * dp) != is_close || n.squared < 1e-12 * dp * dp ||
-                    is_other_sheet(normal, normals[n.index]))
+                const Vec3 offset = near.offset(n);
+                const double squared = dot(offset, offset);
+                if ((squared < 1.7) != is_close || squared < 1e-9 || is_other_sheet_at(normal, n))
                     continue;
-                const PlanePoint q{dot(n.offset, x_axis), dot(n.offset, y_axis)};
-                if (q.x * q.x + q.y * q.y < 0.04 * n.squared) continue;
-                clip(polygon, q, n.squared, spare);
+                const PlanePoint q{dot(offset, x_axis), dot(offset, y_axis)};
+                if (q.x * q.x + q.y * q.y < 0.04 * squared) continue;
+                clip(polygon, q, squared, spare);
             }
             if (std::none_of(polygon.begin(), polygon.end(), is_far)) return;
         }
@@ -288,7 +304,7 @@ struct ChartFiller::Work
             const double length = std::sqrt(p.x * p.x + p.y * p.y);
             const Vec3 direction = (x_axis * p.x + y_axis * p.y) / length;
             // The plane only guesses where surface or neighbours bend away from it.
-            climb(walk(mesh, {position, facet, direction}, length));
+            climb(walk(mesh, {position, facet, direction}, length * dp));
         }
     }
 
@@ -308,7 +324,7 @@ struct ChartFiller::Work
         const bool has_sheets = !state.charts.is_crumbs(chart);
         double best = reach * reach * dp * dp;
         grid.for_each_near(
-            at.position, reach * dp,
+            at.position, reach, looked_at,
             [&](std::uint32_t index, const Vec3&, double squared)
             {
                 if (squared < best && !(has_sheets && is_other_sheet(normal, normals[index])))
@@ -360,7 +376,7 @@ struct ChartFiller::Work
     bool is_alone(const Vec3& point, const Vec3& normal) const
     {
         bool result = true;
-        grid.for_each_near(point, 0.7 * dp,
+        grid.for_each_near(point, 0.7, looked_at,
                            [&](std::uint32_t index, const Vec3&, double)
                            { result = result && is_other_sheet(normal, normals[index]); });
         return result;
@@ -375,7 +391,7 @@ struct ChartFiller::Work
             const Vec3& normal = mesh.facets[at.facet].normal;
             double best = reach * reach * dp * dp;
             Vec3 towards{};
-            grid.for_each_near(at.position, reach * dp,
+            grid.for_each_near(at.position, reach, looked_at,
                                [&](std::uint32_t index, const Vec3& offset, double squared)
                                {
                                    if (squared >= best || is_other_sheet(normal, normals[index]))
@@ -409,7 +425,6 @@ struct ChartFiller::Work
 
     void fill_queue()
     {
-        std::vector<Neighbour> around;
         while (!holes.empty())
         {
             Hole hole = holes.top();

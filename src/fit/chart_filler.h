@@ -1,12 +1,10 @@
 #pragma once
 
-#include "core/parallel.h"
 #include "fit/charts.h"
 #include "fit/walk.h"
 
 #include <functional>
 #include <memory>
-#include <mutex>
 
 namespace fppg
 {
@@ -21,7 +19,8 @@ struct FeatureSite
 
 /// The sites of feature particles, in their order.
 std::vector<FeatureSite> make_feature_sites(const SurfaceMesh& mesh, const WorkMesh& work,
-                                            const std::vector<FeatureParticle>& particles);
+                                            const std::vector<FeatureParticle>& particles,
+                                            int threads);
 
 /// What is known of a surface particle while its surroundings are still being filled.
 struct SurfaceSite
@@ -79,32 +78,5 @@ private:
     struct Work;
     std::unique_ptr<Work> work_;
 };
-
-/// Runs step(filler, chart) on every chart, wave by wave; fillers keep their memory from chart to
-/// chart. The result does not depend on the number of threads.
-template <typename Step>
-void for_each_chart(FillState& state, int threads, const Step& step)
-{
-    std::vector<std::unique_ptr<ChartFiller>> idle;
-    std::mutex guard;
-    for (const auto& wave : state.charts.waves())
-        parallel_for(wave.size(), threads,
-                     [&](std::size_t i)
-                     {
-                         std::unique_ptr<ChartFiller> filler;
-                         {
-                             const std::lock_guard lock(guard);
-                             if (!idle.empty())
-                             {
-                                 filler = std::move(idle.back());
-                                 idle.pop_back();
-                             }
-                         }
-                         if (!filler) filler = std::make_unique<ChartFiller>(state);
-                         step(*filler, wave[i]);
-                         const std::lock_guard lock(guard);
-                         idle.push_back(std::move(filler));
-                     });
-}
 
 } // namespace fppg

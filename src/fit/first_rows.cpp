@@ -1,5 +1,7 @@
 #include "fit/first_rows.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 
 namespace fppg
@@ -60,9 +62,24 @@ public:
         lay_beside(course, middle < whole ? middle : middle - whole);
     }
 
-    std::vector<SurfaceRay> rows;
+    /// The first places of rows beside what was laid.
+    std::vector<SurfaceRay> walk_away(int threads) const
+    {
+        std::vector<SurfaceRay> rows(starts_.size());
+        parallel_for(
+            rows.size(), threads, [&](std::size_t i) { rows[i] = first_place(starts_[i]); }, 64);
+        std::erase_if(rows, [](const SurfaceRay& row) { return row.facet == no_index; });
+        return rows;
+    }
 
 private:
+    struct Start
+    {
+        std::uint32_t facet;
+        std::uint32_t edge;
+        Vec3 point;
+    };
+
     void lay_beside(const Course& course, double length)
     {
         const auto after =
@@ -77,11 +94,12 @@ private:
         const double t = whole > 0 ? (length - course.lengths[i]) / whole : 0.0;
         const Vec3 point = a + (b - a) * t;
         for (const std::uint32_t facet : mesh_.edge_facets[edge])
-            if (facet != no_index) lay_on(facet, edge, point);
+            if (facet != no_index) starts_.push_back({facet, edge, point});
     }
 
-    void lay_on(std::uint32_t facet, std::uint32_t edge, const Vec3& point)
+    SurfaceRay first_place(const Start& start) const
     {
+        const auto [facet, edge, point] = start;
         std::size_t s = 0;
         while (s < 2 && mesh_.facet_edges[facet][s] != edge) ++s;
         const Vec3 side = mesh_.vertices[mesh_.facets[facet][(s + 1) % 3]] -
@@ -89,22 +107,24 @@ private:
         const Vec3 along = side / norm(side);
         SurfaceRay ray{point, work_.locate(facet, point), cross(mesh_.normals[facet], along)};
         ray = walk(work_, ray, row_distance * dp_);
-        if (ray.facet == no_index) return;
         // The front goes on along the row and at sixty degrees to it.
-        ray.direction = cross(ray.direction, work_.facets[ray.facet].normal);
-        rows.push_back(ray);
+        if (ray.facet != no_index)
+            ray.direction = cross(ray.direction, work_.facets[ray.facet].normal);
+        return ray;
     }
 
     const SurfaceMesh& mesh_;
     const WorkMesh& work_;
     double dp_;
+    std::vector<Start> starts_;
 };
 
 } // namespace
 
 std::vector<SurfaceRay> lay_first_rows(const SurfaceMesh& mesh, const WorkMesh& work,
                                        const Features& features,
-                                       const std::vector<FeatureParticle>& particles, double dp)
+                                       const std::vector<FeatureParticle>& particles, double dp,
+                                       int threads)
 {
     std::vector<char> has_corner(mesh.vertices.size(), 0);
     std::vector<std::vector<std::uint32_t>> on_line(features.lines.size());
@@ -140,7 +160,7 @@ std::vector<SurfaceRay> lay_first_rows(const SurfaceMesh& mesh, const WorkMesh& 
         std::sort(places.begin(), places.end());
         layer.lay(course, places, line.is_closed);
     }
-    return std::move(layer.rows);
+    return layer.walk_away(threads);
 }
 
 } // namespace fppg

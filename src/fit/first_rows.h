@@ -9,6 +9,7 @@ namespace fppg
 /// it, beside the middle between every two neighbours on the line. In the order of the lines.
 std::vector<SurfaceRay> lay_first_rows(const SurfaceMesh& mesh, const WorkMesh& work,
                                        const Features& features,
-                                       const std::vector<FeatureParticle>& particles, double dp);
+                                       const std::vector<FeatureParticle>& particles, double dp,
+                                       int threads);
 
 } // namespace fppg

@@ -4,6 +4,7 @@
 #include "fit/chart_filler.h"
 #include "fit/crossed_cells.h"
 #include "fit/first_rows.h"
+#include "fit/for_each_chart.h"
 #include "fppg/error.h"
 #include "shapes/mesh_query.h"
 
@@ -57,10 +58,12 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
 {
     const WorkMesh work = make_work_mesh(mesh, features, longest_chart_side * dp);
     const Charts charts(work, dp);
-    const std::vector<FeatureSite> sites = make_feature_sites(mesh, work, feature_particles);
+    const std::vector<FeatureSite> sites =
+        make_feature_sites(mesh, work, feature_particles, threads);
     FillState state{work, charts, sites, dp, std::vector<ChartParticles>(charts.size())};
     state.share_out_features();
-    for (const SurfaceRay& row : lay_first_rows(mesh, work, features, feature_particles, dp))
+    for (const SurfaceRay& row :
+         lay_first_rows(mesh, work, features, feature_particles, dp, threads))
         state.particles[charts.of_facet(row.facet)].rows.push_back(row);
 
     for_each_chart(state, threads,
@@ -68,19 +71,22 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
     for_each_chart(state, threads,
                    [](ChartFiller& filler, std::uint32_t c) { filler.fill_holes(c); });
 
-    std::size_t count = result.positions.size();
-    for (const ChartParticles& chart : state.particles) count += chart.sites.size();
-    result.positions.reserve(count);
-    result.facets.reserve(count);
-    for (ChartParticles& chart : state.particles)
-    {
-        for (const SurfaceSite& site : chart.sites)
-        {
-            result.positions.push_back(site.position);
-            result.facets.push_back(work.facets[site.facet].parent);
-        }
-        chart = {};
-    }
+    std::vector<std::size_t> first(charts.size() + 1, result.positions.size());
+    for (std::size_t c = 0; c < charts.size(); ++c)
+        first[c + 1] = first[c] + state.particles[c].sites.size();
+    result.positions.resize(first.back());
+    result.facets.resize(first.back());
+    parallel_for(charts.size(), threads,
+                 [&](std::size_t c)
+                 {
+                     std::size_t at = first[c];
+                     for (const SurfaceSite& site : state.particles[c].sites)
+                     {
+                         result.positions[at] = site.position;
+                         result.facets[at++] = work.facets[site.facet].parent;
+                     }
+                     state.particles[c] = {};
+                 });
 }
 
 void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int threads,

@@ -269,6 +269,7 @@ std::uint32_t WorkMesh::locate(std::uint32_t parent, const Vec3& point) const
             const Vec3 side = facet.corners[(s + 1) % 3] - facet.corners[s];
             const Vec3 inward = cross(facet.normal, side);
             depth = std::min(depth, dot(point - facet.corners[s], inward) / norm(side));
+            if (depth <= best_depth) break;
         }
         if (depth > best_depth)
         {

@@ -3,6 +3,7 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/figures.h"
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -793,7 +794,14 @@ private:
                 for (const std::uint32_t v :
                      {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
                     soup.vertices.push_back(cut.vertices[v]);
-        autofill(soup, file, op.transform);
+        MeshFile placed;
+        for (const Vec3& p : file.points) placed.points.push_back(op.transform(p));
+        for (std::vector<Vec3> line : file.lines)
+        {
+            for (Vec3& p : line) p = op.transform(p);
+            placed.lines.push_back(std::move(line));
+        }
+        autofill(soup, soup, placed, {});
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
@@ -805,13 +813,13 @@ private:
             draw_free_mesh(file, op.transform);
             const TriangleSoup moved = moved_soup(source, op.transform);
             if (op.fill_inside) paint_region(region_of(inside_spans(moved, grid(), threads_)));
-            if (op.autofill) autofill(moved, file, op.transform);
+            if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
         if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(file, op.transform);
-            if (op.autofill) autofill(moved_soup(source, op.transform), file, op.transform);
+            if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);
             return;
         }
         std::vector<SnappedTriangle> triangles(source.size());
@@ -843,7 +851,7 @@ private:
             return;
         }
         draw_triangles(std::move(triangles));
-        if (op.autofill) autofill(moved, file, op.transform);
+        if (op.autofill) autofill(moved, source, file, op.transform);
     }
 
     void check_mesh(const MeshFile& file, const Transform& transform)
@@ -867,37 +875,45 @@ private:
         return region;
     }
 
-    /// A flood over void nodes from the centre of the mesh's bounding box, inside the snapped box
-    /// (rule X2). It is no inside test: the notch of an L or the hole of a torus is filled. Says
-    /// so.
-    void autofill(const TriangleSoup& soup, const MeshFile& file, const Transform& transform)
+    /// A flood over void nodes from the centre of the file's own box, inside that box grown by dp,
+    /// both moved by `transform` (rule X2). It is no inside test: the notch of an L or the hole of
+    /// a torus is filled. Says so.
+    ///
+    /// soup    the surface where it is drawn
+    /// source  the surface in the coordinates of the box
+    void autofill(const TriangleSoup& soup, const TriangleSoup& source, const MeshFile& file,
+                  const Transform& transform)
     {
         Box3 bounds;
-        for (const Vec3& p : file.points) bounds.add(transform(p));
+        for (const Vec3& p : file.points) bounds.add(p);
         for (const std::vector<Vec3>& line : file.lines)
-            for (const Vec3& p : line) bounds.add(transform(p));
-        for (const Vec3& v : soup.vertices) bounds.add(v);
+            for (const Vec3& p : line) bounds.add(p);
+        for (const Vec3& v : source.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
-        NodeBox box;
+        // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
+        // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
+        Box3 grown;
         for (int axis = 0; axis < 3; ++axis)
         {
-            // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
-            // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
             const auto dp = static_cast<float>(grid().dp);
             const float low = static_cast<float>(bounds.min[axis]) - dp;
             const float high = static_cast<float>(bounds.max[axis]) + dp;
             const float size = high - low;
-            const auto k = static_cast<std::size_t>(axis);
-            const double origin = grid().origin[axis];
-            box.begin[k] = snap(low, origin, grid().dp) + 1;
-            box.end[k] =
-                snap(static_cast<double>(low) + static_cast<double>(size), origin, grid().dp);
+            grown.min[axis] = low;
+            grown.max[axis] = static_cast<double>(low) + static_cast<double>(size);
         }
-        const Node seed = snap((bounds.min + bounds.max) * 0.5, grid());
+        NodeBox box = whole_lattice(grid());
+        SpanSet mask;
+        const bool is_box = keeps_boxes(transform);
+        if (is_box)
+            box = node_box({transform(grown.min), transform(grown.max)});
+        else
+            mask = mask_of(turned_box(grown.min, grown.max, transform));
+        const Node seed = snap(transform((bounds.min + bounds.max) * 0.5), grid());
         FillFilter filter;
         filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
         const std::vector<Spans> filled =
-            flood(field_, seed, fillable(filter), box, nullptr, threads_);
+            flood(field_, seed, fillable(filter), box, is_box ? nullptr : &mask, threads_);
 
         const SpanSet inside = inside_spans(soup, grid(), threads_);
         std::vector<Spans> wrong(filled.size());
@@ -927,20 +943,56 @@ private:
         paint_nodes(filled);
     }
 
-    /// Nodes of a snapped box: its strict interior, or with its limits.
-    NodeBox node_box(const BoxRegion& region, bool with_limits) const
+    /// Nodes strictly inside a snapped box.
+    NodeBox node_box(const BoxRegion& region) const
     {
         const Node a = snap(region.corner0, grid());
         const Node b = snap(region.corner1, grid());
-        const std::int64_t inset = with_limits ? 0 : 1;
         NodeBox box;
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
-            box.begin[k] = std::min(a[axis], b[axis]) + inset;
-            box.end[k] = std::max(a[axis], b[axis]) + 1 - inset;
+            box.begin[k] = std::min(a[axis], b[axis]) + 1;
+            box.end[k] = std::max(a[axis], b[axis]);
         }
         return intersect(box, whole_lattice(grid()));
+    }
+
+    /// The inside of a figure as one entry a slab of the lattice.
+    SpanSet mask_of(const FigureOp& figure) const
+    {
+        SpanSet mask;
+        mask.slabs.resize(grid().n[0]);
+        const SlabRegion inside = solid_of(figure);
+        for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
+            mask.slabs[x] = listed(inside, x, false);
+        return mask;
+    }
+
+    /// The nodes that a redraw may change: a box, and those of `mask` alone where there is one.
+    struct Limits
+    {
+        NodeBox box;
+        std::optional<SpanSet> mask;
+
+        std::vector<Spans> kept(std::vector<Spans> nodes) const
+        {
+            if (mask)
+                for (std::size_t x = 0; x < nodes.size(); ++x)
+                    nodes[x] = intersect(nodes[x], mask->slabs[x]);
+            return nodes;
+        }
+    };
+
+    Limits limits_of(const std::optional<BoxLimits>& region) const
+    {
+        Limits limits{whole_lattice(grid()), {}};
+        if (!region) return limits;
+        if (const auto* box = std::get_if<BoxRegion>(&*region))
+            limits.box = node_box(*box);
+        else
+            limits.mask = mask_of(std::get<FigureOp>(*region));
+        return limits;
     }
 
     /// An index of all columns of a fill's box is kept while it runs.
@@ -971,13 +1023,10 @@ private:
         SpanSet mask;
         const SpanSet* mask_used = nullptr;
         if (const auto* region = std::get_if<BoxRegion>(&op.region))
-            box = node_box(*region, state().box_limit_full);
+            box = node_box(*region);
         else if (const auto* figure = std::get_if<FigureOp>(&op.region))
         {
-            mask.slabs.resize(grid().n[0]);
-            const SlabRegion inside = solid_of(*figure);
-            for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
-                mask.slabs[x] = listed(inside, x, false);
+            mask = mask_of(*figure);
             mask_used = &mask;
         }
         check_columns(box);
@@ -1043,16 +1092,17 @@ private:
 
     void draw(const RedrawOp& op)
     {
-        const NodeBox box = op.region ? node_box(*op.region, false) : whole_lattice(grid());
-        repaint_nodes(redraw_nodes(field_, op, box, def_.mk_bound_first, threads_));
+        const Limits limits = limits_of(op.region);
+        repaint_nodes(
+            limits.kept(redraw_nodes(field_, op, limits.box, def_.mk_bound_first, threads_)));
     }
 
     void draw(const RedrawNearOp& op)
     {
-        const NodeBox box =
-            op.region ? node_box(*op.region, state().box_limit_full) : whole_lattice(grid());
+        const Limits limits = limits_of(op.region);
         for (int i = 0; i < op.times; ++i)
-            repaint_nodes(redraw_near_nodes(field_, op, box, def_.mk_bound_first, threads_));
+            repaint_nodes(limits.kept(
+                redraw_near_nodes(field_, op, limits.box, def_.mk_bound_first, threads_)));
     }
 
     void draw(const ResetOp&)

@@ -1,6 +1,7 @@
 #include "lattice/span_graph.h"
 
 #include "core/parallel.h"
+#include "core/raw_array.h"
 
 namespace fppg
 {
@@ -37,34 +38,101 @@ std::optional<SpanGraph::Id> SpanGraph::find(std::int64_t slab, std::int64_t y,
               static_cast<std::uint32_t>(std::prev(it) - at.spans.begin())};
 }
 
+namespace
+{
+
+/// Slabs whose spans one thread joins.
+constexpr std::size_t slabs_a_block = 16;
+
+/// Sets of spans that are connected, each named by its first span.
+class SpanSets
+{
+public:
+    explicit SpanSets(std::size_t spans) : above_(spans) {}
+
+    /// Before the spans [begin, end) are joined: each is a set of its own.
+    void part(std::size_t begin, std::size_t end)
+    {
+        for (std::size_t i = begin; i < end; ++i) above_[i] = i;
+    }
+
+    void join(std::size_t a, std::size_t b)
+    {
+        a = shorten_to_first(a);
+        b = shorten_to_first(b);
+        if (a != b) above_[std::max(a, b)] = std::min(a, b);
+    }
+
+    std::size_t first_of(std::size_t a) const
+    {
+        while (above_[a] != a) a = above_[a];
+        return a;
+    }
+
+private:
+    std::size_t shorten_to_first(std::size_t a)
+    {
+        while (above_[a] != a)
+        {
+            above_[a] = above_[above_[a]];
+            a = above_[a];
+        }
+        return a;
+    }
+
+    RawArray<std::size_t> above_;
+};
+
+} // namespace
+
 std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<SpanGraph::Id>& seeds,
                                    int threads)
 {
-    std::vector<std::vector<char>> is_reached(graph.slab_count());
-    for (std::size_t i = 0; i < is_reached.size(); ++i) is_reached[i].resize(graph.spans(i).size());
-    std::vector<SpanGraph::Id> stack;
-    const auto reach = [&](SpanGraph::Id id)
+    const std::size_t slabs = graph.slab_count();
+    std::vector<Spans> out(slabs);
+    if (seeds.empty()) return out;
+    std::vector<std::size_t> first(slabs + 1, 0);
+    for (std::size_t i = 0; i < slabs; ++i) first[i + 1] = first[i] + graph.spans(i).size();
+    SpanSets sets(first[slabs]);
+    const auto join_slabs = [&](std::size_t i)
     {
-        char& reached = is_reached[id.slab][id.span];
-        if (reached) return;
-        reached = 1;
-        stack.push_back(id);
+        for (std::size_t row = 0; row < graph.row_count(); ++row)
+            graph.for_pairs(i - 1, row, i, row,
+                            [&](std::uint32_t a, std::uint32_t b)
+                            { sets.join(first[i - 1] + a, first[i] + b); });
     };
-    for (const SpanGraph::Id& seed : seeds) reach(seed);
-    while (!stack.empty())
-    {
-        const SpanGraph::Id id = stack.back();
-        stack.pop_back();
-        graph.for_neighbours(id, reach);
-    }
-    std::vector<Spans> out(graph.slab_count());
-    parallel_for(out.size(), threads,
-                 [&](std::size_t i)
+    const std::size_t blocks = (slabs + slabs_a_block - 1) / slabs_a_block;
+    parallel_for(blocks, threads,
+                 [&](std::size_t block)
                  {
-                     const Spans& spans = graph.spans(i);
-                     for (std::size_t k = 0; k < spans.size(); ++k)
-                         if (is_reached[i][k]) out[i].push_back(spans[k]);
+                     const std::size_t begin = block * slabs_a_block;
+                     const std::size_t end = std::min(slabs, begin + slabs_a_block);
+                     sets.part(first[begin], first[end]);
+                     for (std::size_t i = begin; i < end; ++i)
+                     {
+                         for (std::size_t row = 1; row < graph.row_count(); ++row)
+                             graph.for_pairs(i, row - 1, i, row,
+                                             [&](std::uint32_t a, std::uint32_t b)
+                                             { sets.join(first[i] + a, first[i] + b); });
+                         if (i > begin) join_slabs(i);
+                     }
                  });
+    for (std::size_t block = 1; block < blocks; ++block) join_slabs(block * slabs_a_block);
+
+    std::vector<std::size_t> reached;
+    for (const SpanGraph::Id& seed : seeds)
+        reached.push_back(sets.first_of(first[seed.slab] + seed.span));
+    std::sort(reached.begin(), reached.end());
+    reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    parallel_for(
+        slabs, threads,
+        [&](std::size_t i)
+        {
+            const Spans& spans = graph.spans(i);
+            for (std::size_t k = 0; k < spans.size(); ++k)
+                if (std::binary_search(reached.begin(), reached.end(), sets.first_of(first[i] + k)))
+                    out[i].push_back(spans[k]);
+        });
     return out;
 }
 

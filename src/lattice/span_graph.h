@@ -27,6 +27,32 @@ public:
     const Spans& spans(std::size_t slab) const { return slabs_[slab].spans; }
     const Span& at(Id id) const { return slabs_[id.slab].spans[id.span]; }
 
+    /// Calls visit(span of the lower row, span of the upper row) for all neighbours in two rows
+    /// that lie side by side, upwards in z; rows count from the first one.
+    template <typename Visit>
+    void for_pairs(std::size_t low_slab, std::size_t low_row, std::size_t high_slab,
+                   std::size_t high_row, const Visit& visit) const
+    {
+        const Slab& low = slabs_[low_slab];
+        const Slab& high = slabs_[high_slab];
+        std::uint32_t a = low.row_begin[low_row];
+        std::uint32_t b = high.row_begin[high_row];
+        const std::uint32_t a_end = low.row_begin[low_row + 1];
+        const std::uint32_t b_end = high.row_begin[high_row + 1];
+        while (a != a_end && b != b_end)
+        {
+            const Span& at_a = low.spans[a];
+            const Span& at_b = high.spans[b];
+            if (at_a.z_begin < at_b.z_end && at_b.z_begin < at_a.z_end) visit(a, b);
+            if (at_a.z_end <= at_b.z_end)
+                ++a;
+            else
+                ++b;
+        }
+    }
+
+    std::size_t row_count() const { return rows_; }
+
     /// The span that holds a node; indices may lie anywhere.
     std::optional<Id> find(std::int64_t slab, std::int64_t y, std::int64_t z) const;
 

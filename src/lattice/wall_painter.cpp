@@ -58,23 +58,55 @@ CellCorners cell_corners(const Vec3& p, const LatticeGrid& grid)
         return static_cast<std::int64_t>(std::floor(std::clamp(index, -4e9, 4e9)));
     };
     const Node low{floor_of(0), floor_of(1), floor_of(2)};
-    std::array<std::pair<double, Node>, 8> found;
-    std::size_t count = 0;
+    CellCorners out;
+    std::array<double, 8> squared;
     for (int corner = 0; corner < 8; ++corner)
     {
         const Node n{low.x + (corner >> 2), low.y + (corner >> 1 & 1), low.z + (corner & 1)};
         if (!is_inside(n, grid)) continue;
         const Vec3 away = position(n, grid) - p;
-        found[count++] = {dot(away, away), n};
+        const double d = dot(away, away);
+        auto at = static_cast<std::size_t>(out.count++);
+        for (; at > 0 && d < squared[at - 1]; --at)
+        {
+            squared[at] = squared[at - 1];
+            out.nodes[at] = out.nodes[at - 1];
+        }
+        squared[at] = d;
+        out.nodes[at] = n;
     }
-    std::stable_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    CellCorners out;
-    out.count = static_cast<int>(count);
-    for (std::size_t i = 0; i < count; ++i) out.nodes[i] = found[i].second;
     return out;
 }
 
+/// The corner of the lattice cell around a point that is nearest to it.
+Node nearest_node(const Vec3& p, const LatticeGrid& grid)
+{
+    const auto round_of = [&](int axis)
+    {
+        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        return static_cast<std::int64_t>(std::ceil(std::clamp(index, -4e9, 4e9) - 0.5));
+    };
+    return {round_of(0), round_of(1), round_of(2)};
+}
+
+/// Of the corners of the lattice cell around a point the nearest one that the spans of the
+/// lattice's slabs hold.
+std::optional<Node> find_node_in(const std::vector<Spans>& slabs, const Vec3& p,
+                                 const LatticeGrid& grid)
+{
+    const auto is_held = [&](const Node& n)
+    {
+        return contains(slabs[static_cast<std::size_t>(n.x)], static_cast<std::uint32_t>(n.y),
+                        static_cast<std::uint32_t>(n.z));
+    };
+    // Mostly it is the nearest of all.
+    const Node nearest = nearest_node(p, grid);
+    if (is_inside(nearest, grid) && is_held(nearest)) return nearest;
+    const CellCorners corners = cell_corners(p, grid);
+    const auto* end = corners.nodes.begin() + corners.count;
+    const auto* found = std::find_if(corners.nodes.begin(), end, is_held);
+    return found == end ? std::nullopt : std::optional(*found);
+}
 /// Between the first and the last nodes of the lattice, with room for rounding.
 bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
 {
@@ -84,6 +116,14 @@ bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
         if (!(index >= -1e-6 && index <= grid.n[static_cast<std::size_t>(axis)] - 1 + 1e-6))
             return false;
     }
+    return true;
+}
+
+/// Whether a point is in a box that is widened by `reach`.
+bool is_within(const Vec3& p, const Box3& box, double reach)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (p[axis] < box.min[axis] - reach || p[axis] > box.max[axis] + reach) return false;
     return true;
 }
 
@@ -241,18 +281,20 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     particles.held.assign(kept, 0);
 
     // A blob smaller than a cell, or a clip, can leave a particle without a node of the zone.
-    std::vector<Spans> added(grid.n[0]);
-    for (const Vec3& p : particles.positions)
-    {
-        const CellCorners corners = cell_corners(p, grid);
-        const auto in_zone = [&](const Node& c)
+    std::vector<char> is_alone(kept);
+    parallel_for(
+        kept, threads,
+        [&](std::size_t i)
         {
-            return contains(out.zone[static_cast<std::size_t>(c.x)],
-                            static_cast<std::uint32_t>(c.y), static_cast<std::uint32_t>(c.z));
-        };
-        const auto* end = corners.nodes.begin() + corners.count;
-        if (corners.count == 0 || std::any_of(corners.nodes.begin(), end, in_zone)) continue;
-        const Node& c = corners.nodes[0];
+            const Vec3& p = particles.positions[i];
+            is_alone[i] = !find_node_in(out.zone, p, grid) && cell_corners(p, grid).count > 0;
+        },
+        1024);
+    std::vector<Spans> added(grid.n[0]);
+    for (std::size_t i = 0; i < kept; ++i)
+    {
+        if (!is_alone[i]) continue;
+        const Node c = cell_corners(particles.positions[i], grid).nodes[0];
         added[static_cast<std::size_t>(c.x)].push_back({static_cast<std::uint32_t>(c.y),
                                                         static_cast<std::uint32_t>(c.z),
                                                         static_cast<std::uint32_t>(c.z) + 1});
@@ -297,8 +339,7 @@ void WallPainter::add(FittedDraw&& draw)
     if (first == 0)
         walls.particles = std::move(draw.particles);
     else
-        for (std::size_t i = 0; i < draw.particles.size(); ++i)
-            walls.particles.append(draw.particles, i);
+        walls.particles.append(draw.particles);
     walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
     walls.cut_bodies.resize(walls.cut.size(), body);
     is_cut_.resize(walls.particles.size(), 0);
@@ -314,18 +355,7 @@ void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& z
     parallel_for(
         nodes.size(), threads_,
         [&](std::size_t i)
-        {
-            const CellCorners corners = cell_corners(positions[first_particle + i], grid);
-            for (int k = 0; k < corners.count; ++k)
-            {
-                const Node& c = corners.nodes[static_cast<std::size_t>(k)];
-                if (!contains(zone[static_cast<std::size_t>(c.x)], static_cast<std::uint32_t>(c.y),
-                              static_cast<std::uint32_t>(c.z)))
-                    continue;
-                nodes[i] = c;
-                break;
-            }
-        },
+        { nodes[i] = find_node_in(zone, positions[first_particle + i], grid).value_or(Node{}); },
         1024);
     std::vector<char> touched(anchors_.size(), 0);
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -354,13 +384,7 @@ void WallPainter::cut_by(const FittedDraw& draw)
     Box3 bounds;
     for (const auto& f : draw.body.mesh.facets)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
-    const auto is_near = [&](const Vec3& p)
-    {
-        for (int axis = 0; axis < 3; ++axis)
-            if (p[axis] < bounds.min[axis] - reach || p[axis] > bounds.max[axis] + reach)
-                return false;
-        return true;
-    };
+    const auto is_near = [&](const Vec3& p) { return is_within(p, bounds, reach); };
     std::optional<MeshQuery> query;
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     if (std::none_of(positions.begin(), positions.end(), is_near)) return;
@@ -419,18 +443,21 @@ void WallPainter::finish()
     }
     anchors_.clear();
     if (walls.cut.empty()) return;
-    WallParticles left;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (!is_cut_[i]) left.append(all, i);
-    all = std::move(left);
+    all.erase(is_cut_);
     is_cut_.clear();
     const double reach = held_distance_dp * field_->grid.dp;
     PointGrid cut(reach, walls.cut.size());
-    for (const Vec3& p : walls.cut) cut.add(p);
+    Box3 cut_box;
+    for (const Vec3& p : walls.cut)
+    {
+        cut.add(p);
+        cut_box.add(p);
+    }
     parallel_for(
         all.size(), threads_,
         [&](std::size_t i)
         {
+            if (!is_within(all.positions[i], cut_box, reach)) return;
             cut.for_each_near(all.positions[i], reach,
                               [&](std::uint32_t c, double)
                               {

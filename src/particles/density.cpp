@@ -399,6 +399,29 @@ private:
     std::vector<std::uint32_t> by_slab_;
 };
 
+/// What the nodes of water reach to.
+struct WaterLimits
+{
+    // Of s = -position . gravity / g over the fluid, for rhopgradient 3.
+    double s_max = -std::numeric_limits<double>::infinity();
+    double s_min = std::numeric_limits<double>::infinity();
+    std::uint32_t z_max = 0;   ///< of the fluid
+    std::uint32_t deepest = 0; ///< steps, fluid and floating, vertical gravity
+
+    void add(double s)
+    {
+        s_max = std::max(s_max, s);
+        s_min = std::min(s_min, s);
+    }
+    void add(const WaterLimits& other)
+    {
+        s_max = std::max(s_max, other.s_max);
+        s_min = std::min(s_min, other.s_min);
+        z_max = std::max(z_max, other.z_max);
+        deepest = std::max(deepest, other.deepest);
+    }
+};
+
 } // namespace
 
 void compute_densities(const CaseDef& def, const RunField& field,
@@ -418,31 +441,35 @@ void compute_densities(const CaseDef& def, const RunField& field,
     parallel_for(
         field.slabs.size(), threads, [&](std::size_t x) { top[x] = meter.depths_along_z(x); }, 16);
 
-    // Limits of s = -position . gravity / g over the fluid, for rhopgradient 3.
-    double s_max = -std::numeric_limits<double>::infinity();
-    double s_min = std::numeric_limits<double>::infinity();
-    std::uint32_t z_max = 0;
-    std::uint32_t deepest = 0; // steps, fluid and floating, vertical gravity
     const auto height = [&](double x, double y, double z)
     { return -(x * c.gravity.x + y * c.gravity.y + z * c.gravity.z) / g; };
     const auto place = [&](int axis, std::uint32_t i) { return def.grid.origin[axis] + i * dp; };
-    for (std::size_t x = 0; x < field.slabs.size(); ++x)
-        for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
+    std::vector<WaterLimits> of_slab(field.slabs.size());
+    parallel_for(
+        field.slabs.size(), threads,
+        [&](std::size_t x)
         {
-            const Run& r = field.slabs[x][i];
-            if (meter.medium(r.mk) != Medium::Water || !is_particle(r)) continue;
-            deepest = std::max(deepest, top[x][i] + (r.z_end - r.z_begin - 1));
-            if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
-            z_max = std::max(z_max, r.z_end - 1);
-            if (g > 0 && by_height)
-                for (const std::uint32_t z : {r.z_begin, r.z_end - 1})
-                {
-                    const double s =
-                        height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y), place(2, z));
-                    s_max = std::max(s_max, s);
-                    s_min = std::min(s_min, s);
-                }
-        }
+            WaterLimits& w = of_slab[x];
+            for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
+            {
+                const Run& r = field.slabs[x][i];
+                if (meter.medium(r.mk) != Medium::Water || !is_particle(r)) continue;
+                w.deepest = std::max(w.deepest, top[x][i] + (r.z_end - r.z_begin - 1));
+                if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
+                w.z_max = std::max(w.z_max, r.z_end - 1);
+                if (g > 0 && by_height)
+                    for (const std::uint32_t z : {r.z_begin, r.z_end - 1})
+                        w.add(height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y),
+                                     place(2, z)));
+            }
+        },
+        16);
+    WaterLimits water;
+    for (const WaterLimits& w : of_slab) water.add(w);
+    const std::uint32_t z_max = water.z_max;
+    const std::uint32_t deepest = water.deepest;
+    double s_max = water.s_max;
+    double s_min = water.s_min;
 
     FreeDepths free(field, meter, free_begin, particles, threads);
     double excess = 0; // height of the highest particle off the lattice above the highest node

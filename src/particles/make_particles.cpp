@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 #include <set>
 
 namespace fppg
@@ -262,14 +263,31 @@ private:
         for (const Vec3& p : out_.free.positions) limits.add(p);
         std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX};
         std::array<std::uint32_t, 3> high{0, 0, 0};
+        std::mutex guard;
+        constexpr std::size_t runs_a_part = 65536;
         for (const ParticleBlock& block : out_.blocks)
-            for (const ParticleRun& r : block.runs)
-            {
-                if (r.is_free()) continue;
-                low = {std::min(low[0], r.x), std::min(low[1], r.y), std::min(low[2], r.z)};
-                high = {std::max(high[0], r.x), std::max(high[1], r.y),
-                        std::max(high[2], r.z + r.count - 1)};
-            }
+            parallel_for(
+                (block.runs.size() + runs_a_part - 1) / runs_a_part, threads_,
+                [&](std::size_t part)
+                {
+                    std::array<std::uint32_t, 3> l{UINT32_MAX, UINT32_MAX, UINT32_MAX};
+                    std::array<std::uint32_t, 3> h{0, 0, 0};
+                    const std::size_t end = std::min(block.runs.size(), (part + 1) * runs_a_part);
+                    for (std::size_t i = part * runs_a_part; i < end; ++i)
+                    {
+                        const ParticleRun& r = block.runs[i];
+                        if (r.is_free()) continue;
+                        l = {std::min(l[0], r.x), std::min(l[1], r.y), std::min(l[2], r.z)};
+                        h = {std::max(h[0], r.x), std::max(h[1], r.y),
+                             std::max(h[2], r.z + r.count - 1)};
+                    }
+                    const std::lock_guard lock(guard);
+                    for (std::size_t k = 0; k < 3; ++k)
+                    {
+                        low[k] = std::min(low[k], l[k]);
+                        high[k] = std::max(high[k], h[k]);
+                    }
+                });
         for (int axis = 0; axis < 3; ++axis)
         {
             if (out_.np > out_.free.size())

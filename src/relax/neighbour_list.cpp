@@ -1,7 +1,7 @@
 #include "relax/neighbour_list.h"
 
+#include "core/lanes.h"
 #include "core/raw_array.h"
-#include "relax/lanes.h"
 
 #include <algorithm>
 #include <array>
@@ -193,20 +193,6 @@ std::size_t find_within_plain(const Candidates& candidates, const Search& search
 }
 
 #if defined(__x86_64__)
-
-/// For every set of eight lanes their numbers, a byte each.
-struct LaneOrders
-{
-    std::array<std::uint64_t, 256> of{};
-
-    constexpr LaneOrders()
-    {
-        for (std::size_t set = 0; set < of.size(); ++set)
-            for (unsigned lane = 0, count = 0; lane < lane_count; ++lane)
-                if ((set >> lane & 1) != 0) of[set] |= std::uint64_t{lane} << (8 * count++);
-    }
-};
-constexpr LaneOrders lane_orders;
 
 /// The same, eight at a time.
 FPPG_AVX2 std::size_t find_within_avx2(const Candidates& candidates, const Search& search,

@@ -1,7 +1,7 @@
 #include "relax/surface_forces.h"
 
+#include "core/lanes.h"
 #include "relax/kernel.h"
-#include "relax/lanes.h"
 
 #include <cmath>
 

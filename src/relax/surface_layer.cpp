@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/raw_array.h"
+#include "fit/for_each_chart.h"
 #include "shapes/mesh_query.h"
 
 #include <algorithm>
@@ -196,7 +197,7 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
                 p.place.facet = work_.locate(p.place.facet, p.place.position);
         },
         chunk_size);
-    sites_ = make_feature_sites(body.mesh, work_, on_features);
+    sites_ = make_feature_sites(body.mesh, work_, on_features, threads);
     velocities_.resize(particles_.size());
     sort();
 }

@@ -1,7 +1,7 @@
 #include "relax/volume_forces.h"
 
+#include "core/lanes.h"
 #include "relax/kernel.h"
-#include "relax/lanes.h"
 
 namespace fppg
 {

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Times the whole program on a ladder of sizes and writes a JSON file and a Markdown table.
+"""Times the whole program on a ladder of sizes and writes a JSON file, Markdown tables and a plot.
 
     run_bench.py --fppg build/release/fppg --quick          about a minute
     run_bench.py --fppg build/release/fppg                  0.1 to 20 million particles
     run_bench.py --fppg FPPG --case My_Def.xml --dp 0.01,0.005 --gencase GenCase_linux64
 
-Every repetition runs all variants of a rung one after the other (threads, GenCase, copying the
-output), so that noise of the machine meets all of them; reported are medians, and medians of the
+Every repetition runs all variants of a rung one after the other (lattice, body-fitted, threads,
+GenCase, copying the output), so that noise of the machine meets all of them; reported are medians, and medians of the
 ratios within one repetition. See README.md for the columns. Needs Python 3.9 and Linux only.
 """
 
@@ -23,62 +23,15 @@ import sys
 import tempfile
 import time
 
+from ladder_cases import write_domain_case
+from ladder_plot import write_plot
+
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-OWN_CASES = {"dambreak": "cases/dambreak/CaseDambreak_Def.xml",
-             "tank": "cases/tank/CaseTank_Def.xml",
-             "ford": "cases/ford/CaseFord_Def.xml"}
+OWN_CASES = ["sphere", "lump", "gear", "vehicle", "gearbox"]
+MODES = {"lattice": "-fit:off", "body-fitted": "-fit:raw", "relaxed": "-fit"}
 LADDER = [0.1, 1, 5, 20]
 DOMAINS = [405, 805, 1205]
 DOMAIN_DP = 0.01
-
-LARGE_DOMAIN = """<?xml version="1.0" encoding="UTF-8" ?>
-<!-- A tank of 0.4 x 0.3 x 0.2 m in the middle of a domain of {n} nodes along each axis -->
-<case>
-    <casedef>
-        <constantsdef>
-            <gravity x="0" y="0" z="-9.81" />
-            <rhop0 value="1000" />
-            <rhopgradient value="2" />
-            <hswl value="0" auto="true" />
-            <gamma value="7" />
-            <speedsystem value="0" auto="true" />
-            <coefsound value="20" />
-            <speedsound value="0" auto="true" />
-            <coefh value="1" />
-            <cflnumber value="0.2" />
-        </constantsdef>
-        <mkconfig boundcount="240" fluidcount="9" />
-        <geometry>
-            <definition dp="{dp}">
-                <pointmin x="0" y="0" z="0" />
-                <pointmax x="{max}" y="{max}" z="{max}" />
-            </definition>
-            <commands>
-                <mainlist>
-                    <setdrawmode mode="full" />
-                    <setmkfluid mk="0" />
-                    <drawbox>
-                        <boxfill>solid</boxfill>
-                        <point x="{x}" y="{y}" z="{z}" />
-                        <size x="0.4" y="0.3" z="0.12" />
-                    </drawbox>
-                    <setmkbound mk="0" />
-                    <drawbox>
-                        <boxfill>bottom | left | right | front | back</boxfill>
-                        <point x="{x}" y="{y}" z="{z}" />
-                        <size x="0.4" y="0.3" z="0.2" />
-                    </drawbox>
-                </mainlist>
-            </commands>
-        </geometry>
-    </casedef>
-    <execution>
-        <parameters>
-            <parameter key="TimeMax" value="1" />
-        </parameters>
-    </execution>
-</case>
-"""
 
 
 class Failed(Exception):
@@ -182,6 +135,48 @@ def median_ratio(ours, theirs, key):
     return statistics.median(a[key] / b[key] for a, b in zip(ours.samples, theirs.samples))
 
 
+def unwritten(sample):
+    """Seconds of the stages but for those that write."""
+    return max(1e-3, sum(t for name, t in sample["stages_s"].items()
+                         if not name.startswith(("write", "Save"))))
+
+
+def power_law(points):
+    """Least squares of log y over log x: (exponent, y at x = 1e6), of two points or more."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    mean_x = sum(x for x, _ in logs) / len(logs)
+    mean_y = sum(y for _, y in logs) / len(logs)
+    spread = sum((x - mean_x) ** 2 for x, _ in logs)
+    exponent = sum((x - mean_x) * (y - mean_y) for x, y in logs) / spread
+    return exponent, math.exp(mean_y + exponent * (math.log(1e6) - mean_x))
+
+
+def growth_table(results):
+    """How time and memory grow from the rung of a million particles on (below it, starting up and
+    reading meshes count), and with the nodes of the domain."""
+    lines = ["| case | variant | time grows as | at a million, s | memory grows as | at a million, MB |",
+             "| --- | --- | --- | --- | --- | --- |"]
+    cases = list(dict.fromkeys(rung["case"].split(" ")[0] for rung in results))
+    for case in cases:
+        rungs = [r for r in results if r["case"].split(" ")[0] == case]
+        names = list(dict.fromkeys(name for r in rungs for name in r["variants"]))
+        for name in names:
+            found = [(r, r["variants"][name]) for r in rungs
+                     if "failed" not in r["variants"].get(name, {"failed": ""})]
+            if case == "domain":
+                points = [(int(r["case"].split(" ")[1].split("^")[0]) ** 3, v) for r, v in found]
+            else:
+                points = [(v["particles"], v) for _, v in found if v["particles"] >= 0.9e6]
+            if len(points) < 2:
+                continue
+            time_law = power_law([(x, v["wall_s"]) for x, v in points])
+            memory_law = power_law([(x, v["peak_rss"]) for x, v in points])
+            unit = "nodes" if case == "domain" else "n"
+            lines.append(f"| {case} | {name} | {unit}^{time_law[0]:.2f} | {time_law[1]:.3f} | "
+                         f"{unit}^{memory_law[0]:.2f} | {memory_law[1] / 1e6:.0f} |")
+    return "\n".join(lines) if len(lines) > 2 else ""
+
+
 def count_at(fppg, definition, dp, work):
     command = [fppg, os.path.splitext(os.path.basename(definition))[0],
                os.path.join(work, "count"), "-save:-all"]
@@ -208,16 +203,6 @@ def dp_for(fppg, definition, wanted, work):
     return dp
 
 
-def large_domain(n, work):
-    path = os.path.join(work, f"CaseDomain{n}_Def.xml")
-    middle = n // 2 * DOMAIN_DP
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(LARGE_DOMAIN.format(n=n, dp=DOMAIN_DP, max=f"{(n - 0.5) * DOMAIN_DP:.6g}",
-                                       x=f"{middle - 0.2:.6g}", y=f"{middle - 0.15:.6g}",
-                                       z=f"{middle - 0.1:.6g}"))
-    return path
-
-
 def make_rungs(options, work):
     rungs = []
     if options.case:
@@ -226,16 +211,28 @@ def make_rungs(options, work):
                 name = os.path.basename(definition).replace("_Def.xml", "")
                 rungs.append({"case": name, "definition": os.path.abspath(definition), "dp": dp})
         return rungs
-    for case in options.only or [*OWN_CASES, "domain"]:
+    if options.folder:
+        own = {name.replace("_Def.xml", ""): os.path.abspath(os.path.join(options.folder, name))
+               for name in sorted(os.listdir(options.folder)) if name.endswith("_Def.xml")}
+    else:
+        # A process of its own: what this one needs at most is the least that run_timed sees.
+        own = json.loads(subprocess.run(
+            [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                          "ladder_cases.py"), work],
+            check=True, capture_output=True, text=True).stdout)
+    for case in options.only or [*own, "domain"]:
         if case == "domain":
-            rungs += [{"case": f"domain {n}^3", "definition": large_domain(n, work), "dp": None}
+            rungs += [{"case": f"domain {n}^3", "definition": write_domain_case(work, n, DOMAIN_DP), "dp": None}
                       for n in options.domains]
             continue
-        definition = os.path.join(REPOSITORY, OWN_CASES[case])
+        if case not in own:
+            raise Failed(f"{case}: no such case; there are {', '.join(own)} and domain")
+        definition = own[case]
         for million in options.millions:
             print(f"looking for the dp of {case} at {million:g} million particles",
                   file=sys.stderr)
             rungs.append({"case": case, "definition": definition,
+                          "million": million,
                           "dp": dp_for(options.fppg, definition, million * 1e6, work)})
     return rungs
 
@@ -244,11 +241,18 @@ def measure(rung, options, work):
     save = [f"-save:{options.save}"] if options.save else []
     variants = []
     for threads in options.threads:
-        variants.append(Variant(f"fppg, {threads} threads", options.fppg, threads,
-                                [*save, f"-threads:{threads}"]))
-        if options.gencase:
-            variants.append(Variant(f"GenCase, {threads} threads", options.gencase, threads,
-                                    [*save, f"{options.gencase_threads}:{threads}"]))
+        suffix = f"{threads} thread" + ("s" if threads > 1 else "")
+        for mode in options.modes:
+            if mode == "relaxed" and rung.get("million", 0) > options.relax_up_to:
+                continue
+            if mode != "lattice" and rung["case"].startswith("domain"):
+                continue
+            variants.append(Variant(f"{mode}, {suffix}", options.fppg, threads,
+                                    [*save, MODES[mode], f"-threads:{threads}"]))
+    if options.gencase:
+        threads = max(options.threads)
+        variants.append(Variant(f"GenCase, {threads} threads", options.gencase, threads,
+                                [*save, f"{options.gencase_threads}:{threads}"]))
     failed = {}
     for repetition in range(options.repeat):
         # Another one starts each time, so that none always follows the same neighbour.
@@ -270,40 +274,53 @@ def measure(rung, options, work):
         else:
             result["variants"][variant.name] = variant.summary()
     if options.gencase:
-        for ours, theirs in zip(variants[0::2], variants[1::2]):
+        theirs = variants[-1]
+        for ours in variants[:-1]:
             if theirs.name in failed:
                 continue
             summary = result["variants"][ours.name]
             summary["wall_to_gencase"] = median_ratio(ours, theirs, "wall_s")
             summary["rss_to_gencase"] = median_ratio(ours, theirs, "peak_rss")
+    if min(options.threads) == 1 and max(options.threads) > 1:
+        for mode in options.modes:
+            several = next((v for v in variants
+                            if v.name.startswith(mode) and v.threads == max(options.threads)), None)
+            one = next((v for v in variants if v.name == f"{mode}, 1 thread"), None)
+            if one and several:
+                result["variants"][several.name]["speed_up"] = median_ratio(one, several, "wall_s")
+                result["variants"][several.name]["speed_up_unwritten"] = statistics.median(
+                    unwritten(a) / unwritten(b) for a, b in zip(one.samples, several.samples))
     return result
 
 
 def table(results):
     lines = ["| case | dp | variant | particles | wall s | min to max s | user+sys s | "
              "peak RSS MB | million particles/s | written MB | wall / cp | wall / GenCase | "
-             "RSS / GenCase |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+             "RSS / GenCase | speed-up | without writing |",
+             "| --- " * 15 + "|"]
     for rung in results:
         for name, v in rung["variants"].items():
             dp = f"{rung['dp']:g}" if rung["dp"] is not None else ""
             if "failed" in v:
-                lines.append(f"| {rung['case']} | {dp} | {name} | failed | | | | | | | | | |")
+                lines.append(f"| {rung['case']} | {dp} | {name} | failed | | | | | | | | | | | |")
                 continue
             speed = f"{v['particles_per_s'] / 1e6:.2f}" if v["particles_per_s"] else ""
             pair = [f"{v[key]:.3f}" if key in v else ""
                     for key in ("wall_to_gencase", "rss_to_gencase")]
+            pair += [f"{v[key]:.2f}" if key in v else ""
+                     for key in ("speed_up", "speed_up_unwritten")]
             lines.append(
                 f"| {rung['case']} | {dp} | {name} | {v['particles'] or ''} | {v['wall_s']:.3f} | "
                 f"{v['wall_min_s']:.3f} to {v['wall_max_s']:.3f} | {v['cpu_s']:.3f} | "
                 f"{v['peak_rss'] / 1e6:.0f} | {speed} | {v['bytes'] / 1e6:.1f} | "
-                f"{v['ratio_to_cp']:.2f} | {pair[0]} | {pair[1]} |")
+                f"{v['ratio_to_cp']:.2f} | {' | '.join(pair)} |")
     return "\n".join(lines)
 
 
 def stage_table(results):
     rows = [(rung, name, v["stages_s"]) for rung in results
-            for name, v in rung["variants"].items() if name.startswith("fppg")]
+            for name, v in rung["variants"].items() if "stages_s" in v
+            and not name.startswith("GenCase")]
     stages = []
     for _, _, times in rows:
         stages += [s for s in times if s not in stages]
@@ -330,8 +347,15 @@ def parse_options():
     parser.add_argument("--case", action="append", metavar="DEF.xml",
                         help="this case instead of the repository's own; may be repeated")
     parser.add_argument("--dp", type=numbers, metavar="LIST", help="particle distances for --case")
-    parser.add_argument("--only", action="append", choices=[*OWN_CASES, "domain"],
-                        help="of the repository's own cases only this one; may be repeated")
+    parser.add_argument("--folder", help="a folder of definitions to climb the ladder with, instead "
+                        "of the repository's own")
+    parser.add_argument("--only", action="append", metavar="CASE",
+                        help=f"only this case ({', '.join(OWN_CASES)}, domain); may be repeated")
+    parser.add_argument("--modes", type=lambda t: t.split(","), default=["lattice", "body-fitted"],
+                        metavar="LIST", help="of lattice, body-fitted (without relaxation) and "
+                        "relaxed (default lattice,body-fitted)")
+    parser.add_argument("--relax-up-to", type=float, default=1, metavar="MILLIONS",
+                        help="largest rung that is relaxed (default 1)")
     parser.add_argument("--millions", type=numbers, default=LADDER, metavar="LIST",
                         help="million particles of the rungs (default 0.1,1,5,20)")
     parser.add_argument("--larger", action="store_true",
@@ -347,12 +371,14 @@ def parse_options():
     parser.add_argument("--work", metavar="FOLDER", help="where outputs go for the time of a run "
                         "(default: a temporary folder)")
     parser.add_argument("--out", default="bench", metavar="NAME",
-                        help="NAME.json and NAME.md are written (default %(default)s)")
+                        help="NAME.json, NAME.md and NAME.svg are written (default %(default)s)")
     options = parser.parse_args()
     if options.repeat < 1 or min(options.threads) < 1 or min(options.millions) <= 0:
         parser.error("repetitions, threads and sizes must be above zero")
     if options.dp and not options.case:
         parser.error("--dp goes with --case")
+    if not set(options.modes) <= set(MODES):
+        parser.error(f"modes are {', '.join(MODES)}")
     options.domains = DOMAINS
     if options.quick:
         options.repeat, options.millions, options.domains = 3, [0.1, 1], [405, 1205]
@@ -364,6 +390,13 @@ def parse_options():
     return options
 
 
+def processor():
+    """The model of the processor, as the kernel names it."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
 def main():
     options = parse_options()
     with tempfile.TemporaryDirectory(prefix="fppg-bench-", dir=options.work) as work:
@@ -372,14 +405,16 @@ def main():
             print(f"measuring {rung['case']}, dp {rung['dp']}", file=sys.stderr)
             results.append(measure(rung, options, work))
     machine = {"system": platform.platform(), "cpus": len(os.sched_getaffinity(0)),
-               "load": os.getloadavg(), "date": time.strftime("%Y-%m-%d %H:%M:%S"),
+               "processor": processor(), "load": os.getloadavg(), "date": time.strftime("%Y-%m-%d %H:%M:%S"),
                "repetitions": options.repeat}
     with open(options.out + ".json", "w", encoding="utf-8") as file:
         json.dump({"machine": machine, "results": results}, file, indent=1)
         file.write("\n")
-    text = (f"{machine['date']}, {machine['system']}, {machine['cpus']} CPUs, medians of "
-            f"{options.repeat} repetitions\n\n{table(results)}\n\nSeconds a stage:\n\n"
-            f"{stage_table(results)}\n")
+    caption = (f"{machine['date']}, {machine['processor']}, {machine['cpus']} CPUs, "
+               f"medians of {options.repeat} repetitions")
+    text = (f"{caption}; {machine['system']}\n\n{table(results)}\n\nGrowth:\n\n"
+            f"{growth_table(results)}\n\nSeconds a stage:\n\n{stage_table(results)}\n")
+    write_plot(options.out + ".svg", results, caption)
     with open(options.out + ".md", "w", encoding="utf-8") as file:
         file.write(text)
     print(text)

@@ -8,6 +8,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(core_may_see)
+set(report_may_see core)
 foreach(folder casedef shapes)
   set(${folder}_may_see core)
 endforeach()
@@ -20,10 +21,12 @@ set(relax_may_see fit casedef shapes particles core)
 set(boolean_may_see fit casedef shapes particles core)
 set(render_may_see files particles shapes core)
 # What differs in Case.xml is found in its tree, which casedef reads.
-set(compare_may_see files casedef particles shapes core)
+set(compare_may_see report files casedef particles shapes core)
 # Cases beforehand and many at a time.
-set(batch_may_see lattice files casedef shapes particles core)
-set(app_may_see batch compare render lattice fit boolean relax normals files casedef shapes particles core)
+set(batch_may_see report lattice files casedef shapes particles core)
+# What the solver made of a case, against the true shapes of its draws.
+set(leak_may_see lattice files casedef shapes particles core)
+set(app_may_see leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -84,6 +85,21 @@ FPPG_LANES Lanes gathered(const float* values, const std::uint32_t* indices)
     return Lanes{values[indices[0]], values[indices[1]], values[indices[2]], values[indices[3]],
                  values[indices[4]], values[indices[5]], values[indices[6]], values[indices[7]]};
 }
+
+/// For every set of eight lanes their numbers, a byte each, for taking just these out of a
+/// register.
+struct LaneOrders
+{
+    std::array<std::uint64_t, 256> of{};
+
+    constexpr LaneOrders()
+    {
+        for (std::size_t set = 0; set < of.size(); ++set)
+            for (unsigned lane = 0, count = 0; lane < lane_count; ++lane)
+                if ((set >> lane & 1) != 0) of[set] |= std::uint64_t{lane} << (8 * count++);
+    }
+};
+inline constexpr LaneOrders lane_orders;
 
 /// Neighbours of one point by eights. The last eight are filled up with what comes after them in
 /// the list, whose distances are replaced by a large one.

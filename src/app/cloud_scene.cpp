@@ -1,0 +1,39 @@
+#include "app/cloud_scene.h"
+
+#include "compare/report_words.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace fppg
+{
+
+std::string hex_of(const Rgb& colour)
+{
+    return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
+}
+
+SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
+{
+    std::map<std::uint16_t, ScenePart> parts;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        ScenePart& part = parts[cloud.mk[i]];
+        if (part.positions.empty())
+        {
+            part.colour = hex_of(colour_of_mk(cloud.mk[i]));
+            part.label = fmt::format("mk {}", cloud.mk[i]);
+            if (!cloud.type.empty())
+                part.label += fmt::format(" {}", particle_type_name(cloud.type[i]));
+        }
+        part.positions.push_back(cloud.positions[i]);
+    }
+    SceneSet set;
+    set.name = name;
+    set.dp = cloud.dp;
+    for (auto& [mk, part] : parts) set.parts.push_back(std::move(part));
+    return set;
+}
+
+} // namespace fppg

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "fppg/read_particles.h"
+#include "fppg/render.h"
+#include "report/scene.h"
+
+#include <string>
+
+namespace fppg
+{
+
+/// Particles that a report page holds of one result at most.
+inline constexpr std::size_t most_in_scene = 200000;
+
+/// "#rrggbb"
+std::string hex_of(const Rgb& colour);
+
+/// The particles of a cloud as a set of the 3-D view, a part an mk, by mk.
+SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name);
+
+} // namespace fppg

@@ -1,0 +1,245 @@
+#include "leak/leak.h"
+
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+
+#include "core/parallel.h"
+#include "files/case_facts.h"
+#include "files/particle_source.h"
+#include "leak/case_solids.h"
+#include "leak/closed_housing.h"
+#include "leak/part_file.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr double farthest_off_dp = 0.05; // of a rigid body's particles, dp
+constexpr std::size_t particles_a_chunk = 256;
+
+class LeakCounter
+{
+public:
+    LeakCounter(const std::string& case_name, const LeakOptions& options)
+        : source_(case_name), options_(options)
+    {
+        if (!source_.is_bi4() || !source_.xml())
+            throw IoError(
+                fmt::format("'{}': expected a case, of which Case.xml and Case.bi4 were "
+                            "given to the solver",
+                            case_name));
+        facts_ = case_facts(*source_.xml(), source_.xml_path());
+        read_definition();
+        solids_ = case_solids(def_, options_.threads);
+        report_.case_name = case_name;
+        report_.dp = def_.grid.dp;
+        report_.notes = solids_.notes;
+        judge_shells();
+        find_housing();
+        list_bodies();
+    }
+
+    LeakReport run(const std::vector<std::string>& parts)
+    {
+        std::vector<std::pair<double, std::string>> files;
+        for (const std::string& path : part_files(parts))
+            files.emplace_back(PartFile(path).time(), path);
+        std::sort(files.begin(), files.end());
+        for (const auto& file : files) count(PartFile(file.second));
+        return std::move(report_);
+    }
+
+private:
+    ParticleSource source_;
+    LeakOptions options_;
+    CaseFacts facts_;
+    CaseDef def_;
+    CaseSolids solids_;
+    std::optional<ClosedHousing> housing_;
+    std::vector<std::size_t> body_of_; ///< per shape, CaseSolids::none where it is no body
+    std::vector<Vec3> fluid_;          ///< of the case
+    LeakReport report_;
+    std::set<std::uint16_t> told_; ///< mks that do not move as rigid bodies
+
+    void read_definition()
+    {
+        CaseOptions options;
+        if (source_.dp() > 0) options.dp = source_.dp();
+        options.evars = options_.evars;
+        const std::string& path =
+            options_.definition.empty() ? source_.xml_path() : options_.definition;
+        def_ = read_case(path, options);
+        if (!def_.vres.zones.empty())
+            throw CaseError(path, 0,
+                            "the case has variable resolution, whose zones are not judged; "
+                            "expected a case of one resolution");
+    }
+
+    /// The type of a particle; what no block has is new fluid of the solver's inlets.
+    ParticleType type_of(std::uint32_t id) const
+    {
+        const IdRange* range = find_range(facts_.ranges, id);
+        return range == nullptr ? ParticleType::Fluid : range->type;
+    }
+
+    /// Shells that hold fluid at the beginning bound it; open ones bound nothing by themselves.
+    void judge_shells()
+    {
+        for (std::size_t i = 0; i < source_.size(); ++i)
+            if (type_of(source_.id(i)) == ParticleType::Fluid)
+                fluid_.push_back(source_.position(i));
+        report_.fluid = fluid_.size();
+        std::vector<std::string> open;
+        for (CaseDraw& draw : solids_.draws)
+        {
+            if (draw.is_combination) continue;
+            const CaseShape& shape = solids_.shapes[draw.shapes.front()];
+            if (shape.is_filled) continue;
+            draw.is_judged = shape.is_closed &&
+                             std::none_of(fluid_.begin(), fluid_.end(),
+                                          [&](const Vec3& p) { return shape.solid->is_inside(p); });
+            if (!shape.is_closed) open.push_back(shape.name);
+        }
+        if (!open.empty())
+            report_.notes.push_back(
+                fmt::format("Open surfaces have no inside: {}.", fmt::join(open, ", ")));
+    }
+
+    void find_housing()
+    {
+        const double plane_y = def_.grid.origin.y;
+        housing_.emplace(solids_, fluid_, def_.grid.dp, def_.grid.is_2d ? &plane_y : nullptr,
+                         options_.threads);
+        report_.has_housing = housing_->is_closed();
+    }
+
+    void list_bodies()
+    {
+        body_of_.assign(solids_.shapes.size(), CaseSolids::none);
+        for (const CaseDraw& draw : solids_.draws)
+        {
+            if (!draw.is_judged) continue;
+            for (const std::size_t s : draw.shapes)
+            {
+                const CaseShape& shape = solids_.shapes[s];
+                if (shape.kind != MkKind::Bound) continue;
+                body_of_[s] = report_.bodies.size();
+                const auto range = std::find_if(facts_.ranges.begin(), facts_.ranges.end(),
+                                                [&](const IdRange& r) { return r.mk == shape.mk; });
+                report_.bodies.push_back(
+                    {shape.name, shape.mk,
+                     range == facts_.ranges.end() ? ParticleType::Fixed : range->type});
+            }
+        }
+    }
+
+    /// The motion of every moving mk; one that is not rigid has none and is in `given_up`.
+    MotionOfMk motions_of(const PartFile& part, std::set<std::uint16_t>& given_up)
+    {
+        std::map<std::uint16_t, std::pair<std::vector<Vec3>, std::vector<Vec3>>> places;
+        for (std::size_t i = 0; i < part.size(); ++i)
+        {
+            const IdRange* range = find_range(facts_.ranges, part.id(i));
+            if (range == nullptr || range->type == ParticleType::Fluid) continue;
+            const std::uint32_t id = part.id(i);
+            if (id >= source_.size() || source_.id(id) != id)
+                throw CaseError(
+                    fmt::format("'{}' is not an output of '{}': particle {} is not at "
+                                "its place in the case",
+                                part.path(), report_.case_name, id));
+            if (range->type == ParticleType::Fixed) continue;
+            auto& [from, to] = places[range->mk];
+            from.push_back(source_.position(id));
+            to.push_back(part.position(i));
+        }
+        MotionOfMk motions;
+        for (const auto& [mk, of_mk] : places)
+        {
+            RigidMotion motion = fit_rigid_motion(of_mk.first, of_mk.second);
+            if (motion.farthest <= farthest_off_dp * report_.dp)
+            {
+                motions.emplace(mk, motion);
+                continue;
+            }
+            given_up.insert(mk);
+            if (told_.insert(mk).second)
+                report_.notes.push_back(fmt::format(
+                    "mk {} does not move as a rigid body ({:.3g} dp off at {:g} s) and is not "
+                    "judged then.",
+                    mk, motion.farthest / report_.dp, part.time()));
+        }
+        return motions;
+    }
+
+    void count(const PartFile& part)
+    {
+        LeakInstant instant;
+        instant.file = part.path();
+        instant.time = part.time();
+        instant.step = static_cast<std::uint64_t>(part.value("Step", 0));
+        instant.dt_least = part.value("dtmin", 0);
+        instant.dt_largest = part.value("dtmax", 0);
+        instant.in_body.assign(report_.bodies.size(), 0);
+        std::set<std::uint16_t> given_up;
+        const MotionOfMk motions = motions_of(part, given_up);
+        std::vector<std::size_t> fluid;
+        for (std::size_t i = 0; i < part.size(); ++i)
+            if (type_of(part.id(i)) == ParticleType::Fluid) fluid.push_back(i);
+        std::vector<std::size_t> in(fluid.size(), CaseSolids::none);
+        std::vector<double> depth(fluid.size(), 0);
+        std::vector<char> is_out(fluid.size(), 0);
+        const auto judge = [&](std::size_t k)
+        {
+            const Vec3 p = part.position(fluid[k]);
+            const std::size_t s = solids_.find(p, motions);
+            if (s != CaseSolids::none)
+            {
+                const CaseShape& shape = solids_.shapes[s];
+                const auto motion = motions.find(shape.mk);
+                const Vec3 before = motion == motions.end() ? p : motion->second.backward(p);
+                depth[k] = shape.solid->distance(before) / report_.dp;
+                if (depth[k] > options_.tolerance_dp && !given_up.contains(shape.mk)) in[k] = s;
+            }
+            else if (report_.has_housing)
+                is_out[k] = housing_->is_outside(p) ? 1 : 0;
+        };
+        parallel_for(fluid.size(), options_.threads, judge, particles_a_chunk);
+        instant.fluid = fluid.size();
+        const auto known =
+            static_cast<std::uint64_t>(part.value("NpTotal", static_cast<double>(source_.size())));
+        if (known >= part.size()) instant.excluded = known - part.size();
+        if (report_.has_housing) instant.outside = 0;
+        for (std::size_t k = 0; k < fluid.size(); ++k)
+        {
+            if (is_out[k] != 0) ++*instant.outside;
+            if (in[k] == CaseSolids::none) continue;
+            ++instant.inside;
+            ++instant.in_body[body_of_[in[k]]];
+            instant.deepest_dp = std::max(instant.deepest_dp, depth[k]);
+        }
+        report_.instants.push_back(std::move(instant));
+    }
+};
+
+} // namespace
+
+bool LeakReport::is_tight() const
+{
+    return std::all_of(instants.begin(), instants.end(),
+                       [](const LeakInstant& at)
+                       { return at.inside == 0 && at.outside.value_or(0) == 0; });
+}
+
+LeakReport count_leaks(const std::string& case_name, const std::vector<std::string>& parts,
+                       const LeakOptions& options)
+{
+    return LeakCounter(case_name, options).run(parts);
+}
+
+} // namespace fppg

@@ -1,0 +1,212 @@
+#include "leak/leak.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace fppg
+{
+
+namespace
+{
+
+const char* type_name(ParticleType type)
+{
+    static constexpr const char* names[] = {"fixed", "moving", "floating", "fluid"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+/// Right-aligned columns.
+std::string table(const std::vector<std::vector<std::string>>& rows)
+{
+    std::vector<std::size_t> widths(rows.front().size());
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const auto& row : rows)
+    {
+        for (std::size_t c = 0; c < row.size(); ++c)
+            text += fmt::format("{}{:>{}}", c == 0 ? "" : "  ", row[c], widths[c]);
+        text += "\n";
+    }
+    return text;
+}
+
+/// The largest number over time, and when it was first there.
+struct Worst
+{
+    std::uint64_t count = 0;
+    double time = 0;
+};
+
+Worst worst_in(const LeakReport& report, std::size_t body)
+{
+    Worst worst;
+    for (const LeakInstant& at : report.instants)
+        if (at.in_body[body] > worst.count) worst = {at.in_body[body], at.time};
+    return worst;
+}
+
+/// A step of 1, 2 or 5 times a power of ten that divides the range into about five.
+double tick_of(double range)
+{
+    const double raw = range / 5;
+    const double power = std::pow(10, std::floor(std::log10(raw)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (raw <= step * power) return step * power;
+    return 10 * power;
+}
+
+} // namespace
+
+std::string to_text(const LeakReport& report)
+{
+    std::string text =
+        fmt::format("{}: dp {:g} m, {} fluid particles, {} solids, {}\n", report.case_name,
+                    report.dp, report.fluid, report.bodies.size(),
+                    report.has_housing ? "in a closed housing" : "no closed housing");
+    std::vector<std::vector<std::string>> rows{
+        {"time [s]", "step", "dt [s]", "fluid", "inside", "deepest [dp]", "outside", "taken out"}};
+    for (const LeakInstant& at : report.instants)
+        rows.push_back(
+            {fmt::format("{:.6g}", at.time), std::to_string(at.step),
+             at.dt_largest > 0 ? fmt::format("{:.3g} to {:.3g}", at.dt_least, at.dt_largest) : "-",
+             std::to_string(at.fluid), std::to_string(at.inside),
+             at.inside > 0 ? fmt::format("{:.3f}", at.deepest_dp) : "-",
+             at.outside ? std::to_string(*at.outside) : "-", std::to_string(at.excluded)});
+    text += table(rows);
+    for (std::size_t b = 0; b < report.bodies.size(); ++b)
+    {
+        const Worst worst = worst_in(report, b);
+        if (worst.count > 0)
+            text += fmt::format("  {} (mk {}, {}): up to {} inside, at {:g} s\n",
+                                report.bodies[b].name, report.bodies[b].mk,
+                                type_name(report.bodies[b].type), worst.count, worst.time);
+    }
+    for (const std::string& note : report.notes) text += "  " + note + "\n";
+    text += report.is_tight() ? "Tight: no fluid is where none can be.\n"
+                              : "Leaks: fluid is where none can be.\n";
+    return text;
+}
+
+std::string to_json(const LeakReport& report)
+{
+    using nlohmann::ordered_json;
+    ordered_json root;
+    root["case"] = report.case_name;
+    root["dp"] = report.dp;
+    root["fluid"] = report.fluid;
+    root["has_housing"] = report.has_housing;
+    root["is_tight"] = report.is_tight();
+    root["bodies"] = ordered_json::array();
+    for (const LeakBody& body : report.bodies)
+        root["bodies"].push_back(
+            {{"name", body.name}, {"mk", body.mk}, {"type", type_name(body.type)}});
+    root["outputs"] = ordered_json::array();
+    for (const LeakInstant& at : report.instants)
+    {
+        ordered_json out;
+        out["file"] = at.file;
+        out["time"] = at.time;
+        out["step"] = at.step;
+        out["dt_least"] = at.dt_least;
+        out["dt_largest"] = at.dt_largest;
+        out["fluid"] = at.fluid;
+        out["taken_out"] = at.excluded;
+        out["inside"] = at.inside;
+        out["deepest_dp"] = at.deepest_dp;
+        out["outside"] = at.outside ? ordered_json(*at.outside) : ordered_json(nullptr);
+        out["in_body"] = at.in_body;
+        root["outputs"].push_back(std::move(out));
+    }
+    root["notes"] = report.notes;
+    return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string to_svg(const LeakReport& report)
+{
+    constexpr double width = 760;
+    constexpr double height = 380;
+    constexpr double left = 70;
+    constexpr double right = 20;
+    constexpr double top = 46;
+    constexpr double bottom = 50;
+    struct Line
+    {
+        const char* name;
+        const char* colour;
+        std::function<std::uint64_t(const LeakInstant&)> value;
+    };
+    std::vector<Line> lines{{"inside solids", "#c44e4a", [](const auto& at) { return at.inside; }}};
+    if (report.has_housing)
+        lines.push_back({"outside the housing", "#3e89ca",
+                         [](const auto& at) { return at.outside.value_or(0); }});
+    lines.push_back(
+        {"taken out by the solver", "#807a72", [](const auto& at) { return at.excluded; }});
+
+    double time_end = 0;
+    double most = 1;
+    for (const LeakInstant& at : report.instants)
+    {
+        time_end = std::max(time_end, at.time);
+        for (const Line& line : lines) most = std::max(most, static_cast<double>(line.value(at)));
+    }
+    if (!(time_end > 0)) time_end = 1;
+    const double count_tick = std::max(1.0, tick_of(most));
+    const double time_tick = tick_of(time_end);
+    const double count_end = std::ceil(most / count_tick) * count_tick;
+    const auto x_of = [&](double t) { return left + (width - left - right) * t / time_end; };
+    const auto y_of = [&](double n)
+    { return height - bottom - (height - top - bottom) * n / count_end; };
+
+    std::string svg = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" "
+        "viewBox=\"0 0 {0:g} {1:g}\" font-family=\"sans-serif\" font-size=\"13\">\n"
+        "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"white\"/>\n",
+        width, height);
+    const auto text_at = [&](double x, double y, const char* anchor, const std::string& text)
+    {
+        svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y,
+                           anchor, text);
+    };
+    const auto rule = [&](double x0, double y0, double x1, double y1)
+    {
+        svg += fmt::format(
+            "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" "
+            "stroke=\"#dddddd\"/>\n",
+            x0, y0, x1, y1);
+    };
+    for (int i = 0; i * count_tick <= count_end * (1 + 1e-9); ++i)
+    {
+        const double y = y_of(i * count_tick);
+        rule(left, y, width - right, y);
+        text_at(left - 8, y + 4, "end", fmt::format("{:g}", i * count_tick));
+    }
+    for (int i = 0; i * time_tick <= time_end * (1 + 1e-9); ++i)
+    {
+        const double x = x_of(i * time_tick);
+        rule(x, top, x, height - bottom);
+        text_at(x, height - bottom + 18, "middle", fmt::format("{:g}", i * time_tick));
+    }
+    text_at(0.5 * (left + width - right), height - 12, "middle", "time [s]");
+    double legend = left;
+    for (const Line& line : lines)
+    {
+        std::string points;
+        for (const LeakInstant& at : report.instants)
+            points += fmt::format("{:.1f},{:.1f} ", x_of(at.time),
+                                  y_of(static_cast<double>(line.value(at))));
+        svg += fmt::format(
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", points,
+            line.colour);
+        svg += fmt::format("<rect x=\"{:.1f}\" y=\"16\" width=\"18\" height=\"4\" fill=\"{}\"/>\n",
+                           legend, line.colour);
+        text_at(legend + 24, 23, "start", line.name);
+        legend += 220;
+    }
+    return svg + "</svg>\n";
+}
+
+} // namespace fppg

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "fppg/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// Particles of one colour, that the legend shows and hides together.
+struct ScenePart
+{
+    std::string label;
+    std::string colour; ///< "#rrggbb"
+    std::vector<Vec3> positions;
+};
+
+struct SceneSet
+{
+    std::string name;
+    double dp = 0; ///< diameter of a particle, metres
+    std::vector<ScenePart> parts;
+};
+
+/// A set as JSON: coordinates of 16 bits in the box of the set, base64, the parts behind one
+/// another.
+std::string to_json(const SceneSet& set);
+
+/// What can be chosen to be looked at: sets side by side, by their index.
+struct SceneView
+{
+    std::string title;
+    std::vector<std::size_t> sets;
+};
+
+/// The 3-D view as a part of a page: particles, controls, and the script that draws them. Without
+/// a view, or in a program that was built without the script, a sentence that says so.
+///
+/// sets  as to_json() writes them
+std::string scene_html(const std::vector<std::string>& sets, const std::vector<SceneView>& views);
+
+/// The script of the 3-D view; empty in a program that was built without it.
+std::string_view viewer_script();
+
+} // namespace fppg

@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+"""Makes the Debian packages, looks into them, unpacks them and runs what is inside.
+
+    check_package.py CPACK BUILD_FOLDER SOURCE_FOLDER WORK_FOLDER
+"""
+
+import glob
+import gzip
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+WANTED = ("/usr/bin/fppg", "/usr/share/man/man1/fppg.1.gz", "/usr/share/bash-completion/completions/fppg",
+          "/usr/share/doc/fppg/copyright", "/usr/share/fppg/xml-templates/fppg.xsd",
+          "/usr/share/fppg/xml-templates/FppgCaseTemplate.xml", "/usr/share/fppg/xml-templates/data/",
+          "/usr/share/fppg/cases/dambreak/CaseDambreak_Def.xml", "/usr/include/fppg/version.h",
+          "/usr/include/fppg/compare.h", "cmake/fppg/fppgConfig.cmake", "/libfppg.a")
+
+
+def run(*command, **options):
+    done = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+    assert done.returncode == 0, f"{command} ended with {done.returncode}:\n{done.stdout}"
+    return done.stdout
+
+
+def files_of(package):
+    """Path and what follows it, the target of a link, of everything in a package."""
+    return [line.split(None, 5)[5].lstrip(".") for line in run("dpkg-deb", "--contents", package).splitlines()]
+
+
+def check_completion(root):
+    """What bash offers for the beginning of a line."""
+    script = os.path.join(root, "usr/share/bash-completion/completions/fppg")
+    offered = run("bash", "-c", f"""source {script!r}; compopt() {{ :; }}
+        COMP_WORDS=(fppg comp); COMP_CWORD=1; _fppg; echo "${{COMPREPLY[*]}}"
+        COMP_WORDS=(fppg compare --tolerance-v); COMP_CWORD=2; _fppg; echo "${{COMPREPLY[*]}}"
+        COMP_WORDS=(fppg Case_Def out -createdirs); COMP_CWORD=3; _fppg; echo "${{COMPREPLY[*]}}"
+        cd {root}/usr/share/fppg/cases/dambreak; COMP_WORDS=(fppg Case); COMP_CWORD=1; _fppg; echo "${{COMPREPLY[*]}}"
+        """).splitlines()
+    assert offered == ["compare", "--tolerance-velocity", "-createdirs:", "CaseDambreak_Def"], offered
+
+
+def options_in(text):
+    return set(re.findall(r"(?<![\w-])(--?[a-z][a-z0-9-]+)", text))
+
+
+def check_help(program, source):
+    """Every option and subcommand of the help is in the manual page and in the completion."""
+    with open(os.path.join(source, "tools/package/fppg.1"), encoding="utf-8") as file:
+        page = file.read().replace("\\-", "-").replace("\\", "")
+    with open(os.path.join(source, "tools/package/fppg.bash"), encoding="utf-8") as file:
+        completion = file.read()
+    text = run(program, "--help")
+    for option in options_in(text[text.index("Options"):]) - {"-h"}:
+        assert option in page, f"{option} is not in the manual page"
+    for command in re.findall(r"^  fppg ([a-z]+) ", text, re.M):
+        assert f"\n.B {command}\n" in page, f"{command} is not in the manual page"
+        known = completion[completion.index(f"*:{command})"):]
+        known = known[:known.index(";;")]
+        for option in options_in(run(program, command, "--help").split("ptions", 1)[-1]):
+            if option.startswith("--") and command != "estimate":
+                assert option in known, f"{command} {option} is not completed"
+
+
+def main(cpack, build, source, work):
+    shutil.rmtree(work, ignore_errors=True)
+    os.makedirs(work)
+    run(cpack, "-G", "DEB", "-B", work, "--config", os.path.join(build, "CPackConfig.cmake"))
+    packages = {os.path.basename(path).split("_")[0]: path for path in glob.glob(os.path.join(work, "*.deb"))}
+    assert set(packages) == {"fppg", "fppg-gencase-link"}, packages
+
+    files = files_of(packages["fppg"])
+    for wanted in WANTED:
+        assert any(wanted in name for name in files), f"{wanted} is not in\n" + "\n".join(files)
+    assert not any("GenCase_linux64" in name for name in files)
+    outside = [name for name in files if not name.startswith(("/usr/", "/usr")) and name != "/"]
+    assert not outside, outside
+    assert any("/usr/bin/GenCase_linux64 -> fppg" in name for name in files_of(packages["fppg-gencase-link"]))
+    assert run("dpkg-deb", "--field", packages["fppg-gencase-link"], "Depends").strip() == "fppg"
+    if shutil.which("dpkg-shlibdeps"):
+        assert "libtinyxml2" in run("dpkg-deb", "--field", packages["fppg"], "Depends")
+
+    root = os.path.join(work, "root")
+    for package in packages.values():
+        run("dpkg-deb", "--extract", package, root)
+    assert "GenCase" in run(os.path.join(root, "usr/bin/GenCase_linux64"), "-ver")
+    case = os.path.join(root, "usr/share/fppg/cases/dambreak2d/CaseDambreak2D_Def")
+    run(os.path.join(root, "usr/bin/GenCase_linux64"), case, os.path.join(work, "out/Case"))
+    assert os.path.exists(os.path.join(work, "out/Case.bi4"))
+    with gzip.open(os.path.join(root, "usr/share/man/man1/fppg.1.gz"), "rt") as page:
+        assert page.read().startswith(".TH FPPG 1")
+    check_completion(root)
+    check_help(os.path.join(root, "usr/bin/fppg"), source)
+
+
+if __name__ == "__main__":
+    main(*(os.path.abspath(argument) for argument in sys.argv[1:5]))

@@ -1,0 +1,71 @@
+#include "report/scene.h"
+#include "report/result_look.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace fppg
+{
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(SceneSet, HoldsPositionsOf16BitsInItsBox)
+{
+    const SceneSet set{"A", 0.5, {{"mk 1", "#ff0000", {{0, 0, 0}, {1, 2, 4}}}}};
+    const auto json = nlohmann::json::parse(to_json(set));
+    EXPECT_EQ(json.at("box"), nlohmann::json({0.0, 0.0, 0.0, 1.0, 2.0, 4.0}));
+    EXPECT_EQ(json.at("parts").at(0).at("count"), 2);
+    // Six zero bytes, six of 255.
+    EXPECT_EQ(json.at("positions"), "AAAAAAAA////////");
+}
+
+TEST(SceneSet, OfParticlesInAPlaneHasNoNumberThatIsNone)
+{
+    const SceneSet set{"A", 0.5, {{"mk 1", "#ff0000", {{0, 1, 0}, {1, 1, 0}}}}};
+    EXPECT_EQ(nlohmann::json::parse(to_json(set)).at("positions"), "AAAAAAAA//8AAAAA");
+}
+
+TEST(SceneSet, DoesNotEndTheScriptThatItStandsIn)
+{
+    const SceneSet set{"</script><b>", 1, {}};
+    EXPECT_THAT(to_json(set), Not(HasSubstr("</")));
+    EXPECT_EQ(nlohmann::json::parse(to_json(set)).at("name"), "</script><b>");
+}
+
+TEST(SceneHtml, SaysInWordsThatThereIsNoView)
+{
+    EXPECT_THAT(scene_html({}, {}), HasSubstr("no particles for a 3-D view"));
+    const std::string html = scene_html({to_json(SceneSet{})}, {{"all", {0}}});
+    EXPECT_THAT(html, HasSubstr(viewer_script().empty() ? "no 3-D view" : "id=\"fppg-scene\""));
+}
+
+TEST(ViewerScript, StaysInsideItsElement)
+{
+    EXPECT_EQ(viewer_script().find("</script"), std::string_view::npos);
+}
+
+TEST(ResultLook, IsTheSameWhenReadBack)
+{
+    ResultLook look;
+    look.set = "{\"name\":\"A\"}";
+    look.details = "<p>\"x\"</p>";
+    const ResultLook again = read_look(to_json(look));
+    EXPECT_EQ(again.set, look.set);
+    EXPECT_EQ(again.details, look.details);
+    EXPECT_TRUE(read_look("no json").set.empty());
+}
+
+TEST(PicturesHtml, LeadToTheViewOfTheirResult)
+{
+    ResultLook a{"a", "", "png", "{}", ""};
+    ResultLook failed{"b", "", "", "", ""};
+    ResultLook c{"c", "", "png", "{}", ""};
+    const std::string html = pictures_html({a, failed, c});
+    EXPECT_THAT(html, HasSubstr("data-view=\"0\""));
+    EXPECT_THAT(html, HasSubstr("data-view=\"1\""));
+    EXPECT_THAT(html, Not(HasSubstr("data-view=\"2\"")));
+}
+
+} // namespace fppg

@@ -1,0 +1,62 @@
+# What is installed besides the program and the library, and the packages that cpack makes of it:
+# fppg, and fppg-gencase-link, a link that lets the program be called as GenCase_linux64.
+#
+# `cmake --install` leaves the link out; `cmake --install DIR --component fppg-gencase-link` makes it.
+find_program(FPPG_GZIP gzip)
+if(FPPG_GZIP)
+  set(man_page ${PROJECT_BINARY_DIR}/fppg.1.gz)
+  add_custom_command(OUTPUT ${man_page}
+    COMMAND ${FPPG_GZIP} -9nc ${PROJECT_SOURCE_DIR}/tools/package/fppg.1 > ${man_page}
+    DEPENDS ${PROJECT_SOURCE_DIR}/tools/package/fppg.1 VERBATIM)
+  add_custom_target(fppg_man_page ALL DEPENDS ${man_page})
+else()
+  set(man_page ${PROJECT_SOURCE_DIR}/tools/package/fppg.1)
+endif()
+install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT fppg)
+install(FILES tools/package/fppg.bash RENAME fppg COMPONENT fppg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg COMPONENT fppg
+    PATTERN "*_out" EXCLUDE)
+
+set(link ${PROJECT_BINARY_DIR}/gencase-link/GenCase_linux64)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/gencase-link)
+file(CREATE_LINK fppg ${link} SYMBOLIC)
+install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fppg-gencase-link
+    EXCLUDE_FROM_ALL)
+# A package has a folder of its own for its licence.
+install(FILES LICENSE RENAME copyright COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg-gencase-link)
+
+# Archives are not stripped with the programs; with debug information the library has 400 MB.
+install(CODE "if(CMAKE_INSTALL_DO_STRIP)
+  execute_process(COMMAND ${CMAKE_STRIP} --strip-debug
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/libfppg.a\")
+endif()" COMPONENT fppg)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME fppg)
+set(CPACK_PACKAGE_VENDOR fppg)
+set(CPACK_PACKAGE_CONTACT "The authors of fppg <fppg@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL fppg fppg-gencase-link)
+set(CPACK_COMPONENTS_IGNORE_GROUPS ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_FPPG_PACKAGE_NAME fppg)
+set(CPACK_COMPONENT_FPPG_DESCRIPTION "${PROJECT_DESCRIPTION}
+The program, its library with headers and CMake package, case templates and cases.")
+find_program(FPPG_SHLIBDEPS dpkg-shlibdeps)
+if(FPPG_SHLIBDEPS)
+  set(CPACK_DEBIAN_FPPG_PACKAGE_SHLIBDEPS ON)
+endif()
+set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_NAME fppg-gencase-link)
+set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_DEPENDS fppg)
+set(CPACK_COMPONENT_FPPG-GENCASE-LINK_DESCRIPTION "fppg in the place of GenCase
+A link by which scripts that call GenCase_linux64 get fppg.")
+include(CPack)
