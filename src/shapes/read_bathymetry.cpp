@@ -52,11 +52,12 @@ struct HeightGrid
     }
 };
 
-/// Lines from `begin` on, `spacing` apart, the last one at most 0.1 spacing before the end or
+/// Lines from `begin` on, `spacing` apart, the last one less than 0.1 spacing before the end or
 /// beyond it.
 std::vector<double> lines_over(double begin, double size, double spacing)
 {
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(size / spacing - 0.1)));
+    const auto n =
+        static_cast<std::size_t>(std::max(1.0, std::floor((size + 0.9 * spacing) / spacing)));
     std::vector<double> lines;
     for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
     return lines;
