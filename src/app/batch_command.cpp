@@ -1,6 +1,7 @@
 #include "app/batch_command.h"
 
 #include "app/command_line.h"
+#include "app/drawn_geometry.h"
 #include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 namespace fppg
 {
@@ -90,12 +92,7 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
                    "do run N of the plan in the folder SOURCE, which --slurm or --plan wrote")
         ->check(CLI::PositiveNumber);
     app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE");
-    const auto divider = std::find(arguments.begin(), arguments.end(), "--");
-    if (divider != arguments.end())
-    {
-        call.of_runs.assign(divider + 1, arguments.end());
-        arguments.erase(divider, arguments.end());
-    }
+    call.of_runs = take_run_options(arguments);
     return read_subcommand_line(app, arguments);
 }
 
@@ -134,8 +131,8 @@ public:
                                           : std::max(1, processors / runs);
         plan_.jobs = call_.jobs > 0 ? call_.jobs : std::max(1, processors / plan_.threads);
         make_folder();
-        const FolderLock lock(out_, false);
-        if (call_.slurm) return write_slurm();
+        std::optional<FolderLock> lock(std::in_place, out_, false);
+        if (call_.slurm) return write_slurm(lock);
         if (!call_.plan.empty()) return print_tasks();
         write_plan(out_, plan_);
         return run_all();
@@ -238,7 +235,7 @@ private:
     }
 
     /// Tasks of a scheduler may be handed in twice, so they always leave out what is done.
-    int write_slurm()
+    int write_slurm(std::optional<FolderLock>& lock)
     {
         plan_.resumes = true;
         std::vector<RunRecord> estimates;
@@ -261,6 +258,8 @@ private:
             return 0;
         }
         std::fflush(stdout);
+        // The first tasks may begin before sbatch ends, and they lock the folder themselves.
+        lock.reset();
         const int status = std::system(shell_word(script).c_str());
         if (status != 0)
             throw IoError(fmt::format("{} ended with exit code {}; is sbatch there?", script,

@@ -271,6 +271,31 @@ std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
     return count;
 }
 
+bool is_parallelogram(const FigureOp& figure, const FigureFace& face, double dp)
+{
+    if (face.vertices.size() != 4 || !face.triangles.empty() || !face.cut.empty()) return false;
+    const auto corner = [&](std::size_t i) { return figure.vertices[face.vertices[i]]; };
+    return norm(corner(0) + (corner(2) - corner(1)) - corner(3)) <= 0.05 * dp;
+}
+
+std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp)
+{
+    if (figure.solid == SolidKind::Box) return 1;
+    const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
+    std::size_t count = fills ? 1 : 0;
+    for (const FigureFace& f : figure.faces)
+    {
+        if (!f.is_visible || (fills && mode == DrawMode::Solid)) continue;
+        if (!f.triangles.empty())
+            count += f.triangles.size();
+        else if (!f.cut.empty())
+            count += f.cut.size() - 2;
+        else
+            count += is_parallelogram(figure, f, dp) ? 1 : f.vertices.size() - 2;
+    }
+    return static_cast<std::uint32_t>(count);
+}
+
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 {
     for (const int number : numbers)

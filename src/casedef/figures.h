@@ -62,6 +62,14 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 /// polygons and extrusions).
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
 
+/// The same off the lattice (setfrdrawmode; not for wires): a solid box is one part, of others the
+/// inside is one, then come the faces, of which parallelograms are one part and others one a
+/// triangle.
+std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp);
+
+/// Whether a face has four corners that make a parallelogram within 0.05 dp.
+bool is_parallelogram(const FigureOp& figure, const FigureFace& face, double dp);
+
 /// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers);
 

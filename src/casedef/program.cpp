@@ -149,15 +149,20 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         std::holds_alternative<EllipsoidOp>(what);
     if (std::holds_alternative<MeshFileOp>(what))
         read_.fail_unsupported(e, "setmknextauto for mesh files");
-    if (is_drawn && state_.off_lattice)
-        read_.fail_unsupported(e, "setmknextauto together with setfrdrawmode");
     if (!is_drawn)
         add_whole(e, std::move(what)); // points and fills do not count
     else if (const auto* lines = std::get_if<LinesOp>(&what))
         for (const auto& segment : lines->segments) add_part(LinesOp{{segment}});
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
-        figure->part_count = count_parts(*figure, state_.mode);
+        const bool is_free = state_.off_lattice;
+        if (is_free && state_.mode == DrawMode::Wire)
+            read_.fail_unsupported(e, "setmknextauto together with setfrdrawmode in wire mode");
+        if (is_free && e.name == "drawquadri" &&
+            !is_parallelogram(*figure, figure->faces.at(0), def_.grid.dp))
+            read_.fail(e, "setmknextauto together with setfrdrawmode needs a parallelogram here");
+        figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid.dp)
+                                     : count_parts(*figure, state_.mode);
         for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
     }
     else

@@ -162,8 +162,9 @@ void ProgramRunner::draw_box(const Element& e)
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
     for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers_of(e), def_.grid.dp))
         add_figure(e, std::move(figure));
-    // GenCase leaves one mk out after every box.
-    if (state_.mk_next_auto && state_.mk.kind != MkKind::Void)
+    // GenCase leaves one mk out after every box but one that is a block of free particles.
+    const bool is_free_block = state_.off_lattice && is_solid && layers_of(e).empty();
+    if (state_.mk_next_auto && state_.mk.kind != MkKind::Void && !is_free_block)
     {
         ++state_.mk.mk;
         ++state_.mk.mk_type;

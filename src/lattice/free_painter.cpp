@@ -117,24 +117,45 @@ void FreePainter::sort_claims()
     claims_.resize(kept);
 }
 
-std::uint16_t FreePainter::claimed_mk(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
+std::size_t FreePainter::claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
 {
     const auto found = std::lower_bound(claims_.begin(), claims_.end(), std::tuple(x, y, z),
                                         [](const Claim& c, const auto& at)
                                         { return std::tuple(c.x, c.y, c.z) < at; });
-    return found->mk;
+    return static_cast<std::size_t>(found - claims_.begin());
 }
 
-bool FreePainter::keeps_nodes(std::size_t particle) const
+std::vector<char> FreePainter::staying_particles() const
 {
-    bool keeps = true;
-    for_each_node(positions_[particle], field_->grid,
-                  [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
-                  {
-                      const std::uint16_t mk = mk_at(field_->slabs[x], y, z);
-                      keeps = keeps && (mk == mk_[particle] || mk == claimed_mk(x, y, z));
-                  });
-    return keeps;
+    std::vector<std::vector<std::uint32_t>> of_mk(65536);
+    for (std::size_t i = 0; i < mk_.size(); ++i)
+        of_mk[mk_[i]].push_back(static_cast<std::uint32_t>(i));
+    std::vector<char> stays(positions_.size());
+    std::vector<char> is_held(claims_.size());
+    for (std::size_t mk = of_mk.size(); mk-- > 0;)
+    {
+        const std::vector<std::uint32_t>& particles = of_mk[mk];
+        const auto nodes_of = [&](std::uint32_t particle, const auto& body)
+        { for_each_node(positions_[particle], field_->grid, body); };
+        parallel_for(
+            particles.size(), threads_,
+            [&](std::size_t i)
+            {
+                bool keeps = true;
+                nodes_of(particles[i],
+                         [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+                             keeps = keeps && (mk_at(field_->slabs[x], y, z) == mk ||
+                                               is_held[claim_of(x, y, z)]);
+                         });
+                stays[particles[i]] = keeps;
+            },
+            1024);
+        for (const std::uint32_t particle : particles)
+            if (stays[particle])
+                nodes_of(particle, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                         { is_held[claim_of(x, y, z)] = 1; });
+    }
+    return stays;
 }
 
 void FreePainter::finish()
@@ -142,9 +163,7 @@ void FreePainter::finish()
     if (positions_.empty()) return;
     const LatticeGrid& grid = field_->grid;
     sort_claims();
-    std::vector<char> stays(positions_.size());
-    parallel_for(
-        positions_.size(), threads_, [&](std::size_t i) { stays[i] = keeps_nodes(i); }, 1024);
+    const std::vector<char> stays = staying_particles();
 
     const double reach = nearest_dp * grid.dp;
     PointGrid points(reach, positions_.size());

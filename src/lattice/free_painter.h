@@ -18,9 +18,11 @@ namespace fppg
 ///   a point at (0.13, 0.1, 0.1) leaves out x = 0.1 and 0.2, around one at (0.15, 0.15, 0.15) only
 ///   (0.2, 0.2, 0.2)
 /// - nothing is removed while drawing. At the end a particle stays when each of its nodes carries
-///   its mk or the mk of the last particle that claimed the node: a node painted over with another
-///   mk and back again, or redrawn 0 -> 1 -> 0, leaves it; a redraw with another mk turns its nodes
-///   into lattice particles
+///   its mk or belongs to a particle of a higher mk that stays: of two that share a node the
+///   earlier one goes when its mk is the higher one, and both stay when it is the lower one (mk 11
+///   then 10, fluid 1 then 0, bound then fluid; all the other way round). A node painted over with
+///   another mk and back again, or redrawn 0 -> 1 -> 0, leaves it; a redraw with another mk turns
+///   its nodes into lattice particles
 /// - of those that stay, one is removed when a later one is nearer than 0.75 dp. A removed one
 ///   still removes others: of seven points 0.06 apart at dp 0.1 the last stays
 /// - void points only empty their nodes
@@ -55,8 +57,9 @@ private:
     };
 
     void sort_claims();
-    std::uint16_t claimed_mk(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-    bool keeps_nodes(std::size_t particle) const;
+    /// Index of the claim of a node that has one.
+    std::size_t claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
+    std::vector<char> staying_particles() const;
 
     RunField* field_;
     int threads_;

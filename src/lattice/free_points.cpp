@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "casedef/figures.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
 #include "lattice/snap.h"
@@ -18,11 +19,20 @@ namespace
 {
 
 constexpr double nearest_dp = 0.75;
+/// Steps of angles are taken in degrees and then turned into radians: their rounding decides
+/// whether there is a particle at a pole.
+constexpr double radian = std::numbers::pi / 180;
 
 /// Equal intervals of at most dp; a length that is a multiple but for rounding keeps its number.
 int interval_count(double length, double dp)
 {
     return static_cast<int>(std::ceil(length / dp - 1e-6));
+}
+
+/// The same without room for rounding: one of 2 dp and the last bit has three intervals.
+int exact_interval_count(double length, double dp)
+{
+    return static_cast<int>(std::ceil(length / dp));
 }
 
 /// One of n intervals of a vector, in GenCase's arithmetic.
@@ -50,20 +60,20 @@ void add_ring(const Vec3& center, const Vec3& first, const Vec3& second, double 
     const int n = static_cast<int>(std::ceil(2 * std::numbers::pi * radius / dp));
     for (int i = 0; i < n; ++i)
     {
-        const double angle = 2 * std::numbers::pi / n * i;
+        const double angle = 360.0 / n * radian * i;
         out.push_back(center + first * (radius * std::cos(angle)) +
                       second * (radius * std::sin(angle)));
     }
 }
 
-/// The ring at the top pole has a radius of rounding size and so one point, that at the bottom pole
-/// has radius 0 and none.
+/// The ring at the top pole has a radius of rounding size: one point where that is above 0, none
+/// where it is below (of 30, 50, 60, 70 and 82 rings). That at the bottom pole has none.
 void add_shell(const Vec3& center, double radius, double dp, std::vector<Vec3>& out)
 {
     const int m = 2 * static_cast<int>(std::ceil(std::numbers::pi * radius / (2 * dp)));
     for (int k = 1; k <= m; ++k)
     {
-        const double polar = std::numbers::pi / m * k;
+        const double polar = 180.0 / m * radian * k;
         const Vec3 middle{center.x, center.y, center.z - radius * std::cos(polar)};
         add_ring(middle, {1, 0, 0}, {0, 1, 0}, radius * std::sin(polar), dp, out);
     }
@@ -134,8 +144,8 @@ std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp)
 std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
                                      double dp)
 {
-    const int n = interval_count(norm(first - corner), dp);
-    const int m = interval_count(norm(last - corner), dp);
+    const int n = exact_interval_count(norm(first - corner), dp);
+    const int m = exact_interval_count(norm(last - corner), dp);
     const Vec3 u = interval(first - corner, n);
     const Vec3 v = interval(last - corner, m);
     check_spacing({u, v, u + v, u - v}, dp);
@@ -200,12 +210,24 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
 {
     if (corners.size() == 3) return free_triangle({corners[0], corners[1], corners[2]}, grid);
-    const Vec3 fourth = corners[0] + (corners[2] - corners[1]);
-    if (norm(fourth - corners[3]) <= 0.05 * grid.dp)
-        return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
-    std::vector<Vec3> out = free_triangle({corners[0], corners[1], corners[2]}, grid);
-    const std::vector<Vec3> other = free_triangle({corners[0], corners[2], corners[3]}, grid);
-    out.insert(out.end(), other.begin(), other.end());
+    return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
+}
+
+std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const LatticeGrid& grid)
+{
+    std::vector<std::vector<Vec3>> out;
+    for (const FigureFace& face : figure.faces)
+    {
+        if (!face.is_visible) continue;
+        if (is_parallelogram(figure, face, grid.dp))
+        {
+            out.emplace_back();
+            for (const std::uint32_t v : face.vertices) out.back().push_back(figure.vertices[v]);
+            continue;
+        }
+        for (const auto& t : face_triangles(figure, face))
+            out.push_back({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
+    }
     return out;
 }
 
@@ -231,23 +253,10 @@ std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neig
 std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
 {
     std::vector<Vec3> out;
-    const auto add = [&](const std::vector<Vec3>& corners)
+    for (const std::vector<Vec3>& corners : free_pieces(figure, grid))
     {
         const std::vector<Vec3> points = free_polygon(corners, grid);
         out.insert(out.end(), points.begin(), points.end());
-    };
-    for (const FigureFace& face : figure.faces)
-    {
-        if (!face.is_visible) continue;
-        if (face.triangles.empty() && face.cut.empty() && face.vertices.size() <= 4)
-        {
-            std::vector<Vec3> corners;
-            for (const std::uint32_t v : face.vertices) corners.push_back(figure.vertices[v]);
-            add(corners);
-            continue;
-        }
-        for (const auto& t : face_triangles(figure, face))
-            add({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
     }
     return out;
 }

@@ -20,7 +20,8 @@ namespace fppg
 /// shorter than dp / 2.
 std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp);
 
-/// A parallelogram in ceil(L / dp) equal intervals a side, all sides included.
+/// A parallelogram in ceil(L / dp) equal intervals a side, all sides included. A side of 2 dp that
+/// rounding makes longer has three, as in GenCase, which then refuses it.
 ///
 /// throws  GeometryError when neighbours would be nearer than 0.75 dp ("too sharp"), which GenCase
 ///         refuses too
@@ -32,9 +33,12 @@ std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, cons
 /// axes has no y.
 std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid);
 
-/// Three corners as free_triangle(), four as free_parallelogram() or, where the fourth is more
-/// than 0.05 dp away from making one, as the triangles (0, 1, 2) and (0, 2, 3).
+/// Three corners as free_triangle(), four as free_parallelogram().
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid);
+
+/// The corners of what the faces of a figure that are not hidden are drawn as: parallelograms
+/// (within 0.05 dp) and triangles, four other corners as (0, 1, 2) and (0, 2, 3).
+std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const LatticeGrid& grid);
 
 /// A parallelepiped by a corner and its three neighbours, ceil(L / dp) equal intervals an edge.
 ///
@@ -47,7 +51,8 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid);
 /// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
 /// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
 /// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on.
-/// The top pole is one of them, the bottom pole is left out, as GenCase leaves it out. Up to R =
+/// The top pole is one of them (but for 30, 50, 60, 70, 82 and some more numbers of rings, by the
+/// rounding of its angle), the bottom pole is left out, as GenCase leaves it out. Up to R =
 /// 0.75 dp the centre alone. Layers are shells of radius R + layer * dp.
 std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp);
 

@@ -513,6 +513,18 @@ private:
                 });
             return;
         }
+        if (op.part_count > 0)
+        {
+            const std::uint32_t insides = fills ? 1 : 0;
+            if (op.part < insides)
+                paint_region(solid_of(op));
+            else
+                draw_free(
+                    [&] {
+                        return free_polygon(free_pieces(op, grid()).at(op.part - insides), grid());
+                    });
+            return;
+        }
         if (fills) paint_region(solid_of(op));
         if (!fills || state().mode == DrawMode::Full)
             draw_free([&] { return free_faces(op, grid()); });
@@ -530,7 +542,7 @@ private:
 
     void draw(const FigureOp& op)
     {
-        if (is_off_lattice() && op.part_count == 0)
+        if (is_off_lattice())
         {
             if (state().mode == DrawMode::Wire && op.solid != SolidKind::Box)
                 draw_free_wire(op);

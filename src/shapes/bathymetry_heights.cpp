@@ -7,164 +7,192 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <utility>
 
 namespace fppg
 {
 namespace
 {
 
-/// Points sorted into square cells of about one point each.
+/// GenCase keeps heights as float32.
+double rounded(double height)
+{
+    const volatile float f = static_cast<float>(height);
+    return static_cast<double>(f);
+}
+
+/// The points sorted into square cells. Rows and columns of cells are counted from 0.
 class PointCells
 {
 public:
-    explicit PointCells(const std::vector<Vec3>& points) : points_(points)
+    PointCells(const std::vector<Vec3>& points, double cell) : points_(points), cell_(cell)
     {
         for (const Vec3& p : points) box_.add(p);
-        const double width = box_.max.x - box_.min.x;
-        const double height = box_.max.y - box_.min.y;
-        const auto n = static_cast<double>(points.size());
-        cell_ = std::sqrt(width * height / n);
-        if (!(cell_ > 0)) cell_ = std::max(width, height) / n;
-        if (!(cell_ > 0)) cell_ = 1;
-        columns_ = static_cast<std::int64_t>(width / cell_) + 1;
-        rows_ = static_cast<std::int64_t>(height / cell_) + 1;
+        const double margin = 0.1 * cell;
+        x_begin_ = box_.min.x - margin;
+        y_begin_ = box_.min.y - margin;
+        columns_ = static_cast<std::int64_t>(std::ceil((box_.max.x + margin - x_begin_) / cell));
+        rows_ = static_cast<std::int64_t>(std::ceil((box_.max.y + margin - y_begin_) / cell));
         begins_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
         for (const Vec3& p : points) ++begins_[cell_of(p) + 1];
         for (std::size_t i = 1; i < begins_.size(); ++i) begins_[i] += begins_[i - 1];
         std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
         sorted_.resize(points.size());
         for (std::uint32_t i = 0; i < points.size(); ++i) sorted_[next[cell_of(points[i])]++] = i;
+        count_below();
     }
 
-    /// Calls visit(index) for points in rings of cells around (x, y) until done(distance) says that
-    /// points at that distance and beyond are not wanted.
-    template <typename Visit, typename Done>
-    void search(double x, double y, const Visit& visit, const Done& done) const
+    std::int64_t column_of(double x) const { return index((x - x_begin_) / cell_, columns_); }
+    std::int64_t row_of(double y) const { return index((y - y_begin_) / cell_, rows_); }
+    std::int64_t last_ring() const { return std::max(columns_, rows_); }
+    double cell() const { return cell_; }
+
+    /// Calls visit(index) for the points of one ring of cells, or what GenCase takes of it.
+    template <typename Visit>
+    void visit_ring(std::int64_t column, std::int64_t row, std::int64_t ring,
+                    const Visit& visit) const
     {
-        const std::int64_t cx = std::clamp(floor_of(x - box_.min.x), std::int64_t{0}, columns_ - 1);
-        const std::int64_t cy = std::clamp(floor_of(y - box_.min.y), std::int64_t{0}, rows_ - 1);
-        const std::int64_t rings = std::max({cx, columns_ - 1 - cx, cy, rows_ - 1 - cy});
-        for (std::int64_t r = 0; r <= rings; ++r)
+        if (ring == 0) return visit_cells(column, column, row, visit);
+        const std::int64_t left = std::max<std::int64_t>(column - ring, 0);
+        const std::int64_t right = std::min(column + ring, columns_ - 1);
+        if (row - ring >= 0) visit_cells(left, right, row - ring, visit);
+        if (row + ring < rows_) visit_cells(left, right, row + ring, visit);
+        for (std::int64_t y = std::max<std::int64_t>(row - ring, 0) + 1;
+             y < std::min(row + ring, rows_ - 1); ++y)
         {
-            if (r > 1 && done(static_cast<double>(r - 1) * cell_)) return;
-            for (std::int64_t j = std::max(cy - r, std::int64_t{0});
-                 j <= std::min(cy + r, rows_ - 1); ++j)
-            {
-                const bool is_whole_row = j == cy - r || j == cy + r;
-                for (std::int64_t i = cx - r; i <= cx + r; i += is_whole_row || r == 0 ? 1 : 2 * r)
-                    if (i >= 0 && i < columns_) visit_cell(i, j, visit);
-            }
+            if (column - ring >= 0) visit_cells(column - ring, column - ring, y, visit);
+            if (column + ring < columns_) visit_cells(column + ring, column + ring, y, visit);
         }
     }
 
-    const Box3& box() const { return box_; }
+    /// Whether each quadrant of a cell, its own row and column included, has points.
+    bool may_be_surrounded(std::int64_t column, std::int64_t row) const
+    {
+        const auto below = [&](std::int64_t x, std::int64_t y)
+        { return below_[static_cast<std::size_t>(y * (columns_ + 1) + x)]; };
+        const std::size_t left_below = below(column + 1, row + 1);
+        const std::size_t right_below = below(columns_, row + 1) - below(column, row + 1);
+        const std::size_t left_above = below(column + 1, rows_) - below(column + 1, row);
+        const std::size_t right_above =
+            points_.size() - below(column, rows_) - below(columns_, row) + below(column, row);
+        return left_below > 0 && right_below > 0 && left_above > 0 && right_above > 0;
+    }
 
 private:
-    std::int64_t floor_of(double offset) const
+    static std::int64_t index(double cells, std::int64_t count)
     {
-        const double cells = std::floor(offset / cell_);
-        return static_cast<std::int64_t>(std::clamp(cells, -1.0, 4e9));
+        return static_cast<std::int64_t>(
+            std::clamp(std::floor(cells), 0.0, static_cast<double>(count - 1)));
     }
     std::size_t cell_of(const Vec3& p) const
     {
-        const std::int64_t i = std::min(floor_of(p.x - box_.min.x), columns_ - 1);
-        const std::int64_t j = std::min(floor_of(p.y - box_.min.y), rows_ - 1);
-        return static_cast<std::size_t>(j * columns_ + i);
+        return static_cast<std::size_t>(row_of(p.y) * columns_ + column_of(p.x));
     }
     template <typename Visit>
-    void visit_cell(std::int64_t i, std::int64_t j, const Visit& visit) const
+    void visit_cells(std::int64_t first, std::int64_t last, std::int64_t row,
+                     const Visit& visit) const
     {
-        const auto c = static_cast<std::size_t>(j * columns_ + i);
-        for (std::size_t k = begins_[c]; k < begins_[c + 1]; ++k) visit(sorted_[k]);
+        const auto begin = static_cast<std::size_t>(row * columns_ + first);
+        const auto end = static_cast<std::size_t>(row * columns_ + last) + 1;
+        for (std::size_t k = begins_[begin]; k < begins_[end]; ++k) visit(sorted_[k]);
+    }
+    /// below_[y * (columns + 1) + x]: points in the columns before x of the rows before y.
+    void count_below()
+    {
+        const auto width = static_cast<std::size_t>(columns_) + 1;
+        below_.assign(width * (static_cast<std::size_t>(rows_) + 1), 0);
+        for (std::size_t y = 0; y < static_cast<std::size_t>(rows_); ++y)
+            for (std::size_t x = 0; x + 1 < width; ++x)
+            {
+                const std::size_t cell = y * (width - 1) + x;
+                below_[(y + 1) * width + x + 1] =
+                    below_[(y + 1) * width + x] + below_[y * width + x + 1] -
+                    below_[y * width + x] + begins_[cell + 1] - begins_[cell];
+            }
     }
 
     const std::vector<Vec3>& points_;
     Box3 box_;
-    double cell_ = 1;
+    double cell_;
+    double x_begin_ = 0;
+    double y_begin_ = 0;
     std::int64_t columns_ = 1;
     std::int64_t rows_ = 1;
     std::vector<std::size_t> begins_;
     std::vector<std::uint32_t> sorted_;
+    std::vector<std::size_t> below_;
 };
 
 class HeightFinder
 {
 public:
-    HeightFinder(const std::vector<Vec3>& points, double spacing)
-        : points_(points), cells_(points), spacing_(spacing), slack_(1e-6 * spacing)
+    HeightFinder(const std::vector<Vec3>& points, double spacing, std::size_t nodes)
+        : points_(points),
+          cells_(points, spacing * std::sqrt(static_cast<double>(nodes) /
+                                             static_cast<double>(points.size()))),
+          limit_(2 * spacing * spacing)
     {
     }
 
     /// Steps 1 and 2; not a number where they give no height.
     double height(double x, double y) const
     {
-        if (const auto found = from_quadrants(x, y)) return *found;
-        std::uint32_t nearest = 0;
-        double least = std::numeric_limits<double>::infinity();
-        cells_.search(
-            x, y,
-            [&](std::uint32_t i)
-            {
-                const double d = std::hypot(points_[i].x - x, points_[i].y - y);
-                if (d < least || (d == least && i < nearest))
-                {
-                    least = d;
-                    nearest = i;
-                }
-            },
-            [&](double distance) { return distance > std::min(least, spacing_ + slack_); });
-        return least <= spacing_ + slack_ ? points_[nearest].z
-                                          : std::numeric_limits<double>::quiet_NaN();
+        const std::int64_t column = cells_.column_of(x);
+        const std::int64_t row = cells_.row_of(y);
+        const bool may_be_surrounded = cells_.may_be_surrounded(column, row);
+        std::array<Nearest, 4> quadrants; // left below, right below, left above, right above
+        const auto is_surrounded = [&]
+        {
+            return std::all_of(quadrants.begin(), quadrants.end(),
+                               [](const Nearest& n) { return !std::isinf(n.square); });
+        };
+        for (std::int64_t ring = 0, left = 2; ring <= cells_.last_ring() && left > 0; ++ring)
+        {
+            const double distance = static_cast<double>(ring - 1) * cells_.cell();
+            if (!may_be_surrounded && ring > 1 && distance * distance > limit_) break;
+            cells_.visit_ring(column, row, ring,
+                              [&](std::uint32_t i) { offer(quadrants, i, x, y); });
+            if (left < 2 || is_surrounded()) --left;
+        }
+        if (is_surrounded()) return interpolated(quadrants, x, y);
+        Nearest nearest;
+        for (const Nearest& n : quadrants)
+            if (is_better(n, nearest)) nearest = n;
+        return nearest.square < limit_ ? points_[nearest.point].z
+                                       : std::numeric_limits<double>::quiet_NaN();
     }
 
 private:
     struct Nearest
     {
-        double distance = std::numeric_limits<double>::infinity();
+        double square = std::numeric_limits<double>::infinity();
         std::uint32_t point = 0;
     };
-
-    std::optional<double> from_quadrants(double x, double y) const
-    {
-        const Box3& box = cells_.box();
-        if (x < box.min.x - slack_ || x > box.max.x + slack_ || y < box.min.y - slack_ ||
-            y > box.max.y + slack_)
-            return std::nullopt;
-        std::array<Nearest, 4> quadrants; // left below, right below, left above, right above
-        cells_.search(
-            x, y, [&](std::uint32_t i) { offer(quadrants, i, x, y); },
-            [&](double distance)
-            {
-                return std::all_of(quadrants.begin(), quadrants.end(),
-                                   [&](const Nearest& n) { return n.distance < distance; });
-            });
-        for (const Nearest& n : quadrants)
-            if (std::isinf(n.distance)) return std::nullopt;
-        for (const Nearest& n : quadrants)
-            if (n.distance <= slack_) return points_[n.point].z;
-        const Vec3 below = between(quadrants[0], quadrants[1], x);
-        const Vec3 above = between(quadrants[2], quadrants[3], x);
-        const double height = above.y - below.y;
-        if (!(height > 0)) return below.z;
-        const double t = std::clamp((y - below.y) / height, 0.0, 1.0);
-        return below.z + t * (above.z - below.z);
-    }
 
     void offer(std::array<Nearest, 4>& quadrants, std::uint32_t i, double x, double y) const
     {
         const double dx = points_[i].x - x;
         const double dy = points_[i].y - y;
-        const double distance = std::hypot(dx, dy);
-        for (std::size_t q = 0; q < 4; ++q)
-        {
-            const bool fits_x = q % 2 == 0 ? dx <= slack_ : dx >= -slack_;
-            const bool fits_y = q / 2 == 0 ? dy <= slack_ : dy >= -slack_;
-            Nearest& n = quadrants[q];
-            if (fits_x && fits_y &&
-                (distance < n.distance || (distance == n.distance && i < n.point)))
-                n = {distance, i};
-        }
+        const double square = dx * dx + dy * dy;
+        Nearest& n = quadrants[(dx > 0 ? 1U : 0U) + (dy > 0 ? 2U : 0U)];
+        if (square < n.square) n = {square, i};
+    }
+
+    /// Of equal distances the one in the lower row of cells, then in the column more to the left.
+    bool is_better(const Nearest& a, const Nearest& b) const
+    {
+        if (a.square != b.square || std::isinf(a.square)) return a.square < b.square;
+        const auto cell = [&](const Vec3& p) {
+            return std::pair{cells_.row_of(p.y), cells_.column_of(p.x)};
+        };
+        return cell(points_[a.point]) < cell(points_[b.point]);
+    }
+
+    double interpolated(const std::array<Nearest, 4>& quadrants, double x, double y) const
+    {
+        const Vec3 below = between(quadrants[0], quadrants[1], x);
+        const Vec3 above = between(quadrants[2], quadrants[3], x);
+        return below.z + (y - below.y) / (above.y - below.y) * (above.z - below.z);
     }
 
     /// Where the line between two points passes x.
@@ -172,52 +200,66 @@ private:
     {
         const Vec3& a = points_[left.point];
         const Vec3& b = points_[right.point];
-        const double width = b.x - a.x;
-        if (!(width > slack_)) return (a + b) * 0.5;
-        return a + (b - a) * ((x - a.x) / width);
+        return a + (b - a) * ((x - a.x) / (b.x - a.x));
     }
 
     const std::vector<Vec3>& points_;
     PointCells cells_;
-    double spacing_;
-    double slack_;
+    double limit_;
 };
+
+/// The mean of the known neighbours of one node, and how many they are: 2 along an axis, 1 across a
+/// corner.
+struct KnownMean
+{
+    double height = 0;
+    int score = 0;
+};
+
+KnownMean known_mean(const std::vector<double>& z, const std::vector<double>& xs,
+                     const std::vector<double>& ys, std::int64_t i, std::int64_t j)
+{
+    const auto columns = static_cast<std::int64_t>(xs.size());
+    const auto rows = static_cast<std::int64_t>(ys.size());
+    const auto at = [](const std::vector<double>& v, std::int64_t n)
+    { return v[static_cast<std::size_t>(n)]; };
+    KnownMean out;
+    double sum = 0;
+    double weights = 0;
+    for (std::int64_t b = std::max<std::int64_t>(j - 1, 0); b <= std::min(j + 1, rows - 1); ++b)
+        for (std::int64_t a = std::max<std::int64_t>(i - 1, 0); a <= std::min(i + 1, columns - 1);
+             ++a)
+        {
+            const double known = at(z, b * columns + a);
+            if (std::isnan(known)) continue;
+            const double weight = std::hypot(at(xs, a) - at(xs, i), at(ys, b) - at(ys, j));
+            sum += weight * known;
+            weights += weight;
+            out.score += a == i || b == j ? 2 : 1;
+        }
+    out.height = rounded(sum / weights);
+    return out;
+}
 
 /// Step 3.
 void fill_from_neighbours(std::vector<double>& z, const std::vector<double>& xs,
                           const std::vector<double>& ys, int threads)
 {
     const auto columns = static_cast<std::int64_t>(xs.size());
-    const auto rows = static_cast<std::int64_t>(ys.size());
     std::vector<std::int64_t> unknown;
-    for (std::int64_t n = 0; n < columns * rows; ++n)
-        if (std::isnan(z[static_cast<std::size_t>(n)])) unknown.push_back(n);
+    for (std::size_t n = 0; n < z.size(); ++n)
+        if (std::isnan(z[n])) unknown.push_back(static_cast<std::int64_t>(n));
     std::vector<double> found;
-    while (!unknown.empty())
+    for (int enough = 5; enough > 0 && !unknown.empty();)
     {
         found.assign(unknown.size(), std::numeric_limits<double>::quiet_NaN());
         parallel_for(
             unknown.size(), threads,
             [&](std::size_t k)
             {
-                const std::int64_t i = unknown[k] % columns;
-                const std::int64_t j = unknown[k] / columns;
-                double sum = 0;
-                double weights = 0;
-                for (std::int64_t b = std::max<std::int64_t>(j - 1, 0);
-                     b <= std::min(j + 1, rows - 1); ++b)
-                    for (std::int64_t a = std::max<std::int64_t>(i - 1, 0);
-                         a <= std::min(i + 1, columns - 1); ++a)
-                    {
-                        const double known = z[static_cast<std::size_t>(b * columns + a)];
-                        if (std::isnan(known)) continue;
-                        const double weight = std::hypot(
-                            xs[static_cast<std::size_t>(a)] - xs[static_cast<std::size_t>(i)],
-                            ys[static_cast<std::size_t>(b)] - ys[static_cast<std::size_t>(j)]);
-                        sum += weight * known;
-                        weights += weight;
-                    }
-                if (weights > 0) found[k] = sum / weights;
+                const KnownMean mean =
+                    known_mean(z, xs, ys, unknown[k] % columns, unknown[k] / columns);
+                if (mean.score >= enough) found[k] = mean.height;
             },
             4096);
         std::size_t left = 0;
@@ -226,7 +268,7 @@ void fill_from_neighbours(std::vector<double>& z, const std::vector<double>& xs,
                 unknown[left++] = unknown[k];
             else
                 z[static_cast<std::size_t>(unknown[k])] = found[k];
-        if (left == unknown.size()) break; // no node is known at all
+        if (left == unknown.size()) --enough;
         unknown.resize(left);
     }
 }
@@ -236,18 +278,12 @@ void fill_from_neighbours(std::vector<double>& z, const std::vector<double>& xs,
 std::vector<double> heights_at(const std::vector<Vec3>& points, const std::vector<double>& xs,
                                const std::vector<double>& ys, double spacing, int threads)
 {
-    const HeightFinder finder(points, spacing);
+    const HeightFinder finder(points, spacing, xs.size() * ys.size());
     std::vector<double> z(xs.size() * ys.size());
     parallel_for(
         z.size(), threads,
-        [&](std::size_t n) { z[n] = finder.height(xs[n % xs.size()], ys[n / xs.size()]); }, 256);
-    if (std::all_of(z.begin(), z.end(), [](double v) { return std::isnan(v); }))
-    {
-        // Every node is far from every point: the nearest of all gives the heights.
-        const HeightFinder far(points, std::numeric_limits<double>::max() / 4);
-        for (std::size_t n = 0; n < z.size(); ++n)
-            z[n] = far.height(xs[n % xs.size()], ys[n / xs.size()]);
-    }
+        [&](std::size_t n) { z[n] = rounded(finder.height(xs[n % xs.size()], ys[n / xs.size()])); },
+        256);
     fill_from_neighbours(z, xs, ys, threads);
     return z;
 }

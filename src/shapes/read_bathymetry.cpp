@@ -17,17 +17,12 @@ namespace
 /// More nodes than this are no bathymetry but a wrong number.
 constexpr double most_nodes = 1e8;
 
-/// GenCase keeps points as float32, rounded after their transform: 0.35 falls below the tie of a
-/// lattice of dp 0.1 (golden file_bathy_periodic; 0.3 * 1.5 - 0.1 does as well).
-Vec3 rounded(const Vec3& p)
+/// GenCase keeps heights as float32, points and lines as double: 0.35 falls below the tie of a
+/// lattice of dp 0.1 (golden file_bathy_periodic), and 0.167 moved by -0.067 below that of 0.1.
+double rounded(double height)
 {
-    Vec3 out;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const volatile float f = static_cast<float>(p[axis]);
-        out[axis] = static_cast<double>(f);
-    }
-    return out;
+    const volatile float f = static_cast<float>(height);
+    return static_cast<double>(f);
 }
 
 /// Heights over lines of constant x and y: z[j * xs.size() + i].
@@ -57,15 +52,23 @@ struct HeightGrid
     }
 };
 
-/// Lines from `begin` on, `spacing` apart, as many as fit, and one at the end where they do not
-/// reach it.
-std::vector<double> lines_between(double begin, double size, double spacing, bool is_cut_at_end)
+/// Lines from `begin` on, `spacing` apart, the last one less than 0.1 spacing before the end or
+/// beyond it.
+std::vector<double> lines_over(double begin, double size, double spacing)
 {
-    const double cells = size / spacing;
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(cells - 1e-5)));
+    const auto n =
+        static_cast<std::size_t>(std::max(1.0, std::floor((size + 0.9 * spacing) / spacing)));
     std::vector<double> lines;
     for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
-    if (is_cut_at_end && lines.back() > begin + size) lines.back() = begin + size;
+    return lines;
+}
+
+/// The same, with the last one at the end or beyond it.
+std::vector<double> lines_up_to(double begin, double size, double spacing)
+{
+    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(size / spacing - 1e-5)));
+    std::vector<double> lines;
+    for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
     return lines;
 }
 
@@ -128,7 +131,7 @@ private:
                     fmt::format("point {} is ({:g}, {:g}), expected ({:g}, {:g}): the points are "
                                 "no grid",
                                 i, p.x, p.y, grid.xs[column], grid.ys.back()));
-            grid.z.push_back(rounded(p).z);
+            grid.z.push_back(rounded(p.z));
         }
         for (const auto* lines : {&grid.xs, &grid.ys})
             for (std::size_t i = 1; i < lines->size(); ++i)
@@ -145,7 +148,7 @@ private:
         std::vector<Vec3> used;
         for (const Vec3& p : points_)
         {
-            const Vec3 q = rounded(settings_.transform(p));
+            const Vec3 q = settings_.transform(p);
             if (settings_.selection && !is_in(*settings_.selection, q)) continue;
             used.push_back(q);
         }
@@ -163,10 +166,21 @@ private:
             fail(fmt::format("a grid of {:g} x {:g} m with dp={:g} has more than {:g} nodes",
                              area.x_size, area.y_size, spacing, most_nodes));
         HeightGrid grid;
-        grid.xs = lines_between(area.x_min, area.x_size, spacing, has_domain);
-        grid.ys = lines_between(area.y_min, area.y_size, spacing, has_domain);
+        const auto lines = has_domain ? lines_over : lines_up_to;
+        grid.xs = lines(area.x_min, area.x_size, spacing);
+        grid.ys = lines(area.y_min, area.y_size, spacing);
         grid.z = heights_at(used, grid.xs, grid.ys, spacing, threads_);
-        return grid;
+        if (std::isnan(grid.z[0]))
+            fail(
+                fmt::format("no node of its grid, x {:g} to {:g}, y {:g} to {:g}, is nearer to a "
+                            "point than {:g}, expected points in the grid",
+                            grid.xs.front(), grid.xs.back(), grid.ys.front(), grid.ys.back(),
+                            std::sqrt(2) * spacing));
+        if (!has_domain) return grid;
+        end_at(grid, area.x_min + area.x_size);
+        grid = grid.transposed();
+        end_at(grid, area.y_min + area.y_size);
+        return grid.transposed();
     }
 
     bool is_in(const GroundRectangle& r, const Vec3& p) const
@@ -174,6 +188,24 @@ private:
         const double slack = 1e-9 * settings_.spacing;
         return p.x >= r.x_min - slack && p.x <= r.x_min + r.x_size + slack &&
                p.y >= r.y_min - slack && p.y <= r.y_min + r.y_size + slack;
+    }
+
+    /// Cuts the last column off at x, the height there interpolated, or adds one at x with the same
+    /// heights; within 0.01 spacing it is moved.
+    void end_at(HeightGrid& grid, double x) const
+    {
+        const double beyond = x - grid.xs.back();
+        if (std::fabs(beyond) <= 0.01 * settings_.spacing)
+        {
+            grid.xs.back() = x;
+            return;
+        }
+        grid = grid.turned();
+        if (beyond < 0)
+            cut_begin(grid, -x);
+        else
+            add_begin(grid, beyond, std::nullopt);
+        grid = grid.turned();
     }
 
     /// Cuts off all columns before x; the column there is interpolated.
@@ -203,7 +235,7 @@ private:
     static double between(const HeightGrid& grid, const double* row, std::size_t after, double x)
     {
         const double t = (x - grid.xs[after - 1]) / (grid.xs[after] - grid.xs[after - 1]);
-        return row[after - 1] + t * (row[after] - row[after - 1]);
+        return rounded(row[after - 1] + t * (row[after] - row[after - 1]));
     }
 
     /// Adds a column before the first; `height` empty: that of the first column.
@@ -217,7 +249,7 @@ private:
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
         {
             const double* const row = &grid.z[j * n];
-            out.z.push_back(height.value_or(row[0]));
+            out.z.push_back(height ? rounded(*height) : row[0]);
             out.z.insert(out.z.end(), row, row + n);
         }
         grid = std::move(out);
@@ -230,7 +262,7 @@ private:
             cut_begin(grid, grid.xs[0] - ramp.size);
             if (ramp.z)
                 for (std::size_t j = 0; j < grid.ys.size(); ++j)
-                    grid.z[j * grid.xs.size()] = *ramp.z;
+                    grid.z[j * grid.xs.size()] = rounded(*ramp.z);
         }
         if (ramp.size > 0) add_begin(grid, ramp.size, ramp.z);
         if (ramp.size2 > 0) add_begin(grid, ramp.size2, ramp.z2);
@@ -256,7 +288,7 @@ private:
         const std::size_t n = grid.xs.size();
         std::vector<double> means;
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
-            means.push_back((grid.z[j * n] + grid.z[j * n + n - 1]) / 2);
+            means.push_back(rounded((grid.z[j * n] + grid.z[j * n + n - 1]) / 2));
         if (period.ramp_width > 0)
         {
             add_begin(grid, grid.xs.front() - first, 0.0);
@@ -282,7 +314,7 @@ private:
             for (std::size_t i = 0; i < n; ++i)
                 mesh.points.push_back(
                     {grid.xs[i] + settings_.final_move.x, grid.ys[j] + settings_.final_move.y,
-                     rounded({0, 0, grid.z[j * n + i] + settings_.final_move.z}).z});
+                     rounded(grid.z[j * n + i] + rounded(settings_.final_move.z))});
         for (std::uint64_t j = 0; j + 1 < grid.ys.size(); ++j)
             for (std::uint64_t i = 0; i + 1 < n; ++i)
             {

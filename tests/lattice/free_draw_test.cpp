@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace fppg
 {
 namespace
@@ -67,6 +69,17 @@ TEST(FreeDraw, GivesWayToALaterNodeOfAnotherMkOnly)
     EXPECT_EQ(node_particles(same), 0u);
 }
 
+TEST(FreeDraw, GivesWayToALaterParticleOfALowerMkAtItsNode)
+{
+    const std::string high = "<setmkbound mk=\"1\" />" + point(0.13);
+    const std::string low = "<setmkbound mk=\"0\" />" + point(0.23);
+    EXPECT_EQ(field_of(low + high).walls.volume.size(), 2u);
+    const RunField field = field_of(high + low);
+    ASSERT_EQ(field.walls.volume.size(), 1u);
+    EXPECT_DOUBLE_EQ(field.walls.volume.positions[0].x, 0.23);
+    EXPECT_EQ(node_particles(field), 0u);
+}
+
 TEST(FreeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
 {
     const RunField field =
@@ -74,6 +87,19 @@ TEST(FreeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
                  "<setfrdrawmode auto=\"false\" /><setmkbound mk=\"2\" />" + point(0.2));
     EXPECT_EQ(field.walls.volume.size(), 0u);
     EXPECT_EQ(node_particles(field), 1u);
+}
+
+TEST(FreeDraw, GivesEveryPartOfAPrismItsOwnMk)
+{
+    const RunField field = field_of(
+        R"(<setmknextauto auto="true" /><drawprism><point x="0" y="0" z="0" />)"
+        R"(<point x="0.44" y="0" z="0" /><point x="0" y="0.44" z="0" /><point x="0" y="0" z="0.53" />)"
+        R"(<point x="0.44" y="0" z="0.53" /><point x="0" y="0.44" z="0.53" /></drawprism>)" +
+        point(1.2));
+    std::map<int, int> of_mk;
+    for (const std::uint16_t mk : field.walls.volume.mk) ++of_mk[mk - 10];
+    EXPECT_EQ(of_mk, (std::map<int, int>{{1, 3}, {2, 3}, {3, 21}, {4, 42}, {5, 42}, {6, 1}}));
+    EXPECT_EQ(node_particles(field), 12u);
 }
 
 TEST(FreeDraw, RefusesABoxWhoseParticlesWouldBeTooNear)

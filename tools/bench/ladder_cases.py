@@ -147,16 +147,30 @@ def tank(low, size, depth, at):
     return walls, water
 
 
+def write_case(path, what, dp, low, high, commands):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(HEAD.format(what=what, dp=dp, low=low, high=high) + commands + TAIL)
+    return path
+
+
+def write_domain_case(work, n, dp):
+    """A tank of 0.7 x 0.52 x 0.3 m with 0.2 m of water in the middle of a domain of n nodes along
+    each axis; the path of the definition."""
+    low = tuple(n // 2 * dp - x for x in (0.35, 0.26, 0.15))
+    walls, water = tank(low, (0.7, 0.52, 0.3), 0.2, tuple(x + 0.1 for x in low))
+    return write_case(os.path.join(work, f"CaseDomain{n}_Def.xml"),
+                      f"a tank amid {n} nodes along each axis", dp, (0, 0, 0),
+                      ((n - 0.5) * dp,) * 3, bound(0) + walls + FLUID + water)
+
+
 def write_ladder_cases(work, repository):
     """Writes the definitions and their meshes into a folder; name -> path of the definition."""
     cases = os.path.join(repository, "cases")
     made = {}
 
     def write(name, what, dp, low, high, commands):
-        path = os.path.join(work, f"Case{name.capitalize()}_Def.xml")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(HEAD.format(what=what, dp=dp, low=low, high=high) + commands + TAIL)
-        made[name] = path
+        made[name] = write_case(os.path.join(work, f"Case{name.capitalize()}_Def.xml"), what, dp,
+                                low, high, commands)
 
     write_stl(os.path.join(work, "sphere.stl"), sphere_facets(5, lambda _: 1.0))
     write("sphere", "a sphere of radius 1 (20,480 facets), filled with fluid", 0.05,

@@ -23,6 +23,7 @@ import sys
 import tempfile
 import time
 
+from ladder_cases import write_domain_case
 from ladder_plot import write_plot
 
 REPOSITORY = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -31,55 +32,6 @@ MODES = {"lattice": "-fit:off", "body-fitted": "-fit:raw", "relaxed": "-fit"}
 LADDER = [0.1, 1, 5, 20]
 DOMAINS = [405, 805, 1205]
 DOMAIN_DP = 0.01
-
-LARGE_DOMAIN = """<?xml version="1.0" encoding="UTF-8" ?>
-<!-- A tank of 0.7 x 0.52 x 0.3 m in the middle of a domain of {n} nodes along each axis -->
-<case>
-    <casedef>
-        <constantsdef>
-            <gravity x="0" y="0" z="-9.81" />
-            <rhop0 value="1000" />
-            <rhopgradient value="2" />
-            <hswl value="0" auto="true" />
-            <gamma value="7" />
-            <speedsystem value="0" auto="true" />
-            <coefsound value="20" />
-            <speedsound value="0" auto="true" />
-            <coefh value="1" />
-            <cflnumber value="0.2" />
-        </constantsdef>
-        <mkconfig boundcount="240" fluidcount="9" />
-        <geometry>
-            <definition dp="{dp}">
-                <pointmin x="0" y="0" z="0" />
-                <pointmax x="{max}" y="{max}" z="{max}" />
-            </definition>
-            <commands>
-                <mainlist>
-                    <setdrawmode mode="full" />
-                    <setmkfluid mk="0" />
-                    <drawbox>
-                        <boxfill>solid</boxfill>
-                        <point x="{x}" y="{y}" z="{z}" />
-                        <size x="0.7" y="0.52" z="0.2" />
-                    </drawbox>
-                    <setmkbound mk="0" />
-                    <drawbox>
-                        <boxfill>bottom | left | right | front | back</boxfill>
-                        <point x="{x}" y="{y}" z="{z}" />
-                        <size x="0.7" y="0.52" z="0.3" />
-                    </drawbox>
-                </mainlist>
-            </commands>
-        </geometry>
-    </casedef>
-    <execution>
-        <parameters>
-            <parameter key="TimeMax" value="1" />
-        </parameters>
-    </execution>
-</case>
-"""
 
 
 class Failed(Exception):
@@ -251,16 +203,6 @@ def dp_for(fppg, definition, wanted, work):
     return dp
 
 
-def large_domain(n, work):
-    path = os.path.join(work, f"CaseDomain{n}_Def.xml")
-    middle = n // 2 * DOMAIN_DP
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(LARGE_DOMAIN.format(n=n, dp=DOMAIN_DP, max=f"{(n - 0.5) * DOMAIN_DP:.6g}",
-                                       x=f"{middle - 0.35:.6g}", y=f"{middle - 0.26:.6g}",
-                                       z=f"{middle - 0.15:.6g}"))
-    return path
-
-
 def make_rungs(options, work):
     rungs = []
     if options.case:
@@ -280,7 +222,7 @@ def make_rungs(options, work):
             check=True, capture_output=True, text=True).stdout)
     for case in options.only or [*own, "domain"]:
         if case == "domain":
-            rungs += [{"case": f"domain {n}^3", "definition": large_domain(n, work), "dp": None}
+            rungs += [{"case": f"domain {n}^3", "definition": write_domain_case(work, n, DOMAIN_DP), "dp": None}
                       for n in options.domains]
             continue
         if case not in own:

@@ -10,21 +10,22 @@ _fppg()
             options="--out --set --jobs --threads --memory --resume --no-pictures --quiet --log-json --slurm --submit
                 --plan --task --summary --help" ;;
         *:compare)
-            options="--json --html --stl --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
+            options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
         *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu csv" ;;
+        *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:render)
-            options="--output --view --colour --mk --cut --zoom --center --size --radius --samples --palette --threads
-                --help" ;;
+            options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette
+                --threads --help" ;;
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
-        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -save3vtk: -createdirs:
+        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -save3vtk: -createdirs: -debug:
                 -quiet -log-json -clean" ;;
     esac
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then
-        COMPREPLY=($(compgen -W "batch compare estimate inspect render report templates" -- "$word"))
+        COMPREPLY=($(compgen -W "batch compare estimate inspect leak render report templates" -- "$word"))
     elif [[ $COMP_CWORD -eq 1 ]]; then
         COMPREPLY=($(compgen -W "-h --help -ver --version -info -templates" -- "$word"))
     elif [[ $word == -* ]]; then
