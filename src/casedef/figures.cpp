@@ -1,5 +1,7 @@
 #include "casedef/figures.h"
 
+#include "casedef/polygon_cut.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -301,6 +303,23 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
         if (number < 1 || number > static_cast<int>(figure.faces.size())) continue;
         figure.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
         figure.solid = SolidKind::None;
+    }
+}
+
+void cut_faces(FigureOp& figure)
+{
+    const bool is_prism = figure.solid == SolidKind::Prism;
+    for (FigureFace& face : figure.faces)
+    {
+        if (face.cut.empty()) continue;
+        for (const auto& t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+        {
+            std::array<std::uint32_t, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = static_cast<std::uint32_t>(t[k]) + face.cut_offset;
+            if (is_prism) std::swap(corners[1], corners[2]);
+            face.triangles.push_back(corners);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 #include "lattice/solids.h"
+#include "casedef/polygon_cut.h"
 
 #include "lattice/planes.h"
-#include "lattice/polygon_cut.h"
 
 #include <algorithm>
 #include <memory>
@@ -36,12 +36,8 @@ public:
     SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
     {
         for (const std::uint32_t v : figure.solid_vertices)
-        {
-            vertices_.push_back(figure.vertices[v]);
             nodes_.push_back(snap(figure.vertices[v], grid));
-        }
-        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box)
-            cut_prism(figure.solid == SolidKind::Box);
+        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box) cut_prism(figure);
         if (figure.solid == SolidKind::Pyramid) take_pyramid();
         if (figure.solid == SolidKind::Faces) take_faces(figure);
     }
@@ -90,16 +86,18 @@ private:
             }
     }
 
-    void cut_prism(bool is_box)
+    void cut_prism(const FigureOp& figure)
     {
         const std::size_t n = nodes_.size() / 2;
         std::vector<std::size_t> polygon(n);
         std::iota(polygon.begin(), polygon.end(), std::size_t{0});
         Triangles cut;
-        if (is_box)
+        if (figure.solid == SolidKind::Box)
             cut = {{3, 0, 1}, {1, 2, 3}};
-        else
-            cut = cut_polygon(vertices_, polygon);
+        else if (figure.faces.empty() || figure.faces[0].triangles.empty())
+            cut = cut_polygon(figure.vertices, polygon);
+        else // The bottom, which is cut the other way around.
+            for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
         std::vector<std::vector<Plane>> ends;
         for (const auto& t : cut)
         {
@@ -148,8 +146,7 @@ private:
     }
 
     LatticeGrid grid_;
-    std::vector<Vec3> vertices_; ///< as drawn; nodes_ are where they are snapped to
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_; ///< snapped corners
 };
 
 void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t slab, Spans& out)
