@@ -438,7 +438,7 @@ TEST(FreeParticles, CountForTheDepthOfWaterAsTheirNodes)
     const CaseDef def = read(small_case());
     CaseConstants c;
     density_at({2, 2, 1.25}, def, c);
-    EXPECT_NEAR(c.hswl, 0.8, 1e-12);
+    EXPECT_NEAR(c.hswl, 0.7, 1e-12);
     density_at({2, 2, 5}, def, c);
     EXPECT_NEAR(c.hswl, 0.7, 1e-12);
 }
