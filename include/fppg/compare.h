@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/error.h"
+#include "fppg/mesh.h"
 #include "fppg/read_particles.h"
 #include "fppg/vec.h"
 
@@ -34,6 +35,7 @@ struct CompareOptions
     double constants = 1e-5;           ///< relative; GenCase prints six digits
     double constants_bi4 = 1e-9;       ///< relative, of the values in Case.bi4
     std::vector<std::string> geometry; ///< mesh files, in the place of the particles; metres
+    TriangleSoup surface;              ///< more of it
     /// Particles of both files held in memory at once, at least 1.
     std::uint64_t particles_at_once = std::uint64_t{16} << 20;
     std::size_t examples = 5;        ///< of each kind of difference, at most
@@ -152,6 +154,7 @@ struct Comparison
     double dp = 0;           ///< metres; that of A, or of B where A does not say
     double same_place_m = 0; ///< metres
     bool is_2d = false;
+    bool has_geometry = false;             ///< that distances are taken to
     std::vector<MkComparison> mks;         ///< by mk
     std::vector<ValueDifference> values;   ///< of constants first, then in the order of Case.xml
     std::vector<Finding> findings;         ///< largest first
@@ -181,7 +184,7 @@ struct Comparison
 ///          finite place
 /// cost     Files are mapped, never copied. Space is cut into slabs across its longest axis, so
 ///          that a slab and 9 dp on both sides hold `particles_at_once` particles of both files at
-///          most, but it is never thinner than 1.3 dp: memory is about 100 bytes a particle of
+///          most, but it is never thinner than 1.3 dp: memory is about 160 bytes a particle of
 ///          such a slab, 16 bytes for every 32,768 particles of a file, the meshes, and a few
 ///          kilobytes an mk and thread. A hundred million particles in a cube, cut into single
 ///          layers, need 0.4 GB a file. About 1 microsecond a particle on one core

@@ -1,6 +1,7 @@
 #include "app/batch_command.h"
 
 #include "app/command_line.h"
+#include "app/drawn_geometry.h"
 #include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
@@ -91,12 +92,7 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
                    "do run N of the plan in the folder SOURCE, which --slurm or --plan wrote")
         ->check(CLI::PositiveNumber);
     app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE");
-    const auto divider = std::find(arguments.begin(), arguments.end(), "--");
-    if (divider != arguments.end())
-    {
-        call.of_runs.assign(divider + 1, arguments.end());
-        arguments.erase(divider, arguments.end());
-    }
+    call.of_runs = take_run_options(arguments);
     return read_subcommand_line(app, arguments);
 }
 
@@ -137,7 +133,7 @@ public:
         make_folder();
         std::optional<FolderLock> lock(std::in_place, out_, false);
         if (call_.slurm) return write_slurm(lock);
-        if (!call_.plan.empty()) return print_tasks();
+        if (!call_.plan.empty()) return print_tasks(lock);
         write_plan(out_, plan_);
         return run_all();
     }
@@ -271,10 +267,12 @@ private:
         return 0;
     }
 
-    int print_tasks()
+    int print_tasks(std::optional<FolderLock>& lock)
     {
         plan_.resumes = true;
         write_plan(out_, plan_);
+        // Whoever reads the lines may begin with the first one at once.
+        lock.reset();
         fmt::print("{}", task_lines(out_, plan_));
         if (!call_.quiet)
             fmt::print(stderr,

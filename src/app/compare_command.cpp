@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/cloud_scene.h"
+#include "app/drawn_geometry.h"
 #include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
@@ -34,13 +35,15 @@ struct CompareCall
     std::string b;
     std::string json;
     std::string html;
+    std::string definition;
+    std::vector<std::string> of_run; ///< options that it is read with
     bool is_quiet = false;
     double memory_mib = 1536;
     CompareOptions options;
 };
 
 /// Reads the arguments; false when only the help was asked for.
-bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call)
+bool read_arguments(std::vector<std::string> arguments, CompareCall& call)
 {
     CLI::App app(
         "Says what differs between two results of one case, the largest differences first. A "
@@ -58,6 +61,9 @@ bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call
                    "may be repeated")
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--definition", call.definition,
+                   "Case_Def whose boundaries are that mesh, where the case draws them; read with "
+                   "the options behind --, such as -- -dp:0.01");
     app.add_option("--tolerance", options.same_place_dp, "two places are one within this, dp")
         ->check(CLI::Range(0.0, 0.5))
         ->capture_default_str();
@@ -84,6 +90,7 @@ bool read_arguments(const std::vector<std::string>& arguments, CompareCall& call
                    "default 0: what the machine or its scheduler allows")
         ->check(CLI::Range(0, 4096));
     options.threads = 0;
+    call.of_run = take_run_options(arguments);
     if (!read_subcommand_line(app, arguments)) return false;
     if (options.threads == 0) options.threads = default_threads();
     options.particles_at_once = std::max<std::uint64_t>(
@@ -244,6 +251,9 @@ int run_compare(const std::vector<std::string>& arguments)
         if (!call.json.empty()) json.emplace(call.json);
         if (!call.html.empty()) html.emplace(call.html);
         std::optional<StageBar> bar(std::in_place, "compare", !call.is_quiet);
+        if (!call.definition.empty())
+            call.options.surface =
+                drawn_geometry(call.definition, call.of_run, call.options.threads);
         const Comparison comparison = compare_results(call.a, call.b, call.options);
         if (json)
         {
@@ -261,7 +271,11 @@ int run_compare(const std::vector<std::string>& arguments)
         if (!call.is_quiet) fmt::print("{}", to_text(comparison));
         return comparison.is_equal() ? 0 : 1;
     }
-    catch (const IoError& error)
+    catch (const Interrupted&)
+    {
+        throw;
+    }
+    catch (const Error& error)
     {
         throw CompareError(error.what());
     }

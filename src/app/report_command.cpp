@@ -1,11 +1,10 @@
 #include "app/report_command.h"
 
 #include "app/cloud_scene.h"
-#include "app/command_line.h"
+#include "app/drawn_geometry.h"
 #include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
-#include "batch/wall_geometry.h"
 #include "compare/measure.h"
 #include "compare/measure_result.h"
 #include "compare/report_words.h"
@@ -22,7 +21,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 namespace fppg
@@ -76,12 +74,7 @@ bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
     app.add_flag("--quiet", call.is_quiet, "print nothing but errors");
     app.add_option("--threads", call.threads, "default 0: what the machine or its scheduler allows")
         ->check(CLI::Range(0, 4096));
-    const auto divider = std::find(arguments.begin(), arguments.end(), "--");
-    if (divider != arguments.end())
-    {
-        call.of_run.assign(divider + 1, arguments.end());
-        arguments.erase(divider, arguments.end());
-    }
+    call.of_run = take_run_options(arguments);
     if (!read_subcommand_line(app, arguments)) return false;
     if (call.results.size() > 1 && !(call.data.empty() && call.picture.empty()))
         throw UsageError("--data and --picture are of one result");
@@ -93,17 +86,7 @@ TriangleSoup geometry_of(const ReportCall& call)
 {
     TriangleSoup soup = read_geometry(call.geometry, call.threads);
     if (call.definition.empty()) return soup;
-    std::vector<std::string> words{call.definition};
-    words.insert(words.end(), call.of_run.begin(), call.of_run.end());
-    const DropInOptions run = parse_command_line(words);
-    CaseOptions options;
-    options.fit = run.fit;
-    options.dp = run.dp;
-    options.evars = run.evars;
-    std::string name = run.input;
-    if (name.ends_with(".xml")) name.resize(name.size() - 4);
-    options.case_name = std::filesystem::path(name).filename().string();
-    const TriangleSoup walls = wall_geometry(name + ".xml", options, call.threads);
+    const TriangleSoup walls = drawn_geometry(call.definition, call.of_run, call.threads);
     soup.vertices.insert(soup.vertices.end(), walls.vertices.begin(), walls.vertices.end());
     return soup;
 }
@@ -164,7 +147,7 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
     const MeasuredResult result = measure_result(name, geometry, particles_at_once, call.threads);
     const ParticleSource source(name);
     ResultLook look;
-    look.name = std::filesystem::path(name).filename().string();
+    look.name = name;
     look.note = fmt::format(": {} particles, dp {:g} m", grouped_digits(result.np), result.dp);
     if (result.np > 0)
     {

@@ -1,5 +1,7 @@
 #include "casedef/figures.h"
 
+#include "casedef/polygon_cut.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -141,15 +143,39 @@ FigureOp prism_limits(const std::vector<Vec3>& points)
     return prism;
 }
 
+namespace
+{
+
+/// Whether the corners of a pyramid's base, all points but the first, lie in a plane as drawn.
+bool is_flat_base(const std::vector<Vec3>& points)
+{
+    constexpr double tolerance = 1e-4; // of the base's width
+    const Vec3 normal = cross(points[2] - points[1], points[3] - points[1]);
+    const double length = norm(normal);
+    if (length == 0) return true;
+    double width = 0;
+    double height = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+    {
+        width = std::max(width, norm(points[i] - points[1]));
+        height = std::max(height, std::abs(dot(points[i] - points[1], normal)) / length);
+    }
+    return height <= tolerance * width;
+}
+
+} // namespace
+
 FigureOp make_pyramid(const std::vector<Vec3>& points)
 {
     FigureOp pyramid;
     pyramid.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
-    // The base is a fan from its first corner.
     FigureFace base;
-    for (std::uint32_t i = 1; i <= n; ++i) base.vertices.push_back(i);
-    for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    for (std::uint32_t i = 0; i < n; ++i) base.vertices.push_back(n - i);
+    if (is_flat_base(points)) // a fan from its first corner
+        for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    else
+        base.cut = base.vertices;
     pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
@@ -301,6 +327,23 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
         if (number < 1 || number > static_cast<int>(figure.faces.size())) continue;
         figure.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
         figure.solid = SolidKind::None;
+    }
+}
+
+void cut_faces(FigureOp& figure)
+{
+    const bool is_prism = figure.solid == SolidKind::Prism;
+    for (FigureFace& face : figure.faces)
+    {
+        if (face.cut.empty()) continue;
+        for (const auto& t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+        {
+            std::array<std::uint32_t, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = static_cast<std::uint32_t>(t[k]) + face.cut_offset;
+            if (is_prism) std::swap(corners[1], corners[2]);
+            face.triangles.push_back(corners);
+        }
     }
 }
 

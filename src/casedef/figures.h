@@ -80,6 +80,10 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers);
 /// level and tilted, upright and slanted, 23800 nodes, none different.
 FigureOp prism_limits(const std::vector<Vec3>& points);
 
+/// Cuts the faces that go by least perimeter by the corners as they stand, before a matrix moves
+/// them (polygon_cut.h).
+void cut_faces(FigureOp& figure);
+
 /// Applies a transform to all vertices.
 void transform_figure(FigureOp& figure, const Transform& transform);
 

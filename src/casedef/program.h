@@ -65,6 +65,7 @@ private:
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
     void add_in_parts(const Element& e, DrawVariant what);
     void add_figure(const Element& e, FigureOp figure);
+    std::vector<Vec3> points_of(const Element& e, std::size_t at_least, std::size_t at_most) const;
     std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,
                                          std::size_t at_most) const;
     FigureOp figure_of(const Element& e) const;

@@ -20,8 +20,8 @@ void ProgramRunner::add_figure(const Element& e, FigureOp figure)
     add(e, std::move(figure));
 }
 
-std::vector<Vec3> ProgramRunner::transformed_points(const Element& e, std::size_t at_least,
-                                                    std::size_t at_most) const
+std::vector<Vec3> ProgramRunner::points_of(const Element& e, std::size_t at_least,
+                                           std::size_t at_most) const
 {
     std::vector<Vec3> points = read_.points(e);
     if (points.size() < at_least || points.size() > at_most)
@@ -29,6 +29,13 @@ std::vector<Vec3> ProgramRunner::transformed_points(const Element& e, std::size_
             e, at_least == at_most
                    ? fmt::format("has {} points, expected {}", points.size(), at_least)
                    : fmt::format("has {} points, expected at least {}", points.size(), at_least));
+    return points;
+}
+
+std::vector<Vec3> ProgramRunner::transformed_points(const Element& e, std::size_t at_least,
+                                                    std::size_t at_most) const
+{
+    std::vector<Vec3> points = points_of(e, at_least, at_most);
     for (Vec3& p : points) p = matrix_(p);
     return points;
 }
@@ -194,7 +201,7 @@ bool ProgramRunner::run_draw(const Element& e)
     if (name == "drawpoint")
         add(e, PointsOp{{matrix_(read_.vec3(e))}});
     else if (name == "drawpoints")
-        add(e, PointsOp{transformed_points(e, 1, many)});
+        add(e, PointsOp{transformed_points(e, 2, many)});
     else if (name == "setlinebegin")
         line_begin_ = matrix_(read_.vec3(e));
     else if (name == "drawlineto")
@@ -229,7 +236,11 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawtrianglesfan")
         add(e, make_fan(transformed_points(e, 3, many)));
     else if (name == "drawpolygon")
-        add(e, make_polygon(transformed_points(e, 3, many)));
+    {
+        FigureOp op = make_polygon(points_of(e, 3, many));
+        cut_faces(op);
+        add_figure(e, std::move(op));
+    }
     else if (name == "drawtriangles" || name == "drawfigure")
     {
         FigureOp op = figure_of(e);
@@ -240,14 +251,15 @@ bool ProgramRunner::run_draw(const Element& e)
         draw_box(e);
     else if (name == "drawprism")
     {
-        const std::vector<Vec3> points = transformed_points(e, 6, many);
+        const std::vector<Vec3> points = points_of(e, 6, many);
         if (points.size() % 2 != 0)
             read_.fail(e,
                        fmt::format("has {} points, expected as many for the bottom as for the top",
                                    points.size()));
         FigureOp op = make_prism(points);
         hide_faces(op, mask_of(e));
-        add(e, std::move(op));
+        cut_faces(op);
+        add_figure(e, std::move(op));
     }
     else if (name == "drawbeach")
     {
@@ -256,6 +268,7 @@ bool ProgramRunner::run_draw(const Element& e)
             read_.fail(e,
                        fmt::format("has {} points, expected at least 3", op.vertices.size() / 2));
         hide_faces(op, mask_of(e));
+        cut_faces(op);
         add_figure(e, std::move(op));
     }
     else if (name == "drawpyramid")

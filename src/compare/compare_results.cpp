@@ -136,9 +136,12 @@ public:
         describe_files();
         set_frame();
         list_mks();
-        if (!options.geometry.empty())
-            geometry_ = std::make_unique<MeshQuery>(
-                read_geometry(options.geometry, options.threads), options.threads);
+        TriangleSoup soup = read_geometry(options.geometry, options.threads);
+        soup.vertices.insert(soup.vertices.end(), options.surface.vertices.begin(),
+                             options.surface.vertices.end());
+        out_.has_geometry = soup.size() > 0;
+        if (out_.has_geometry)
+            geometry_ = std::make_unique<MeshQuery>(std::move(soup), options.threads);
         out_.values = value_differences(sources_[0], sources_[1], options, out_.dp, out_.notes);
         note_arrays();
     }
@@ -428,7 +431,23 @@ private:
         for (const auto& of_kind : total.examples)
             for (const ChangedParticle& p : of_kind.sorted()) out_.examples.push_back(p);
         out_.changed = total.changed.sorted();
+        note_far_geometry();
         find_differences(total);
+    }
+
+    /// A mesh that stands elsewhere, as where the case scales or turns it, is near no boundary.
+    void note_far_geometry()
+    {
+        if (!out_.has_geometry) return;
+        for (const MkComparison& of : out_.mks)
+            for (std::size_t f = 0; f < 2; ++f)
+                if (of.count[f] > 0 && of.type[f] != static_cast<int>(ParticleType::Fluid) &&
+                    of.distance_dp[f].count == 0)
+                    out_.notes.push_back(fmt::format(
+                        "No particle of mk {} in {} is within 2 dp of the geometry: it has none "
+                        "of this mk, or the case puts it elsewhere (--definition takes it as the "
+                        "case draws it).",
+                        of.mk, f == 0 ? "A" : "B"));
     }
 
     void add_finding(double size, const char* category, std::string text)

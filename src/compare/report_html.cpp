@@ -36,7 +36,7 @@ std::string spread_cells(const Spread& spread)
 
 std::string particles_table(const Comparison& comparison)
 {
-    const bool has_geometry = !comparison.options.geometry.empty();
+    const bool has_geometry = comparison.has_geometry;
     std::string html =
         "<div class=\"scroll\"><table><tr><th>mk</th><th>type</th><th>A</th><th>B</th><th>same "
         "place</th><th>moved</th><th>mean dp</th><th>most dp</th><th>missing</th><th>extra</th>"
@@ -81,7 +81,7 @@ std::string histograms(const Comparison& comparison)
         html +=
             histogram("nearest particle, dp", &of.spacing_dp[0], &of.spacing_dp[1], spacing_range);
         html += histogram("Shepard sum", &of.shepard[0], &of.shepard[1], shepard_range);
-        if (!comparison.options.geometry.empty())
+        if (comparison.has_geometry)
             html += histogram("distance to the geometry, dp", &of.distance_dp[0],
                               &of.distance_dp[1], distance_range);
         if (of.moved > 0) html += histogram("moved by, dp", nullptr, &of.moved_dp, moved_range);

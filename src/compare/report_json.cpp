@@ -108,7 +108,7 @@ std::string to_json(const Comparison& comparison)
             {{"size", finding.size}, {"category", finding.category}, {"text", finding.text}});
     json["mks"] = Json::array();
     for (const MkComparison& of : comparison.mks)
-        json["mks"].push_back(as_json(of, !comparison.options.geometry.empty()));
+        json["mks"].push_back(as_json(of, comparison.has_geometry));
     json["examples"] = Json::array();
     for (const ChangedParticle& p : comparison.examples) json["examples"].push_back(as_json(p));
     json["values"] = Json::array();

@@ -68,7 +68,7 @@ std::string counts_table(const Comparison& comparison)
 
 std::string quality_table(const Comparison& comparison)
 {
-    const bool has_geometry = !comparison.options.geometry.empty();
+    const bool has_geometry = comparison.has_geometry;
     std::vector<std::vector<std::string>> rows{{"mk", "", "spacing A", "B", "Shepard A", "B"}};
     if (has_geometry)
         for (const char* name : {"distance A", "B", "most A", "B", "near A", "B"})
@@ -127,7 +127,7 @@ std::string to_text(const Comparison& comparison)
             "Distance to the nearest particle in dp, and Shepard sum ({}, h = 1.3 dp){}; mean and "
             "standard deviation:\n",
             comparison.is_2d ? "2-D" : "3-D",
-            comparison.options.geometry.empty()
+            !comparison.has_geometry
                 ? ""
                 : "; distance in dp to the geometry of those within 2 dp of it");
         text += quality_table(comparison);

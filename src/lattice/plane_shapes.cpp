@@ -1,7 +1,7 @@
 #include "lattice/plane_shapes.h"
+#include "casedef/polygon_cut.h"
 
 #include "lattice/planes.h"
-#include "lattice/polygon_cut.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "lattice/shape_mesh.h"
+#include "casedef/polygon_cut.h"
 
 #include "fppg/error.h"
 
-#include "lattice/polygon_cut.h"
 #include "lattice/round_mesh.h"
 
 #include <fmt/format.h>

@@ -43,9 +43,17 @@ endif()
 
 if(NOT is_done AND SOURCE MATCHES "auto|debian")
   if(ESBUILD AND THREE)
+    # Laid out as npm's package is, whose names viewer.js uses.
     file(REMOVE_RECURSE ${WORK}/node_modules)
-    bundle("Debian" ${ESBUILD} viewer.js --alias:three=${THREE}/build/three.module.js
-        --alias:three/addons=${THREE}/examples/jsm)
+    set(package ${WORK}/node_modules/three)
+    foreach(file build/three.module.js examples/jsm/controls/OrbitControls.js)
+      # Debian has links among them.
+      file(REAL_PATH ${THREE}/${file} real)
+      configure_file(${real} ${package}/${file} COPYONLY)
+    endforeach()
+    file(WRITE ${package}/package.json [[{ "name": "three", "exports":
+        { ".": "./build/three.module.js", "./addons/*": "./examples/jsm/*" } }]])
+    bundle(Debian ${ESBUILD} viewer.js)
   else()
     list(APPEND reasons "Debian: the packages esbuild and libjs-three are not both there")
   endif()

@@ -62,11 +62,13 @@ std::string views_html(const std::vector<ResultLook>& looks)
 {
     std::vector<std::string> sets;
     std::vector<SceneView> views;
-    if (shows_two(looks)) views.push_back({looks[0].name + " and " + looks[1].name, {0, 1}});
+    if (shows_two(looks))
+        views.push_back(
+            {looks[0].name + " and " + looks[1].name, {0, 1}, {looks[0].name, looks[1].name}});
     for (const ResultLook& look : looks)
     {
         if (look.set.empty()) continue;
-        views.push_back({look.name, {sets.size()}});
+        views.push_back({look.name, {sets.size()}, {look.name}});
         sets.push_back(look.set);
     }
     return scene_html(sets, views);

@@ -69,7 +69,7 @@ std::string scene_html(const std::vector<std::string>& sets, const std::vector<S
     for (std::size_t i = 0; i < sets.size(); ++i) (html += i > 0 ? ",\n" : "") += sets[i];
     Json list = Json::array();
     for (const SceneView& view : views)
-        list.push_back({{"title", view.title}, {"sets", view.sets}});
+        list.push_back({{"title", view.title}, {"sets", view.sets}, {"names", view.names}});
     return html + "],\n\"views\":" + text_of(list) + "}</script>\n<script>" +
            std::string(viewer_script()) + "</script>\n";
 }

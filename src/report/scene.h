@@ -36,6 +36,7 @@ struct SceneView
 {
     std::string title;
     std::vector<std::size_t> sets;
+    std::vector<std::string> names{}; ///< of the sets in this view; empty: their own
 };
 
 /// The 3-D view as a part of a page: particles, controls, and the script that draws them. Without

@@ -14,6 +14,13 @@ namespace fppg
 namespace
 {
 
+/// GenCase keeps heights as float32.
+double rounded(double height)
+{
+    const volatile float f = static_cast<float>(height);
+    return static_cast<double>(f);
+}
+
 /// The points sorted into square cells. Rows and columns of cells are counted from 0.
 class PointCells
 {
@@ -155,16 +162,6 @@ public:
                                        : std::numeric_limits<double>::quiet_NaN();
     }
 
-    /// Height of the nearest point, wherever it is.
-    double nearest_height(double x, double y) const
-    {
-        const auto square = [&](const Vec3& p)
-        { return (p.x - x) * (p.x - x) + (p.y - y) * (p.y - y); };
-        return std::min_element(points_.begin(), points_.end(),
-                                [&](const Vec3& a, const Vec3& b) { return square(a) < square(b); })
-            ->z;
-    }
-
 private:
     struct Nearest
     {
@@ -240,7 +237,7 @@ KnownMean known_mean(const std::vector<double>& z, const std::vector<double>& xs
             weights += weight;
             out.score += a == i || b == j ? 2 : 1;
         }
-    out.height = sum / weights;
+    out.height = rounded(sum / weights);
     return out;
 }
 
@@ -285,10 +282,8 @@ std::vector<double> heights_at(const std::vector<Vec3>& points, const std::vecto
     std::vector<double> z(xs.size() * ys.size());
     parallel_for(
         z.size(), threads,
-        [&](std::size_t n) { z[n] = finder.height(xs[n % xs.size()], ys[n / xs.size()]); }, 256);
-    if (std::all_of(z.begin(), z.end(), [](double v) { return std::isnan(v); }))
-        for (std::size_t n = 0; n < z.size(); ++n)
-            z[n] = finder.nearest_height(xs[n % xs.size()], ys[n / xs.size()]);
+        [&](std::size_t n) { z[n] = rounded(finder.height(xs[n % xs.size()], ys[n / xs.size()])); },
+        256);
     fill_from_neighbours(z, xs, ys, threads);
     return z;
 }

@@ -17,17 +17,12 @@ namespace
 /// More nodes than this are no bathymetry but a wrong number.
 constexpr double most_nodes = 1e8;
 
-/// GenCase gives heights as float32, rounded at the end: 0.35 falls below the tie of a lattice of
-/// dp 0.1 (golden file_bathy_periodic; 0.3 * 1.5 - 0.1 does as well).
-Vec3 rounded(const Vec3& p)
+/// GenCase keeps heights as float32, points and lines as double: 0.35 falls below the tie of a
+/// lattice of dp 0.1 (golden file_bathy_periodic), and 0.167 moved by -0.067 below that of 0.1.
+double rounded(double height)
 {
-    Vec3 out;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const volatile float f = static_cast<float>(p[axis]);
-        out[axis] = static_cast<double>(f);
-    }
-    return out;
+    const volatile float f = static_cast<float>(height);
+    return static_cast<double>(f);
 }
 
 /// Heights over lines of constant x and y: z[j * xs.size() + i].
@@ -61,7 +56,8 @@ struct HeightGrid
 /// beyond it.
 std::vector<double> lines_over(double begin, double size, double spacing)
 {
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::floor(size / spacing + 0.9)));
+    const auto n =
+        static_cast<std::size_t>(std::max(1.0, std::floor((size + 0.9 * spacing) / spacing)));
     std::vector<double> lines;
     for (std::size_t i = 0; i <= n; ++i) lines.push_back(begin + static_cast<double>(i) * spacing);
     return lines;
@@ -135,7 +131,7 @@ private:
                     fmt::format("point {} is ({:g}, {:g}), expected ({:g}, {:g}): the points are "
                                 "no grid",
                                 i, p.x, p.y, grid.xs[column], grid.ys.back()));
-            grid.z.push_back(rounded(p).z);
+            grid.z.push_back(rounded(p.z));
         }
         for (const auto* lines : {&grid.xs, &grid.ys})
             for (std::size_t i = 1; i < lines->size(); ++i)
@@ -174,6 +170,12 @@ private:
         grid.xs = lines(area.x_min, area.x_size, spacing);
         grid.ys = lines(area.y_min, area.y_size, spacing);
         grid.z = heights_at(used, grid.xs, grid.ys, spacing, threads_);
+        if (std::isnan(grid.z[0]))
+            fail(
+                fmt::format("no node of its grid, x {:g} to {:g}, y {:g} to {:g}, is nearer to a "
+                            "point than {:g}, expected points in the grid",
+                            grid.xs.front(), grid.xs.back(), grid.ys.front(), grid.ys.back(),
+                            std::sqrt(2) * spacing));
         if (!has_domain) return grid;
         end_at(grid, area.x_min + area.x_size);
         grid = grid.transposed();
@@ -233,7 +235,7 @@ private:
     static double between(const HeightGrid& grid, const double* row, std::size_t after, double x)
     {
         const double t = (x - grid.xs[after - 1]) / (grid.xs[after] - grid.xs[after - 1]);
-        return row[after - 1] + t * (row[after] - row[after - 1]);
+        return rounded(row[after - 1] + t * (row[after] - row[after - 1]));
     }
 
     /// Adds a column before the first; `height` empty: that of the first column.
@@ -247,7 +249,7 @@ private:
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
         {
             const double* const row = &grid.z[j * n];
-            out.z.push_back(height.value_or(row[0]));
+            out.z.push_back(height ? rounded(*height) : row[0]);
             out.z.insert(out.z.end(), row, row + n);
         }
         grid = std::move(out);
@@ -260,7 +262,7 @@ private:
             cut_begin(grid, grid.xs[0] - ramp.size);
             if (ramp.z)
                 for (std::size_t j = 0; j < grid.ys.size(); ++j)
-                    grid.z[j * grid.xs.size()] = *ramp.z;
+                    grid.z[j * grid.xs.size()] = rounded(*ramp.z);
         }
         if (ramp.size > 0) add_begin(grid, ramp.size, ramp.z);
         if (ramp.size2 > 0) add_begin(grid, ramp.size2, ramp.z2);
@@ -286,7 +288,7 @@ private:
         const std::size_t n = grid.xs.size();
         std::vector<double> means;
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
-            means.push_back((grid.z[j * n] + grid.z[j * n + n - 1]) / 2);
+            means.push_back(rounded((grid.z[j * n] + grid.z[j * n + n - 1]) / 2));
         if (period.ramp_width > 0)
         {
             add_begin(grid, grid.xs.front() - first, 0.0);
@@ -312,7 +314,7 @@ private:
             for (std::size_t i = 0; i < n; ++i)
                 mesh.points.push_back(
                     {grid.xs[i] + settings_.final_move.x, grid.ys[j] + settings_.final_move.y,
-                     rounded({0, 0, grid.z[j * n + i] + settings_.final_move.z}).z});
+                     rounded(grid.z[j * n + i] + rounded(settings_.final_move.z))});
         for (std::uint64_t j = 0; j + 1 < grid.ys.size(); ++j)
             for (std::uint64_t i = 0; i + 1 < n; ++i)
             {

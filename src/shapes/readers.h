@@ -45,11 +45,12 @@ std::vector<Vec3> read_points(std::string_view bytes, const std::string& path);
 ///
 /// Found by experiment with GenCase v5.4.354 on the polygons of its shapeout. Without `initdomain`
 /// the grid begins at the least x and y of the points and has whole cells until it reaches the
-/// largest. With it, floor(size / dp + 0.9) cells get heights; then the last column is cut off at
-/// the end of the domain, its height interpolated, or one more is added there with the same
+/// largest. With it, floor((size + 0.9 dp) / dp) cells get heights; then the last column is cut off
+/// at the end of the domain, its height interpolated, or one more is added there with the same
 /// heights, or it is moved there where it is nearer than dp / 100 (sizes of 12 dp and 0.001 to
-/// 0.999 of it). Expands in x, then in y (its corners are those of y), then the periods in x and y,
-/// then finalmove. Final heights are rounded to float32. GenCase v5.4.354 stops without a message
+/// 0.999 of it; of ties of that rule 0.61 has 6 cells at dp 0.1, 1.01 has 11 and 1.21 has 13).
+/// Expands in x, then in y (its corners are those of y), then the periods in x and y, then
+/// finalmove. Heights are rounded to float32 in each step. GenCase v5.4.354 stops without a message
 /// for most domains of a whole number of cells.
 ///
 /// throws GeometryError

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Runs the program on a recorded case and lets `fppg compare` judge it against the record of GenCase v5.4.
 
-    compare_recorded.py PROGRAM CASE_FOLDER WORK_FOLDER
+    compare_recorded.py PROGRAM CASE_FOLDER WORK_FOLDER [fitted]
 
 The record (NAME.expected.csv.gz, see tests/golden) is written as Recorded_All.vtk with double positions.
-They must be equal; with one particle of the record shifted by 0.25 dp, that one must be named.
+They must be equal; with one particle of the record shifted by 0.25 dp, that one must be named. With "fitted", the case is made with
+body-fitted walls too: what moved, by how much, and how near it is to the geometry must be told.
 """
 
 import csv
@@ -40,14 +41,33 @@ def column(rows, *names):
     return np.array([[float(r[name] or 0) for name in names] for r in rows]).reshape(len(rows), len(names))
 
 
-def compare(program, work, *options):
-    run = subprocess.run([program, "compare", "Case", "Recorded_All.vtk", "--json", "compare.json", *options],
+def compare(program, work, *options, name="Case"):
+    run = subprocess.run([program, "compare", name, "Recorded_All.vtk", "--json", "compare.json", *options],
                          cwd=work, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     with open(os.path.join(work, "compare.json"), encoding="utf-8") as file:
         return run.returncode, run.stdout, json.load(file)
 
 
-def main(program, folder, work):
+def check_fitted(program, definition, work):
+    """The record has its walls on the lattice: those of A moved onto the surface, by less than the lattice is wide."""
+    subprocess.run([program, definition, os.path.join(work, "Fitted"), "-save:bi", "-fit:raw"], check=True,
+                   cwd=os.path.dirname(definition), stdout=subprocess.DEVNULL)
+    code, text, found = compare(program, work, "--definition", definition, name="Fitted")
+    assert code == 1 and not found["is_equal"], text
+    walls = [mk for mk in found["mks"] if mk["type"][0] in ("fixed", "floating")]
+    fluid = [mk for mk in found["mks"] if mk["type"][0] == "fluid"]
+    assert walls and fluid, text
+    for mk in walls:
+        assert mk["moved"] > 0 and 0 < mk["moved_dp"]["mean"] < mk["moved_dp"]["largest"] <= 1, mk
+        assert f"mk {mk['mk']}: {mk['moved']} moved, by {mk['moved_dp']['mean']:.4g} dp on average" in text, text
+        fitted, lattice = (of["histogram"]["counts"][0] / of["count"] for of in mk["distance_dp"])
+        assert fitted > 0.2 and fitted > 2 * lattice, f"mk {mk['mk']}: {fitted} and {lattice} are on the surface"
+        assert mk["count"] == [mk["same_place"] + mk["moved"] + mk["missing"] + mk["mk_changed"],
+                               mk["same_place"] + mk["moved"] + mk["extra"] + mk["mk_gained"]], mk
+    assert all(mk["moved"] == 0 and mk["same_place"] > 0.5 * mk["count"][1] for mk in fluid), text
+
+
+def main(program, folder, work, fitted=""):
     program, folder, work = (os.path.abspath(p) for p in (program, folder, work))
     definition, = glob.glob(os.path.join(glob.escape(folder), "*_Def.xml"))
     name = os.path.basename(definition)[:-len("_Def.xml")]
@@ -77,6 +97,9 @@ def main(program, folder, work):
     code, text, found = compare(program, work)
     if code != 0 or not found["is_equal"]:
         sys.exit(f"{name}: expected to be equal, found\n{text}")
+
+    if fitted:
+        check_fitted(program, definition[:-len(".xml")], work)
 
     shifted = len(rows) // 2
     positions[shifted, 2] += 0.25 * dp

@@ -10,7 +10,7 @@ _fppg()
             options="--out --set --jobs --threads --memory --resume --no-pictures --quiet --log-json --slurm --submit
                 --plan --task --summary --help" ;;
         *:compare)
-            options="--json --html --stl --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
+            options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
         *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu csv" ;;

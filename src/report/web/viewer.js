@@ -147,7 +147,8 @@ class View {
       scene.add(new THREE.Box3Helper(corners, 0xaaaaaa));
     }
     this.titles.textContent = '';
-    for (const index of this.view.sets) element(this.titles, 'span', this.sets[index].name);
+    this.view.sets.forEach((index, i) =>
+      element(this.titles, 'span', this.view.names[i] || this.sets[index].name));
     this.buildLegend();
     const size = this.box.getSize(new THREE.Vector3());
     this.look(size.y <= 1e-6 * size.length() ? directions.front : directions.iso);

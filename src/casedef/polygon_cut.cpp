@@ -1,6 +1,8 @@
-#include "lattice/polygon_cut.h"
+#include "casedef/polygon_cut.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace fppg
@@ -11,7 +13,17 @@ namespace
 using Whole = __int128;
 using WholeVec = std::array<Whole, 3>;
 
-WholeVec minus(const Node& a, const Node& b)
+/// A corner on a fine lattice.
+struct FineNode
+{
+    std::int64_t x = 0;
+    std::int64_t y = 0;
+    std::int64_t z = 0;
+
+    bool operator==(const FineNode&) const = default;
+};
+
+WholeVec minus(const FineNode& a, const FineNode& b)
 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
@@ -27,10 +39,10 @@ Whole dot(const WholeVec& a, const WholeVec& b)
 }
 
 /// The polygon's area vector: the sum over its sides, in whole numbers.
-WholeVec area_of(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon)
+WholeVec area_of(const std::vector<FineNode>& nodes, const std::vector<std::size_t>& polygon)
 {
     WholeVec area{};
-    const Node& from = nodes[polygon[0]];
+    const FineNode& from = nodes[polygon[0]];
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
     {
         const WholeVec part =
@@ -42,18 +54,20 @@ WholeVec area_of(const std::vector<Node>& nodes, const std::vector<std::size_t>&
 
 /// The corners of a polygon on a lattice far finer than any dp, as the cutter works on whole
 /// numbers.
-std::vector<Node> fine_nodes(const std::vector<Vec3>& vertices,
-                             const std::vector<std::size_t>& polygon)
+std::vector<FineNode> fine_nodes(const std::vector<Vec3>& vertices,
+                                 const std::vector<std::size_t>& polygon)
 {
     Box3 box;
     for (const std::size_t v : polygon) box.add(vertices[v]);
     const Vec3 size = box.max - box.min;
-    LatticeGrid fine;
-    fine.origin = box.min;
-    fine.dp = std::max({size.x, size.y, size.z}) / (1 << 26);
-    std::vector<Node> nodes(vertices.size());
-    if (fine.dp > 0)
-        for (const std::size_t v : polygon) nodes[v] = snap(vertices[v], fine);
+    const double step = std::max({size.x, size.y, size.z}) / (1 << 26);
+    std::vector<FineNode> nodes(vertices.size());
+    if (step > 0)
+        for (const std::size_t v : polygon)
+        {
+            const Vec3 steps = (vertices[v] - box.min) / step;
+            nodes[v] = {std::llround(steps.x), std::llround(steps.y), std::llround(steps.z)};
+        }
     return nodes;
 }
 
@@ -92,20 +106,20 @@ private:
     }
 
     /// Twice the area of a, b, p, times that of the polygon: positive on the inner side of a side.
-    double side(const Node& a, const Node& b, const Node& p) const
+    double side(const FineNode& a, const FineNode& b, const FineNode& p) const
     {
         return static_cast<double>(dot(cross(minus(b, a), minus(p, a)), area_));
     }
 
     bool is_ear(std::size_t k) const
     {
-        const Node& a = nodes_[before(k)];
-        const Node& b = nodes_[rest_[k]];
-        const Node& c = nodes_[after(k)];
+        const FineNode& a = nodes_[before(k)];
+        const FineNode& b = nodes_[rest_[k]];
+        const FineNode& c = nodes_[after(k)];
         if (side(a, b, c) <= slack_) return false;
         for (const std::size_t i : rest_)
         {
-            const Node& p = nodes_[i];
+            const FineNode& p = nodes_[i];
             if (p == a || p == b || p == c) continue;
             if (side(a, b, p) >= -slack_ && side(b, c, p) >= -slack_ && side(c, a, p) >= -slack_)
                 return false;
@@ -138,7 +152,7 @@ private:
     }
 
     const std::vector<Vec3>& vertices_;
-    std::vector<Node> nodes_;
+    std::vector<FineNode> nodes_;
     std::vector<std::size_t> rest_;
     WholeVec area_;
     double slack_; ///< what rounding to the fine lattice may do to side()
@@ -150,15 +164,6 @@ std::vector<std::array<std::size_t, 3>> cut_polygon(const std::vector<Vec3>& ver
                                                     const std::vector<std::size_t>& polygon)
 {
     return PolygonCutter(vertices, polygon).run();
-}
-
-bool is_flat(const std::vector<Node>& nodes, const std::vector<std::size_t>& polygon)
-{
-    const WholeVec normal = cross(minus(nodes[polygon[1]], nodes[polygon[0]]),
-                                  minus(nodes[polygon[2]], nodes[polygon[0]]));
-    for (std::size_t k = 3; k < polygon.size(); ++k)
-        if (dot(normal, minus(nodes[polygon[k]], nodes[polygon[0]])) != 0) return false;
-    return true;
 }
 
 } // namespace fppg
