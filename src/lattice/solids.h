@@ -15,7 +15,8 @@ namespace fppg
 ///   next to them are kept
 /// - a pyramid is one part between the plane through the first three corners of its base and those
 ///   of its sides, all snapped, inside the box of its corners (180 pyramids of three to five
-///   corners under random turns and scales, 9900 nodes, none different)
+///   corners under random turns and scales, 9900 nodes of GenCase v5.0, none different; v5.4 agrees
+///   on ten of them)
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
