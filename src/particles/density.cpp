@@ -333,6 +333,7 @@ public:
                 hosts_.resize(free_begin[b + 1] - first_);
             }
         depths_.assign(hosts_.size(), 0);
+        of_nodes_.assign(hosts_.size(), 0);
         const HostFinder finder(field, meter);
         parallel_for(
             hosts_.size(), threads,
@@ -343,9 +344,10 @@ public:
     bool is_empty() const { return hosts_.empty(); }
     std::uint64_t first() const { return first_; }
     double depth(std::uint64_t particle) const { return depths_[particle - first_]; }
+    /// The largest depth of the nodes that the particles are nearest to.
     double deepest() const
     {
-        return depths_.empty() ? 0 : *std::max_element(depths_.begin(), depths_.end());
+        return of_nodes_.empty() ? 0 : *std::max_element(of_nodes_.begin(), of_nodes_.end());
     }
 
     void measure_along_z(const std::vector<std::vector<std::uint32_t>>& top, double dp)
@@ -353,8 +355,10 @@ public:
         for (std::size_t i = 0; i < hosts_.size(); ++i)
         {
             const Host& h = hosts_[i];
-            if (h.slab != Host::none)
-                depths_[i] = std::max(top[h.slab][h.run] + h.below + h.offset.z, 0.0) * dp;
+            if (h.slab == Host::none) continue;
+            const double steps = top[h.slab][h.run] + h.below;
+            depths_[i] = std::max(steps + h.offset.z, 0.0) * dp;
+            of_nodes_[i] = steps * dp;
         }
     }
 
@@ -377,6 +381,7 @@ public:
         {
             const Host& h = hosts_[by_slab_[k]];
             depths_[by_slab_[k]] = tilted.depth(slab, h.run, h.below, h.offset);
+            of_nodes_[by_slab_[k]] = tilted.depth(slab, h.run, h.below, {});
         }
     }
 
@@ -395,6 +400,7 @@ private:
     std::uint64_t first_ = 0;
     std::vector<Host> hosts_;
     std::vector<double> depths_;
+    std::vector<double> of_nodes_;
     std::vector<std::uint64_t> slab_begin_;
     std::vector<std::uint32_t> by_slab_;
 };

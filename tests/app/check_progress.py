@@ -80,14 +80,14 @@ def main(program, cases, work):
     code, out, _ = run(program, work, "missing_Def", "none/Case", "-quiet")
     assert code == 4 and "missing_Def.xml" in out, "errors are told to those who want quiet, too"
 
-    # Relaxing the walls of a gear takes some seconds.
+    # Relaxing the walls of a gear as fine as this takes some seconds.
     gear = os.path.join(cases, "gear/CaseGear_Def")
-    code, out, shown = run_on_a_terminal(program, work, gear, "gear/Case", "-threads:1")
+    code, out, shown = run_on_a_terminal(program, work, gear, "gear/Case", "-threads:1", "-dp:0.003")
     assert code == 0, out
     assert re.search(r"\r\[[#.]{24}\] Relax \d+ s", shown), repr(shown[-500:])
     assert shown.endswith("\r\x1b[K"), "the bar is taken off the terminal"
     assert "\r" not in out
-    code, out, shown = run_on_a_terminal(program, work, gear, "gear/Case", "-threads:1", "-quiet")
+    code, out, shown = run_on_a_terminal(program, work, gear, "gear/Case", "-threads:1", "-dp:0.003", "-quiet")
     assert code == 0 and shown == "", repr(shown)
 
 
