@@ -133,7 +133,7 @@ public:
         make_folder();
         std::optional<FolderLock> lock(std::in_place, out_, false);
         if (call_.slurm) return write_slurm(lock);
-        if (!call_.plan.empty()) return print_tasks();
+        if (!call_.plan.empty()) return print_tasks(lock);
         write_plan(out_, plan_);
         return run_all();
     }
@@ -267,10 +267,12 @@ private:
         return 0;
     }
 
-    int print_tasks()
+    int print_tasks(std::optional<FolderLock>& lock)
     {
         plan_.resumes = true;
         write_plan(out_, plan_);
+        // Whoever reads the lines may begin with the first one at once.
+        lock.reset();
         fmt::print("{}", task_lines(out_, plan_));
         if (!call_.quiet)
             fmt::print(stderr,

@@ -293,8 +293,9 @@ private:
         // The lattice goes through pointref (rule L1); a flat case keeps its y.
         if (const Element* ref = e.find_child("pointref"))
         {
-            const Vec3 r = read_.vec3_or(*ref, {});
-            pointref_ = r;
+            pointref_ = read_.vec3_or(*ref, {});
+            // An axis that it leaves out is that of pointmin.
+            const Vec3 r = read_.vec3_or(*ref, low);
             for (int axis = 0; axis < 3; ++axis)
                 if (!(grid.is_2d && axis == 1))
                     grid.origin[axis] =

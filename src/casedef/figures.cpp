@@ -143,15 +143,39 @@ FigureOp prism_limits(const std::vector<Vec3>& points)
     return prism;
 }
 
+namespace
+{
+
+/// Whether the corners of a pyramid's base, all points but the first, lie in a plane as drawn.
+bool is_flat_base(const std::vector<Vec3>& points)
+{
+    constexpr double tolerance = 1e-4; // of the base's width
+    const Vec3 normal = cross(points[2] - points[1], points[3] - points[1]);
+    const double length = norm(normal);
+    if (length == 0) return true;
+    double width = 0;
+    double height = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+    {
+        width = std::max(width, norm(points[i] - points[1]));
+        height = std::max(height, std::abs(dot(points[i] - points[1], normal)) / length);
+    }
+    return height <= tolerance * width;
+}
+
+} // namespace
+
 FigureOp make_pyramid(const std::vector<Vec3>& points)
 {
     FigureOp pyramid;
     pyramid.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
-    // The base is a fan from its first corner.
     FigureFace base;
-    for (std::uint32_t i = 1; i <= n; ++i) base.vertices.push_back(i);
-    for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    for (std::uint32_t i = 0; i < n; ++i) base.vertices.push_back(n - i);
+    if (is_flat_base(points)) // a fan from its first corner
+        for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    else
+        base.cut = base.vertices;
     pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});

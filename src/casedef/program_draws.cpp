@@ -201,7 +201,7 @@ bool ProgramRunner::run_draw(const Element& e)
     if (name == "drawpoint")
         add(e, PointsOp{{matrix_(read_.vec3(e))}});
     else if (name == "drawpoints")
-        add(e, PointsOp{transformed_points(e, 1, many)});
+        add(e, PointsOp{transformed_points(e, 2, many)});
     else if (name == "setlinebegin")
         line_begin_ = matrix_(read_.vec3(e));
     else if (name == "drawlineto")

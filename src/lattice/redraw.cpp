@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fppg
 {
@@ -58,6 +59,86 @@ void append_moved(const Spans& spans, int dy, int dz_low, int dz_high, const Lat
     }
 }
 
+/// Whether a node can be both a target and a border.
+bool may_share_nodes(const MkFilter& a, const MkFilter& b)
+{
+    return a.kind == b.kind && (!a.mk || !b.mk || *a.mk == *b.mk);
+}
+
+/// One slab of the lattice, node by node.
+struct SlabMarks
+{
+    std::vector<char> is_target;
+    std::vector<char> is_marked;
+};
+
+/// Targets beside a border, where nodes can be both: border nodes act one after another in the
+/// order of x, y and z, and one that has been marked acts no more. Found by experiment with GenCase
+/// (24 random cases of redrawnear with equal types; the order of the axes changes nothing).
+std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
+                                const std::vector<Spans>& borders,
+                                const std::array<bool, 6>& directions, const LatticeGrid& grid)
+{
+    const auto n_y = static_cast<std::int64_t>(grid.n[1]);
+    const auto n_z = static_cast<std::int64_t>(grid.n[2]);
+    const std::size_t n_slabs = targets.size();
+    const auto [top, bottom, to_right, to_left, back, front] = directions;
+    const auto begin_slab = [&](std::size_t x, SlabMarks& slab)
+    {
+        slab.is_target.assign(static_cast<std::size_t>(n_y * n_z), 0);
+        slab.is_marked = slab.is_target;
+        if (x >= n_slabs) return;
+        for (const Span& s : targets[x])
+        {
+            const auto row = slab.is_target.begin() + static_cast<std::int64_t>(s.y) * n_z;
+            std::fill(row + s.z_begin, row + s.z_end, char{1});
+        }
+    };
+    const auto mark = [&](SlabMarks& slab, std::int64_t y, std::int64_t z)
+    {
+        if (y < 0 || y >= n_y || z < 0 || z >= n_z) return;
+        const auto node = static_cast<std::size_t>(y * n_z + z);
+        if (slab.is_target[node] != 0) slab.is_marked[node] = 1;
+    };
+    const auto marked_spans = [&](const SlabMarks& slab, Spans& out)
+    {
+        for (std::size_t node = 0; node < slab.is_marked.size(); ++node)
+            if (slab.is_marked[node] != 0)
+            {
+                const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(node) / n_z);
+                const auto z = static_cast<std::uint32_t>(static_cast<std::int64_t>(node) % n_z);
+                out.push_back({y, z, z + 1});
+            }
+        sort_and_join(out);
+    };
+
+    std::vector<Spans> out(n_slabs);
+    std::array<SlabMarks, 3> slabs; // Before, at and after the one whose borders act.
+    begin_slab(n_slabs, slabs[0]);
+    begin_slab(0, slabs[1]);
+    for (std::size_t x = 0; x < n_slabs; ++x)
+    {
+        auto& [before, here, after] = slabs;
+        begin_slab(x + 1, after);
+        for (const Span& s : borders[x])
+            for (std::int64_t z = s.z_begin; z < s.z_end; ++z)
+            {
+                const auto y = static_cast<std::int64_t>(s.y);
+                if (here.is_marked[static_cast<std::size_t>(y * n_z + z)] != 0) continue;
+                if (top) mark(here, y, z + 1);
+                if (bottom) mark(here, y, z - 1);
+                if (to_right) mark(after, y, z);
+                if (to_left) mark(before, y, z);
+                if (back) mark(here, y + 1, z);
+                if (front) mark(here, y - 1, z);
+            }
+        if (x > 0) marked_spans(before, out[x - 1]);
+        std::rotate(slabs.begin(), slabs.begin() + 1, slabs.end());
+    }
+    if (n_slabs > 0) marked_spans(slabs[0], out[n_slabs - 1]);
+    return out;
+}
+
 } // namespace
 
 std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const NodeBox& box,
@@ -95,6 +176,8 @@ std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& 
         nodes_of(field, op.border, intersect(reach, whole), mk_bound_first, threads);
     const bool all_neighbours =
         std::none_of(op.directions.begin(), op.directions.end(), [](bool d) { return d; });
+    if (!all_neighbours && may_share_nodes(op.target, op.border))
+        return mark_in_turn(targets, borders, op.directions, field.grid);
     std::vector<Spans> out(field.slabs.size());
     parallel_for(field.slabs.size(), threads,
                  [&](std::size_t x)

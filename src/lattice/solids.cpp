@@ -38,7 +38,8 @@ public:
         for (const std::uint32_t v : figure.solid_vertices)
             nodes_.push_back(snap(figure.vertices[v], grid));
         if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box) cut_prism(figure);
-        if (figure.solid == SolidKind::Pyramid) take_pyramid();
+        if (figure.solid == SolidKind::Pyramid && figure.faces[0].cut.empty()) take_pyramid();
+        if (figure.solid == SolidKind::Pyramid && !figure.faces[0].cut.empty()) cut_pyramid(figure);
         if (figure.solid == SolidKind::Faces) take_faces(figure);
     }
 
@@ -125,7 +126,35 @@ private:
             });
     }
 
-    /// One part, by the first three corners of the base even where they are not all in a plane.
+    /// Over a base that is not flat as drawn.
+    void cut_pyramid(const FigureOp& figure)
+    {
+        const std::size_t n = nodes_.size() - 1;
+        std::vector<std::size_t> base(n);
+        std::iota(base.begin(), base.end(), std::size_t{1});
+        const Node& apex = nodes_[0];
+        // The base is cut as it is seen from outside.
+        Triangles cut = cut_polygon(figure.vertices, {base.rbegin(), base.rend()});
+        for (auto& t : cut) std::swap(t[0], t[2]);
+        for (const auto& t : cut)
+        {
+            const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
+            std::vector<Plane> planes{plane(b[0], b[1], b[2])};
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            add_part(std::move(planes), {apex, b[0], b[1], b[2]});
+        }
+        for_each_shared_side(cut,
+                             [&](std::size_t t, std::size_t i, std::size_t j, std::size_t neighbour)
+                             {
+                                 const auto& other = cut[neighbour];
+                                 inner_faces.push_back(
+                                     {{{apex, nodes_[i], nodes_[j]}},
+                                      {plane(nodes_[other[0]], nodes_[other[1]], nodes_[other[2]])},
+                                      t});
+                             });
+    }
+
+    /// One part, by the first three corners of the base even where snapped ones are not in a plane.
     void take_pyramid()
     {
         const std::size_t n = nodes_.size() - 1;

@@ -13,9 +13,11 @@ namespace fppg
 ///   whose triangle has the least perimeter is cut off again and again; the quads between the parts
 ///   are drawn too (rule P5), of which only nodes strictly between the bottom and the top of a part
 ///   next to them are kept
-/// - a pyramid is one part between the plane through the first three corners of its base and those
-///   of its sides, all snapped, inside the box of its corners (180 pyramids of three to five
-///   corners under random turns and scales, 9900 nodes, none different)
+/// - a pyramid whose base is flat as drawn is one part between the plane through the first three
+///   corners of its base and those of its sides, all snapped, inside the box of its corners (180
+///   pyramids of three to five corners under random turns and scales, 9900 nodes, none different)
+/// - a base that is not flat is cut by least perimeter, seen from outside, and the pyramid into
+///   tetrahedra with the triangles between them (recorded cases pyramid_face, _full, _solid)
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
