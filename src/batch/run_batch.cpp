@@ -135,6 +135,7 @@ private:
             {
                 job.record.is_reused = true;
                 job.step = Step::Picture;
+                remove_leftovers(job);
                 if (!wants_picture(job)) finish(job);
                 return;
             }

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/figures.h"
+#include "casedef/polygon_cut.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
 #include "lattice/snap.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace fppg
 {
@@ -258,6 +260,48 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
         const std::vector<Vec3> points = free_polygon(corners, grid);
         out.insert(out.end(), points.begin(), points.end());
     }
+    return out;
+}
+
+std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid& grid)
+{
+    const std::size_t n = figure.vertices.size() / 2;
+    std::vector<std::array<std::size_t, 3>> cut;
+    if (figure.faces.empty() || figure.faces[0].triangles.empty())
+    {
+        std::vector<std::size_t> polygon(n);
+        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
+        cut = cut_polygon(figure.vertices, polygon);
+    }
+    else // The bottom, which is cut the other way around.
+        for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
+    std::vector<Vec3> out;
+    const auto has = [](const std::array<std::size_t, 3>& t, std::size_t corner)
+    { return std::find(t.begin(), t.end(), corner) != t.end(); };
+    for (std::size_t t = 0; t < cut.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const std::size_t i = cut[t][k];
+            const std::size_t j = cut[t][(k + 1) % 3];
+            const bool is_shared =
+                std::any_of(cut.begin() + static_cast<std::ptrdiff_t>(t) + 1, cut.end(),
+                            [&](const auto& other) { return has(other, i) && has(other, j); });
+            if (!is_shared) continue;
+            const std::array<Vec3, 4> c{figure.vertices[i], figure.vertices[j],
+                                        figure.vertices[n + j], figure.vertices[n + i]};
+            const auto add = [&](const std::vector<Vec3>& corners)
+            {
+                const std::vector<Vec3> points = free_polygon(corners, grid);
+                out.insert(out.end(), points.begin(), points.end());
+            };
+            if (norm(c[0] + (c[2] - c[1]) - c[3]) <= 0.05 * grid.dp)
+                add({c[0], c[1], c[2], c[3]});
+            else
+            {
+                add({c[0], c[1], c[2]});
+                add({c[0], c[2], c[3]});
+            }
+        }
     return out;
 }
 

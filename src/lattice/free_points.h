@@ -48,6 +48,11 @@ std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neig
 /// The faces of a figure that are not hidden, one after the other.
 std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid);
 
+/// The faces between the triangular prisms that a prism of four corners or more is cut into, which
+/// GenCase v5.4.354 draws off the lattice in solid and full mode (a turned prism of four corners
+/// gave 54 points of its diagonal face in solid mode).
+std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid& grid);
+
 /// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
 /// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
 /// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on.

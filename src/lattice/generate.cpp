@@ -526,6 +526,8 @@ private:
             return;
         }
         if (fills) paint_region(solid_of(op));
+        if (fills && op.solid == SolidKind::Prism)
+            draw_free([&] { return free_dividing_faces(op, grid()); });
         if (!fills || state().mode == DrawMode::Full)
             draw_free([&] { return free_faces(op, grid()); });
     }

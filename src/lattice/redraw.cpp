@@ -74,7 +74,7 @@ struct SlabMarks
 
 /// Targets beside a border, where nodes can be both: border nodes act one after another in the
 /// order of x, y and z, and one that has been marked acts no more. Found by experiment with GenCase
-/// (24 random cases of redrawnear with equal types; the order of the axes changes nothing).
+/// v5.0 (24 random cases of redrawnear with equal types; the order of the axes changes nothing).
 std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
                                 const std::vector<Spans>& borders,
                                 const std::array<bool, 6>& directions, const LatticeGrid& grid)

@@ -15,7 +15,8 @@ namespace fppg
 ///   next to them are kept
 /// - a pyramid whose base is flat as drawn is one part between the plane through the first three
 ///   corners of its base and those of its sides, all snapped, inside the box of its corners (180
-///   pyramids of three to five corners under random turns and scales, 9900 nodes, none different)
+///   pyramids of three to five corners under random turns and scales, 9900 nodes of GenCase v5.0,
+///   none different)
 /// - a base that is not flat is cut by least perimeter, seen from outside, and the pyramid into
 ///   tetrahedra with the triangles between them (recorded cases pyramid_face, _full, _solid)
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,

@@ -3,6 +3,8 @@
 #include "lattice/redraw.h"
 
 #include <gtest/gtest.h>
+#include <array>
+#include <set>
 
 #include <algorithm>
 
@@ -191,18 +193,30 @@ TEST(RedrawNearNodes, AreTargetsWithANeighbourOfTheBorderType)
                                         {-1, 0, 0},    {0, 1, 0},  {0, -1, 0}};
         const auto is_border = [&](const Node& n)
         { return is_inside(n, grid) && passes(op.border, nodes.at(n.x, n.y, n.z)); };
+        std::set<std::array<std::int64_t, 3>> marked;
+        for (std::int64_t x = 0; x < grid.n[0]; ++x)
+            for (std::int64_t y = 0; y < grid.n[1]; ++y)
+                for (std::int64_t z = 0; z < grid.n[2]; ++z)
+                {
+                    // A border node that has been marked before its turn acts no more.
+                    if (marked.contains({x, y, z}) || !is_border({x, y, z})) continue;
+                    for (std::size_t d = 0; d < 6; ++d)
+                    {
+                        const Node n{x + steps[d].x, y + steps[d].y, z + steps[d].z};
+                        if (op.directions[d] && is_inside(n, grid) && is_in(box, n) &&
+                            passes(op.target, nodes.at(n.x, n.y, n.z)))
+                            marked.insert({n.x, n.y, n.z});
+                    }
+                }
         const auto holds = [&](const Node& n)
         {
+            if (!all) return marked.contains({n.x, n.y, n.z});
             if (!is_in(box, n) || !passes(op.target, nodes.at(n.x, n.y, n.z))) return false;
-            for (std::int64_t x = -1; all && x <= 1; ++x)
+            for (std::int64_t x = -1; x <= 1; ++x)
                 for (std::int64_t y = -1; y <= 1; ++y)
                     for (std::int64_t z = -1; z <= 1; ++z)
                         if ((x != 0 || y != 0 || z != 0) && is_border({n.x + x, n.y + y, n.z + z}))
                             return true;
-            for (std::size_t d = 0; d < 6; ++d)
-                if (op.directions[d] &&
-                    is_border({n.x - steps[d].x, n.y - steps[d].y, n.z - steps[d].z}))
-                    return true;
             return false;
         };
         const RunField field = test::runs_of(nodes);
