@@ -65,6 +65,15 @@ struct RowCrossing
     bool is_entry = false;
 };
 
+/// Behind all nodes that the spans hold, by y and then z.
+void append_node(Spans& spans, std::uint32_t y, std::uint32_t z)
+{
+    if (!spans.empty() && spans.back().y == y && spans.back().z_end == z)
+        ++spans.back().z_end;
+    else
+        spans.push_back({y, z, z + 1});
+}
+
 class DepthFinder
 {
 public:
@@ -112,10 +121,9 @@ public:
                     while (crossing != next &&
                            (crossing->is_entry ? crossing->x <= node : crossing->x < node))
                         counts = (crossing++)->is_entry;
-                    if (counts) slabs[i].push_back({y, z, z + 1});
+                    if (counts) append_node(slabs[i], y, z);
                 }
             }
-        for (Spans& s : slabs) sort_and_join(s);
         return slabs;
     }
 
@@ -148,8 +156,7 @@ public:
             {
                 const double d = depth[static_cast<std::size_t>(s.y - box_.begin[1]) * height +
                                        static_cast<std::size_t>(z - box_.begin[2])];
-                if (d >= depth_min_ - slack && d <= depth_max_ + slack)
-                    out.push_back({s.y, z, z + 1});
+                if (d >= depth_min_ - slack && d <= depth_max_ + slack) append_node(out, s.y, z);
             }
     }
 
