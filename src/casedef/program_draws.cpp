@@ -282,11 +282,12 @@ bool ProgramRunner::run_draw(const Element& e)
         const Vec3 extrude = read_.child_vec3(e, "extrude");
         const bool is_closed = read_.flag_or(e, "closed", false);
         const std::vector<double> layers = layers_of(e);
+        const std::vector<Vec3> points = points_of(e, 2, many);
         for (const double layer : layers)
-            add_figure(e, make_extrusion(shifted_polyline(read_.points(e), extrude, is_closed,
-                                                          layer * def_.grid.dp),
-                                         extrude, is_closed));
-        if (layers.empty()) add_figure(e, make_extrusion(read_.points(e), extrude, is_closed));
+            add_figure(e, make_extrusion(
+                              shifted_polyline(points, extrude, is_closed, layer * def_.grid.dp),
+                              extrude, is_closed));
+        if (layers.empty()) add_figure(e, make_extrusion(points, extrude, is_closed));
     }
     else if (name == "drawsphere")
     {

@@ -157,6 +157,30 @@ INSTANTIATE_TEST_SUITE_P(
                     "<drawsphere>: attribute 'radius' is missing"),
         in_mainlist("TooFewPoints", R"(<drawtriangle><point x="0" y="0" z="0" /></drawtriangle>)",
                     "<drawtriangle>: has 1 points, expected 3"),
+        in_mainlist("OnePointOfSeveral", R"(<drawpoints><point x="0" y="0" z="0" /></drawpoints>)",
+                    "<drawpoints>: has 1 points, expected at least 2"),
+        in_mainlist("OnePointOfLines", R"(<drawlines><point x="0" y="0" z="0" /></drawlines>)",
+                    "<drawlines>: has 1 points, expected at least 2"),
+        in_mainlist(
+            "TwoPointsOfAStrip",
+            R"(<drawtrianglesstrip><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /></drawtrianglesstrip>)",
+            "<drawtrianglesstrip>: has 2 points, expected at least 3"),
+        in_mainlist(
+            "TwoPointsOfAFan",
+            R"(<drawtrianglesfan><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /></drawtrianglesfan>)",
+            "<drawtrianglesfan>: has 2 points, expected at least 3"),
+        in_mainlist(
+            "TwoPointsOfAPolygon",
+            R"(<drawpolygon><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /></drawpolygon>)",
+            "<drawpolygon>: has 2 points, expected at least 3"),
+        in_mainlist(
+            "ThreePointsOfAPyramid",
+            R"(<drawpyramid><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /></drawpyramid>)",
+            "<drawpyramid>: has 3 points, expected at least 4"),
+        in_mainlist(
+            "OnePointOfAnExtrusion",
+            R"(<drawextrude closed="false"><extrude x="0" y="0" z="1" /><point x="0" y="0" z="0" /></drawextrude>)",
+            "<drawextrude>: has 1 points, expected at least 2"),
         in_mainlist(
             "OddPrism",
             R"(<drawprism><point x="0" y="0" z="0" /><point x="0" y="0" z="0" /><point x="0" y="0" z="0" />
