@@ -5,7 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -37,6 +40,30 @@ struct ParticleRun
     std::uint32_t depth = 0;
 };
 
+/// Leaves values that are made without a value unwritten, so that the threads which fill them bring
+/// their memory in. T is trivially copyable.
+template <typename T>
+struct UnwrittenAllocator : std::allocator<T>
+{
+    template <typename U>
+    struct rebind
+    {
+        using other = UnwrittenAllocator<U>;
+    };
+    template <typename U>
+    void construct(U*) noexcept
+    {
+    }
+    template <typename U, typename... Arguments>
+    void construct(U* at, Arguments&&... arguments)
+    {
+        ::new (static_cast<void*>(at)) U{std::forward<Arguments>(arguments)...};
+    }
+};
+
+/// After resize() new runs must be written before they are read.
+using ParticleRuns = std::vector<ParticleRun, UnwrittenAllocator<ParticleRun>>;
+
 /// All particles of one mk. Ids of a block are consecutive.
 struct ParticleBlock
 {
@@ -45,10 +72,10 @@ struct ParticleBlock
     std::uint16_t mk_type = 0; ///< mkbound or mkfluid
     std::uint64_t begin = 0;   ///< first id
     std::uint64_t count = 0;
-    bool run_descending = false;   ///< a run's nodes follow one another downwards in z
-    std::vector<ParticleRun> runs; ///< in id order; their counts add up to `count`
-    std::string property;          ///< names joined with '+', or empty
-    int ref_motion = -1;           ///< moving: index in the motion of Case.xml
+    bool run_descending = false; ///< a run's nodes follow one another downwards in z
+    ParticleRuns runs;           ///< in id order; their counts add up to `count`
+    std::string property;        ///< names joined with '+', or empty
+    int ref_motion = -1;         ///< moving: index in the motion of Case.xml
     /// What `<initials>` does to its particles; nothing in them is empty. Runs and densities are
     /// those before it.
     std::vector<InitialOp> initials;

@@ -548,15 +548,14 @@ void compute_densities(const CaseDef& def, const RunField& field,
     const bool is_by_steps = is_uniform || (is_vertical && (!by_height || c.gravity.z < 0));
     std::vector<std::vector<std::size_t>> run_of(is_by_steps ? 0 : field.slabs.size());
     std::uint32_t most_steps = 0;
-    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+    for (std::size_t x = 0; x < field.slabs.size() && !is_uniform; ++x)
     {
         if (!is_by_steps) run_of[x].resize(field.slabs[x].size());
         cursor.visit(field.slabs[x],
                      [&](std::size_t i, ParticleBlock& block, std::size_t at)
                      {
                          if (!is_by_steps) run_of[x][i] = at;
-                         if (block.type != ParticleType::Fluid || !is_by_steps || is_uniform)
-                             return;
+                         if (block.type != ParticleType::Fluid || !is_by_steps) return;
                          ParticleRun& run = block.runs[at];
                          run.depth = by_height ? z_max - (run.z + run.count - 1) : top[x][i];
                          most_steps = std::max(most_steps, run.depth + run.count - 1);

@@ -22,7 +22,7 @@ public:
     /// Takes over the particles of a block, two for one where `doubles`.
     void take(ParticleBlock& block, bool doubles)
     {
-        std::vector<ParticleRun> runs;
+        ParticleRuns runs;
         std::uint64_t id = block.begin;
         const std::uint64_t free_begin = free_.size();
         for (const ParticleRun& r : block.runs)
@@ -118,7 +118,7 @@ private:
         run.z = static_cast<std::uint32_t>(begin >> 32U);
     }
 
-    void add_runs(std::vector<ParticleRun>& runs, std::uint64_t begin) const
+    void add_runs(ParticleRuns& runs, std::uint64_t begin) const
     {
         while (begin < free_.size())
         {

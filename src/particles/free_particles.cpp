@@ -49,12 +49,12 @@ public:
             runs_.push_back({ParticleRun::off_lattice, static_cast<std::uint32_t>(index),
                              static_cast<std::uint32_t>(index >> 32U), 1, 0});
     }
-    std::vector<ParticleRun> take() { return std::move(runs_); }
+    ParticleRuns take() { return std::move(runs_); }
 
 private:
     bool is_fluid_;
     bool is_descending_;
-    std::vector<ParticleRun> runs_;
+    ParticleRuns runs_;
 };
 
 /// Puts the densities of a fluid block's nodes, which stand together at its begin, to their places

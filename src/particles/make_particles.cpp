@@ -372,7 +372,7 @@ private:
 
     static void split_into_nodes(ParticleBlock& block)
     {
-        std::vector<ParticleRun> nodes;
+        ParticleRuns nodes;
         nodes.reserve(block.count);
         for (const ParticleRun& r : block.runs)
             for (std::uint32_t i = 0; i < r.count; ++i)
