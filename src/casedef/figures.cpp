@@ -347,6 +347,20 @@ void cut_faces(FigureOp& figure)
     }
 }
 
+std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism)
+{
+    std::vector<std::array<std::size_t, 3>> cut;
+    if (prism.faces.empty() || prism.faces[0].triangles.empty())
+    {
+        std::vector<std::size_t> bottom(prism.vertices.size() / 2);
+        std::iota(bottom.begin(), bottom.end(), std::size_t{0});
+        return cut_polygon(prism.vertices, bottom);
+    }
+    // The face looks down.
+    for (const auto& t : prism.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
+    return cut;
+}
+
 void transform_figure(FigureOp& figure, const Transform& transform)
 {
     for (Vec3& v : figure.vertices) v = transform(v);

@@ -84,6 +84,10 @@ FigureOp prism_limits(const std::vector<Vec3>& points);
 /// them (polygon_cut.h).
 void cut_faces(FigureOp& figure);
 
+/// The triangles that the bottom of a prism is cut into, as indices of its vertices, in the order
+/// that its corners go around; as cut_faces() left them, else by the corners as they stand.
+std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism);
+
 /// Applies a transform to all vertices.
 void transform_figure(FigureOp& figure, const Transform& transform);
 

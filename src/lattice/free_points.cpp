@@ -3,7 +3,6 @@
 #include "fppg/error.h"
 
 #include "casedef/figures.h"
-#include "casedef/polygon_cut.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
 #include "lattice/snap.h"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace fppg
 {
@@ -266,15 +264,7 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
 std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid& grid)
 {
     const std::size_t n = figure.vertices.size() / 2;
-    std::vector<std::array<std::size_t, 3>> cut;
-    if (figure.faces.empty() || figure.faces[0].triangles.empty())
-    {
-        std::vector<std::size_t> polygon(n);
-        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
-        cut = cut_polygon(figure.vertices, polygon);
-    }
-    else // The bottom, which is cut the other way around.
-        for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
+    const auto cut = bottom_triangles(figure);
     std::vector<Vec3> out;
     const auto has = [](const std::array<std::size_t, 3>& t, std::size_t corner)
     { return std::find(t.begin(), t.end(), corner) != t.end(); };

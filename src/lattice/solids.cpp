@@ -1,6 +1,7 @@
 #include "lattice/solids.h"
-#include "casedef/polygon_cut.h"
 
+#include "casedef/figures.h"
+#include "casedef/polygon_cut.h"
 #include "lattice/planes.h"
 
 #include <algorithm>
@@ -90,15 +91,8 @@ private:
     void cut_prism(const FigureOp& figure)
     {
         const std::size_t n = nodes_.size() / 2;
-        std::vector<std::size_t> polygon(n);
-        std::iota(polygon.begin(), polygon.end(), std::size_t{0});
-        Triangles cut;
-        if (figure.solid == SolidKind::Box)
-            cut = {{3, 0, 1}, {1, 2, 3}};
-        else if (figure.faces.empty() || figure.faces[0].triangles.empty())
-            cut = cut_polygon(figure.vertices, polygon);
-        else // The bottom, which is cut the other way around.
-            for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
+        const Triangles cut = figure.solid == SolidKind::Box ? Triangles{{3, 0, 1}, {1, 2, 3}}
+                                                             : bottom_triangles(figure);
         std::vector<std::vector<Plane>> ends;
         for (const auto& t : cut)
         {
