@@ -65,7 +65,7 @@ bool may_share_nodes(const MkFilter& a, const MkFilter& b)
     return a.kind == b.kind && (!a.mk || !b.mk || *a.mk == *b.mk);
 }
 
-/// One slab of the lattice, node by node.
+/// One slab of the lattice, node by node; empty where it has no targets.
 struct SlabMarks
 {
     std::vector<char> is_target;
@@ -85,9 +85,10 @@ std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
     const auto [top, bottom, to_right, to_left, back, front] = directions;
     const auto begin_slab = [&](std::size_t x, SlabMarks& slab)
     {
-        slab.is_target.assign(static_cast<std::size_t>(n_y * n_z), 0);
+        const bool has_targets = x < n_slabs && !targets[x].empty();
+        slab.is_target.assign(has_targets ? static_cast<std::size_t>(n_y * n_z) : 0, 0);
         slab.is_marked = slab.is_target;
-        if (x >= n_slabs) return;
+        if (!has_targets) return;
         for (const Span& s : targets[x])
         {
             const auto row = slab.is_target.begin() + static_cast<std::int64_t>(s.y) * n_z;
@@ -96,20 +97,19 @@ std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
     };
     const auto mark = [&](SlabMarks& slab, std::int64_t y, std::int64_t z)
     {
-        if (y < 0 || y >= n_y || z < 0 || z >= n_z) return;
+        if (slab.is_target.empty() || y < 0 || y >= n_y || z < 0 || z >= n_z) return;
         const auto node = static_cast<std::size_t>(y * n_z + z);
         if (slab.is_target[node] != 0) slab.is_marked[node] = 1;
     };
-    const auto marked_spans = [&](const SlabMarks& slab, Spans& out)
+    const auto marked_spans = [&](const SlabMarks& slab, std::size_t x)
     {
-        for (std::size_t node = 0; node < slab.is_marked.size(); ++node)
-            if (slab.is_marked[node] != 0)
-            {
-                const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(node) / n_z);
-                const auto z = static_cast<std::uint32_t>(static_cast<std::int64_t>(node) % n_z);
-                out.push_back({y, z, z + 1});
-            }
-        sort_and_join(out);
+        Spans marked;
+        for (const Span& s : targets[x])
+            for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
+                if (slab.is_marked[static_cast<std::size_t>(s.y * n_z + z)] != 0)
+                    marked.push_back({s.y, z, z + 1});
+        sort_and_join(marked);
+        return marked;
     };
 
     std::vector<Spans> out(n_slabs);
@@ -124,7 +124,9 @@ std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
             for (std::int64_t z = s.z_begin; z < s.z_end; ++z)
             {
                 const auto y = static_cast<std::int64_t>(s.y);
-                if (here.is_marked[static_cast<std::size_t>(y * n_z + z)] != 0) continue;
+                if (!here.is_marked.empty() &&
+                    here.is_marked[static_cast<std::size_t>(y * n_z + z)] != 0)
+                    continue;
                 if (top) mark(here, y, z + 1);
                 if (bottom) mark(here, y, z - 1);
                 if (to_right) mark(after, y, z);
@@ -132,10 +134,10 @@ std::vector<Spans> mark_in_turn(const std::vector<Spans>& targets,
                 if (back) mark(here, y + 1, z);
                 if (front) mark(here, y - 1, z);
             }
-        if (x > 0) marked_spans(before, out[x - 1]);
+        if (x > 0) out[x - 1] = marked_spans(before, x - 1);
         std::rotate(slabs.begin(), slabs.begin() + 1, slabs.end());
     }
-    if (n_slabs > 0) marked_spans(slabs[0], out[n_slabs - 1]);
+    if (n_slabs > 0) out[n_slabs - 1] = marked_spans(slabs[0], n_slabs - 1);
     return out;
 }
 
