@@ -172,13 +172,16 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
     FigureFace base;
     for (std::uint32_t i = 0; i < n; ++i) base.vertices.push_back(n - i);
-    if (is_flat_base(points)) // a fan from its first corner
-        for (std::uint32_t i = 3; i <= n; ++i) base.triangles.push_back({1, i, i - 1});
+    // The order of corners decides nodes within rounding of a limit, that of triangles their mks
+    // (drawn apart and as parts by GenCase): a fan from the first corner, the last triangle first,
+    // and sides from the top.
+    if (is_flat_base(points))
+        for (std::uint32_t i = n; i >= 3; --i) base.triangles.push_back({1, i, i - 1});
     else
         base.cut = base.vertices;
     pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
-        pyramid.faces.push_back({{1 + i, 1 + (i + 1) % n, 0}, true, {}, 0, {}});
+        pyramid.faces.push_back({{0, 1 + i, 1 + (i + 1) % n}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
     pyramid.solid_vertices = all_vertices(pyramid);
     return pyramid;
