@@ -237,7 +237,8 @@ private:
                 GeometryQuery::Answer answer = query.at(p);
                 candidates[r] += answer.candidates;
                 const Vec3 own = own_normal(r, normal);
-                if (const int side = own == Vec3{} ? 0 : side_of_faces(query, p, own); side != 0)
+                if (const int side = own == Vec3{} ? 0 : query.side_at(p, own, 0.5 * def_.grid.dp);
+                    side != 0)
                     answer.normal = side * on_surface_dp * def_.grid.dp * own;
                 const double size = norm(answer.normal);
                 if (limit > 0 && size > limit)
@@ -272,18 +273,6 @@ private:
         Transform turn = motion_of(*place.block);
         turn.offset = {};
         return turn({n[0], n[1], n[2]});
-    }
-
-    /// 1 where a face through p looks along n, -1 where one looks against it, 0 where none is near.
-    int side_of_faces(const GeometryQuery& query, const Vec3& p, const Vec3& n) const
-    {
-        const double dp = def_.grid.dp;
-        for (const int side : {1, -1})
-        {
-            const Vec3 found = query.at(p - side * 0.5 * dp * n).normal;
-            if (side * dot(found, n) > 0 && norm(found) < dp) return side;
-        }
-        return 0;
     }
 
     /// Particles on a fitted surface that no entry gives a direction.
