@@ -450,7 +450,9 @@ private:
             throw CaseError(def_.file, op_->source.line,
                             fmt::format("<{}>: {}", op_->source.command, e.what()));
         }
-        paint_nodes(free_.draw(points, state().clips, state().mk.mk));
+        const std::vector<Spans> nodes = free_.draw(points, state().clips, state().mk.mk);
+        parallel_for(nodes.size(), threads_,
+                     [&](std::size_t x) { paint_slab(x, nodes[x], state().mk, false); });
     }
 
     void draw_free_lines(const std::vector<std::pair<Vec3, Vec3>>& segments)
