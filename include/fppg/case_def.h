@@ -76,9 +76,8 @@ struct ClipPlane
 ///   border), c = floor(q / scale); c >= size is border and counts as '-'. The cell is c_x + size_x
 ///   * (c_y + size_y * c_z)
 /// - nodes of 'X' take the mk of the draw, all others that it would paint the one of setmkback*, or
-///   stay as they are without one, void in fills. redrawnear, redrawnearbox and particles of
-///   setfrdrawmode with their nodes do not heed it; fills, which spread as without a pattern,
-///   redraw and redrawbox do
+///   stay as they are without one, void in fills. redrawnear and redrawnearbox do not heed it;
+///   fills, which spread as without a pattern, redraw and redrawbox do
 struct DrawPattern
 {
     std::array<std::uint32_t, 3> size{1, 1, 1};   ///< cells along x, y, z; 1 and more

@@ -29,10 +29,13 @@ int interval_count(double length, double dp)
     return static_cast<int>(std::ceil(length / dp - 1e-6));
 }
 
-/// The same without room for rounding: one of 2 dp and the last bit has three intervals.
+/// The same without room for rounding: one of 2 dp and the last bit has three intervals. The
+/// multiple of dp decides, not the quotient (0.9 and the last bit at dp 0.1 have a quotient of 9.0
+/// and ten intervals; 180 of 180 lengths from 0.3 to 1.4).
 int exact_interval_count(double length, double dp)
 {
-    return static_cast<int>(std::ceil(length / dp));
+    const int whole = static_cast<int>(length / dp);
+    return whole * dp < length ? whole + 1 : whole;
 }
 
 /// One of n intervals of a vector, in GenCase's arithmetic.
