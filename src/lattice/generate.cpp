@@ -523,24 +523,35 @@ private:
             else
                 draw_free(
                     [&] {
-                        return free_polygon(free_pieces(op, grid()).at(op.part - insides), grid());
+                        return free_polygon(
+                            free_pieces(op, state().matrix, grid()).at(op.part - insides), grid());
                     });
             return;
         }
         if (fills) paint_region(solid_of(op));
         if (fills && op.solid == SolidKind::Prism)
-            draw_free([&] { return free_dividing_faces(op, grid()); });
+            draw_free([&] { return free_dividing_faces(op, state().matrix, grid()); });
         if (!fills || state().mode == DrawMode::Full)
-            draw_free([&] { return free_faces(op, grid()); });
+            draw_free([&] { return free_faces(op, state().matrix, grid()); });
     }
 
     void draw_free_wire(const FigureOp& op)
     {
         std::vector<std::pair<Vec3, Vec3>> segments;
+        const auto add_sides = [&](const auto& corners)
+        {
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                segments.emplace_back(op.vertices[corners[i]],
+                                      op.vertices[corners[(i + 1) % corners.size()]]);
+        };
         for (const FigureFace& face : op.faces)
-            for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
-                segments.emplace_back(op.vertices[face.vertices[i]],
-                                      op.vertices[face.vertices[(i + 1) % face.vertices.size()]]);
+        {
+            if (!face.is_visible) continue;
+            if (face.triangles.empty() && face.cut.empty())
+                add_sides(face.vertices);
+            else
+                for (const auto& t : face_triangles(op, face)) add_sides(t);
+        }
         draw_free_lines(segments);
     }
 
@@ -636,7 +647,7 @@ private:
     void draw(const SphereOp& op)
     {
         if (is_off_lattice())
-            draw_free([&] { return free_sphere(op, state().mode, grid().dp); });
+            draw_free([&] { return free_sphere(op, state().matrix, state().mode, grid().dp); });
         else
             paint_region(sphere_region(op, state(), grid()));
     }
@@ -746,7 +757,7 @@ private:
         if (state().mode == DrawMode::Wire)
             draw_free_wire(figure);
         else
-            draw_free([&] { return free_faces(figure, grid()); });
+            draw_free([&] { return free_faces(figure, state().matrix, grid()); });
     }
 
     /// The sides of all triangles and quads, as lines.
