@@ -102,6 +102,7 @@ struct DrawState
     bool draw_shapes = true;        ///< setactive drawshapes
     bool normal_invert = false;     ///< setnormalinvert
     bool mk_next_auto = false;      ///< setmknextauto: every part drawn takes the next mk
+    Transform matrix;               ///< the current matrix where off_lattice, else none
 };
 
 /// Where a draw stands in the definition, for messages.

@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/mesh_path.h"
+#include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 
 #include <algorithm>
@@ -213,7 +214,7 @@ private:
             const std::uint32_t a = first + 3 * t;
             const bool is_quad = quad != file.quads.end() && *quad == t;
             if (is_quad) ++quad;
-            if (is_quad && (may_be_bent || is_flat(&file.soup.vertices[3 * std::size_t{t}])))
+            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[3 * std::size_t{t}])))
             {
                 out.polygons.push_back({a, a + 1, a + 2, a + 5});
                 ++t;
@@ -221,14 +222,6 @@ private:
             else
                 out.polygons.push_back({a, a + 1, a + 2});
         }
-    }
-
-    /// Whether the six corners of two triangles lie in one plane, but for the rounding of float.
-    static bool is_flat(const Vec3* corners)
-    {
-        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-        const Vec3 last = corners[5] - corners[0];
-        return std::fabs(dot(normal, last)) <= 1e-5 * norm(normal) * norm(last);
     }
 
     double radius(double r, bool snapped) const
