@@ -320,12 +320,10 @@ bool ProgramRunner::run_clip(const Element& e)
     else if (name == "clipdomain")
     {
         const double resize = std::max(0.0, read_.number_or(e, "resize", 0));
+        const Vec3 low = def_.case_pos_min - Vec3{resize, resize, resize};
+        const Vec3 high = def_.case_pos_max + Vec3{resize, resize, resize};
         for (int axis = 0; axis < 3; ++axis)
         {
-            Vec3 low = def_.case_pos_min;
-            Vec3 high = def_.case_pos_max;
-            low[axis] -= resize;
-            high[axis] += resize;
             Vec3 upwards;
             upwards[axis] = 1;
             add_clip({low, upwards * -1.0});
