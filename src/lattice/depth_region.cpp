@@ -87,7 +87,9 @@ public:
         reach_ = std::isfinite(depth_max_) ? depth_max_ : depth_min_;
         box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
         for (std::size_t t = 0; t < soup.size(); ++t) add_facet(soup, t);
+        if (!std::isfinite(depth_max_)) box_ = mesh_box();
         box_ = intersect(box_, whole_lattice(grid_));
+        for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
     }
 
     const NodeBox& box() const { return box_; }
@@ -161,6 +163,25 @@ public:
     }
 
 private:
+    /// The nodes from that at or below the least coordinates of the facets to that at or below the
+    /// greatest ones.
+    NodeBox mesh_box() const
+    {
+        Box3 box;
+        for (const Facet& f : facets_)
+            for (const Vec3& corner : f.corners) box.add(corner);
+        NodeBox nodes{};
+        for (std::size_t k = 0; k < 3 && !facets_.empty(); ++k)
+        {
+            const int axis = static_cast<int>(k);
+            const auto at_or_below = [&](double x)
+            { return static_cast<std::int64_t>(std::floor((x - grid_.origin[axis]) / grid_.dp)); };
+            nodes.begin[k] = at_or_below(box.min[axis]);
+            nodes.end[k] = at_or_below(box.max[axis]) + 1;
+        }
+        return nodes;
+    }
+
     void add_facet(const TriangleSoup& soup, std::size_t t)
     {
         Facet f;
@@ -183,7 +204,6 @@ private:
             box_.begin[k] = std::min(box_.begin[k], f.reach.begin[k]);
             box_.end[k] = std::max(box_.end[k], f.reach.end[k]);
         }
-        f.reach = intersect(f.reach, whole_lattice(grid_));
         facets_.push_back(f);
     }
 

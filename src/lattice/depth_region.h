@@ -17,7 +17,9 @@ namespace fppg
 /// it
 ///   leaves it; with `reverse` they count from the start until it first leaves, and again from the
 ///   next entry on. A row through an edge of a facet does not cross it
-/// - nodes that count and whose depth is within [depth_min, depth_max] are taken
+/// - nodes that count and whose depth is within [depth_min, depth_max] are taken; where depth_max
+///   is infinite, those from floor(low / dp) to floor(high / dp) of the mesh's box only, which
+///   matters with `reverse` (a ball at 5 places of the lattice)
 ///
 /// cost  O(nodes inside + facets * nodes within reach of a facet)
 SlabRegion depth_region(const TriangleSoup& soup, const MeshFileOp& op, const LatticeGrid& grid,

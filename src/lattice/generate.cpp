@@ -793,29 +793,24 @@ private:
                             fmt::format("<{}>: fppg:fill=\"inside\" is not possible together with "
                                         "<clipdomain>, which opens the surface",
                                         op_->source.command));
-        Box3 box;
+        const Box3 box = clip_box(def_, *op.clip_resize);
         for (int axis = 0; axis < 3; ++axis)
-        {
-            box.min[axis] = def_.case_pos_min[axis] - *op.clip_resize;
-            box.max[axis] = def_.case_pos_max[axis] + *op.clip_resize;
             if (box.min[axis] >= box.max[axis])
                 throw CaseError(
                     def_.file, op_->source.line,
                     fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
                                 "along {}",
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
-        }
         const MeshFile& file = mesh(op);
         draw_points_and_lines(file, op.transform);
-        const FigureOp cut = clip_to_box(moved_soup(file.soup, op.transform), box);
+        const FigureOp cut =
+            clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
         draw(cut);
         if (!op.autofill) return;
         TriangleSoup soup;
         for (const FigureFace& face : cut.faces)
-            for (std::size_t i = 2; i < face.vertices.size(); ++i)
-                for (const std::uint32_t v :
-                     {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
-                    soup.vertices.push_back(cut.vertices[v]);
+            for (const auto& triangle : face_triangles(cut, face))
+                for (const std::size_t v : triangle) soup.vertices.push_back(cut.vertices[v]);
         MeshFile placed;
         for (const Vec3& p : file.points) placed.points.push_back(op.transform(p));
         for (std::vector<Vec3> line : file.lines)

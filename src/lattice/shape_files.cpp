@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/mesh_path.h"
+#include "lattice/domain_clip.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 
@@ -203,6 +204,24 @@ private:
                 out.polygons.push_back({before, next});
                 before = next;
             }
+        }
+        if (op.clip_resize && !op.advanced)
+        {
+            const auto first = static_cast<std::uint32_t>(out.vertices.size());
+            const FigureOp cut = clip_to_box(file, op.transform, clip_box(def_, *op.clip_resize),
+                                             op.reading.format != MeshFormat::Stl);
+            for (const Vec3& v : cut.vertices) out.vertices.push_back(place(v, snapped));
+            const auto add_polygon = [&](const auto& corners)
+            {
+                auto& polygon = out.polygons.emplace_back();
+                for (const std::uint32_t v : corners) polygon.push_back(first + v);
+            };
+            for (const FigureFace& face : cut.faces)
+            {
+                if (face.triangles.empty()) add_polygon(face.vertices);
+                for (const auto& triangle : face.triangles) add_polygon(triangle);
+            }
+            return;
         }
         const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry &&
                                  op.reading.format != MeshFormat::CsvBathymetry;
