@@ -180,6 +180,7 @@ struct CylinderOp
     Vec3 p1;
     double radius = 0;
     std::array<bool, 3> is_visible{true, true, true};
+    /// Radius and visible covers move outwards by each; without the tube the radius stays.
     std::vector<double> layers_dp;
 };
 

@@ -127,6 +127,12 @@ private:
         // Sections that this program writes itself are left out, so that a generated Case.xml is a
         // valid definition again.
         const std::set<std::string> own{"particles", "constants", "uservars", "motion", "vtkout"};
+        int blocks = 0;
+        for (const Element& e : execution->children)
+            if (e.kind == Element::Kind::Tag && e.name == "parameters" && ++blocks > 2)
+                // GenCase joins the second with the first and leaves the others, which
+                // DualSPHysics does not read.
+                read_.fail(e, "there are more than two of it in <execution>, expected one");
         for (const Element& e : execution->children)
             if (e.kind == Element::Kind::Comment || !own.contains(e.name))
                 def_.execution.push_back(e);

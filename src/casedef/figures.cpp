@@ -224,24 +224,28 @@ std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& 
                                    bool is_closed, double distance)
 {
     const std::size_t n = points.size();
-    // The side from each point to the next.
+    // The side from each point to the next, and across it.
+    std::vector<Vec3> sides(n);
     std::vector<Vec3> normals(n);
     for (std::size_t i = 0; i < n; ++i)
     {
-        const Vec3 normal = cross(points[(i + 1) % n] - points[i], extrude);
+        sides[i] = points[(i + 1) % n] - points[i];
+        const Vec3 normal = cross(sides[i], extrude);
         const double length = norm(normal);
         if (length > 0) normals[i] = normal / length;
     }
     std::vector<Vec3> out = points;
     for (std::size_t i = 0; i < n; ++i)
     {
-        const bool is_first = !is_closed && i == 0;
         const bool is_last = !is_closed && i + 1 == n;
-        const Vec3& before = is_first ? normals[i] : normals[(i + n - 1) % n];
-        const Vec3& after = is_last ? before : normals[i];
-        const double sum = 1 + dot(before, after);
-        // A side that turns back on itself has no corner.
-        if (sum > 1e-9) out[i] = points[i] + (before + after) * (distance / sum);
+        const Vec3& normal = normals[is_last ? i - 1 : i];
+        out[i] = points[i] + normal * distance;
+        if (is_last || (!is_closed && i == 0)) continue;
+        const Vec3& before = normals[(i + n - 1) % n];
+        const double rise = dot(sides[i], before);
+        // Sides of one plane, or one that turns back on itself, have no corner.
+        if (std::fabs(rise) <= 1e-9 * norm(sides[i])) continue;
+        out[i] = out[i] + sides[i] * (distance * (1 - dot(normal, before)) / rise);
     }
     return out;
 }

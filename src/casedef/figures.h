@@ -47,9 +47,9 @@ FigureOp make_polygon(const std::vector<Vec3>& points);
 /// plane y = 0, the given one, sides in the order of the points (rule S9).
 FigureOp make_beach(const std::vector<Vec3>& points);
 /// The polyline whose swept quads lie `distance` beside those of the given one, on the side of
-/// direction x extrude; corners lie where the shifted sides meet, open ends straight beside the old
-/// ones (rule S8, found by experiment with GenCase v5.4.354; where the polyline does not lie in a
-/// plane across `extrude`, GenCase puts the layers elsewhere).
+/// direction x extrude (rule S8). Open ends lie straight beside the old ones; a corner is where the
+/// shifted side that starts at it meets the plane of the shifted quad before (5 slanted polylines
+/// drawn free by GenCase v5.4.354, to the last bits).
 std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
                                    bool is_closed, double distance);
 /// Quads that a polyline sweeps along `extrude`.

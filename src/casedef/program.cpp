@@ -19,7 +19,11 @@ constexpr std::size_t max_commands = 10'000'000;
 
 ProgramRunner::ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read,
                              PatternTable patterns)
-    : def_(def), variables_(variables), read_(read), patterns_(std::move(patterns))
+    : def_(def),
+      variables_(variables),
+      read_(read),
+      patterns_(std::move(patterns)),
+      line_begin_(def.case_pos_min)
 {
 }
 
@@ -65,6 +69,10 @@ void ProgramRunner::run_command(const Element& e)
         read_.fail(e, "is not a command, see the templates for what can stand in a list");
     if (!read_.is_active(e)) return;
     count_command(e);
+    for (const Element& child : e.children)
+        if (child.kind == Element::Kind::Tag && !child.name.starts_with('_') &&
+            !child.name.starts_with("fppg:") && !may_have_child(e.name, child.name))
+            read_.fail(child, fmt::format("<{}> has no such element", e.name));
     if (!run_state_command(e) && !run_transform(e) && !run_clip(e) &&
         !variables_.run(e, def_.list_log) && !run_flow_command(e) && !run_draw(e) &&
         !run_fill_or_redraw(e))
@@ -193,7 +201,7 @@ void ProgramRunner::shape_out(const Element& e)
     std::string format = read_.text_or(e, "format", "vtk");
     for (char& c : format) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     ShapeOutOp op;
-    op.file = read_.interpolated(e, read_.text(e, "file"));
+    op.file = read_.text(e, "file");
     if (format == "vtp")
         op.format = ShapeFormat::Vtp;
     else if (format == "vtu")

@@ -71,7 +71,13 @@ private:
     FigureOp figure_of(const Element& e) const;
     BoxRegion box_of(const Element& e) const;
     BoxLimits limits_of(const Element& e, bool with_limits) const;
+    /// throws CaseError where it is missing
+    bool flag_of(const Element& e, std::string_view name) const;
     std::vector<double> layers_of(const Element& e) const;
+    /// throws CaseError where it is not above 0
+    double radius_of(const Element& e) const;
+    /// throws CaseError for a layer without a radius
+    void check_layers(const Element& e, double radius, const std::vector<double>& layers) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;
     std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute,
@@ -97,6 +103,9 @@ private:
     Transform matrix_;
     std::vector<ClipPlane> defined_clips_; ///< as written
     Transform clip_matrix_;                ///< of the last transform that found a clip
+    /// Where `drawlineto` begins, before the matrix: at first and after `resetdraw` <pointmin>,
+    /// then the last place of setlinebegin, drawline, drawlines, drawlineto (14 cases in GenCase
+    /// v5.0).
     Vec3 line_begin_;
     std::vector<DrawState> saved_states_; ///< without mks, pattern, constants, clips
     std::vector<Transform> saved_matrices_;

@@ -84,12 +84,18 @@ BoxLimits ProgramRunner::limits_of(const Element& e, bool with_limits) const
     return BoxRegion{matrix_(box.corner0), matrix_(box.corner1)};
 }
 
+bool ProgramRunner::flag_of(const Element& e, std::string_view name) const
+{
+    read_.text(e, name);
+    return read_.flag_or(e, name, false);
+}
+
 std::vector<double> ProgramRunner::layers_of(const Element& e) const
 {
     std::vector<double> out;
     const Element* layers = e.find_child("layers");
     if (layers == nullptr) return out;
-    std::string list = read_.text(*layers, "vdp");
+    const std::string list = read_.text_or(*layers, "vdp", "");
     std::size_t begin = 0;
     while (begin <= list.size())
     {
@@ -97,6 +103,8 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
         std::string part = list.substr(begin, end - begin);
         // A star behind the number changes no node (semantics-2, section 23).
         std::erase_if(part, [](char c) { return c == ' ' || c == '\t' || c == '*'; });
+        begin = end + 1;
+        if (part.empty()) continue;
         double value = 0;
         const char* first = part.data() + (!part.empty() && part[0] == '+' ? 1 : 0);
         const auto [stop, error] = std::from_chars(first, part.data() + part.size(), value);
@@ -105,9 +113,25 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
                 *layers,
                 fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
         out.push_back(value);
-        begin = end + 1;
     }
     return out;
+}
+
+double ProgramRunner::radius_of(const Element& e) const
+{
+    const double radius = read_.number(e, "radius");
+    if (!(radius > 0)) read_.fail(e, fmt::format("radius is {:g}, expected above 0", radius));
+    return radius;
+}
+
+void ProgramRunner::check_layers(const Element& e, double radius,
+                                 const std::vector<double>& layers) const
+{
+    for (const double layer : layers)
+        if (!(radius + layer * def_.grid.dp > 0))
+            read_.fail(*e.find_child("layers"),
+                       fmt::format("layer {:g} leaves a radius of {:g}, expected above 0", layer,
+                                   radius + layer * def_.grid.dp));
 }
 
 std::vector<int> ProgramRunner::mask_of(const Element& e) const
@@ -124,7 +148,7 @@ std::vector<int> ProgramRunner::mask_of(const Element& e) const
         std::erase_if(part, [](char c) { return c == ' ' || c == '\t'; });
         int value = 0;
         const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-        if (error != std::errc() || stop != part.data() + part.size() || value < 0)
+        if (error != std::errc() || stop != part.data() + part.size())
             read_.fail(
                 e, fmt::format(
                        "mask=\"{}\" is invalid, expected face numbers like \"1 | 3\" or a bit mask",
@@ -160,10 +184,14 @@ void ProgramRunner::draw_box(const Element& e)
     const Vec3 corner = read_.child_vec3(e, "point");
     const Element* end = e.find_child("endpoint");
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
-    for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers_of(e), def_.grid.dp))
-        add_figure(e, std::move(figure));
+    std::vector<double> layers = layers_of(e);
     // GenCase leaves one mk out after every box but one that is a block of free particles.
-    const bool is_free_block = state_.off_lattice && is_solid && layers_of(e).empty();
+    const bool is_free_block = state_.off_lattice && is_solid && layers.empty();
+    // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in
+    // face mode the others leave no shell).
+    if (is_solid && !layers.empty()) layers = {*std::max_element(layers.begin(), layers.end())};
+    for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers, def_.grid.dp))
+        add_figure(e, std::move(figure));
     if (state_.mk_next_auto && state_.mk.kind != MkKind::Void && !is_free_block)
     {
         ++state_.mk.mk;
@@ -203,19 +231,20 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawpoints")
         add(e, PointsOp{transformed_points(e, 2, many)});
     else if (name == "setlinebegin")
-        line_begin_ = matrix_(read_.vec3(e));
+        line_begin_ = read_.vec3(e);
     else if (name == "drawlineto")
     {
-        const Vec3 end = matrix_(read_.vec3(e));
-        add(e, LinesOp{{{line_begin_, end}}});
+        const Vec3 end = read_.vec3(e);
+        add(e, LinesOp{{{matrix_(line_begin_), matrix_(end)}}});
         line_begin_ = end;
     }
     else if (name == "drawline" || name == "drawlines")
     {
-        const std::vector<Vec3> points = transformed_points(e, 2, name == "drawline" ? 2 : many);
+        const std::vector<Vec3> points = points_of(e, 2, name == "drawline" ? 2 : many);
         LinesOp op;
         for (std::size_t i = 1; i < points.size(); ++i)
-            op.segments.emplace_back(points[i - 1], points[i]);
+            op.segments.emplace_back(matrix_(points[i - 1]), matrix_(points[i]));
+        line_begin_ = points.back();
         add(e, std::move(op));
     }
     else if (name == "drawtriangle" || name == "drawquadri")
@@ -280,7 +309,7 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawextrude")
     {
         const Vec3 extrude = read_.child_vec3(e, "extrude");
-        const bool is_closed = read_.flag_or(e, "closed", false);
+        const bool is_closed = flag_of(e, "closed");
         const std::vector<double> layers = layers_of(e);
         const std::vector<Vec3> points = points_of(e, 2, many);
         for (const double layer : layers)
@@ -292,7 +321,7 @@ bool ProgramRunner::run_draw(const Element& e)
     else if (name == "drawsphere")
     {
         const Vec3 center = transformed_points(e, 1, 1)[0];
-        const double radius = read_.number(e, "radius");
+        const double radius = radius_of(e);
         if (state_.mode == DrawMode::Wire)
         {
             // The wire of a sphere is that of the solid box around it (24 of 24 spheres in GenCase
@@ -302,7 +331,12 @@ bool ProgramRunner::run_draw(const Element& e)
                             {}, def_.grid.dp)[0]);
         }
         else
-            add(e, SphereOp{center, radius, layers_of(e)});
+        {
+            // Free spheres without a radius are a point.
+            const std::vector<double> layers = layers_of(e);
+            if (!state_.off_lattice) check_layers(e, radius, layers);
+            add(e, SphereOp{center, radius, layers});
+        }
     }
     else if (name == "drawcylinder")
     {
@@ -310,10 +344,11 @@ bool ProgramRunner::run_draw(const Element& e)
             read_.fail(
                 e, "draw mode wire is not possible for a cylinder, expected face, solid or full");
         const std::vector<Vec3> points = transformed_points(e, 2, 2);
-        CylinderOp op{
-            points[0], points[1], read_.number(e, "radius"), {true, true, true}, layers_of(e)};
+        CylinderOp op{points[0], points[1], radius_of(e), {true, true, true}, layers_of(e)};
         for (const int face : mask_of(e))
             if (face >= 1 && face <= 3) op.is_visible[static_cast<std::size_t>(face - 1)] = false;
+        // On the lattice such a layer draws no tube.
+        if (state_.off_lattice && op.is_visible[2]) check_layers(e, op.radius, op.layers_dp);
         add(e, std::move(op));
     }
     else if (name == "drawellipsoid")

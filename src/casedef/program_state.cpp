@@ -93,7 +93,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "setmknextbound")
         next_mk(MkKind::Bound);
     else if (name == "setmknextauto")
-        state_.mk_next_auto = read_.flag_or(e, "auto", true);
+        state_.mk_next_auto = flag_of(e, "auto");
     else if (name == "setdrawmode")
     {
         const std::string& mode = read_.text(e, "mode");
@@ -117,11 +117,17 @@ bool ProgramRunner::run_state_command(const Element& e)
         state_.box_limit_full = mode == "full";
     }
     else if (name == "setfrdrawmode")
-        state_.off_lattice = read_.flag_or(e, "auto", false);
+        state_.off_lattice = flag_of(e, "auto");
     else if (name == "setnormalinvert")
-        state_.normal_invert = read_.flag_or(e, "invert", true);
+        state_.normal_invert = flag_of(e, "invert");
     else if (name == "setactive")
     {
+        for (const Element::Attribute& a : e.attributes)
+            if (a.name != "drawpoints" && a.name != "drawshapes" && a.name != "vtkout" &&
+                a.name != "if" && !a.name.starts_with('_') && !a.name.starts_with("fppg:"))
+                read_.fail(e, fmt::format("attribute '{}' is not known, expected drawpoints or "
+                                          "drawshapes",
+                                          a.name));
         state_.draw_points = read_.flag_or(e, "drawpoints", state_.draw_points);
         state_.draw_shapes = read_.flag_or(e, "drawshapes", state_.draw_shapes);
     }
@@ -190,6 +196,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "resetdraw")
     {
         add(e, ResetOp{});
+        line_begin_ = def_.case_pos_min;
         auto pattern = std::move(state_.pattern);
         state_ = {};
         state_.pattern = std::move(pattern);
@@ -265,16 +272,16 @@ bool ProgramRunner::run_transform(const Element& e)
     }
     else if (name == "rotateadv")
     {
-        const std::string axes = read_.text_or(e, "axes", "XYZ");
+        const std::string axes = read_.text(e, "axes");
         const auto is_axis = [](char c) { return c >= 'X' && c <= 'Z'; };
         if (axes.size() != 3 || !std::all_of(axes.begin(), axes.end(), is_axis))
             read_.fail(e, fmt::format("axes \"{}\" is invalid, expected three of X, Y, Z", axes));
         std::array<Transform, 3> turns;
         const std::array<const char*, 3> names{"ang1", "ang2", "ang3"};
         for (std::size_t i = 0; i < 3; ++i)
-            turns[i] = rotation_about_axis(axes[i] - 'X', radians(read_.number_or(e, names[i], 0)));
-        const Transform t = read_.flag_or(e, "intrinsic", true) ? turns[0] * turns[1] * turns[2]
-                                                                : turns[2] * turns[1] * turns[0];
+            turns[i] = rotation_about_axis(axes[i] - 'X', radians(read_.number(e, names[i])));
+        const Transform t = flag_of(e, "intrinsic") ? turns[0] * turns[1] * turns[2]
+                                                    : turns[2] * turns[1] * turns[0];
         const Element* center = e.find_child("center");
         matrix_ = matrix_ * (center != nullptr ? around(read_.vec3(*center), t) : t);
     }

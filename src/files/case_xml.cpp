@@ -435,10 +435,18 @@ void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& p
     if (uses_own_prefix(def.casedef)) root.attributes.push_back({"xmlns:fppg", "urn:fppg"});
     root.children.push_back(def.casedef);
     Element execution = tag("execution");
+    // As with GenCase v5.4 the content of a second block stands before that of the first, whose
+    // values so win in DualSPHysics.
     for (const Element& child : def.execution)
-        execution.children.push_back(child.kind == Element::Kind::Tag && child.name == "parameters"
-                                         ? case_parameters(child)
-                                         : child);
+    {
+        if (child.kind != Element::Kind::Tag || child.name != "parameters")
+            execution.children.push_back(child);
+        else if (Element* first = execution.find_child("parameters"))
+            first->children.insert(first->children.begin(), child.children.begin(),
+                                   child.children.end());
+        else
+            execution.children.push_back(case_parameters(child));
+    }
     if (def.vres.is_active())
         if (const auto domain = zone_domain_tag(def))
             set_domain(*execution.find_child("parameters"), *domain);

@@ -121,11 +121,19 @@ void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderP
     const Vec3 step = interval(whole, discs);
     const Vec3 first = ring_start(axis);
     const Vec3 second = cross(axis, first);
+    // Rings too small for two particles are one on the axis (36 cylinders of a radius from 0.05 to
+    // 0.8 dp in GenCase v5.4).
+    const bool is_line = radius <= nearest_dp * dp;
     for (int d = 0; d <= discs; ++d)
     {
         const bool is_end = d == 0 || d == discs;
         const bool has_cover = (d == 0 && parts.faces[0]) || (d == discs && parts.faces[1]);
         const Vec3 center = p0 + step * static_cast<double>(d);
+        if (is_line)
+        {
+            if (has_cover || parts.faces[2]) out.push_back(center);
+            continue;
+        }
         if (has_cover || parts.has_axis) out.push_back(center);
         for (int k = 1; k <= rings; ++k)
             if (has_cover || (k == rings ? parts.faces[2] : parts.has_inside && !is_end))
@@ -365,7 +373,8 @@ std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
     {
         const Vec3 away = axis * (layer * dp);
         add_cylinder(op.is_visible[0] ? op.p0 - away : op.p0,
-                     op.is_visible[1] ? op.p1 + away : op.p1, op.radius + layer * dp,
+                     op.is_visible[1] ? op.p1 + away : op.p1,
+                     op.is_visible[2] ? op.radius + layer * dp : op.radius,
                      {op.is_visible, false, false}, dp, out);
     }
     if (!op.layers_dp.empty()) return out;

@@ -177,7 +177,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
             Body body{snap(cylinder.is_visible[0] ? cylinder.p0 - u * shift : cylinder.p0, grid),
                       snap(cylinder.is_visible[1] ? cylinder.p1 + u * shift : cylinder.p1, grid),
                       {}};
-            add_faces(body, cylinder.radius + shift);
+            // Without its tube a cylinder keeps its radius in every layer (30 in GenCase v5.4).
+            add_faces(body, cylinder.is_visible[2] ? cylinder.radius + shift : cylinder.radius);
             bodies.push_back(body);
         }
     }

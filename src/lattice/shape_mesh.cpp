@@ -177,7 +177,8 @@ private:
             const Vec3 shift = u * (layer * dp_);
             const Vec3 p0 = op.is_visible[0] ? op.p0 - shift : op.p0;
             const Vec3 p1 = op.is_visible[1] ? op.p1 + shift : op.p1;
-            meshes_.push_back(cylinder_mesh(p0, p1, op.radius + layer * dp_, op.is_visible, dp_));
+            const double radius = op.is_visible[2] ? op.radius + layer * dp_ : op.radius;
+            meshes_.push_back(cylinder_mesh(p0, p1, radius, op.is_visible, dp_));
         }
         if (!op.layers_dp.empty()) return;
         meshes_.push_back(cylinder_mesh(op.p0, op.p1, op.radius, op.is_visible, dp_));

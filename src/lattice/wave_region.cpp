@@ -11,12 +11,14 @@ namespace fppg
 SlabRegion wave_region(const WaveOp& wave, const LatticeGrid& grid)
 {
     const Node low = snap(wave.corner, grid);
+    // The size counts from the corner's node (40 sizes of whole and a half dp in GenCase v5.0).
+    const Node high = snap(position(low, grid) + wave.size, grid);
     NodeBox box;
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto k = static_cast<std::size_t>(axis);
         box.begin[k] = low[axis];
-        box.end[k] = low[axis] + snap(wave.size[axis], 0, grid.dp) + 1;
+        box.end[k] = high[axis] + 1;
     }
     box = intersect(box, whole_lattice(grid));
     if (box.is_empty()) return {};

@@ -200,9 +200,20 @@ INSTANTIATE_TEST_SUITE_P(
                     "<fillpoint>: modefill \"air\" is invalid"),
         in_mainlist("BadNearType", R"(<redrawnear targettp="air" bordertp="bound" />)",
                     "<redrawnear>: attribute targettp=\"air\" is invalid"),
+        in_mainlist(
+            "UnknownChild",
+            R"(<drawellipsoid radius="1"><point x="0" y="0" z="0" /><layers vdp="1" /></drawellipsoid>)",
+            "<layers>: <drawellipsoid> has no such element"),
+        in_mainlist("UnknownActivity", R"(<setactive drawlines="0" />)",
+                    "<setactive>: attribute 'drawlines' is not known"),
+        in_mainlist(
+            "UnsaidClosing",
+            R"(<drawextrude><extrude x="0" y="0" z="1" /><point x="0" y="0" z="0" /></drawextrude>)",
+            "<drawextrude>: attribute 'closed' is missing"),
         in_mainlist("NoRotationAxis", R"(<rotate ang="10" x="0" y="0" z="0" />)",
                     "<rotate>: the axis (x, y, z) is zero"),
-        in_mainlist("BadRotationAxes", R"(<rotateadv axes="XYQ" ang1="1" />)",
+        in_mainlist("BadRotationAxes",
+                    R"(<rotateadv axes="XYQ" ang1="1" ang2="0" ang3="0" intrinsic="true" />)",
                     "<rotateadv>: axes \"XYQ\" is invalid"),
         in_mainlist(
             "NoClipNormal",
@@ -616,12 +627,12 @@ TEST(Transforms, RotateadvTurnsAboutItsCentreInTheOrderOfItsAxes)
 {
     expect_near(
         moved(
-            R"(<rotateadv ang1="90" ang2="0" ang3="0" axes="XYZ"><center x="1" y="2" z="0" /></rotateadv>)"),
+            R"(<rotateadv ang1="90" ang2="0" ang3="0" axes="XYZ" intrinsic="true"><center x="1" y="2" z="0" /></rotateadv>)"),
         {1, -1, 0});
     const Vec3 intrinsic =
-        moved(R"(<rotateadv ang1="90" ang2="90" axes="XYZ" intrinsic="true" />)");
+        moved(R"(<rotateadv ang1="90" ang2="90" ang3="0" axes="XYZ" intrinsic="true" />)");
     const Vec3 extrinsic =
-        moved(R"(<rotateadv ang1="90" ang2="90" axes="XYZ" intrinsic="false" />)");
+        moved(R"(<rotateadv ang1="90" ang2="90" ang3="0" axes="XYZ" intrinsic="false" />)");
     expect_near(intrinsic, {3, 1, 2});
     expect_near(extrinsic, {2, -3, -1});
 }

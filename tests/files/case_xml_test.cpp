@@ -141,19 +141,30 @@ TEST(WriteCaseXml, KeepsTheYOfATwoDimensionalCaseExactly)
 
 TEST(WriteCaseXml, CompletesTheSimulationDomain)
 {
-    SmallCase small;
-    small.def.execution = {parse("<parameters/>"),
-                           parse("<parameters><simulationdomain><posmin x=\"0.5\"/>"
-                                 "</simulationdomain></parameters>")};
-    const Element execution = small.execution();
-    for (const int i : {0, 1})
+    for (const std::string given : {"", "<simulationdomain><posmin x=\"0.5\"/></simulationdomain>"})
     {
-        const Element* domain =
-            execution.children.at(static_cast<std::size_t>(i)).find_child("simulationdomain");
+        SmallCase small;
+        small.def.execution = {parse("<parameters>" + given + "</parameters>")};
+        const Element execution = small.execution();
+        const Element* domain = execution.children.at(0).find_child("simulationdomain");
         ASSERT_NE(domain, nullptr);
-        EXPECT_EQ(*domain->find_child("posmin")->find_attribute("x"), i == 0 ? "default" : "0.5");
+        EXPECT_EQ(*domain->find_child("posmin")->find_attribute("x"),
+                  given.empty() ? "default" : "0.5");
         EXPECT_EQ(*domain->find_child("posmax")->find_attribute("z"), "default");
     }
+}
+
+TEST(WriteCaseXml, PutsASecondBlockOfParametersBeforeTheFirst)
+{
+    SmallCase small;
+    small.def.execution = {parse("<parameters><parameter key=\"A\" value=\"1\"/></parameters>"),
+                           parse("<parameters><parameter key=\"B\" value=\"2\"/></parameters>")};
+    const Element execution = small.execution();
+    const Element& joined = execution.children.at(0);
+    EXPECT_EQ(execution.children.at(1).name, "particles");
+    ASSERT_EQ(joined.children.size(), 3u);
+    EXPECT_EQ(*joined.children[0].find_attribute("key"), "B");
+    EXPECT_EQ(*joined.children[1].find_attribute("key"), "A");
 }
 
 TEST(WriteCaseXml, MarksDeprecatedParametersAndJoinsRepeatedOnes)

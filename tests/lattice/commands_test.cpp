@@ -185,6 +185,63 @@ TEST(Extrusion, HasLayersBesideItsPolyline)
     EXPECT_EQ(nodes_of(extrusion("true", "1")), (Counts{{10, 63}}));
 }
 
+// The numbers from here to the wave are those of GenCase v5.4.354.
+TEST(Extrusion, HasLayersBesideASlantedPolyline)
+{
+    EXPECT_EQ(
+        nodes_of(
+            R"(<drawextrude closed="false"><point x="0" y="0" z="0" /><point x="0.5" y="0" z="0.1" />)"
+            R"(<point x="0.6" y="0" z="0.9" /><extrude x="-0.4" y="0.6" z="0.2" /><layers vdp="2" /></drawextrude>)"),
+        (Counts{{10, 120}}));
+}
+
+TEST(LineTo, BeginsInTheCornerOfTheDomainOrWhereTheLastLineEnds)
+{
+    EXPECT_EQ(nodes_of(R"(<drawlineto x="0" y="0" z="0.5" />)"), (Counts{{10, 16}}));
+    EXPECT_EQ(
+        nodes_of(R"(<drawline><point x="0" y="0" z="0" /><point x="0.5" y="0" z="0" /></drawline>)"
+                 R"(<move x="0" y="0" z="0.2" /><drawlineto x="0.5" y="0.3" z="0" />)"),
+        (Counts{{10, 10}}));
+    EXPECT_EQ(nodes_of(R"(<setlinebegin x="1" y="0" z="0" /><resetdraw /><setmkbound mk="0" />)"
+                       R"(<drawlineto x="-0.5" y="0.3" z="-0.5" />)"),
+              (Counts{{10, 9}}));
+}
+
+TEST(Box, HasTheOutermostLayerAloneWhereItIsSolid)
+{
+    EXPECT_EQ(
+        nodes_of(
+            R"(<setdrawmode mode="face" /><drawbox><boxfill>solid</boxfill><layers vdp="2,0,-1" />)"
+            R"(<point x="0" y="0" z="0" /><size x="0.5" y="0.5" z="0.5" /></drawbox>)"),
+        (Counts{{10, 488}}));
+}
+
+TEST(Cylinder, KeepsItsRadiusInLayersWithoutItsTube)
+{
+    EXPECT_EQ(nodes_of(R"(<drawcylinder radius="0.3" mask="1 | 3"><point x="0" y="0" z="0" />)"
+                       R"(<point x="0" y="0" z="0.5" /><layers vdp="-2,1" /></drawcylinder>)"),
+              (Counts{{10, 54}}));
+}
+
+std::string sphere(const std::string& layers)
+{
+    return R"(<drawsphere radius="0.3"><point x="0.5" y="0.5" z="0.5" /><layers vdp=")" + layers +
+           R"(" /></drawsphere>)";
+}
+
+TEST(Layers, MayLeavePlacesInTheirListEmpty)
+{
+    EXPECT_EQ(nodes_of(sphere("1,")), (Counts{{10, 266}}));
+    EXPECT_EQ(nodes_of(sphere("")), (Counts{{10, 179}}));
+}
+
+TEST(Layers, OfASphereNeedARadius)
+{
+    EXPECT_THROW(nodes_of(sphere("1,-3")), CaseError);
+    EXPECT_THROW(nodes_of(R"(<drawsphere radius="0"><point x="0" y="0" z="0" /></drawsphere>)"),
+                 CaseError);
+}
+
 const std::string wave =
     R"(<drawwave depth="0.4" hmaxwave="0.2" x0="0.5" z0="0"><point x="-0.3" y="0.1" z="0.1" />)"
     R"(<size x="1.5" y="0.1" z="0.7" /></drawwave>)";
