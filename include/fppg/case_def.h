@@ -206,6 +206,7 @@ struct MeshFileOp
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
     bool reverse = false;
+    bool any_depth = false;   ///< advanced together with autofill and without limits of the depth
     double depth_min = 0;     ///< metres
     double depth_max = 0;     ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
