@@ -775,9 +775,38 @@ def basin(length=0.5, width=0.1, height=0.24, bottom=0.06, swing=0.04, wall=0.04
     return mesh
 
 
+def hull(length=0.6, beam=0.24, depth=0.14, deadrise=0.03, bow=0.6, rake=0.08, sections=24):
+    """A boat along x, bow at +x, with a keel, two chines and a flat deck; its lowest point is z = 0.
+
+    deadrise  height of the chines over the keel, at the stern
+    bow       part of the length in which the sides run together
+    rake      of the stem, how far the deck reaches over it
+    """
+    mesh, rows = Mesh(), []
+    for i in range(sections + 1):
+        t = i / sections
+        s = max(0.0, (t - 1 + bow) / bow)
+        half = beam / 2 * (1 - s ** 2)
+        rise = 0.6 * depth
+        keel, chine = rise * s ** 3, deadrise + (rise - deadrise) * s ** 2
+        row = []
+        for y, z in ((0, keel), (0.85 * half, chine), (half, depth), (-half, depth),
+                     (-0.85 * half, chine)):
+            row.append(mesh.vertex(length * (t - 0.5) - rake * s ** 2 * (1 - z / depth), y, z))
+        rows.append(row)
+    for low, high in zip(rows, rows[1:]):
+        for i in range(5):
+            k = (i + 1) % 5
+            mesh.quad(low[i], low[k], high[k], high[i])
+    for i in range(1, 4):
+        mesh.triangle(rows[0][0], rows[0][i + 1], rows[0][i])
+    return mesh
+
+
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
                                   vehicle_body, housing, gearbox_case, lid, shaft, bearing,
-                                  road_wheel, estate_body, estate_panels, pipe_bend, impeller, basin)}
+                                  road_wheel, estate_body, estate_panels, pipe_bend, impeller, basin,
+                                  hull)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -804,6 +833,7 @@ CASE_MESHES = (
     ("pipe/pipe.stl", "pipe_bend", {}),
     ("stirred/impeller.stl", "impeller", {}),
     ("rest/basin.stl", "basin", {}),
+    ("floating/hull.stl", "hull", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.

@@ -102,6 +102,7 @@ struct DrawState
     bool draw_shapes = true;        ///< setactive drawshapes
     bool normal_invert = false;     ///< setnormalinvert
     bool mk_next_auto = false;      ///< setmknextauto: every part drawn takes the next mk
+    Transform matrix;               ///< the current matrix where off_lattice, else none
 };
 
 /// Where a draw stands in the definition, for messages.
@@ -205,6 +206,7 @@ struct MeshFileOp
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
     bool reverse = false;
+    bool any_depth = false;   ///< advanced together with autofill and without limits of the depth
     double depth_min = 0;     ///< metres
     double depth_max = 0;     ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood

@@ -18,6 +18,13 @@ struct TriangleSoup
     std::size_t size() const { return vertices.size() / 3; }
 };
 
+/// A polygon of five or more corners of a mesh file, which is drawn as the triangles of its ears.
+struct WidePolygon
+{
+    std::uint32_t first = 0;   ///< its first facet; it has two less than corners, in a row
+    std::vector<Vec3> corners; ///< five or more
+};
+
 /// A mesh file read, with what a reader noticed on the way.
 struct MeshFile
 {
@@ -27,8 +34,9 @@ struct MeshFile
     /// Facets that are the first half (0, 1, 2) of a quad whose second half (0, 2, 3) is the facet
     /// after it; ascending.
     std::vector<std::uint32_t> quads;
-    std::vector<Vec3> points;             ///< single points, in the order of the file
-    std::vector<std::vector<Vec3>> lines; ///< polylines of two or more points
+    std::vector<WidePolygon> wide_polygons; ///< by ascending first facet
+    std::vector<Vec3> points;               ///< single points, in the order of the file
+    std::vector<std::vector<Vec3>> lines;   ///< polylines of two or more points
 };
 
 } // namespace fppg

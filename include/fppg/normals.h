@@ -98,6 +98,11 @@ struct NormalsReport
 /// The normals of the boundary particles for mDBC: the vector from the particle to the boundary's
 /// surface, zero where there is none.
 ///
+/// A particle that a fit put on a surface has no distance to it. It gets the exact normal of the
+/// surface there (FreeParticles::normals), 0.01 dp long, towards the side to which the faces of
+/// norgeometry look that pass within 0.5 dp of it; where there are none, what norgeometry finds,
+/// and outwards where no entry gives it a direction.
+///
 /// def        its `normals` are active
 /// particles  at their places after `<initials>`
 /// geometry   the polygons of def.normals.geometry's file; not used without

@@ -12,13 +12,13 @@
 
 #include "app/floating_log.h"
 #include "app/motion_check.h"
+#include "app/particle_log.h"
 #include "app/relax_stage.h"
+#include "app/result_files.h"
 #include "app/run_log.h"
 #include "app/stage_bar.h"
-#include "app/stop_signals.h"
 #include "app/stopwatch.h"
 #include "app/templates_command.h"
-#include "app/thousands.h"
 #include "app/threads.h"
 
 #include <fmt/chrono.h>
@@ -30,7 +30,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <string_view>
@@ -102,9 +101,8 @@ public:
             fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), threads_));
         log_.line();
         log_.line("Finished execution (code=0).");
-        output_ = options_.output;
-        add_file(".out").append(log_.text());
-        commit();
+        files_.add(options_.output + ".out").append(log_.text());
+        files_.commit(options_.save_three_vtk);
         log_.finished(total.seconds(), {{"particles", particles_.np},
                                         {"fixed", particles_.n_fixed},
                                         {"moving", particles_.n_moving},
@@ -123,22 +121,12 @@ private:
         save();
     }
 
-    /// What the summary of the zones says of one.
-    struct ZoneSummary
-    {
-        double dp = 0;
-        int parent = -1;
-        std::array<std::uint64_t, 4> counts{}; ///< fluid, fixed, moving, floating
-        Box3 limits;                           ///< of its particles
-        CaseConstants constants;
-    };
-
     /// Zone 0 of a case with `<vres>` is made; the others follow, each a case of its own.
     void make_other_zones()
     {
         if (!def_.vres.is_active()) return;
         const VresDef vres = def_.vres;
-        std::vector<ZoneSummary> zones{summary_of_zone()};
+        std::vector<ZoneSummary> zones{summary_of_zone(def_, particles_, constants_)};
         while (zones.size() < vres.zones.size())
         {
             const std::size_t id = zones.size();
@@ -150,57 +138,19 @@ private:
                 def_.main_surface = zones[0].constants.surface;
             def_.particles_around = zones[static_cast<std::size_t>(vres.zones[id].parent)].limits;
             make_case();
-            zones.push_back(summary_of_zone());
+            zones.push_back(summary_of_zone(def_, particles_, constants_));
         }
         output_ = options_.output;
         save_zones(vres);
-        print_zones(zones);
-    }
-
-    ZoneSummary summary_of_zone() const
-    {
-        ZoneSummary out;
-        out.dp = def_.grid.dp;
-        out.parent = def_.vres.zones[def_.zone].parent;
-        out.counts = {particles_.n_fluid, particles_.n_fixed, particles_.n_moving,
-                      particles_.n_floating};
-        out.limits.add(particles_.pos_min);
-        out.limits.add(particles_.pos_max);
-        out.constants = constants_;
-        return out;
+        log_zones(zones, log_);
     }
 
     void save_zones(const VresDef& vres)
     {
         for (std::size_t id = 0; id < vres.zones.size(); ++id)
-            timed(fmt::format("_vresDomain{:02}.vtk", id), "",
+            write(fmt::format("_vresDomain{:02}.vtk", id), "",
                   [&](OutputFile& f) { write_zone_vtk(f, vres, id); });
-        timed("_vresDomains.vtk", "", [&](OutputFile& f) { write_zones_vtk(f, vres); });
-    }
-
-    void print_zones(const std::vector<ZoneSummary>& zones)
-    {
-        log_.line();
-        log_.line("VResolution summary:");
-        log_.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", "Zone",
-                              "Parent", "Dp", "Particles", "Fluid", "Fixed", "Moving", "Floating"));
-        const auto row = [&](const std::string& id, const std::string& parent,
-                             const std::string& dp, const std::array<std::uint64_t, 4>& n)
-        {
-            log_.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", id,
-                                  parent, dp, thousands(n[0] + n[1] + n[2] + n[3]), thousands(n[0]),
-                                  thousands(n[1]), thousands(n[2]), thousands(n[3])));
-        };
-        std::array<std::uint64_t, 4> all{};
-        for (std::size_t id = 0; id < zones.size(); ++id)
-        {
-            const ZoneSummary& zone = zones[id];
-            row(fmt::format("{}", id), id > 0 ? fmt::format("{}", zone.parent) : "",
-                fmt::format("{:g}", zone.dp), zone.counts);
-            for (std::size_t k = 0; k < 4; ++k) all[k] += zone.counts[k];
-        }
-        row("all", "", "", all);
-        log_.line();
+        write("_vresDomains.vtk", "", [&](OutputFile& f) { write_zones_vtk(f, vres); });
     }
 
     template <typename Body>
@@ -334,7 +284,7 @@ private:
               {
                   std::vector<std::string> warnings;
                   particles_ = make_particles(def_, field_, threads_, constants_, warnings);
-                  print_blocks();
+                  log_particles(def_, particles_, constants_, log_);
                   settle_floatings(def_, particles_, log_);
                   for (std::string& w : warnings) warn(std::move(w));
                   for (std::string& w : check_motion(def_, particles_)) warn_of_slip(std::move(w));
@@ -346,88 +296,11 @@ private:
                 slips_.size(), slips_.size() == 1 ? "" : "s", fmt::join(slips_, "\n  ")));
     }
 
-    void print_blocks()
-    {
-        struct Group
-        {
-            const char* title;
-            const char* label;
-            ParticleType type;
-            std::uint64_t count;
-        };
-        const std::array<Group, 4> groups{
-            Group{"Fixed-Boundary", "Fixed....", ParticleType::Fixed, particles_.n_fixed},
-            Group{"Moving-Boundary", "Moving...", ParticleType::Moving, particles_.n_moving},
-            Group{"Floating-Boundary", "Floating.", ParticleType::Floating, particles_.n_floating},
-            Group{"Fluid", "Fluid....", ParticleType::Fluid, particles_.n_fluid}};
-        log_.line("List of Points:");
-        std::array<std::size_t, 4> blocks{};
-        std::vector<std::string> summary;
-        for (const Group& group : groups)
-        {
-            std::vector<int> mks;
-            std::uint64_t begin = 0;
-            for (std::size_t b = 0; b < particles_.blocks.size(); ++b)
-            {
-                const ParticleBlock& block = particles_.blocks[b];
-                if (block.type != group.type) continue;
-                if (mks.empty())
-                {
-                    log_.line(fmt::format("Points -> {} particles:", group.title));
-                    begin = block.begin;
-                }
-                log_.line(fmt::format("  block[{:3}] (mk:{:3}): {:6}", b, block.mk, block.count));
-                mks.push_back(block.mk);
-                ++blocks[static_cast<std::size_t>(group.type)];
-            }
-            summary.push_back(mks.empty() ? fmt::format("  {}: 0", group.label)
-                                          : fmt::format("  {}: {}  id:({}-{})   MKs:{} ({})",
-                                                        group.label, thousands(group.count), begin,
-                                                        begin + group.count - 1, mks.size(),
-                                                        format_ranges(mks)));
-        }
-        log_.line();
-        log_.line("Particle summary:");
-        for (const std::string& line : summary) log_.line(line);
-        log_.line();
-        log_.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})",
-                              thousands(particles_.np),
-                              thousands(particles_.np - particles_.n_fluid),
-                              thousands(particles_.n_fixed), thousands(particles_.n_moving),
-                              thousands(particles_.n_floating), thousands(particles_.n_fluid)));
-        log_.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})",
-                              particles_.blocks.size(), blocks[0] + blocks[1] + blocks[2],
-                              blocks[0], blocks[1], blocks[2], blocks[3]));
-        log_.line();
-        const ConstantsDef& c = def_.constants;
-        const char* depth_source = c.rhop_gradient != 3 && particles_.n_floating > 0
-                                       ? "automatic from the height of water+floating bodies"
-                                       : "automatic";
-        log_.line(fmt::format("Maximum depth: {:g} ({})", constants_.hswl,
-                              c.hswl ? "fixed" : depth_source));
-        log_.line(fmt::format("Speed of system: {:g} ({})", constants_.speed_system,
-                              c.speed_system ? "fixed" : "automatic"));
-        log_.line(fmt::format("Speed of sound: {:g} ({})", constants_.speed_sound,
-                              c.speed_sound ? "fixed" : "automatic"));
-        log_.line();
-        const double hdp = def_.h / def_.grid.dp;
-        log_.line(fmt::format("Coefh:{:.6f} (hdp:{:.6f})",
-                              hdp / std::sqrt(def_.grid.is_2d ? 2.0 : 3.0), hdp));
-    }
-
-    /// A new output file; it gets its name in commit().
-    OutputFile& add_file(const std::string& ending)
-    {
-        files_.emplace_back(output_ + ending);
-        return files_.back();
-    }
-
     void save()
     {
         stage("SaveCase3D",
               [this]
               {
-                  files_.reserve(files_.size() + 1024);
                   const FileOrigin origin{full_name(), date_of_run(), def_.case_name};
                   std::vector<VtkOutEntry> vtk_out;
                   copy_data_files();
@@ -436,24 +309,24 @@ private:
                   save_node_files();
                   make_normals();
                   if (options_.save_cells)
-                      timed("_MkCells.vtk", "",
+                      write("_MkCells.vtk", "",
                             [&](OutputFile& f) { write_cells_vtk(f, field_, types(), threads_); });
                   save_free_points();
                   if (options_.save_relaxation && !relax_history_.empty())
-                      timed("_Relax.csv", "", [&](OutputFile& f) { f.append(relax_history_); });
+                      write("_Relax.csv", "", [&](OutputFile& f) { f.append(relax_history_); });
                   if (options_.save_features && !field_.walls.bodies.empty())
-                      timed("_Features.vtk", "",
+                      write("_Features.vtk", "",
                             [&](OutputFile& f) { write_features_vtk(f, field_.walls); });
                   field_ = {};
                   if (options_.save_bi4)
-                      timed(".bi4", "<double>",
+                      write(".bi4", "<double>",
                             [&](OutputFile& f)
                             { write_bi4(f, particles_, constants_, origin, threads_); });
                   const auto picture = [&](bool wanted, const char* ending, VtkSelection selection,
                                            std::uint64_t count)
                   {
                       if (wanted && count > 0)
-                          timed(ending, "",
+                          write(ending, "",
                                 [&](OutputFile& f) {
                                     write_particles_vtk(f, particles_, constants_, selection,
                                                         threads_);
@@ -465,7 +338,7 @@ private:
                   picture(options_.save_fluid, "_Fluid.vtk", VtkSelection::Fluid,
                           particles_.n_fluid);
                   keep_overwritten_definition();
-                  timed(".xml", "",
+                  write(".xml", "",
                         [&](OutputFile& f)
                         { write_case_xml(f, def_, particles_, constants_, vtk_out, origin); });
                   log_.line();
@@ -481,7 +354,7 @@ private:
     void save_free_points()
     {
         if (options_.save_free_points && !particles_.free_points.mk.empty())
-            timed("_FreePt.vtk", "",
+            write("_FreePt.vtk", "",
                   [&](OutputFile& f) { write_free_points_vtk(f, particles_.free_points); });
         particles_.free_points = {};
     }
@@ -498,18 +371,9 @@ private:
             const fs::path target = fs::path(options_.output).parent_path() / name;
             std::error_code error;
             if (fs::exists(target, error) && fs::equivalent(target, mesh.path, error)) continue;
-            if (std::any_of(files_.begin(), files_.end(),
-                            [&](const OutputFile& f) { return f.path() == target.string(); }))
-                continue; // of another zone
+            if (files_.has(target.string())) continue; // of another zone
             if (!target.parent_path().empty()) fs::create_directories(target.parent_path(), error);
-            OutputFile& file = files_.emplace_back(target.string());
-            std::ifstream in(mesh.path, std::ios::binary);
-            std::string block(1 << 20, '\0');
-            while (in.read(block.data(), static_cast<std::streamsize>(block.size())) ||
-                   in.gcount() > 0)
-                file.append(block.data(), static_cast<std::size_t>(in.gcount()));
-            if (in.bad())
-                throw IoError(fmt::format("{}: cannot read the file again to copy it", mesh.path));
+            files_.copy(mesh.path, target.string());
             log_.line(fmt::format("Geometry file copied: {} (xml row:{})", mesh.name, mesh.line));
         }
     }
@@ -535,13 +399,11 @@ private:
         }
     }
 
+    /// A file of the zone that is made.
     template <typename Body>
-    void timed(const std::string& ending, const char* note, const Body& body)
+    void write(const std::string& ending, const char* note, const Body& body)
     {
-        const Stopwatch time;
-        OutputFile& file = add_file(ending);
-        body(file);
-        log_.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+        files_.write(output_ + ending, note, log_, body);
     }
 
     static void write_shape_file(OutputFile& f, const ShapeFile& shape_file)
@@ -569,7 +431,7 @@ private:
         for (const NodeFile& node_file : node_files_)
         {
             std::uint64_t faces = 1;
-            timed(node_file.name, "",
+            write(node_file.name, "",
                   [&](OutputFile& f)
                   {
                       if (node_file.is_cells)
@@ -578,7 +440,7 @@ private:
                           write_points_vtk(f, node_file.points);
                   });
             if (faces > 0) continue;
-            files_.pop_back();
+            files_.drop_last();
             log_.line(fmt::format("{}{} is empty and not saved", output_, node_file.name));
         }
         node_files_.clear();
@@ -589,7 +451,7 @@ private:
         shape_files_ = collect_shape_files(def_);
         for (const ShapeFile& shape_file : shape_files_)
         {
-            timed(shape_file.name, "", [&](OutputFile& f) { write_shape_file(f, shape_file); });
+            write(shape_file.name, "", [&](OutputFile& f) { write_shape_file(f, shape_file); });
             // GenCase lists neither.
             if (shape_file.format == ShapeFormat::Stl || shape_file.has_normals) continue;
             std::vector<int> mk;
@@ -619,7 +481,7 @@ private:
         for (const std::string& line : report.log) log_.line(line);
         for (std::string& w : report.warnings) warn(std::move(w));
         if (!report.shapes.empty())
-            timed("_GeometryShapes.vtk", "",
+            write("_GeometryShapes.vtk", "",
                   [&](OutputFile& f) { write_shapes_vtk(f, report.shapes); });
     }
 
@@ -703,38 +565,19 @@ private:
         std::error_code ignored;
         if (fs::exists(path, ignored)) return;
         files_.clear();
-        output_ = options_.output;
         try
         {
             const auto* known = dynamic_cast<const Error*>(&error);
-            OutputFile& file = add_file(".out");
-            file.append(fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n",
-                                    log_.text(), error.what(),
-                                    known != nullptr ? known->exit_code() : 5));
-            file.commit();
+            files_.add(path).append(
+                fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n", log_.text(),
+                            error.what(), known != nullptr ? known->exit_code() : 5));
+            files_.commit(false);
         }
         catch (const std::exception&)
         {
             // The folder cannot be written: the error itself is what the user has to see.
         }
         files_.clear();
-    }
-
-    void commit()
-    {
-        std::vector<std::string> pictures;
-        const StopSignalsIgnored ignored;
-        for (OutputFile& file : files_)
-        {
-            file.commit();
-            if (file.path().ends_with(".vtk")) pictures.push_back(file.path());
-        }
-        files_.clear();
-        if (!options_.save_three_vtk) return;
-        for (const std::string& path : pictures)
-            for (const char* copy : {"_r00", "_r01", "_r02"})
-                fs::copy_file(path, path.substr(0, path.size() - 4) + copy + ".vtk",
-                              fs::copy_options::overwrite_existing);
     }
 
     DropInOptions options_;
@@ -746,7 +589,7 @@ private:
     std::string relax_history_;
     CaseParticles particles_;
     CaseConstants constants_;
-    std::vector<OutputFile> files_;
+    ResultFiles files_;
     std::vector<MeshFileUse> mesh_files_;
     std::vector<ShapeFile> shape_files_; ///< until the normals are made
     std::vector<NodeFile> node_files_;

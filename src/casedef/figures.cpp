@@ -302,11 +302,30 @@ std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
     return count;
 }
 
-bool is_parallelogram(const FigureOp& figure, const FigureFace& face, double dp)
+QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp)
 {
-    if (face.vertices.size() != 4 || !face.triangles.empty() || !face.cut.empty()) return false;
+    const auto& [a, b, c, d] = corners;
+    if (norm(a + (c - b) - d) <= 0.05 * dp) return QuadKind::Parallelogram;
+    const auto are_as_far = [dp](const Vec3& from, const Vec3& to, const Vec3& p, const Vec3& q)
+    {
+        const Vec3 along = to - from;
+        const double length = norm(along);
+        if (length == 0) return false;
+        const double first = norm(cross(along, p - from)) / length;
+        const double second = norm(cross(along, q - from)) / length;
+        return std::fabs(first - second) <= 0.01 * dp;
+    };
+    if (are_as_far(a, b, d, c)) return QuadKind::Trapezoid;
+    if (are_as_far(b, c, a, d)) return QuadKind::TurnedTrapezoid;
+    return QuadKind::Other;
+}
+
+QuadKind quad_kind(const FigureOp& figure, const FigureFace& face, double dp)
+{
+    if (face.vertices.size() != 4 || !face.triangles.empty() || !face.cut.empty())
+        return QuadKind::Other;
     const auto corner = [&](std::size_t i) { return figure.vertices[face.vertices[i]]; };
-    return norm(corner(0) + (corner(2) - corner(1)) - corner(3)) <= 0.05 * dp;
+    return quad_kind({corner(0), corner(1), corner(2), corner(3)}, dp);
 }
 
 std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp)
@@ -322,7 +341,7 @@ std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp)
         else if (!f.cut.empty())
             count += f.cut.size() - 2;
         else
-            count += is_parallelogram(figure, f, dp) ? 1 : f.vertices.size() - 2;
+            count += quad_kind(figure, f, dp) != QuadKind::Other ? 1 : f.vertices.size() - 2;
     }
     return static_cast<std::uint32_t>(count);
 }

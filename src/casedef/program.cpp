@@ -128,7 +128,9 @@ void ProgramRunner::add(const Element& e, DrawVariant what)
 
 void ProgramRunner::add_whole(const Element& e, DrawVariant what)
 {
-    if (!shared_state_) shared_state_ = std::make_shared<const DrawState>(state_);
+    state_.matrix = state_.off_lattice ? matrix_ : Transform{};
+    if (!shared_state_ || !(shared_state_->matrix == state_.matrix))
+        shared_state_ = std::make_shared<const DrawState>(state_);
     const std::string* name = e.find_attribute("fppg:name");
     def_.ops.push_back({{e.line, e.name, name != nullptr ? read_.interpolated(e, *name) : ""},
                         shared_state_,
@@ -167,7 +169,7 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         if (is_free && state_.mode == DrawMode::Wire)
             read_.fail_unsupported(e, "setmknextauto together with setfrdrawmode in wire mode");
         if (is_free && e.name == "drawquadri" &&
-            !is_parallelogram(*figure, figure->faces.at(0), def_.grid.dp))
+            quad_kind(*figure, figure->faces.at(0), def_.grid.dp) != QuadKind::Parallelogram)
             read_.fail(e, "setmknextauto together with setfrdrawmode needs a parallelogram here");
         figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid.dp)
                                      : count_parts(*figure, state_.mode);

@@ -202,23 +202,29 @@ void ProgramRunner::draw_box(const Element& e)
 
 /// GenCase changes the size of the box in ways of its own where the current matrix moves or turns
 /// it (found by experiment with v5.4.354), so that none is possible here.
+/// Found by experiment with GenCase v5.4.354 (10 matrices): corner, crest and even the size are
+/// moved, turned and scaled as points, so that a move makes the box larger; depth and height of the
+/// wave stay. A box that has a negative size afterwards draws nothing.
 void ProgramRunner::draw_wave(const Element& e)
 {
-    if (!matrix_.is_identity())
-        read_.fail(e,
-                   "a move, rotation or scale is not possible for it, expected <matrixreset> "
-                   "before it");
     WaveOp op;
-    op.corner = read_.child_vec3(e, "point");
-    op.size = read_.child_vec3(e, "size");
-    if (op.size.x < 0 || op.size.y < 0 || op.size.z < 0)
+    op.corner = matrix_(read_.child_vec3(e, "point"));
+    const Vec3 size = read_.child_vec3(e, "size");
+    if (size.x < 0 || size.y < 0 || size.z < 0)
         read_.fail(*e.find_child("size"), "negative values are not possible here");
+    op.size = matrix_(size);
     op.depth = read_.number(e, "depth");
     op.h_max = read_.number(e, "hmaxwave");
     if (!(op.depth > 0)) read_.fail(e, fmt::format("depth={:g}, expected more than 0", op.depth));
     if (!(op.h_max >= 0)) read_.fail(e, fmt::format("hmaxwave={:g}, expected 0 or more", op.h_max));
-    op.x0 = read_.number(e, "x0");
-    op.z0 = read_.number(e, "z0");
+    const Vec3 crest = matrix_({read_.number(e, "x0"), 0, read_.number(e, "z0")});
+    op.x0 = crest.x;
+    op.z0 = crest.z;
+    if (!matrix_.is_identity())
+        def_.warnings.push_back(
+            fmt::format("{}:{}: <drawwave>: as in GenCase, the matrix moves and turns the size of "
+                        "the box as if it were a point: {:g}, {:g}, {:g}.",
+                        def_.file, e.line, op.size.x, op.size.y, op.size.z));
     add(e, op);
 }
 

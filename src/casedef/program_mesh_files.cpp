@@ -120,17 +120,19 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     op.depth_min = 0;
     op.depth_max = 2 * def_.grid.dp;
     op.reverse = read_.flag_or(e, "reverse", false);
-    if (op.autofill) read_.fail_unsupported(e, "advanced with autofill");
+    bool is_limited = false;
     if (const Element* depth = e.find_child("depth"))
     {
         // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing.
         op.depth_min = read_.number_or(*depth, "depthmin", 0);
         const double high = read_.number_or(*depth, "depthmax", 0);
+        is_limited = high != 0 || op.depth_min != 0;
         if (high != 0)
             op.depth_max = high;
         else if (op.depth_min != 0)
             op.depth_max = std::numeric_limits<double>::infinity();
     }
+    op.any_depth = op.autofill && !is_limited;
 }
 
 void ProgramRunner::draw_mesh_file(const Element& e)

@@ -314,7 +314,9 @@ void ProgramRunner::put_clips(const Transform& matrix)
 /// The angles of a clipbox turn it about its lowest corner, about y, x and z in this order,
 /// right-handed (found by experiment with GenCase v5.4.354: of the orders, signs and centres tried
 /// only this one fits). clipdomain clips at <pointmin> and <pointmax>, farther out by resize; a
-/// resize below 0 counts as 0 (a ball on the border of the domain, resize 0, 0.1, -0.1, -0.3).
+/// resize below 0 counts as 0 (a ball on the border of the domain, resize 0, 0.1, -0.1, -0.3). Its
+/// lower planes go through the lowest corner, the upper ones through that corner moved along their
+/// axis, which matters where a matrix shears (planes fitted to a shapeout).
 bool ProgramRunner::run_clip(const Element& e)
 {
     const std::string& name = e.name;
@@ -327,12 +329,11 @@ bool ProgramRunner::run_clip(const Element& e)
     else if (name == "clipdomain")
     {
         const double resize = std::max(0.0, read_.number_or(e, "resize", 0));
+        const Vec3 low = def_.case_pos_min - Vec3{resize, resize, resize};
         for (int axis = 0; axis < 3; ++axis)
         {
-            Vec3 low = def_.case_pos_min;
-            Vec3 high = def_.case_pos_max;
-            low[axis] -= resize;
-            high[axis] += resize;
+            Vec3 high = low;
+            high[axis] = def_.case_pos_max[axis] + resize;
             Vec3 upwards;
             upwards[axis] = 1;
             add_clip({low, upwards * -1.0});

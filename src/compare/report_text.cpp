@@ -1,6 +1,7 @@
 #include "fppg/compare.h"
 
 #include "compare/report_words.h"
+#include "core/text_table.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -15,25 +16,6 @@ namespace
 
 constexpr std::size_t findings_shown = 40;
 constexpr std::size_t values_shown = 40;
-
-/// Right-aligned columns, the first two left-aligned.
-std::string table(const std::vector<std::vector<std::string>>& rows)
-{
-    std::vector<std::size_t> widths(rows.front().size());
-    for (const auto& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    std::string text;
-    for (const auto& row : rows)
-    {
-        std::string line = "  ";
-        for (std::size_t c = 0; c < row.size(); ++c)
-            line += c < 2 ? fmt::format("{:<{}}  ", row[c], widths[c])
-                          : fmt::format("{:>{}}  ", row[c], widths[c]);
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + "\n";
-    }
-    return text;
-}
 
 std::string whole(std::uint64_t n)
 {
@@ -63,7 +45,7 @@ std::string counts_table(const Comparison& comparison)
              whole(of.moved), of.moved > 0 ? fmt::format("{:.4f}", of.moved_dp.mean) : "-",
              of.moved > 0 ? fmt::format("{:.4f}", of.moved_dp.largest) : "-", whole(of.missing),
              whole(of.extra), whole(of.mk_changed + of.mk_gained), whole(of.id_changed)});
-    return table(rows);
+    return text_table(rows, 2, "  ");
 }
 
 std::string quality_table(const Comparison& comparison)
@@ -84,7 +66,7 @@ std::string quality_table(const Comparison& comparison)
             rows.back().push_back(d.count > 0 ? fmt::format("{:.4f}", d.largest) : "-");
         for (const Spread& d : of.distance_dp) rows.back().push_back(whole(d.count));
     }
-    return table(rows);
+    return text_table(rows, 2, "  ");
 }
 
 } // namespace

@@ -81,13 +81,16 @@ public:
         : grid_(grid),
           depth_min_(op.depth_min),
           depth_max_(op.depth_max),
-          starts_inside_(op.reverse)
+          starts_inside_(op.reverse),
+          takes_any_depth_(op.any_depth)
     {
         // Beyond this distance a facet decides nothing.
         reach_ = std::isfinite(depth_max_) ? depth_max_ : depth_min_;
+        margin_ = std::isfinite(depth_max_) && !takes_any_depth_ ? depth_max_ : 0;
         box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
         for (std::size_t t = 0; t < soup.size(); ++t) add_facet(soup, t);
         box_ = intersect(box_, whole_lattice(grid_));
+        for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
     }
 
     const NodeBox& box() const { return box_; }
@@ -130,6 +133,11 @@ public:
     /// The nodes of `counted` whose depth is wanted, in slab x.
     void take(std::uint32_t slab, const Spans& counted, Spans& out) const
     {
+        if (takes_any_depth_)
+        {
+            out = counted;
+            return;
+        }
         const auto rows = static_cast<std::size_t>(box_.end[1] - box_.begin[1]);
         const auto height = static_cast<std::size_t>(box_.end[2] - box_.begin[2]);
         constexpr double far = std::numeric_limits<double>::infinity();
@@ -161,6 +169,12 @@ public:
     }
 
 private:
+    /// The last node that is not beyond a coordinate.
+    std::int64_t node_below(double coordinate, int axis) const
+    {
+        return static_cast<std::int64_t>(std::floor((coordinate - grid_.origin[axis]) / grid_.dp));
+    }
+
     void add_facet(const TriangleSoup& soup, std::size_t t)
     {
         Facet f;
@@ -180,10 +194,9 @@ private:
                 std::max({f.corners[0][axis], f.corners[1][axis], f.corners[2][axis]});
             f.reach.begin[k] = snap(low - reach_, grid_.origin[axis], grid_.dp) - 1;
             f.reach.end[k] = snap(high + reach_, grid_.origin[axis], grid_.dp) + 2;
-            box_.begin[k] = std::min(box_.begin[k], f.reach.begin[k]);
-            box_.end[k] = std::max(box_.end[k], f.reach.end[k]);
+            box_.begin[k] = std::min(box_.begin[k], node_below(low - margin_, axis));
+            box_.end[k] = std::max(box_.end[k], node_below(high + margin_, axis) + 1);
         }
-        f.reach = intersect(f.reach, whole_lattice(grid_));
         facets_.push_back(f);
     }
 
@@ -200,7 +213,7 @@ private:
                 const double s0 = side(f.corners[0], f.corners[1]);
                 const double s1 = side(f.corners[1], f.corners[2]);
                 const double s2 = side(f.corners[2], f.corners[0]);
-                if (!((s0 > 0 && s1 > 0 && s2 > 0) || (s0 < 0 && s1 < 0 && s2 < 0))) continue;
+                if (!((s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0))) continue;
                 const double x = f.corners[0].x - (f.normal.y * (py - f.corners[0].y) +
                                                    f.normal.z * (pz - f.corners[0].z)) /
                                                       f.normal.x;
@@ -213,7 +226,9 @@ private:
     double depth_min_;
     double depth_max_;
     bool starts_inside_;
+    bool takes_any_depth_;
     double reach_ = 0;
+    double margin_ = 0; ///< of the box round the mesh
     NodeBox box_;
     std::vector<Facet> facets_;
 };

@@ -82,13 +82,15 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
             p.y = grid.origin.y;
         }
         if (!is_in_domain(p, grid) || !is_kept_by(clips, p)) continue;
+        bool has_node = false;
         for_each_node(p, grid,
                       [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
                       {
+                          has_node = true;
                           nodes[x].push_back({y, z, z + 1});
                           if (mk != 0) claims_.push_back({x, y, z, mk});
                       });
-        if (mk == 0) continue;
+        if (mk == 0 || !has_node) continue;
         positions_.push_back(p);
         mk_.push_back(mk);
     }

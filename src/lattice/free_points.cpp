@@ -29,10 +29,13 @@ int interval_count(double length, double dp)
     return static_cast<int>(std::ceil(length / dp - 1e-6));
 }
 
-/// The same without room for rounding: one of 2 dp and the last bit has three intervals.
+/// The same without room for rounding: one of 2 dp and the last bit has three intervals. The
+/// multiple of dp decides, not the quotient (0.9 and the last bit at dp 0.1 have a quotient of 9.0
+/// and ten intervals; 180 of 180 lengths from 0.3 to 1.4).
 int exact_interval_count(double length, double dp)
 {
-    return static_cast<int>(std::ceil(length / dp));
+    const int whole = static_cast<int>(length / dp);
+    return whole * dp < length ? whole + 1 : whole;
 }
 
 /// One of n intervals of a vector, in GenCase's arithmetic.
@@ -215,22 +218,69 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
     return out;
 }
 
+std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp)
+{
+    const auto& [a, b, c, d] = corners;
+    if (norm(c - b) > norm(d - a) + 0.05 * dp)
+        throw GeometryError(
+            fmt::format("a trapezoid of it has a side of {:g} from its second corner and one of "
+                        "{:g} from its first, setfrdrawmode needs the first to be the longer",
+                        norm(c - b), norm(d - a)));
+    const int rows = std::max(1, exact_interval_count(norm(d - a), dp));
+    const Vec3 left = interval(d - a, rows);
+    const Vec3 right = (c - b) / rows;
+    std::vector<Vec3> out;
+    for (int i = 0; i <= rows; ++i)
+    {
+        const Vec3 begin = a + left * static_cast<double>(i);
+        const Vec3 end = b + right * static_cast<double>(i);
+        const int n = exact_interval_count(norm(end - begin), dp);
+        const Vec3 step = interval(end - begin, n);
+        for (int j = 0; j <= n; ++j) out.push_back(begin + step * static_cast<double>(j));
+    }
+    return out;
+}
+
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
 {
     if (corners.size() == 3) return free_triangle({corners[0], corners[1], corners[2]}, grid);
+    const std::array<Vec3, 4> quad{corners[0], corners[1], corners[2], corners[3]};
+    if (quad_kind(quad, grid.dp) == QuadKind::Trapezoid) return free_trapezoid(quad, grid.dp);
     return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
 }
 
-std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const LatticeGrid& grid)
+namespace
+{
+
+/// The pieces of a quad, as free_pieces() has them.
+void add_quad(const std::array<Vec3, 4>& c, const Transform& matrix, double dp,
+              std::vector<std::vector<Vec3>>& out)
+{
+    const QuadKind kind = quad_kind(c, dp);
+    if (kind == QuadKind::TurnedTrapezoid)
+        out.push_back({c[1], c[2], c[3], c[0]});
+    else if (kind != QuadKind::Other)
+        out.push_back({c[0], c[1], c[2], c[3]});
+    else
+    {
+        out.push_back({matrix(c[0]), matrix(c[1]), matrix(c[2])});
+        out.push_back({matrix(c[0]), matrix(c[2]), matrix(c[3])});
+    }
+}
+
+} // namespace
+
+std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
+                                           const LatticeGrid& grid)
 {
     std::vector<std::vector<Vec3>> out;
     for (const FigureFace& face : figure.faces)
     {
         if (!face.is_visible) continue;
-        if (is_parallelogram(figure, face, grid.dp))
+        if (face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty())
         {
-            out.emplace_back();
-            for (const std::uint32_t v : face.vertices) out.back().push_back(figure.vertices[v]);
+            const auto corner = [&](std::size_t k) { return figure.vertices[face.vertices[k]]; };
+            add_quad({corner(0), corner(1), corner(2), corner(3)}, matrix, grid.dp, out);
             continue;
         }
         for (const auto& t : face_triangles(figure, face))
@@ -258,10 +308,11 @@ std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neig
     return out;
 }
 
-std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
+std::vector<Vec3> free_faces(const FigureOp& figure, const Transform& matrix,
+                             const LatticeGrid& grid)
 {
     std::vector<Vec3> out;
-    for (const std::vector<Vec3>& corners : free_pieces(figure, grid))
+    for (const std::vector<Vec3>& corners : free_pieces(figure, matrix, grid))
     {
         const std::vector<Vec3> points = free_polygon(corners, grid);
         out.insert(out.end(), points.begin(), points.end());
@@ -269,7 +320,8 @@ std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid)
     return out;
 }
 
-std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid& grid)
+std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& matrix,
+                                      const LatticeGrid& grid)
 {
     const std::size_t n = figure.vertices.size() / 2;
     const auto cut = bottom_triangles(figure);
@@ -285,30 +337,31 @@ std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid&
                 std::any_of(cut.begin() + static_cast<std::ptrdiff_t>(t) + 1, cut.end(),
                             [&](const auto& other) { return has(other, i) && has(other, j); });
             if (!is_shared) continue;
-            const std::array<Vec3, 4> c{figure.vertices[i], figure.vertices[j],
-                                        figure.vertices[n + j], figure.vertices[n + i]};
-            const auto add = [&](const std::vector<Vec3>& corners)
+            std::vector<std::vector<Vec3>> pieces;
+            add_quad({figure.vertices[i], figure.vertices[j], figure.vertices[n + j],
+                      figure.vertices[n + i]},
+                     matrix, grid.dp, pieces);
+            for (const std::vector<Vec3>& corners : pieces)
             {
                 const std::vector<Vec3> points = free_polygon(corners, grid);
                 out.insert(out.end(), points.begin(), points.end());
-            };
-            if (norm(c[0] + (c[2] - c[1]) - c[3]) <= 0.05 * grid.dp)
-                add({c[0], c[1], c[2], c[3]});
-            else
-            {
-                add({c[0], c[1], c[2]});
-                add({c[0], c[2], c[3]});
             }
         }
     return out;
 }
 
-std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp)
+std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawMode mode, double dp)
 {
+    Transform turn;
+    turn.linear = matrix.linear;
+    const bool is_turned = !turn.is_identity();
+    const Vec3 center = is_turned ? Vec3{} : op.center;
     std::vector<Vec3> out;
     for (const double layer : op.layers_dp)
-        add_sphere(op.center, op.radius + layer * dp, DrawMode::Face, dp, out);
-    if (op.layers_dp.empty()) add_sphere(op.center, op.radius, mode, dp, out);
+        add_sphere(center, op.radius + layer * dp, DrawMode::Face, dp, out);
+    if (op.layers_dp.empty()) add_sphere(center, op.radius, mode, dp, out);
+    if (is_turned)
+        for (Vec3& p : out) p = op.center + turn(p);
     return out;
 }
 

@@ -28,17 +28,29 @@ std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp);
 std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
                                      double dp);
 
+/// A trapezoid with the parallel sides 0-1 and 3-2: rows from the first to the second in
+/// ceil(L / dp) steps along 0-3 and as many along 1-2, each in equal intervals of at most dp (41 of
+/// 41 random ones).
+///
+/// throws  GeometryError when 1-2 is longer than 0-3 by more than 0.05 dp, which GenCase refuses
+/// too
+///         (62 random ones)
+std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp);
+
 /// Points of a square grid in the plane of the triangle that lie in it or on its sides. The grid
 /// has the spacing dp and goes through the foot of the lattice's origin on the plane; one of its
 /// axes has no y.
 std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid);
 
-/// Three corners as free_triangle(), four as free_parallelogram().
+/// What free_pieces() gives: three corners as free_triangle(), four as free_parallelogram() or
+/// free_trapezoid().
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid);
 
-/// The corners of what the faces of a figure that are not hidden are drawn as: parallelograms
-/// (within 0.05 dp) and triangles, four other corners as (0, 1, 2) and (0, 2, 3).
-std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const LatticeGrid& grid);
+/// The corners of what the faces of a figure that are not hidden are drawn as: parallelograms,
+/// trapezoids and triangles, four other corners as (0, 1, 2) and (0, 2, 3), to which GenCase
+/// applies the current matrix once more (a quad moved by 0.4 stands 0.8 away).
+std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
+                                           const LatticeGrid& grid);
 
 /// A parallelepiped by a corner and its three neighbours, ceil(L / dp) equal intervals an edge.
 ///
@@ -46,20 +58,24 @@ std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Lattice
 std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp);
 
 /// The faces of a figure that are not hidden, one after the other.
-std::vector<Vec3> free_faces(const FigureOp& figure, const LatticeGrid& grid);
+std::vector<Vec3> free_faces(const FigureOp& figure, const Transform& matrix,
+                             const LatticeGrid& grid);
 
 /// The faces between the triangular prisms that a prism of four corners or more is cut into, which
 /// GenCase v5.4.354 draws off the lattice in solid and full mode (a turned prism of four corners
 /// gave 54 points of its diagonal face in solid mode).
-std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const LatticeGrid& grid);
+std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& matrix,
+                                      const LatticeGrid& grid);
 
 /// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
 /// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
 /// steps of the polar angle, from the bottom up, each with ceil(2 pi r sin / dp) points from +x on.
 /// The top pole is one of them (but for 30, 50, 60, 70, 82 and some more numbers of rings, by the
 /// rounding of its angle), the bottom pole is left out, as GenCase leaves it out. Up to R =
-/// 0.75 dp the centre alone. Layers are shells of radius R + layer * dp.
-std::vector<Vec3> free_sphere(const SphereOp& op, DrawMode mode, double dp);
+/// 0.75 dp the centre alone. Layers are shells of radius R + layer * dp. Rotations
+/// and scales of the matrix turn and stretch the shells, whose points were counted before.
+std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawMode mode,
+                              double dp);
 
 /// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with
 /// n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end discs, the tube is the ring

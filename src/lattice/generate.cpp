@@ -450,7 +450,9 @@ private:
             throw CaseError(def_.file, op_->source.line,
                             fmt::format("<{}>: {}", op_->source.command, e.what()));
         }
-        paint_nodes(free_.draw(points, state().clips, state().mk.mk));
+        const std::vector<Spans> nodes = free_.draw(points, state().clips, state().mk.mk);
+        parallel_for(nodes.size(), threads_,
+                     [&](std::size_t x) { paint_slab(x, nodes[x], state().mk, false); });
     }
 
     void draw_free_lines(const std::vector<std::pair<Vec3, Vec3>>& segments)
@@ -521,24 +523,35 @@ private:
             else
                 draw_free(
                     [&] {
-                        return free_polygon(free_pieces(op, grid()).at(op.part - insides), grid());
+                        return free_polygon(
+                            free_pieces(op, state().matrix, grid()).at(op.part - insides), grid());
                     });
             return;
         }
         if (fills) paint_region(solid_of(op));
         if (fills && op.solid == SolidKind::Prism)
-            draw_free([&] { return free_dividing_faces(op, grid()); });
+            draw_free([&] { return free_dividing_faces(op, state().matrix, grid()); });
         if (!fills || state().mode == DrawMode::Full)
-            draw_free([&] { return free_faces(op, grid()); });
+            draw_free([&] { return free_faces(op, state().matrix, grid()); });
     }
 
     void draw_free_wire(const FigureOp& op)
     {
         std::vector<std::pair<Vec3, Vec3>> segments;
+        const auto add_sides = [&](const auto& corners)
+        {
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                segments.emplace_back(op.vertices[corners[i]],
+                                      op.vertices[corners[(i + 1) % corners.size()]]);
+        };
         for (const FigureFace& face : op.faces)
-            for (std::size_t i = 0; face.is_visible && i < face.vertices.size(); ++i)
-                segments.emplace_back(op.vertices[face.vertices[i]],
-                                      op.vertices[face.vertices[(i + 1) % face.vertices.size()]]);
+        {
+            if (!face.is_visible) continue;
+            if (face.triangles.empty() && face.cut.empty())
+                add_sides(face.vertices);
+            else
+                for (const auto& t : face_triangles(op, face)) add_sides(t);
+        }
         draw_free_lines(segments);
     }
 
@@ -634,7 +647,7 @@ private:
     void draw(const SphereOp& op)
     {
         if (is_off_lattice())
-            draw_free([&] { return free_sphere(op, state().mode, grid().dp); });
+            draw_free([&] { return free_sphere(op, state().matrix, state().mode, grid().dp); });
         else
             paint_region(sphere_region(op, state(), grid()));
     }
@@ -710,49 +723,56 @@ private:
         return moved;
     }
 
+    /// Calls body(corners) for the triangles and quads of a file, with indices into its vertices.
+    /// Bent quads of bathymetries are two triangles.
+    template <typename Body>
+    static void for_each_polygon(const MeshFileOp& op, const MeshFile& file, const Body& body)
+    {
+        const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry;
+        auto quad = file.quads.begin();
+        for (std::uint32_t t = 0; t < file.soup.size(); ++t)
+        {
+            const std::uint32_t first = 3 * t;
+            std::vector<std::uint32_t> corners{first, first + 1, first + 2};
+            const bool is_quad = quad != file.quads.end() && *quad == t;
+            if (is_quad) ++quad;
+            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first])))
+            {
+                corners.push_back(first + 5);
+                ++t;
+            }
+            body(std::move(corners));
+        }
+    }
+
     /// The triangles and quads of a file, or their sides, off the lattice.
-    void draw_free_mesh(const MeshFile& file, const Transform& transform)
+    void draw_free_mesh(const MeshFileOp& op, const MeshFile& file)
     {
         FigureOp figure;
-        figure.vertices = moved_soup(file.soup, transform).vertices;
-        auto quad = file.quads.begin();
-        for (std::size_t t = 0; t < file.soup.size(); ++t)
-        {
-            const auto first = static_cast<std::uint32_t>(3 * t);
-            FigureFace face;
-            face.vertices = {first, first + 1, first + 2};
-            if (quad != file.quads.end() && *quad == t)
-            {
-                ++quad;
-                ++t;
-                face.vertices.push_back(first + 5);
-            }
-            figure.faces.push_back(std::move(face));
-        }
+        figure.vertices = moved_soup(file.soup, op.transform).vertices;
+        for_each_polygon(op, file,
+                         [&](std::vector<std::uint32_t> corners) {
+                             figure.faces.push_back({std::move(corners), true, {}, 0, {}});
+                         });
         if (state().mode == DrawMode::Wire)
             draw_free_wire(figure);
         else
-            draw_free([&] { return free_faces(figure, grid()); });
+            draw_free([&] { return free_faces(figure, state().matrix, grid()); });
     }
 
     /// The sides of all triangles and quads, as lines.
-    void draw_wire(const MeshFile& file, const Transform& transform)
+    void draw_wire(const MeshFileOp& op, const MeshFile& file)
     {
         std::vector<std::pair<Node, Node>> segments;
-        const auto node = [&](std::size_t i)
-        { return snap(transform(file.soup.vertices[i]), grid()); };
-        auto quad = file.quads.begin();
-        for (std::size_t t = 0; t < file.soup.size(); ++t)
-        {
-            std::vector<Node> corners{node(3 * t), node(3 * t + 1), node(3 * t + 2)};
-            if (quad != file.quads.end() && *quad == t)
-            {
-                ++quad;
-                corners.push_back(node(3 * ++t + 2));
-            }
-            for (std::size_t i = 0; i < corners.size(); ++i)
-                segments.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
-        }
+        for_each_polygon(op, file,
+                         [&](const std::vector<std::uint32_t>& corners)
+                         {
+                             std::vector<Node> nodes;
+                             for (const std::uint32_t v : corners)
+                                 nodes.push_back(snap(op.transform(file.soup.vertices[v]), grid()));
+                             for (std::size_t i = 0; i < nodes.size(); ++i)
+                                 segments.emplace_back(nodes[i], nodes[(i + 1) % nodes.size()]);
+                         });
         paint_region(lines_region(segments, grid(), state().constants.line));
     }
 
@@ -773,29 +793,24 @@ private:
                             fmt::format("<{}>: fppg:fill=\"inside\" is not possible together with "
                                         "<clipdomain>, which opens the surface",
                                         op_->source.command));
-        Box3 box;
+        const Box3 box = clip_box(def_, *op.clip_resize);
         for (int axis = 0; axis < 3; ++axis)
-        {
-            box.min[axis] = def_.case_pos_min[axis] - *op.clip_resize;
-            box.max[axis] = def_.case_pos_max[axis] + *op.clip_resize;
             if (box.min[axis] >= box.max[axis])
                 throw CaseError(
                     def_.file, op_->source.line,
                     fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
                                 "along {}",
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
-        }
         const MeshFile& file = mesh(op);
         draw_points_and_lines(file, op.transform);
-        const FigureOp cut = clip_to_box(moved_soup(file.soup, op.transform), box);
+        const FigureOp cut =
+            clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
         draw(cut);
         if (!op.autofill) return;
         TriangleSoup soup;
         for (const FigureFace& face : cut.faces)
-            for (std::size_t i = 2; i < face.vertices.size(); ++i)
-                for (const std::uint32_t v :
-                     {face.vertices[0], face.vertices[i - 1], face.vertices[i]})
-                    soup.vertices.push_back(cut.vertices[v]);
+            for (const auto& triangle : face_triangles(cut, face))
+                for (const std::size_t v : triangle) soup.vertices.push_back(cut.vertices[v]);
         MeshFile placed;
         for (const Vec3& p : file.points) placed.points.push_back(op.transform(p));
         for (std::vector<Vec3> line : file.lines)
@@ -810,17 +825,19 @@ private:
     {
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
-        if (!op.advanced && is_off_lattice())
+        // A table of heights is always drawn by its triangles on the lattice.
+        const bool has_modes = !op.advanced && op.reading.format != MeshFormat::CsvBathymetry;
+        if (has_modes && is_off_lattice())
         {
-            draw_free_mesh(file, op.transform);
+            draw_free_mesh(op, file);
             const TriangleSoup moved = moved_soup(source, op.transform);
             if (op.fill_inside) paint_region(region_of(inside_spans(moved, grid(), threads_)));
             if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
-        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
+        if (has_modes && !op.fill_inside && state().mode == DrawMode::Wire)
         {
-            draw_wire(file, op.transform);
+            draw_wire(op, file);
             if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);
             return;
         }

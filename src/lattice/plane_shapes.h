@@ -35,6 +35,10 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
 std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
                                                        const FigureFace& face);
 
+/// Whether the six corners of two triangles, those of a quad, lie in one plane but for the rounding
+/// of float.
+bool is_flat_quad(const Vec3* corners);
+
 /// Cuts the faces of a figure into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule P5).
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible);

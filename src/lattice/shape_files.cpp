@@ -4,6 +4,8 @@
 #include "fppg/shapes.h"
 
 #include "casedef/mesh_path.h"
+#include "lattice/domain_clip.h"
+#include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 
 #include <algorithm>
@@ -203,6 +205,24 @@ private:
                 before = next;
             }
         }
+        if (op.clip_resize && !op.advanced)
+        {
+            const auto first = static_cast<std::uint32_t>(out.vertices.size());
+            const FigureOp cut = clip_to_box(file, op.transform, clip_box(def_, *op.clip_resize),
+                                             op.reading.format != MeshFormat::Stl);
+            for (const Vec3& v : cut.vertices) out.vertices.push_back(place(v, snapped));
+            const auto add_polygon = [&](const auto& corners)
+            {
+                auto& polygon = out.polygons.emplace_back();
+                for (const std::uint32_t v : corners) polygon.push_back(first + v);
+            };
+            for (const FigureFace& face : cut.faces)
+            {
+                if (face.triangles.empty()) add_polygon(face.vertices);
+                for (const auto& triangle : face.triangles) add_polygon(triangle);
+            }
+            return;
+        }
         const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry &&
                                  op.reading.format != MeshFormat::CsvBathymetry;
         const auto first = static_cast<std::uint32_t>(out.vertices.size());
@@ -213,7 +233,7 @@ private:
             const std::uint32_t a = first + 3 * t;
             const bool is_quad = quad != file.quads.end() && *quad == t;
             if (is_quad) ++quad;
-            if (is_quad && (may_be_bent || is_flat(&file.soup.vertices[3 * std::size_t{t}])))
+            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[3 * std::size_t{t}])))
             {
                 out.polygons.push_back({a, a + 1, a + 2, a + 5});
                 ++t;
@@ -221,14 +241,6 @@ private:
             else
                 out.polygons.push_back({a, a + 1, a + 2});
         }
-    }
-
-    /// Whether the six corners of two triangles lie in one plane, but for the rounding of float.
-    static bool is_flat(const Vec3* corners)
-    {
-        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-        const Vec3 last = corners[5] - corners[0];
-        return std::fabs(dot(normal, last)) <= 1e-5 * norm(normal) * norm(last);
     }
 
     double radius(double r, bool snapped) const

@@ -220,6 +220,7 @@ private:
             if (is_out[k] != 0) ++*instant.outside;
             if (in[k] == CaseSolids::none) continue;
             ++instant.inside;
+            if (depth[k] > 0.5) ++instant.deep;
             ++instant.in_body[body_of_[in[k]]];
             instant.deepest_dp = std::max(instant.deepest_dp, depth[k]);
         }

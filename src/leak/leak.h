@@ -42,6 +42,7 @@ struct LeakInstant
     /// Fluid particles of the case (and new ones of the solver) that the solver has taken out.
     std::uint64_t excluded = 0;
     std::uint64_t inside = 0;             ///< in a solid
+    std::uint64_t deep = 0;               ///< of them more than 0.5 dp below its surface
     double deepest_dp = 0;                ///< below its surface
     std::optional<std::uint64_t> outside; ///< of the closed housing; empty without one
     std::vector<std::uint64_t> in_body;   ///< per body, sums to `inside`

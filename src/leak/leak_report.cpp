@@ -1,5 +1,7 @@
 #include "leak/leak.h"
 
+#include "core/text_table.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -16,22 +18,6 @@ const char* type_name(ParticleType type)
 {
     static constexpr const char* names[] = {"fixed", "moving", "floating", "fluid"};
     return names[static_cast<std::size_t>(type)];
-}
-
-/// Right-aligned columns.
-std::string table(const std::vector<std::vector<std::string>>& rows)
-{
-    std::vector<std::size_t> widths(rows.front().size());
-    for (const auto& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    std::string text;
-    for (const auto& row : rows)
-    {
-        for (std::size_t c = 0; c < row.size(); ++c)
-            text += fmt::format("{}{:>{}}", c == 0 ? "" : "  ", row[c], widths[c]);
-        text += "\n";
-    }
-    return text;
 }
 
 /// The largest number over time, and when it was first there.
@@ -67,16 +53,17 @@ std::string to_text(const LeakReport& report)
         fmt::format("{}: dp {:g} m, {} fluid particles, {} solids, {}\n", report.case_name,
                     report.dp, report.fluid, report.bodies.size(),
                     report.has_housing ? "in a closed housing" : "no closed housing");
-    std::vector<std::vector<std::string>> rows{
-        {"time [s]", "step", "dt [s]", "fluid", "inside", "deepest [dp]", "outside", "taken out"}};
+    std::vector<std::vector<std::string>> rows{{"time [s]", "step", "dt [s]", "fluid", "inside",
+                                                "deeper than dp/2", "deepest [dp]", "outside",
+                                                "taken out"}};
     for (const LeakInstant& at : report.instants)
         rows.push_back(
             {fmt::format("{:.6g}", at.time), std::to_string(at.step),
              at.dt_largest > 0 ? fmt::format("{:.3g} to {:.3g}", at.dt_least, at.dt_largest) : "-",
-             std::to_string(at.fluid), std::to_string(at.inside),
+             std::to_string(at.fluid), std::to_string(at.inside), std::to_string(at.deep),
              at.inside > 0 ? fmt::format("{:.3f}", at.deepest_dp) : "-",
              at.outside ? std::to_string(*at.outside) : "-", std::to_string(at.excluded)});
-    text += table(rows);
+    text += text_table(rows);
     for (std::size_t b = 0; b < report.bodies.size(); ++b)
     {
         const Worst worst = worst_in(report, b);
@@ -116,6 +103,7 @@ std::string to_json(const LeakReport& report)
         out["fluid"] = at.fluid;
         out["taken_out"] = at.excluded;
         out["inside"] = at.inside;
+        out["deeper_than_half_dp"] = at.deep;
         out["deepest_dp"] = at.deepest_dp;
         out["outside"] = at.outside ? ordered_json(*at.outside) : ordered_json(nullptr);
         out["in_body"] = at.in_body;

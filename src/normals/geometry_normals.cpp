@@ -24,6 +24,22 @@ Vec3 nearest_on_edge(const Vec3& p, const Vec3& a, const Vec3& b)
     return a + std::clamp(dot(p - a, along) / length, 0.0, 1.0) * along;
 }
 
+/// The point of the facet's outline that is nearest to p.
+Vec3 nearest_on_outline(const NormalFacet& facet, const Vec3& p)
+{
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 nearest;
+    for (std::uint32_t k = 0, last = facet.size - 1; k < facet.size; last = k++)
+    {
+        const Vec3 q = nearest_on_edge(p, facet.corners[last], facet.corners[k]);
+        const double squared = dot(q - p, q - p);
+        if (squared >= least) continue;
+        least = squared;
+        nearest = q;
+    }
+    return nearest;
+}
+
 /// Whether a point of the facet's plane is inside its outline, by the edges that a ray in the plane
 /// crosses; seen along the axis that the normal is nearest to.
 bool is_inside(const NormalFacet& facet, const Vec3& p)
@@ -94,49 +110,39 @@ GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
     std::uint32_t best_facet = UINT32_MAX;
     Vec3 best_vector;
     const Vec3 room{reach_, reach_, reach_};
-    tree_.for_each_overlap(
-        {particle - room, particle + room},
-        [&](std::uint32_t index)
-        {
-            const NormalFacet& facet = facets_[index];
-            const double d = dot(facet.corners[0] - particle, facet.unit);
-            if (!(d > 0 && d <= reach_)) return;
-            const Vec3 foot = particle + d * facet.unit;
-            if (is_inside(facet, foot))
-            {
-                ++answer.candidates;
-                facing.push_back({index, d});
-                least = std::min(least, d);
-                return;
-            }
-            double e_squared = std::numeric_limits<double>::infinity();
-            Vec3 nearest;
-            for (std::uint32_t k = 0, last = facet.size - 1; k < facet.size; last = k++)
-            {
-                const Vec3 q = nearest_on_edge(foot, facet.corners[last], facet.corners[k]);
-                const double squared = dot(q - foot, q - foot);
-                if (squared >= e_squared) continue;
-                e_squared = squared;
-                nearest = q;
-            }
-            const double e = std::sqrt(e_squared);
-            if (!(e <= reach_)) return;
-            ++answer.candidates;
-            if (e <= tolerance_)
-            {
-                facing.push_back({index, d});
-                least = std::min(least, d);
-                return;
-            }
-            const Vec3 vector = nearest - particle;
-            const double length = norm(vector);
-            if (length < best || (length == best && index < best_facet))
-            {
-                best = length;
-                best_facet = index;
-                best_vector = vector;
-            }
-        });
+    tree_.for_each_overlap({particle - room, particle + room},
+                           [&](std::uint32_t index)
+                           {
+                               const NormalFacet& facet = facets_[index];
+                               const double d = dot(facet.corners[0] - particle, facet.unit);
+                               if (!(d > 0 && d <= reach_)) return;
+                               const Vec3 foot = particle + d * facet.unit;
+                               if (is_inside(facet, foot))
+                               {
+                                   ++answer.candidates;
+                                   facing.push_back({index, d});
+                                   least = std::min(least, d);
+                                   return;
+                               }
+                               const Vec3 nearest = nearest_on_outline(facet, foot);
+                               const double e = norm(nearest - foot);
+                               if (!(e <= reach_)) return;
+                               ++answer.candidates;
+                               if (e <= tolerance_)
+                               {
+                                   facing.push_back({index, d});
+                                   least = std::min(least, d);
+                                   return;
+                               }
+                               const Vec3 vector = nearest - particle;
+                               const double length = norm(vector);
+                               if (length < best || (length == best && index < best_facet))
+                               {
+                                   best = length;
+                                   best_facet = index;
+                                   best_vector = vector;
+                               }
+                           });
     if (facing.empty())
     {
         answer.normal = best_vector;
@@ -145,6 +151,35 @@ GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
     std::erase_if(facing, [&](const Facing& f) { return f.distance > least + tolerance_; });
     answer.normal = join(facing);
     return answer;
+}
+
+int GeometryQuery::side_at(const Vec3& p, const Vec3& n, double within) const
+{
+    struct Near
+    {
+        double distance;
+        double along;
+    };
+    thread_local std::vector<Near> near;
+    near.clear();
+    double least = within;
+    const Vec3 room{within, within, within};
+    tree_.for_each_overlap(
+        {p - room, p + room},
+        [&](std::uint32_t index)
+        {
+            const NormalFacet& facet = facets_[index];
+            const Vec3 foot = p + dot(facet.corners[0] - p, facet.unit) * facet.unit;
+            const Vec3 nearest = is_inside(facet, foot) ? foot : nearest_on_outline(facet, foot);
+            const double distance = norm(nearest - p);
+            if (!(distance <= within)) return;
+            near.push_back({distance, dot(facet.unit, n)});
+            least = std::min(least, distance);
+        });
+    double sum = 0;
+    for (const Near& facet : near)
+        if (facet.distance <= least + 100 * tolerance_) sum += facet.along;
+    return sum > 1e-6 ? 1 : sum < -1e-6 ? -1 : 0;
 }
 
 Vec3 GeometryQuery::join(std::vector<Facing>& facing) const

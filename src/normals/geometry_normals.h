@@ -59,6 +59,11 @@ public:
     /// May be called from several threads at once.
     Answer at(const Vec3& particle) const;
 
+    /// 1 where the facets nearest to p look along n, -1 where they look against it; 0 where none is
+    /// within the distance, metres, or they cancel out. Facets less than 0.01 dp farther than the
+    /// nearest one count, so that both do at an edge.
+    int side_at(const Vec3& p, const Vec3& n, double within) const;
+
 private:
     struct Facing
     {

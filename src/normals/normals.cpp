@@ -23,6 +23,10 @@ namespace
 
 using Float3 = std::array<float, 3>;
 
+/// Length of the normal of a particle on a fitted surface, which has no distance to it, in dp: the
+/// solver takes zero for none, and mirrors the particle in the surface to where it stands.
+constexpr double on_surface_dp = 0.01;
+
 Float3 as_float(const Vec3& v)
 {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -149,6 +153,7 @@ public:
         }
         if (def_.normals.geometry) from_geometry(*def_.normals.geometry, geometry);
         for (const NormalOp& op : def_.normals.ops) execute(op);
+        if (particles_.free.size() > 0) fill_on_surfaces();
         summarise();
         return std::move(normals_);
     }
@@ -231,6 +236,10 @@ private:
             {
                 GeometryQuery::Answer answer = query.at(p);
                 candidates[r] += answer.candidates;
+                const Vec3 own = own_normal(r, normal);
+                if (const int side = own == Vec3{} ? 0 : query.side_at(p, own, 0.5 * def_.grid.dp);
+                    side != 0)
+                    answer.normal = side * on_surface_dp * def_.grid.dp * own;
                 const double size = norm(answer.normal);
                 if (limit > 0 && size > limit)
                 {
@@ -251,6 +260,32 @@ private:
             report_.log.push_back(
                 fmt::format("  Resizes {}/{} huge normals with maximum size ({:g}x H = {:g}).",
                             all_resized, normals_.size(), geometry.max_size_h, limit));
+    }
+
+    /// The unit normal of the true surface at a particle that a fit put on it, else zero. `normal`
+    /// is the entry of the particle in normals_.
+    Vec3 own_normal(std::size_t r, const Float3& normal) const
+    {
+        const RunPlace& place = places_[r];
+        if (!place.run->is_free()) return {};
+        const auto k = static_cast<std::uint64_t>(&normal - &normals_[place.id]);
+        const std::array<float, 3>& n = particles_.free.normals[place.run->free_begin() + k];
+        Transform turn = motion_of(*place.block);
+        turn.offset = {};
+        return turn({n[0], n[1], n[2]});
+    }
+
+    /// Particles on a fitted surface that no entry gives a direction.
+    void fill_on_surfaces()
+    {
+        const double length = on_surface_dp * def_.grid.dp;
+        for_all(
+            [&](std::size_t r, const Vec3&, Float3& normal)
+            {
+                if (norm({normal[0], normal[1], normal[2]}) >= 0.99 * length) return;
+                const Vec3 own = own_normal(r, normal);
+                if (!(own == Vec3{})) normal = as_float(length * own);
+            });
     }
 
     void execute(const NormalOp& op)

@@ -146,8 +146,9 @@ void check_facets(MeshFile& mesh, const std::string& path, bool has_float32, int
     }
     if (counts.far > 0)
     {
-        // Quads are named by the indices of their triangles, so none of those may go.
-        const bool is_left_out = counts.far + counts.not_finite < all && mesh.quads.empty();
+        // Quads and polygons name their triangles by index, so none of those may go.
+        const bool is_left_out = counts.far + counts.not_finite < all && mesh.quads.empty() &&
+                                 mesh.wide_polygons.empty();
         if (is_left_out) leave_out_beyond(huge_coordinate, mesh.soup);
         mesh.warnings.push_back(fmt::format(
             "{} a coordinate beyond {:.0e}, most likely a damaged number{}; the first is facet {}.",

@@ -215,6 +215,7 @@ private:
             }
             corners.clear();
             for (const std::uint64_t p : cell) corners.push_back(mesh_.points[p]);
+            out_.wide_polygons.push_back({static_cast<std::uint32_t>(out_.soup.size()), corners});
             for (const auto& [a, b, c] : cut_into_ears(corners))
                 add_triangle(cell[a], cell[b], cell[c]);
         }

@@ -262,12 +262,12 @@ TEST(Wave, IsRefusedUnderATransformAndForABodyFittedMk)
 
 TEST(ClipToBox, CutsATriangleIntoTheQuadInside)
 {
-    TriangleSoup soup;
-    soup.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-    const FigureOp cut = clip_to_box(soup, {{-1, -1, -1}, {1, 3, 1}});
+    MeshFile mesh;
+    mesh.soup.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+    const FigureOp cut = clip_to_box(mesh, {}, {{-1, -1, -1}, {1, 3, 1}}, true);
     ASSERT_EQ(cut.faces.size(), 1u);
     EXPECT_EQ(cut.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 2, 0}}));
-    EXPECT_TRUE(clip_to_box(soup, {{3, 3, 3}, {4, 4, 4}}).faces.empty());
+    EXPECT_TRUE(clip_to_box(mesh, {}, {{3, 3, 3}, {4, 4, 4}}, true).faces.empty());
 }
 
 // -- clips

@@ -4,6 +4,7 @@
 
 #include "helpers/case_text.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -107,6 +108,23 @@ TEST(FreeDraw, RefusesABoxWhoseParticlesWouldBeTooNear)
     EXPECT_THROW(field_of(R"(<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" />)"
                           R"(<size x="0.21" y="0.1" z="0.1" /></drawbox>)"),
                  CaseError);
+}
+
+/// A trapezoid with its upper side from x = 0.1 to `end`.
+std::string trapezoid(double end)
+{
+    return fmt::format(
+        "<drawquadri><point x=\"0\" y=\"0\" z=\"0\" /><point x=\"1\" y=\"0\" "
+        "z=\"0\" /><point x=\"{}\" y=\"0\" z=\"0.6\" />"
+        "<point x=\"0.1\" y=\"0\" z=\"0.6\" /></drawquadri>",
+        end);
+}
+
+TEST(FreeDraw, RefusesATrapezoidWhoseSecondLegIsLonger)
+{
+    // GenCase v5.4.354 takes legs of 0.6083 and 0.6132, and refuses 0.6133.
+    EXPECT_NO_THROW(field_of(trapezoid(0.8732)));
+    EXPECT_THROW(field_of(trapezoid(0.873)), CaseError);
 }
 
 TEST(FreeDraw, IsTheSameWithOneAndEightThreads)

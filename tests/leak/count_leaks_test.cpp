@@ -124,6 +124,10 @@ TEST_F(CountLeaks, FindsAParticleInATurnedBar)
     const LeakReport turned = count(with_last_at(part(11, quarter), above));
     EXPECT_EQ(turned.instants[0].inside, 1U);
     EXPECT_NEAR(turned.instants[0].deepest_dp, 1, 1e-4); // 0.05 m below its end
+    EXPECT_EQ(turned.instants[0].deep, 1U);
+    const LeakReport shallow = count(with_last_at(part(11, quarter), {0.5, 0.5, 0.79}));
+    EXPECT_EQ(shallow.instants[0].inside, 1U);
+    EXPECT_EQ(shallow.instants[0].deep, 0U);
     ASSERT_EQ(turned.bodies.size(), 1U);
     EXPECT_EQ(turned.bodies[0].mk, 11);
     EXPECT_EQ(turned.bodies[0].type, ParticleType::Moving);

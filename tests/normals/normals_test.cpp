@@ -7,11 +7,14 @@
 #include "fppg/particles.h"
 
 #include "helpers/case_text.h"
+#include "particles/initials.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <tuple>
 
@@ -252,6 +255,95 @@ TEST(NormalsOfGeometry, AreShownByThePictureWithOneLineAFacet)
     // A fifth of the mean distance of the corners from the centre: 0.2 * 0.7071.
     expect_vector(made.report.shapes[0].vertices[1], {0.5, 0.5, 1 + 0.1 * std::sqrt(2.0)}, 1e-6);
     EXPECT_EQ(made.report.shapes[1].polygons[0].size(), 4U);
+}
+
+/// A ball of 0.3 about (0.4, 0.4, 0.4) on whose surface particles stand.
+CaseText fitted_ball(const std::string& normals)
+{
+    CaseText text;
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawsphere radius="0.3">)"
+                    R"(<point x="0.4" y="0.4" z="0.4" /></drawsphere>)";
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="0" /></fppg><normals>)" + normals + "</normals>";
+    return text;
+}
+
+/// The faces of a ball as `side` (1: outwards, -1: inwards) looks, in rings of 24.
+std::vector<ShapePolygons> ball_faces(int side)
+{
+    constexpr int rings = 12;
+    const auto corner = [](int ring, int i)
+    {
+        const double polar = ring * std::numbers::pi / rings;
+        const double around = i * std::numbers::pi / rings;
+        return Vec3{0.4, 0.4, 0.4} + 0.3 * Vec3{std::sin(polar) * std::cos(around),
+                                                std::sin(polar) * std::sin(around),
+                                                std::cos(polar)};
+    };
+    std::vector<ShapePolygons> faces;
+    for (int ring = 0; ring < rings; ++ring)
+        for (int i = 0; i < 2 * rings; ++i)
+        {
+            std::vector<Vec3> loop{corner(ring, i), corner(ring + 1, i), corner(ring + 1, i + 1)};
+            if (ring > 0 && ring < rings - 1) loop.push_back(corner(ring, i + 1));
+            if (ring == rings - 1) loop[2] = corner(ring, i + 1);
+            if (side < 0) std::reverse(loop.begin(), loop.end());
+            faces.push_back(polygon(loop));
+        }
+    return faces;
+}
+
+/// Every particle on the surface has a hundredth of dp along the radius; returns how many.
+std::size_t expect_radial(const Made& made, int side, const Vec3& centre = {0.4, 0.4, 0.4})
+{
+    std::size_t count = 0;
+    const FreeParticles& free = made.particles.free;
+    for (const ParticleBlock& block : made.particles.blocks)
+    {
+        std::uint64_t id = block.begin;
+        for (const ParticleRun& run : block.runs)
+            for (std::uint32_t k = 0; k < run.count; ++k, ++id)
+            {
+                if (!run.is_free() || free.kinds[run.free_begin() + k] == FitKind::Volume) continue;
+                const Vec3 p = motion_of(block)(free.positions[run.free_begin() + k]);
+                const auto& n = made.normals.at(id);
+                expect_vector(Vec3{n[0], n[1], n[2]} / 0.001, side * (p - centre) / 0.3, 1e-4);
+                ++count;
+            }
+    }
+    return count;
+}
+
+TEST(NormalsOnFittedWalls, AreThoseOfTheSurfaceTowardsTheSideThatTheFacesLookTo)
+{
+    for (const int side : {1, -1})
+        EXPECT_GT(expect_radial(make(fitted_ball(geometry_of_2h), ball_faces(side)), side), 90U);
+}
+
+TEST(NormalsOnFittedWalls, LookOutwardsWhereNothingElseIsSaid)
+{
+    const Made made =
+        make(fitted_ball(R"(<norset mkbound="1"><normal x="0" y="0" z="1" /></norset>)"));
+    EXPECT_GT(expect_radial(made, 1), 90U);
+    const Made far =
+        make(fitted_ball(geometry_of_2h), {polygon({{9, 9, 9}, {9, 8, 9}, {8, 8, 9}})});
+    EXPECT_GT(expect_radial(far, 1), 90U);
+}
+
+TEST(NormalsOnFittedWalls, AreTheOnesThatAreSet)
+{
+    const Made made =
+        make(fitted_ball(R"(<norset mkbound="0"><normal x="0" y="0" z="0.05" /></norset>)"));
+    for (const auto& n : made.normals) EXPECT_EQ(n, (std::array<float, 3>{0, 0, 0.05F}));
+}
+
+TEST(NormalsOnFittedWalls, TurnWithThem)
+{
+    CaseText text = fitted_ball(R"(<norset mkbound="1"><normal x="0" y="0" z="1" /></norset>)");
+    text.after_geometry += R"(<initials><rotateaxis mkbound="0" angle="30" anglesunits="degrees">)"
+                           R"(<axisp1 x="0.4" y="0.4" z="0.3" /><axisp2 x="0.4" y="0.4" z="1" />)"
+                           R"(</rotateaxis></initials>)";
+    EXPECT_GT(expect_radial(make(text), 1), 90U);
 }
 
 TEST(NormalsThatAreSet, AreWrittenAsTheyStandForTheSelectedParticles)

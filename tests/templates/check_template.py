@@ -24,7 +24,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "..", "tools"))
 sys.path.insert(0, os.path.join(HERE, "..", "cases"))
 sys.dont_write_bytecode = True
-from check_fitted_case import VOLUME, distances, read_stl  # noqa: E402 (found by the path above)
+from check_fitted_case import VOLUME, distances, is_inside, read_stl  # noqa: E402 (found by the path above)
 from particle_files import read_bi4, read_blocks, read_vtk  # noqa: E402
 
 
@@ -100,6 +100,23 @@ def check_BodyFitted(result):
 
 def check_BodyFittedRelax(result):
     yield from stand_on(result, 11, "part.stl", (0.31, 0.12, 0.13))
+
+
+def check_FittedNormals(result):
+    mesh = result.mesh("part.stl", (0.31, 0.12, 0.13))
+    yield from stand_on(result, 11, "part.stl", (0.31, 0.12, 0.13))
+    normals = result.arrays["BoundNor"].astype(float)
+    length = np.linalg.norm(normals, axis=1)
+    wall = result.kind < VOLUME
+    if not np.allclose(length[wall], 0.01 * result.dp, rtol=1e-3):
+        yield "a normal on the surface is not 0.01 dp long"
+    outwards = normals[wall] / length[wall, None]
+    away = result.positions[wall] + 0.2 * result.dp * outwards
+    if not np.all(distances(away, mesh) > 0.1 * result.dp) or np.any(is_inside(away, mesh)):
+        yield "a normal on the surface does not lead out of the part"
+    below = ~wall
+    if distances(result.positions[below] + normals[below], mesh).max() > 1e-4 * result.dp:
+        yield "a normal below the surface does not lead to it"
 
 
 def check_FittedPlates(result):

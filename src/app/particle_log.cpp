@@ -1,0 +1,121 @@
+#include "app/particle_log.h"
+
+#include "fppg/files.h"
+
+#include "app/thousands.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fppg
+{
+
+void log_particles(const CaseDef& def, const CaseParticles& particles,
+                   const CaseConstants& constants, RunLog& log)
+{
+    struct Group
+    {
+        const char* title;
+        const char* label;
+        ParticleType type;
+        std::uint64_t count;
+    };
+    const std::array<Group, 4> groups{
+        Group{"Fixed-Boundary", "Fixed....", ParticleType::Fixed, particles.n_fixed},
+        Group{"Moving-Boundary", "Moving...", ParticleType::Moving, particles.n_moving},
+        Group{"Floating-Boundary", "Floating.", ParticleType::Floating, particles.n_floating},
+        Group{"Fluid", "Fluid....", ParticleType::Fluid, particles.n_fluid}};
+    log.line("List of Points:");
+    std::array<std::size_t, 4> blocks{};
+    std::vector<std::string> summary;
+    for (const Group& group : groups)
+    {
+        std::vector<int> mks;
+        std::uint64_t begin = 0;
+        for (std::size_t b = 0; b < particles.blocks.size(); ++b)
+        {
+            const ParticleBlock& block = particles.blocks[b];
+            if (block.type != group.type) continue;
+            if (mks.empty())
+            {
+                log.line(fmt::format("Points -> {} particles:", group.title));
+                begin = block.begin;
+            }
+            log.line(fmt::format("  block[{:3}] (mk:{:3}): {:6}", b, block.mk, block.count));
+            mks.push_back(block.mk);
+            ++blocks[static_cast<std::size_t>(group.type)];
+        }
+        summary.push_back(mks.empty()
+                              ? fmt::format("  {}: 0", group.label)
+                              : fmt::format("  {}: {}  id:({}-{})   MKs:{} ({})", group.label,
+                                            thousands(group.count), begin, begin + group.count - 1,
+                                            mks.size(), format_ranges(mks)));
+    }
+    log.line();
+    log.line("Particle summary:");
+    for (const std::string& line : summary) log.line(line);
+    log.line();
+    log.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                         thousands(particles.np), thousands(particles.np - particles.n_fluid),
+                         thousands(particles.n_fixed), thousands(particles.n_moving),
+                         thousands(particles.n_floating), thousands(particles.n_fluid)));
+    log.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                         particles.blocks.size(), blocks[0] + blocks[1] + blocks[2], blocks[0],
+                         blocks[1], blocks[2], blocks[3]));
+    log.line();
+    const ConstantsDef& c = def.constants;
+    const char* depth_source = c.rhop_gradient != 3 && particles.n_floating > 0
+                                   ? "automatic from the height of water+floating bodies"
+                                   : "automatic";
+    log.line(
+        fmt::format("Maximum depth: {:g} ({})", constants.hswl, c.hswl ? "fixed" : depth_source));
+    log.line(fmt::format("Speed of system: {:g} ({})", constants.speed_system,
+                         c.speed_system ? "fixed" : "automatic"));
+    log.line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
+                         c.speed_sound ? "fixed" : "automatic"));
+    log.line();
+    const double hdp = def.h / def.grid.dp;
+    log.line(
+        fmt::format("Coefh:{:.6f} (hdp:{:.6f})", hdp / std::sqrt(def.grid.is_2d ? 2.0 : 3.0), hdp));
+}
+
+ZoneSummary summary_of_zone(const CaseDef& def, const CaseParticles& particles,
+                            const CaseConstants& constants)
+{
+    ZoneSummary out;
+    out.dp = def.grid.dp;
+    out.parent = def.vres.zones[def.zone].parent;
+    out.counts = {particles.n_fluid, particles.n_fixed, particles.n_moving, particles.n_floating};
+    out.limits.add(particles.pos_min);
+    out.limits.add(particles.pos_max);
+    out.constants = constants;
+    return out;
+}
+
+void log_zones(const std::vector<ZoneSummary>& zones, RunLog& log)
+{
+    log.line();
+    log.line("VResolution summary:");
+    log.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", "Zone", "Parent",
+                         "Dp", "Particles", "Fluid", "Fixed", "Moving", "Floating"));
+    const auto row = [&](const std::string& id, const std::string& parent, const std::string& dp,
+                         const std::array<std::uint64_t, 4>& n)
+    {
+        log.line(fmt::format("{:>6} {:>7} {:>10} {:>14} {:>14} {:>14} {:>14} {:>14}", id, parent,
+                             dp, thousands(n[0] + n[1] + n[2] + n[3]), thousands(n[0]),
+                             thousands(n[1]), thousands(n[2]), thousands(n[3])));
+    };
+    std::array<std::uint64_t, 4> all{};
+    for (std::size_t id = 0; id < zones.size(); ++id)
+    {
+        const ZoneSummary& zone = zones[id];
+        row(fmt::format("{}", id), id > 0 ? fmt::format("{}", zone.parent) : "",
+            fmt::format("{:g}", zone.dp), zone.counts);
+        for (std::size_t k = 0; k < 4; ++k) all[k] += zone.counts[k];
+    }
+    row("all", "", "", all);
+    log.line();
+}
+
+} // namespace fppg

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "fppg/files.h"
+
+#include "app/run_log.h"
+#include "app/stopwatch.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// The files of a result while they are written: each has a temporary name until commit(), so that
+/// an old result survives a run that fails.
+class ResultFiles
+{
+public:
+    /// A new file; the reference holds until the next one is made.
+    OutputFile& add(const std::string& path) { return files_.emplace_back(path); }
+
+    /// Adds a file, lets body(file) write it, and tells how long it took.
+    template <typename Body>
+    void write(const std::string& path, const char* note, RunLog& log, const Body& body)
+    {
+        const Stopwatch time;
+        OutputFile& file = add(path);
+        body(file);
+        log.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+    }
+
+    /// Adds a copy of a file.
+    ///
+    /// throws  IoError if it cannot be read
+    void copy(const std::string& source, const std::string& path);
+
+    /// Whether a file of that name is among them.
+    bool has(const std::string& path) const;
+
+    /// The last one is left out again.
+    void drop_last() { files_.pop_back(); }
+
+    /// None is left; nothing of them stays on the disk.
+    void clear() { files_.clear(); }
+
+    /// Gives all their names; a stop is held off meanwhile. `three_vtk`: three copies of every
+    /// .vtk, as GenCase makes them for its test runs.
+    void commit(bool three_vtk);
+
+private:
+    std::vector<OutputFile> files_;
+};
+
+} // namespace fppg
