@@ -528,8 +528,9 @@ private:
                     });
             return;
         }
-        if (fills) paint_region(solid_of(op));
-        if (fills && op.solid == SolidKind::Prism)
+        const bool is_prism = op.solid == SolidKind::Prism;
+        if (fills) paint_region(is_prism ? inside_of_parts(op, grid()) : solid_of(op));
+        if (fills && is_prism)
             draw_free([&] { return free_dividing_faces(op, state().matrix, grid()); });
         if (!fills || state().mode == DrawMode::Full)
             draw_free([&] { return free_faces(op, state().matrix, grid()); });

@@ -228,6 +228,40 @@ void keep_inner(const Plane& limit, double x, const LatticeGrid& grid, Span& s)
         s.z_begin = inside;
 }
 
+SlabRegion inside_of(const std::shared_ptr<const SolidCutter>& cutter, std::size_t p,
+                     const LatticeGrid& grid)
+{
+    const NodeBox& box = cutter->parts[p].box;
+    if (box.is_empty()) return {};
+    SlabRegion inside;
+    inside.x_begin = static_cast<std::uint32_t>(box.begin[0]);
+    inside.x_end = static_cast<std::uint32_t>(box.end[0]);
+    inside.emit = [cutter, p, grid](std::uint32_t slab, Spans& out)
+    { emit_part(cutter->parts[p], grid, slab, out); };
+    return inside;
+}
+
+/// All of several regions.
+SlabRegion join(std::vector<SlabRegion> regions)
+{
+    const auto parts = std::make_shared<const std::vector<SlabRegion>>(std::move(regions));
+    SlabRegion region;
+    region.x_begin = UINT32_MAX;
+    for (const SlabRegion& part : *parts)
+    {
+        if (part.x_end <= part.x_begin) continue;
+        region.x_begin = std::min(region.x_begin, part.x_begin);
+        region.x_end = std::max(region.x_end, part.x_end);
+    }
+    if (region.x_end <= region.x_begin) return {};
+    region.emit = [parts](std::uint32_t slab, Spans& out)
+    {
+        for (const SlabRegion& part : *parts)
+            if (slab >= part.x_begin && slab < part.x_end) part.emit(slab, out);
+    };
+    return region;
+}
+
 } // namespace
 
 std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
@@ -237,13 +271,7 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
     std::vector<SlabRegion> regions;
     for (std::size_t p = 0; p < cutter->parts.size(); ++p)
     {
-        const NodeBox& box = cutter->parts[p].box;
-        SlabRegion inside;
-        inside.x_begin = static_cast<std::uint32_t>(box.begin[0]);
-        inside.x_end = static_cast<std::uint32_t>(box.end[0]);
-        inside.emit = [cutter, p, grid](std::uint32_t slab, Spans& out)
-        { emit_part(cutter->parts[p], grid, slab, out); };
-        regions.push_back(box.is_empty() ? SlabRegion{} : inside);
+        regions.push_back(inside_of(cutter, p, grid));
         for (std::size_t f = 0; f < cutter->inner_faces.size(); ++f)
         {
             if (cutter->inner_faces[f].owner != p) continue;
@@ -270,23 +298,16 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp)
 {
-    const auto parts = std::make_shared<const std::vector<SlabRegion>>(
-        solid_parts(figure, grid, weight_dp, limits_dp));
-    SlabRegion region;
-    region.x_begin = UINT32_MAX;
-    for (const SlabRegion& part : *parts)
-    {
-        if (part.x_end <= part.x_begin) continue;
-        region.x_begin = std::min(region.x_begin, part.x_begin);
-        region.x_end = std::max(region.x_end, part.x_end);
-    }
-    if (region.x_end <= region.x_begin) return {};
-    region.emit = [parts](std::uint32_t slab, Spans& out)
-    {
-        for (const SlabRegion& part : *parts)
-            if (slab >= part.x_begin && slab < part.x_end) part.emit(slab, out);
-    };
-    return region;
+    return join(solid_parts(figure, grid, weight_dp, limits_dp));
+}
+
+SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid)
+{
+    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    std::vector<SlabRegion> regions;
+    for (std::size_t p = 0; p < cutter->parts.size(); ++p)
+        regions.push_back(inside_of(cutter, p, grid));
+    return join(std::move(regions));
 }
 
 } // namespace fppg

@@ -22,6 +22,10 @@ namespace fppg
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
+/// The nodes inside the parts alone, without the faces between them: what setfrdrawmode draws of a
+/// prism on the lattice.
+SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid);
+
 /// The same inside, part by part in GenCase's order of drawing: a convex part, then the faces that
 /// it turns to its neighbours.
 std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
