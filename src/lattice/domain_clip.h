@@ -12,11 +12,12 @@ Box3 clip_box(const CaseDef& def, double resize);
 /// What is left of the triangles, quads and polygons of a mesh inside a box, corners placed by
 /// `place`: what reaches over a side is cut there, and nothing closes the cut. The lower sides cut
 /// first (x, y, z), then the upper ones; a corner outside gives way to the point on the edge to the
-/// corner before it, then to the one on the edge to the corner after it. Points are found in double
-/// and kept as float32.
+/// corner before it, then to the one on the edge to the corner after it. Points are found in
+/// double, kept as float32 in the coordinates of the file, and placed then.
 ///
 /// keeps_quads  true, as for all files but STL: four corners are a quad, more are cut by ears of
-///              least perimeter (cut_into_ears). false: the fan about the first corner
+///              least perimeter, in the coordinates of the file (cut_into_ears). false: the fan
+///              about the first corner
 ///
 /// Corners, their order and the triangles are those of GenCase v5.4.354 to the last bit of float32
 /// for 230 random triangles of STL and 50 flat quads of PLY (found with `shapeout`); quads that are
