@@ -2,6 +2,7 @@
 
 #include "shapes/mesh_builder.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -92,6 +93,21 @@ Box3 clip_box(const CaseDef& def, double resize)
         box.max[axis] = def.case_pos_max[axis] + resize;
     }
     return box;
+}
+
+bool is_within(const MeshFile& mesh, const Transform& place, const Box3& box)
+{
+    const auto is_in = [&](const Vec3& p)
+    {
+        const Vec3 q = place(p);
+        for (int axis = 0; axis < 3; ++axis)
+            if (q[axis] < box.min[axis] || q[axis] > box.max[axis]) return false;
+        return true;
+    };
+    const auto all_in = [&](const std::vector<Vec3>& points)
+    { return std::all_of(points.begin(), points.end(), is_in); };
+    return all_in(mesh.soup.vertices) && all_in(mesh.points) &&
+           std::all_of(mesh.lines.begin(), mesh.lines.end(), all_in);
 }
 
 FigureOp clip_to_box(const MeshFile& mesh, const Transform& place, const Box3& box,

@@ -9,6 +9,10 @@ namespace fppg
 /// The domain of a case (`<pointmin>` to `<pointmax>`), so many metres farther out on all sides.
 Box3 clip_box(const CaseDef& def, double resize);
 
+/// Whether all corners, points and lines of a mesh lie in a box: GenCase v5.4.354 then draws the
+/// mesh as without `<clipdomain>`, else none of its points and lines, not even those inside.
+bool is_within(const MeshFile& mesh, const Transform& place, const Box3& box);
+
 /// What is left of the triangles, quads and polygons of a mesh inside a box, corners placed by
 /// `place`: what reaches over a side is cut there, and nothing closes the cut. The lower sides cut
 /// first (x, y, z), then the upper ones; a corner outside gives way to the point on the edge to the

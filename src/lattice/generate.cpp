@@ -803,7 +803,11 @@ private:
                                 "along {}",
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
         const MeshFile& file = mesh(op);
-        draw_points_and_lines(file, op.transform);
+        if (is_within(file, op.transform, box))
+        {
+            draw_mesh(op, file);
+            return;
+        }
         const FigureOp cut =
             clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
         draw(cut);
@@ -812,14 +816,7 @@ private:
         for (const FigureFace& face : cut.faces)
             for (const auto& triangle : face_triangles(cut, face))
                 for (const std::size_t v : triangle) soup.vertices.push_back(cut.vertices[v]);
-        MeshFile placed;
-        for (const Vec3& p : file.points) placed.points.push_back(op.transform(p));
-        for (std::vector<Vec3> line : file.lines)
-        {
-            for (Vec3& p : line) p = op.transform(p);
-            placed.lines.push_back(std::move(line));
-        }
-        autofill(soup, soup, placed, {});
+        autofill(soup, soup, MeshFile{}, {});
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)

@@ -193,19 +193,8 @@ private:
             out.vertices.push_back(place(op.transform(v), snapped));
             return static_cast<std::uint32_t>(out.vertices.size() - 1);
         };
-        for (const std::vector<Vec3>& line : file.lines)
-        {
-            if (op.advanced) break; // takes surfaces only
-            std::uint32_t before = add_vertex(line[0]);
-            out.polygons.push_back({before, before});
-            for (std::size_t i = 1; i < line.size(); ++i)
-            {
-                const std::uint32_t next = add_vertex(line[i]);
-                out.polygons.push_back({before, next});
-                before = next;
-            }
-        }
-        if (op.clip_resize && !op.advanced)
+        if (op.clip_resize && !op.advanced &&
+            !is_within(file, op.transform, clip_box(def_, *op.clip_resize)))
         {
             const auto first = static_cast<std::uint32_t>(out.vertices.size());
             const FigureOp cut = clip_to_box(file, op.transform, clip_box(def_, *op.clip_resize),
@@ -222,6 +211,18 @@ private:
                 for (const auto& triangle : face.triangles) add_polygon(triangle);
             }
             return;
+        }
+        for (const std::vector<Vec3>& line : file.lines)
+        {
+            if (op.advanced) break; // takes surfaces only
+            std::uint32_t before = add_vertex(line[0]);
+            out.polygons.push_back({before, before});
+            for (std::size_t i = 1; i < line.size(); ++i)
+            {
+                const std::uint32_t next = add_vertex(line[i]);
+                out.polygons.push_back({before, next});
+                before = next;
+            }
         }
         const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry &&
                                  op.reading.format != MeshFormat::CsvBathymetry;
