@@ -202,11 +202,23 @@ void ProgramRunner::draw_box(const Element& e)
 
 /// GenCase changes the size of the box in ways of its own where the current matrix moves or turns
 /// it (found by experiment with v5.4.354), so that none is possible here.
-/// Found by experiment with GenCase v5.4.354 (10 matrices): corner, crest and even the size are
-/// moved, turned and scaled as points, so that a move makes the box larger; depth and height of the
-/// wave stay. A box that has a negative size afterwards draws nothing.
+/// Found by experiment with GenCase v5.4.354 (19 matrices of moves and scales, or of a turn):
+/// corner, crest and even the size are moved, turned and scaled as points, so that a move makes the
+/// box larger; depth and height of the wave stay. A box that has a negative size afterwards draws
+/// nothing. A turn together with a move gives another size (3 matrices), which no rule was found
+/// for.
 void ProgramRunner::draw_wave(const Element& e)
 {
+    const Vec3 origin = matrix_({0, 0, 0});
+    bool is_turned = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        Vec3 unit;
+        unit[axis] = 1;
+        const Vec3 image = matrix_(unit) - origin;
+        for (int other = 0; other < 3; ++other) is_turned |= other != axis && image[other] != 0;
+    }
+    if (is_turned && origin != Vec3{}) read_.fail_unsupported(e, "a turn together with a move");
     WaveOp op;
     op.corner = matrix_(read_.child_vec3(e, "point"));
     const Vec3 size = read_.child_vec3(e, "size");

@@ -251,9 +251,17 @@ TEST(Wave, FillsItsBoxUpToTheSurface)
     EXPECT_EQ(nodes_of(wave), (Counts{{10, 150}}));
 }
 
-TEST(Wave, IsRefusedUnderATransformAndForABodyFittedMk)
+TEST(Wave, TakesItsSizeForAPointUnderAMatrixAsGenCaseDoes)
 {
-    EXPECT_THROW(nodes_of(R"(<move x="1" y="0" z="0" />)" + wave), CaseError);
+    EXPECT_EQ(nodes_of(R"(<move x="0" y="0.2" z="0" />)" + wave), (Counts{{10, 300}}));
+    EXPECT_EQ(nodes_of(R"(<scale x="1" y="2" z="1" />)" + wave), (Counts{{10, 225}}));
+}
+
+TEST(Wave, IsRefusedUnderATurnWithAMoveAndForABodyFittedMk)
+{
+    EXPECT_THROW(
+        nodes_of(R"(<move x="1" y="0" z="0" /><rotate ang="5" x="0" y="0" z="1" />)" + wave),
+        CaseError);
     EXPECT_NE(error_when_fitted(wave).find("<drawwave>: it has no surface"), std::string::npos);
 }
 
