@@ -93,8 +93,12 @@ TEST(GenerateLattice, KeepsOnlyTheNodesBehindEveryClip)
                             {
                                 bool is_kept = true;
                                 for (const ClipPlane& c : drawing.state.clips)
-                                    is_kept =
-                                        is_kept && dot(position(n, grid) - c.point, c.normal) <= 0;
+                                {
+                                    // Of nodes on the plane, rounding decides as in GenCase.
+                                    const Vec3 unit = c.normal / norm(c.normal);
+                                    is_kept = is_kept &&
+                                              dot(unit, position(n, grid)) <= dot(unit, c.point);
+                                }
                                 expected.at(n.x, n.y, n.z) = is_kept ? 10 : 0;
                             });
         ASSERT_TRUE(dense(drawing.run(1)) == expected) << "case " << i;
