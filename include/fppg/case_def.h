@@ -210,6 +210,10 @@ struct MeshFileOp
     double depth_min = 0;     ///< metres
     double depth_max = 0;     ///< metres; may be infinite
     bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
+    /// advanced, on the lattice: the files of the same VTM file and mk that are one mesh with this
+    /// one; their own draws have is_drawn_before.
+    std::vector<std::string> joined;
+    bool is_drawn_before = false;
 };
 
 /// `drawwave`: the water below a solitary wave, from the bottom of a box up to

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 namespace fppg
 {
@@ -204,7 +205,9 @@ void ProgramRunner::draw_mesh_file(const Element& e)
 /// Found by experiment with GenCase v5.4.354: only the first block of the file is read; indices are
 /// those written in it; names are matched with their case; a data set may be selected once; with
 /// mkbound or mkfluid there must be as many numbers as data sets, taken in the order of both lists;
-/// without, and behind the command, the mk is that of before.
+/// without, and behind the command, the mk is that of before. With advanced all data sets of one mk
+/// are one mesh, whichever onlysurfaces they come from: rows count from where they enter the first
+/// to where they leave one (two and three balls and cubes, with and without reverse).
 void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
 {
     op.container = op.file;
@@ -215,9 +218,18 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
             "{}:{}: <{}>: {}: {} data sets outside its first block are not drawn, as in GenCase.",
             def_.file, e.line, e.name, path, n));
     std::vector<char> is_selected(entries.size(), 0);
+    std::map<std::uint16_t, std::size_t> first_of_mk;
     const auto draw = [&](std::size_t i)
     {
         op.file = entries[i].file;
+        op.is_drawn_before = false;
+        if (op.advanced)
+        {
+            const auto [first, is_new] = first_of_mk.emplace(state_.mk.mk, def_.ops.size());
+            op.is_drawn_before = !is_new;
+            if (!is_new)
+                std::get<MeshFileOp>(def_.ops[first->second].what).joined.push_back(op.file);
+        }
         add(e, op);
     };
     bool has_selection = false;

@@ -821,6 +821,7 @@ private:
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
     {
+        if (op.is_drawn_before) return;
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
         // A table of heights is always drawn by its triangles on the lattice.
@@ -858,6 +859,14 @@ private:
         }
         if (op.advanced)
         {
+            for (const std::string& other : op.joined)
+            {
+                MeshFileOp joined = op;
+                joined.file = other;
+                const TriangleSoup more = moved_soup(mesh(joined).soup, op.transform);
+                moved.vertices.insert(moved.vertices.end(), more.vertices.begin(),
+                                      more.vertices.end());
+            }
             paint_region(depth_region(moved, op, grid(), threads_));
             return;
         }
