@@ -193,12 +193,12 @@ private:
             out.vertices.push_back(place(op.transform(v), snapped));
             return static_cast<std::uint32_t>(out.vertices.size() - 1);
         };
-        if (op.clip_resize && !op.advanced &&
-            !is_within(file, op.transform, clip_box(def_, *op.clip_resize)))
+        const Box3 box = clip_box(def_, op.clip_resize.value_or(0));
+        if (op.clip_resize && !op.advanced && !is_within(file, op.transform, box))
         {
             const auto first = static_cast<std::uint32_t>(out.vertices.size());
-            const FigureOp cut = clip_to_box(file, op.transform, clip_box(def_, *op.clip_resize),
-                                             op.reading.format != MeshFormat::Stl);
+            const FigureOp cut =
+                clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
             for (const Vec3& v : cut.vertices) out.vertices.push_back(place(v, snapped));
             const auto add_polygon = [&](const auto& corners)
             {
