@@ -161,16 +161,18 @@ private:
                needed_bytes(job) <= options_.memory_bytes;
     }
 
-    /// Temporary files of a run that was killed.
+    /// Temporary files of a run that was killed, its copies of meshes in data/ too.
     static void remove_leftovers(const Job& job)
     {
         std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(job.folder(), ignored))
+        std::vector<fs::path> leftovers;
+        for (const auto& entry : fs::recursive_directory_iterator(job.folder(), ignored))
         {
             const std::string name = entry.path().filename().string();
             if (name.starts_with('.') && name.find(".part-") != std::string::npos)
-                fs::remove(entry.path(), ignored);
+                leftovers.push_back(entry.path());
         }
+        for (const fs::path& path : leftovers) fs::remove(path, ignored);
     }
 
     /// Starts what fits beside the children at work; false if nothing does.

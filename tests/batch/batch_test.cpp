@@ -107,6 +107,24 @@ TEST(Batch, KilledInTheMiddleIsResumedWithNothingLostAndNothingDoneTwice)
     EXPECT_EQ(times_of_results(folder), before);
 }
 
+TEST(Batch, RemovesWhatAKilledRunHadBegunToWrite)
+{
+    const TemporaryFolder folder;
+    copy_templates(folder.path() / "cases", {"DrawFileStl"});
+    const fs::path result = folder.path() / "out/DrawFileStl";
+    const std::string part = result / "data/.block.stl.part-1";
+    fs::create_directories(result / "data");
+    write_text(part, "solid");
+    write_text((result / ".DrawFileStl.bi4.part-1").string(), "half");
+    ASSERT_EQ(batch(folder, "cases", {}).code, 0);
+    EXPECT_FALSE(fs::exists(part));
+    EXPECT_FALSE(fs::exists(result / ".DrawFileStl.bi4.part-1"));
+    // And where the run itself was done, but what came after it was killed.
+    write_text(part, "solid");
+    ASSERT_EQ(batch(folder, "cases", {"--resume"}).code, 0);
+    EXPECT_FALSE(fs::exists(part));
+}
+
 TEST(Batch, GivesTheBytesOfSingleRuns)
 {
     const TemporaryFolder folder;
