@@ -220,9 +220,10 @@ Spans occupied(const std::vector<Run>& runs)
 
 void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
 {
-    // The arithmetic for nodes on the plane: 1548 of 1628 of 40 planes are as in GenCase v5.0, 1426
-    // by the unscaled vector.
-    const Vec3 normal = clip.normal / norm(clip.normal);
+    // The arithmetic for nodes on the plane: scaled to length one twice, all 1628 of 40 planes are
+    // as in GenCase v5.0; scaled once 1548, by the vector as it is 1426.
+    const Vec3 once = clip.normal / norm(clip.normal);
+    const Vec3 normal = once / norm(once);
     const double offset = -dot(normal, clip.point);
     const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
     spans = part_of_columns(spans,
