@@ -218,19 +218,21 @@ Spans occupied(const std::vector<Run>& runs)
     return out;
 }
 
-void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
+Clip::Clip(const ClipPlane& plane)
+    : normal_(plane.normal / norm(plane.normal)), offset_(-dot(normal_, plane.point))
 {
-    // The arithmetic for nodes on the plane: scaled to length one when read and again when used,
-    // all 2689 of 100 planes are as in GenCase v5.0; scaled once, 1548 of the first 1628.
-    const Vec3 normal = clip.normal / norm(clip.normal);
-    const double offset = -dot(normal, clip.point);
+}
+
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& plane, const LatticeGrid& grid)
+{
+    const Clip clip(plane);
     const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
     spans = part_of_columns(spans,
                             [&](std::uint32_t j, std::uint32_t k)
                             {
                                 const double y = grid.origin.y + static_cast<double>(j) * grid.dp;
                                 const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-                                return dot(normal, {x, y, z}) + offset <= 0;
+                                return clip.keeps({x, y, z});
                             });
 }
 
