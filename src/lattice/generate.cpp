@@ -621,7 +621,10 @@ private:
         const DrawConstants& c = state().constants;
         const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
         std::vector<SlabRegion> parts;
-        if (fills) parts = solid_parts(op, grid(), c.triangle_weight, c.triangle_limits);
+        // The inside of a <drawfigure> comes after its faces, that of other shapes before them.
+        const bool fills_last = fills && op.solid == SolidKind::Faces;
+        if (fills && !fills_last)
+            parts = solid_parts(op, grid(), c.triangle_weight, c.triangle_limits);
         FigureOp face = op;
         const auto add = [&](std::vector<SnappedTriangle> triangles)
         {
@@ -638,6 +641,9 @@ private:
             else
                 for (const SnappedTriangle& t : triangles) add({t});
         }
+        if (fills_last)
+            for (SlabRegion& inside : solid_parts(op, grid(), c.triangle_weight, c.triangle_limits))
+                parts.push_back(std::move(inside));
         if (parts.size() != op.part_count)
             throw CaseError(def_.file, op_->source.line,
                             fmt::format("<{}>: setmknextauto with a base that is not flat on the "

@@ -22,8 +22,8 @@ struct SolidPart
     NodeBox box;
 };
 
-/// A face of one part towards another, of which the nodes strictly inside all of `limits` are
-/// drawn.
+/// A face of one part towards another, of which the nodes strictly inside all of `limits`, the ends
+/// of its part, are drawn.
 struct InnerFace
 {
     std::vector<SnappedTriangle> triangles;
@@ -53,12 +53,14 @@ private:
         return plane_through(position(a, grid_), position(b, grid_), position(c, grid_));
     }
 
-    void add_part(std::vector<Plane> planes, const std::vector<Node>& corners)
+    /// In the box of all corners, as a side that is not flat on the lattice may lie beyond those of
+    /// its part.
+    void add_part(std::vector<Plane> planes)
     {
         SolidPart part;
         part.planes = std::move(planes);
         part.box = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-        for (const Node& n : corners)
+        for (const Node& n : nodes_)
             for (int axis = 0; axis < 3; ++axis)
             {
                 const auto k = static_cast<std::size_t>(axis);
@@ -69,12 +71,13 @@ private:
         parts.push_back(std::move(part));
     }
 
-    /// Calls body(t, i, j, u) for every side (i, j) of a triangle t that is also one of triangle u.
+    /// Calls body(t, i, j) for every side (i, j) of a triangle t that is also one of another
+    /// triangle, the last side of each triangle first.
     template <typename Body>
     static void for_each_shared_side(const Triangles& cut, const Body& body)
     {
         for (std::size_t t = 0; t < cut.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t k = 3; k-- > 0;)
             {
                 const std::size_t i = cut[t][k];
                 const std::size_t j = cut[t][(k + 1) % 3];
@@ -83,7 +86,7 @@ private:
                     const auto& other = cut[u];
                     if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
                         std::find(other.begin(), other.end(), j) != other.end())
-                        body(t, i, j, u);
+                        body(t, i, j);
                 }
             }
     }
@@ -106,17 +109,18 @@ private:
             std::vector<Plane> planes{plane(p[0], p[1], p[2]), plane(q[0], q[2], q[1])};
             ends.push_back(planes);
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(p[(i + 1) % 3], p[i], q[i]));
-            add_part(std::move(planes), {p[0], p[1], p[2], q[0], q[1], q[2]});
+            add_part(std::move(planes));
         }
+        // Each of two neighbours cuts the quad between them by its own diagonal.
         for_each_shared_side(
             cut,
-            [&](std::size_t t, std::size_t i, std::size_t j, std::size_t neighbour)
+            [&](std::size_t t, std::size_t i, std::size_t j)
             {
                 const Node& a = nodes_[i];
                 const Node& b = nodes_[j];
                 const Node& b_top = nodes_[n + j];
                 const Node& a_top = nodes_[n + i];
-                inner_faces.push_back({{{a, b, b_top}, {a, b_top, a_top}}, ends[neighbour], t});
+                inner_faces.push_back({{{b, b_top, a_top}, {b, a_top, a}}, ends[t], t});
             });
     }
 
@@ -135,17 +139,13 @@ private:
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
             std::vector<Plane> planes{plane(b[0], b[1], b[2])};
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
-            add_part(std::move(planes), {apex, b[0], b[1], b[2]});
+            add_part(std::move(planes));
         }
-        for_each_shared_side(cut,
-                             [&](std::size_t t, std::size_t i, std::size_t j, std::size_t neighbour)
-                             {
-                                 const auto& other = cut[neighbour];
-                                 inner_faces.push_back(
-                                     {{{apex, nodes_[i], nodes_[j]}},
-                                      {plane(nodes_[other[0]], nodes_[other[1]], nodes_[other[2]])},
-                                      t});
-                             });
+        for_each_shared_side(
+            cut,
+            [&](std::size_t t, std::size_t i, std::size_t j) {
+                inner_faces.push_back({{{apex, nodes_[i], nodes_[j]}}, {parts[t].planes[0]}, t});
+            });
     }
 
     /// One part, by the first three corners of the base even where snapped ones are not in a plane.
@@ -156,7 +156,7 @@ private:
         std::vector<Plane> planes{plane(nodes_[1], nodes_[2], nodes_[3])};
         for (std::size_t i = 0; i < n; ++i)
             planes.push_back(plane(apex, nodes_[1 + (i + 1) % n], nodes_[1 + i]));
-        add_part(std::move(planes), nodes_);
+        add_part(std::move(planes));
     }
 
     void take_faces(const FigureOp& figure)
@@ -165,7 +165,7 @@ private:
         for (const SnappedTriangle& t : snapped_triangles(figure, grid_, false))
             planes.push_back(plane(t.a, t.c, t.b));
         for (const Vec3& v : figure.vertices) nodes_.push_back(snap(v, grid_));
-        add_part(std::move(planes), nodes_);
+        add_part(std::move(planes));
     }
 
     LatticeGrid grid_;

@@ -280,8 +280,7 @@ TEST(SolidRegion, OfAPrismIsItsPartsAndTheNodesBetweenThem)
         std::vector<Part> parts;
         for (const auto& [a, b, c] : triangles)
         {
-            Part part{{plane(a, b, c), plane(n + a, n + c, n + b)},
-                      {nodes[a], nodes[b], nodes[c], nodes[n + a], nodes[n + b], nodes[n + c]}};
+            Part part{{plane(a, b, c), plane(n + a, n + c, n + b)}, nodes};
             for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}})
                 part.planes.push_back(plane(q, p, n + p));
             parts.push_back(part);
@@ -300,11 +299,12 @@ TEST(SolidRegion, OfAPrismIsItsPartsAndTheNodesBetweenThem)
                         };
                         if (u == t || !has(p) || !has(q)) continue;
                         const Vec3 place = position(x, grid);
-                        if (!(parts[u].planes[0].value(place) > 0 &&
-                              parts[u].planes[1].value(place) > 0))
+                        if (!(parts[t].planes[0].value(place) > 0 &&
+                              parts[t].planes[1].value(place) > 0))
                             continue;
-                        if (triangle_has({nodes[p], nodes[q], nodes[n + q]}, grid, 0.6, 0.6, x) ||
-                            triangle_has({nodes[p], nodes[n + q], nodes[n + p]}, grid, 0.6, 0.6, x))
+                        if (triangle_has({nodes[q], nodes[n + q], nodes[n + p]}, grid, 0.6, 0.6,
+                                         x) ||
+                            triangle_has({nodes[q], nodes[n + p], nodes[p]}, grid, 0.6, 0.6, x))
                             return true;
                     }
             return false;
