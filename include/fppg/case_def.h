@@ -173,6 +173,14 @@ struct SphereOp
     std::vector<double> layers_dp; ///< shells at radius + layer * dp instead of the sphere
 };
 
+/// One of `layers vdp`: the faces of this cylinder are drawn.
+struct CylinderLayer
+{
+    Vec3 p0;
+    Vec3 p1;
+    double radius = 0;
+};
+
 /// `drawcylinder`; faces: cover at the first point, cover at the second, tube
 struct CylinderOp
 {
@@ -180,8 +188,7 @@ struct CylinderOp
     Vec3 p1;
     double radius = 0;
     std::array<bool, 3> is_visible{true, true, true};
-    /// Radius and visible covers move outwards by each; without the tube the radius stays.
-    std::vector<double> layers_dp;
+    std::vector<CylinderLayer> layers; ///< instead of the cylinder
 };
 
 /// `drawellipsoid`: nodes by the sum of their distances to two foci; `radius` is that sum (R3).

@@ -359,12 +359,26 @@ bool ProgramRunner::run_draw(const Element& e)
         if (state_.mode == DrawMode::Wire)
             read_.fail(
                 e, "draw mode wire is not possible for a cylinder, expected face, solid or full");
-        const std::vector<Vec3> points = transformed_points(e, 2, 2);
-        CylinderOp op{points[0], points[1], radius_of(e), {true, true, true}, layers_of(e)};
+        const std::vector<Vec3> points = points_of(e, 2, 2);
+        const double radius = radius_of(e);
+        const std::vector<double> layers = layers_of(e);
+        CylinderOp op{matrix_(points[0]), matrix_(points[1]), radius, {true, true, true}, {}};
         for (const int face : mask_of(e))
             if (face >= 1 && face <= 3) op.is_visible[static_cast<std::size_t>(face - 1)] = false;
         // On the lattice such a layer draws no tube.
-        if (state_.off_lattice && op.is_visible[2]) check_layers(e, op.radius, op.layers_dp);
+        if (state_.off_lattice && op.is_visible[2]) check_layers(e, radius, layers);
+        // Layers grow before the matrix moves them (18 cylinders, two scaled, in GenCase v5.4).
+        // Visible covers move outwards with the layer, hidden ones stay where they are; without
+        // its tube a cylinder keeps its radius in every layer (30 in GenCase v5.4).
+        const double length = norm(points[1] - points[0]);
+        const Vec3 u = length > 0 ? (points[1] - points[0]) / length : Vec3{};
+        for (const double layer : layers)
+        {
+            const double shift = layer * def_.grid.dp;
+            op.layers.push_back({op.is_visible[0] ? matrix_(points[0] - u * shift) : op.p0,
+                                 op.is_visible[1] ? matrix_(points[1] + u * shift) : op.p1,
+                                 op.is_visible[2] ? radius + shift : radius});
+        }
         add(e, std::move(op));
     }
     else if (name == "drawellipsoid")

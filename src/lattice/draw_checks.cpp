@@ -46,8 +46,7 @@ bool is_body(const DrawOp& op)
     if (const auto* figure = std::get_if<FigureOp>(&op.what))
         return figure->solid != SolidKind::None && op.state->mode != DrawMode::Face;
     if (const auto* sphere = std::get_if<SphereOp>(&op.what)) return sphere->layers_dp.empty();
-    if (const auto* cylinder = std::get_if<CylinderOp>(&op.what))
-        return cylinder->layers_dp.empty();
+    if (const auto* cylinder = std::get_if<CylinderOp>(&op.what)) return cylinder->layers.empty();
     return std::holds_alternative<EllipsoidOp>(op.what) ||
            std::holds_alternative<MeshFileOp>(op.what);
 }
@@ -129,7 +128,8 @@ Box3 bounds_of(const DrawOp& op, double dp)
         const Vec3 along = cylinder->p1 - cylinder->p0;
         const double length = norm(along);
         if (!(length > 0)) return box;
-        const double r = cylinder->radius + thickest(cylinder->layers_dp);
+        double r = cylinder->radius;
+        for (const CylinderLayer& layer : cylinder->layers) r = std::max(r, layer.radius);
         Vec3 half;
         for (int axis = 0; axis < 3; ++axis)
         {

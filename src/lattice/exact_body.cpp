@@ -49,7 +49,7 @@ std::optional<ExactBody> body_of(const DrawOp& op, const CaseDef& def, std::stri
     const auto* sphere = std::get_if<SphereOp>(&op.what);
     const auto* cylinder = std::get_if<CylinderOp>(&op.what);
     if ((sphere != nullptr && !sphere->layers_dp.empty()) ||
-        (cylinder != nullptr && !(cylinder->layers_dp.empty() && cylinder->is_visible[0] &&
+        (cylinder != nullptr && !(cylinder->layers.empty() && cylinder->is_visible[0] &&
                                   cylinder->is_visible[1] && cylinder->is_visible[2])))
     {
         why_not = "it is drawn by layers or a part of a closed shape only";

@@ -457,16 +457,9 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
 {
     std::vector<Vec3> out;
-    const Vec3 axis = (op.p1 - op.p0) * (1 / norm(op.p1 - op.p0));
-    for (const double layer : op.layers_dp)
-    {
-        const Vec3 away = axis * (layer * dp);
-        add_cylinder(op.is_visible[0] ? op.p0 - away : op.p0,
-                     op.is_visible[1] ? op.p1 + away : op.p1,
-                     op.is_visible[2] ? op.radius + layer * dp : op.radius,
-                     {op.is_visible, false, false}, dp, out);
-    }
-    if (!op.layers_dp.empty()) return out;
+    for (const CylinderLayer& layer : op.layers)
+        add_cylinder(layer.p0, layer.p1, layer.radius, {op.is_visible, false, false}, dp, out);
+    if (!op.layers.empty()) return out;
     const bool fills =
         mode != DrawMode::Face && std::all_of(op.is_visible.begin(), op.is_visible.end(),
                                               [](bool visible) { return visible; });

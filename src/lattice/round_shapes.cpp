@@ -166,23 +166,13 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
         if (cylinder.is_visible[0]) body.pieces.push_back({0, radius, false});
         if (cylinder.is_visible[1]) body.pieces.push_back({1, radius, false});
     };
-    if (!cylinder.layers_dp.empty())
+    for (const CylinderLayer& layer : cylinder.layers)
     {
-        const double length = norm(cylinder.p1 - cylinder.p0);
-        const Vec3 u = length > 0 ? (cylinder.p1 - cylinder.p0) / length : Vec3{};
-        for (const double layer : cylinder.layers_dp)
-        {
-            // Visible covers move outwards with the layer, hidden ones stay where they are.
-            const double shift = layer * grid.dp;
-            Body body{snap(cylinder.is_visible[0] ? cylinder.p0 - u * shift : cylinder.p0, grid),
-                      snap(cylinder.is_visible[1] ? cylinder.p1 + u * shift : cylinder.p1, grid),
-                      {}};
-            // Without its tube a cylinder keeps its radius in every layer (30 in GenCase v5.4).
-            add_faces(body, cylinder.is_visible[2] ? cylinder.radius + shift : cylinder.radius);
-            bodies.push_back(body);
-        }
+        Body body{snap(layer.p0, grid), snap(layer.p1, grid), {}};
+        add_faces(body, layer.radius);
+        bodies.push_back(body);
     }
-    else
+    if (cylinder.layers.empty())
     {
         Body body{snap(cylinder.p0, grid), snap(cylinder.p1, grid), {}};
         if (state.mode != DrawMode::Solid || !all_visible) add_faces(body, cylinder.radius);

@@ -169,18 +169,9 @@ private:
     void draw(const CylinderOp& op)
     {
         if (is_wire()) return;
-        const double length = norm(op.p1 - op.p0);
-        const Vec3 u = length > 0 ? (op.p1 - op.p0) / length : Vec3{};
-        for (const double layer : op.layers_dp)
-        {
-            // Visible covers move outwards with the layer, hidden ones stay where they are.
-            const Vec3 shift = u * (layer * dp_);
-            const Vec3 p0 = op.is_visible[0] ? op.p0 - shift : op.p0;
-            const Vec3 p1 = op.is_visible[1] ? op.p1 + shift : op.p1;
-            const double radius = op.is_visible[2] ? op.radius + layer * dp_ : op.radius;
-            meshes_.push_back(cylinder_mesh(p0, p1, radius, op.is_visible, dp_));
-        }
-        if (!op.layers_dp.empty()) return;
+        for (const CylinderLayer& layer : op.layers)
+            meshes_.push_back(cylinder_mesh(layer.p0, layer.p1, layer.radius, op.is_visible, dp_));
+        if (!op.layers.empty()) return;
         meshes_.push_back(cylinder_mesh(op.p0, op.p1, op.radius, op.is_visible, dp_));
         meshes_.back().is_solid =
             may_fill() && op.is_visible[0] && op.is_visible[1] && op.is_visible[2];

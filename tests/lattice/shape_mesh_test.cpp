@@ -274,8 +274,11 @@ TEST(ShapeMeshes, LayersAreShellsAroundTheShape)
     EXPECT_DOUBLE_EQ(spheres[1].radius, 0.1 + dp);
     EXPECT_DOUBLE_EQ(spheres[2].radius, 0.1 - 2.5 * dp);
     EXPECT_FALSE(spheres[0].is_solid);
-    // The cover at the second point is hidden, so that end stays.
-    const auto pipes = meshes(CylinderOp{{0, 0, 0}, {0, 0, 1}, 0.1, {true, false, true}, {2}});
+    const auto pipes = meshes(CylinderOp{{0, 0, 0},
+                                         {0, 0, 1},
+                                         0.1,
+                                         {true, false, true},
+                                         {{{0, 0, -2 * dp}, {0, 0, 1}, 0.1 + 2 * dp}}});
     ASSERT_EQ(pipes.size(), 1U);
     const Box3 bounds = taken(pipes[0]).report.bounds;
     EXPECT_DOUBLE_EQ(bounds.min.z, -2 * dp);
