@@ -112,19 +112,24 @@ public:
         reach_ = std::isfinite(depth_max_) ? depth_max_ : depth_min_;
         margin_ = std::isfinite(depth_max_) && !takes_any_depth_ ? depth_max_ : 0;
         box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-        double lowest_x = std::numeric_limits<double>::infinity();
-        double highest_x = -lowest_x;
+        constexpr double far = std::numeric_limits<double>::infinity();
+        Vec3 lowest{far, far, far};
+        double highest_x = -far;
         for (std::size_t t = 0; t < soup.size(); ++t)
         {
             add_facet(soup, t);
             for (std::size_t i = 0; i < 3; ++i)
             {
-                const double x = rounded_to_float(soup.vertices[3 * t + i].x);
-                lowest_x = std::min(lowest_x, x);
-                highest_x = std::max(highest_x, x);
+                const Vec3& v = soup.vertices[3 * t + i];
+                lowest = {std::min(lowest.x, rounded_to_float(v.x)),
+                          std::min(lowest.y, rounded_to_float(v.y)),
+                          std::min(lowest.z, rounded_to_float(v.z))};
+                highest_x = std::max(highest_x, rounded_to_float(v.x));
             }
         }
-        row_begin_ = node_at(node_below(lowest_x, 0), 0) - grid_.dp / 2;
+        for (int axis = 0; axis < 3; ++axis)
+            first_node_[static_cast<std::size_t>(axis)] = node_below(lowest[axis], axis);
+        row_begin_ = node_at(first_node_[0], 0) - grid_.dp / 2;
         row_end_ = highest_x + grid_.dp / 2;
         box_ = intersect(box_, whole_lattice(grid_));
         for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
@@ -149,7 +154,7 @@ public:
                 const auto first = next;
                 while (next != crossings.end() && next->y == y && next->z == z) ++next;
                 if (first == next && !starts_inside_) continue;
-                bool counts = starts_inside_;
+                bool counts = starts_inside_ || !first->is_entry;
                 auto crossing = first;
                 for (std::size_t i = 0; i < slabs.size(); ++i)
                 {
@@ -236,9 +241,12 @@ private:
         if (norm(f.normal) > 0) facets_.push_back(f);
     }
 
+    /// Counted from the node below the mesh, as GenCase does.
     double node_at(std::int64_t index, int axis) const
     {
-        return grid_.origin[axis] + static_cast<double>(index) * grid_.dp;
+        const std::int64_t first = first_node_[static_cast<std::size_t>(axis)];
+        return grid_.origin[axis] + static_cast<double>(first) * grid_.dp +
+               static_cast<double>(index - first) * grid_.dp;
     }
 
     void add_crossings(const Facet& f, std::vector<RowCrossing>& out) const
@@ -272,6 +280,7 @@ private:
     double reach_ = 0;
     double margin_ = 0; ///< of the box round the mesh
     NodeBox box_;
+    std::array<std::int64_t, 3> first_node_{};
     double row_begin_ = 0;
     double row_end_ = 0;
     std::vector<Facet> facets_;
