@@ -113,23 +113,23 @@ public:
         margin_ = std::isfinite(depth_max_) && !takes_any_depth_ ? depth_max_ : 0;
         box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
         constexpr double far = std::numeric_limits<double>::infinity();
-        Vec3 lowest{far, far, far};
+        double lowest_x = far;
         double highest_x = -far;
         for (std::size_t t = 0; t < soup.size(); ++t)
         {
             add_facet(soup, t);
             for (std::size_t i = 0; i < 3; ++i)
             {
-                const Vec3& v = soup.vertices[3 * t + i];
-                lowest = {std::min(lowest.x, rounded_to_float(v.x)),
-                          std::min(lowest.y, rounded_to_float(v.y)),
-                          std::min(lowest.z, rounded_to_float(v.z))};
-                highest_x = std::max(highest_x, rounded_to_float(v.x));
+                const double x = rounded_to_float(soup.vertices[3 * t + i].x);
+                lowest_x = std::min(lowest_x, x);
+                highest_x = std::max(highest_x, x);
             }
         }
-        for (int axis = 0; axis < 3; ++axis)
-            first_node_[static_cast<std::size_t>(axis)] = node_below(lowest[axis], axis);
-        row_begin_ = node_at(first_node_[0], 0) - grid_.dp / 2;
+        for (std::size_t k = 0; k < 3; ++k)
+            first_node_[k] = std::max(box_.begin[k], std::int64_t{-1});
+        row_begin_ = grid_.origin.x + std::trunc((lowest_x - grid_.origin.x) / grid_.dp) * grid_.dp;
+        if (row_begin_ > lowest_x) row_begin_ -= grid_.dp;
+        row_begin_ -= grid_.dp / 2;
         row_end_ = highest_x + grid_.dp / 2;
         box_ = intersect(box_, whole_lattice(grid_));
         for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
@@ -164,7 +164,8 @@ public:
                             grid_.dp;
                     const double node = rounded_to_float(x);
                     while (crossing != next &&
-                           (crossing->is_entry ? crossing->x <= node : crossing->x < node))
+                           (crossing->is_entry ? rounded_to_float(crossing->x) <= node
+                                               : rounded_to_float(crossing->x) < node))
                         counts = (crossing++)->is_entry;
                     if (counts) append_node(slabs[i], y, z);
                 }
@@ -241,7 +242,7 @@ private:
         if (norm(f.normal) > 0) facets_.push_back(f);
     }
 
-    /// Counted from the node below the mesh, as GenCase does.
+    /// Counted from the box round the mesh, as GenCase does.
     double node_at(std::int64_t index, int axis) const
     {
         const std::int64_t first = first_node_[static_cast<std::size_t>(axis)];
