@@ -13,10 +13,23 @@ namespace fppg
 namespace
 {
 
+struct Plane
+{
+    Vec3 normal; ///< of length one
+    double offset = 0;
+};
+
+Plane plane_of(const Vec3& normal, const Vec3& point)
+{
+    const double length = norm(normal);
+    return {{normal.x / length, normal.y / length, normal.z / length},
+            -dot(normal, point) / length};
+}
+
 struct Facet
 {
     std::array<Vec3, 3> corners;
-    Vec3 normal; ///< not of unit length
+    Plane plane;
     NodeBox reach;
 };
 
@@ -54,19 +67,6 @@ double rounded_to_float(double value)
 {
     const volatile float f = static_cast<float>(value);
     return f;
-}
-
-struct Plane
-{
-    Vec3 normal; ///< of length one
-    double offset = 0;
-};
-
-Plane plane_of(const Vec3& normal, const Vec3& point)
-{
-    const double length = norm(normal);
-    return {{normal.x / length, normal.y / length, normal.z / length},
-            -dot(normal, point) / length};
 }
 
 /// Through the edge from a to b, at right angles to the facet; its normal points outwards.
@@ -185,16 +185,15 @@ public:
         const auto height = static_cast<std::size_t>(box_.end[2] - box_.begin[2]);
         constexpr double far = std::numeric_limits<double>::infinity();
         std::vector<double> depth(rows * height, far);
-        const double x = grid_.origin.x + slab * grid_.dp;
+        const double x = node_at(slab, 0);
         for (const Facet& f : facets_)
         {
             if (slab < f.reach.begin[0] || slab >= f.reach.end[0]) continue;
             for (std::int64_t y = f.reach.begin[1]; y < f.reach.end[1]; ++y)
                 for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
                 {
-                    const Vec3 p{x, grid_.origin.y + static_cast<double>(y) * grid_.dp,
-                                 grid_.origin.z + static_cast<double>(z) * grid_.dp};
-                    if (!(dot(f.normal, p - f.corners[0]) < 0)) continue;
+                    const Vec3 p{x, node_at(y, 1), node_at(z, 2)};
+                    if (value_at(f.plane, p) > 0) continue;
                     double& d = depth[static_cast<std::size_t>(y - box_.begin[1]) * height +
                                       static_cast<std::size_t>(z - box_.begin[2])];
                     d = std::min(d, distance_to(p, f.corners));
@@ -226,7 +225,7 @@ private:
             const Vec3& v = soup.vertices[3 * t + i];
             f.corners[i] = {rounded_to_float(v.x), rounded_to_float(v.y), rounded_to_float(v.z)};
         }
-        f.normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
+        const Vec3 normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
@@ -239,7 +238,9 @@ private:
             box_.begin[k] = std::min(box_.begin[k], node_below(low - margin_, axis));
             box_.end[k] = std::max(box_.end[k], node_below(high + margin_, axis) + 1);
         }
-        if (norm(f.normal) > 0) facets_.push_back(f);
+        if (!(norm(normal) > 0)) return;
+        f.plane = plane_of(normal, f.corners[0]);
+        facets_.push_back(f);
     }
 
     /// Counted from the box round the mesh, as GenCase does.
@@ -252,10 +253,10 @@ private:
 
     void add_crossings(const Facet& f, std::vector<RowCrossing>& out) const
     {
-        if (f.normal.x == 0) return;
+        const Plane& plane = f.plane;
+        if (plane.normal.x == 0) return;
         const double x_begin = row_begin_;
         const double length = row_end_ - row_begin_;
-        const Plane plane = plane_of(f.normal, f.corners[0]);
         const auto& [a, b, c] = f.corners;
         const std::array<Plane, 3> sides{side_plane(a, b, a, plane.normal),
                                          side_plane(b, c, b, plane.normal),
@@ -269,7 +270,7 @@ private:
                                 [&p](const Plane& side) { return value_at(side, p) > 0; }))
                     continue;
                 out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), p.x,
-                               f.normal.x < 0});
+                               plane.normal.x < 0});
             }
     }
 

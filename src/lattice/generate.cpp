@@ -423,7 +423,7 @@ private:
     static void turn_over(TriangleSoup& soup)
     {
         for (std::size_t t = 0; t < soup.size(); ++t)
-            std::swap(soup.vertices[3 * t], soup.vertices[3 * t + 2]);
+            std::swap(soup.vertices[3 * t + 1], soup.vertices[3 * t + 2]);
     }
 
     /// `advanced`: of the inside, the nodes whose depth is asked for.
