@@ -180,6 +180,9 @@ void ProgramRunner::draw_mesh_file(const Element& e)
             shapes.quads |= is_all || w == "polygons" || w == "quads";
             shapes.other_polygons |= is_all || w == "polygons" || w == "otherpolys";
         }
+        // With advanced all polygons of the file count, whichever are chosen: GenCase v5.4 draws a
+        // cube of triangles, of quads and of both the same with each word.
+        if (op.advanced) shapes = {};
     }
     op.transform = file_transform(e);
     if (op.advanced) read_depth(e, op);

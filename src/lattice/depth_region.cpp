@@ -13,10 +13,23 @@ namespace fppg
 namespace
 {
 
+struct Plane
+{
+    Vec3 normal; ///< of length one
+    double offset = 0;
+};
+
+Plane plane_of(const Vec3& normal, const Vec3& point)
+{
+    const double length = norm(normal);
+    return {{normal.x / length, normal.y / length, normal.z / length},
+            -dot(normal, point) / length};
+}
+
 struct Facet
 {
     std::array<Vec3, 3> corners;
-    Vec3 normal; ///< not of unit length
+    Plane plane;
     NodeBox reach;
 };
 
@@ -56,6 +69,17 @@ double rounded_to_float(double value)
     return f;
 }
 
+/// Through the edge from a to b, at right angles to the facet; its normal points outwards.
+Plane side_plane(const Vec3& a, const Vec3& b, const Vec3& raised, const Vec3& normal)
+{
+    return plane_of(cross(b - a, raised + normal - a), a);
+}
+
+double value_at(const Plane& plane, const Vec3& p)
+{
+    return dot(plane.normal, p) + plane.offset;
+}
+
 /// Where a row along x passes a facet.
 struct RowCrossing
 {
@@ -88,7 +112,25 @@ public:
         reach_ = std::isfinite(depth_max_) ? depth_max_ : depth_min_;
         margin_ = std::isfinite(depth_max_) && !takes_any_depth_ ? depth_max_ : 0;
         box_ = {{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-        for (std::size_t t = 0; t < soup.size(); ++t) add_facet(soup, t);
+        constexpr double far = std::numeric_limits<double>::infinity();
+        double lowest_x = far;
+        double highest_x = -far;
+        for (std::size_t t = 0; t < soup.size(); ++t)
+        {
+            add_facet(soup, t);
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                const double x = rounded_to_float(soup.vertices[3 * t + i].x);
+                lowest_x = std::min(lowest_x, x);
+                highest_x = std::max(highest_x, x);
+            }
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            first_node_[k] = std::max(box_.begin[k], std::int64_t{-1});
+        row_begin_ = grid_.origin.x + std::trunc((lowest_x - grid_.origin.x) / grid_.dp) * grid_.dp;
+        if (row_begin_ > lowest_x) row_begin_ -= grid_.dp;
+        row_begin_ -= grid_.dp / 2;
+        row_end_ = highest_x + grid_.dp / 2;
         box_ = intersect(box_, whole_lattice(grid_));
         for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
     }
@@ -112,7 +154,7 @@ public:
                 const auto first = next;
                 while (next != crossings.end() && next->y == y && next->z == z) ++next;
                 if (first == next && !starts_inside_) continue;
-                bool counts = starts_inside_;
+                bool counts = starts_inside_ || !first->is_entry;
                 auto crossing = first;
                 for (std::size_t i = 0; i < slabs.size(); ++i)
                 {
@@ -122,7 +164,8 @@ public:
                             grid_.dp;
                     const double node = rounded_to_float(x);
                     while (crossing != next &&
-                           (crossing->is_entry ? crossing->x <= node : crossing->x < node))
+                           (crossing->is_entry ? rounded_to_float(crossing->x) <= node
+                                               : rounded_to_float(crossing->x) < node))
                         counts = (crossing++)->is_entry;
                     if (counts) append_node(slabs[i], y, z);
                 }
@@ -142,16 +185,15 @@ public:
         const auto height = static_cast<std::size_t>(box_.end[2] - box_.begin[2]);
         constexpr double far = std::numeric_limits<double>::infinity();
         std::vector<double> depth(rows * height, far);
-        const double x = grid_.origin.x + slab * grid_.dp;
+        const double x = node_at(slab, 0);
         for (const Facet& f : facets_)
         {
             if (slab < f.reach.begin[0] || slab >= f.reach.end[0]) continue;
             for (std::int64_t y = f.reach.begin[1]; y < f.reach.end[1]; ++y)
                 for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
                 {
-                    const Vec3 p{x, grid_.origin.y + static_cast<double>(y) * grid_.dp,
-                                 grid_.origin.z + static_cast<double>(z) * grid_.dp};
-                    if (!(dot(f.normal, p - f.corners[0]) < 0)) continue;
+                    const Vec3 p{x, node_at(y, 1), node_at(z, 2)};
+                    if (value_at(f.plane, p) > 0) continue;
                     double& d = depth[static_cast<std::size_t>(y - box_.begin[1]) * height +
                                       static_cast<std::size_t>(z - box_.begin[2])];
                     d = std::min(d, distance_to(p, f.corners));
@@ -183,8 +225,7 @@ private:
             const Vec3& v = soup.vertices[3 * t + i];
             f.corners[i] = {rounded_to_float(v.x), rounded_to_float(v.y), rounded_to_float(v.z)};
         }
-        f.normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
-        if (!(norm(f.normal) > 0)) return;
+        const Vec3 normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
@@ -197,28 +238,39 @@ private:
             box_.begin[k] = std::min(box_.begin[k], node_below(low - margin_, axis));
             box_.end[k] = std::max(box_.end[k], node_below(high + margin_, axis) + 1);
         }
+        if (!(norm(normal) > 0)) return;
+        f.plane = plane_of(normal, f.corners[0]);
         facets_.push_back(f);
+    }
+
+    /// Counted from the box round the mesh, as GenCase does.
+    double node_at(std::int64_t index, int axis) const
+    {
+        const std::int64_t first = first_node_[static_cast<std::size_t>(axis)];
+        return grid_.origin[axis] + static_cast<double>(first) * grid_.dp +
+               static_cast<double>(index - first) * grid_.dp;
     }
 
     void add_crossings(const Facet& f, std::vector<RowCrossing>& out) const
     {
-        if (f.normal.x == 0) return;
+        const Plane& plane = f.plane;
+        if (plane.normal.x == 0) return;
+        const double x_begin = row_begin_;
+        const double length = row_end_ - row_begin_;
+        const auto& [a, b, c] = f.corners;
+        const std::array<Plane, 3> sides{side_plane(a, b, a, plane.normal),
+                                         side_plane(b, c, b, plane.normal),
+                                         side_plane(c, a, a, plane.normal)};
         for (std::int64_t y = f.reach.begin[1]; y < f.reach.end[1]; ++y)
             for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
             {
-                const double py = grid_.origin.y + static_cast<double>(y) * grid_.dp;
-                const double pz = grid_.origin.z + static_cast<double>(z) * grid_.dp;
-                const auto side = [&](const Vec3& u, const Vec3& v)
-                { return (v.y - u.y) * (pz - u.z) - (v.z - u.z) * (py - u.y); };
-                const double s0 = side(f.corners[0], f.corners[1]);
-                const double s1 = side(f.corners[1], f.corners[2]);
-                const double s2 = side(f.corners[2], f.corners[0]);
-                if (!((s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0))) continue;
-                const double x = f.corners[0].x - (f.normal.y * (py - f.corners[0].y) +
-                                                   f.normal.z * (pz - f.corners[0].z)) /
-                                                      f.normal.x;
-                out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), x,
-                               f.normal.x < 0});
+                Vec3 p{x_begin, node_at(y, 1), node_at(z, 2)};
+                p.x += length * (-value_at(plane, p) / (plane.normal.x * length));
+                if (std::any_of(sides.begin(), sides.end(),
+                                [&p](const Plane& side) { return value_at(side, p) > 0; }))
+                    continue;
+                out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), p.x,
+                               plane.normal.x < 0});
             }
     }
 
@@ -230,6 +282,9 @@ private:
     double reach_ = 0;
     double margin_ = 0; ///< of the box round the mesh
     NodeBox box_;
+    std::array<std::int64_t, 3> first_node_{};
+    double row_begin_ = 0;
+    double row_end_ = 0;
     std::vector<Facet> facets_;
 };
 

@@ -420,11 +420,18 @@ private:
         walls_.add(std::move(draw));
     }
 
+    static void turn_over(TriangleSoup& soup)
+    {
+        for (std::size_t t = 0; t < soup.size(); ++t)
+            std::swap(soup.vertices[3 * t + 1], soup.vertices[3 * t + 2]);
+    }
+
     /// `advanced`: of the inside, the nodes whose depth is asked for.
     void keep_depth(FittedDraw& draw, const MeshFileOp& op)
     {
-        const SlabRegion region =
-            depth_region(moved_soup(mesh(op).soup, op.transform), op, grid(), threads_);
+        TriangleSoup moved = moved_soup(mesh(op).soup, op.transform);
+        if (state().normal_invert) turn_over(moved);
+        const SlabRegion region = depth_region(moved, op, grid(), threads_);
         parallel_for(draw.volume.size(), threads_,
                      [&](std::size_t x)
                      {
@@ -887,6 +894,7 @@ private:
                 moved.vertices.insert(moved.vertices.end(), more.vertices.begin(),
                                       more.vertices.end());
             }
+            if (state().normal_invert) turn_over(moved);
             paint_region(depth_region(moved, op, grid(), threads_));
             return;
         }
