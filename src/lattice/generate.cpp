@@ -655,7 +655,16 @@ private:
     void draw(const CylinderOp& op)
     {
         if (is_off_lattice())
+        {
+            if (state().draw_points && fills_free_cylinder(op, state().mode))
+            {
+                const std::vector<Spans> nodes =
+                    emptied_by_cylinder(op, state().clips, grid(), threads_);
+                parallel_for(nodes.size(), threads_,
+                             [&](std::size_t x) { paint_slab(x, nodes[x], MkValue{}, false); });
+            }
             draw_free([&] { return free_cylinder(op, state().mode, grid().dp); });
+        }
         else
             paint_region(cylinder_region(op, state(), grid()));
     }
