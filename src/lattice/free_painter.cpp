@@ -68,6 +68,51 @@ std::uint16_t mk_at(const std::vector<Run>& runs, std::uint32_t y, std::uint32_t
 
 } // namespace
 
+std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<ClipPlane>& clips,
+                                       const LatticeGrid& grid, int threads)
+{
+    const double wide = nearest_dp * grid.dp;
+    const double length = norm(op.p1 - op.p0);
+    const Vec3 axis = (op.p1 - op.p0) / length;
+    const double radius = op.radius + wide;
+    // The corners of a box around it.
+    const double reach = radius + wide + grid.dp;
+    std::array<std::int64_t, 3> begin{};
+    std::array<std::int64_t, 3> end{};
+    for (int k = 0; k < 3; ++k)
+    {
+        const auto i = static_cast<std::size_t>(k);
+        const double low = (std::min(op.p0[k], op.p1[k]) - reach - grid.origin[k]) / grid.dp;
+        const double high = (std::max(op.p0[k], op.p1[k]) + reach - grid.origin[k]) / grid.dp;
+        const auto n = static_cast<double>(grid.n[i]);
+        begin[i] = static_cast<std::int64_t>(std::clamp(low, 0.0, n));
+        end[i] = static_cast<std::int64_t>(std::clamp(high + 1, 0.0, n));
+    }
+    std::vector<Spans> nodes(grid.n[0]);
+    parallel_for(
+        nodes.size(), threads,
+        [&](std::size_t slab)
+        {
+            const auto x = static_cast<std::int64_t>(slab);
+            if (x < begin[0] || x >= end[0]) return;
+            for (std::int64_t y = begin[1]; y < end[1]; ++y)
+                for (std::int64_t z = begin[2]; z < end[2]; ++z)
+                {
+                    const Vec3 p = position({x, y, z}, grid);
+                    const double along = dot(p - op.p0, axis);
+                    if (along < -wide || along > length + wide) continue;
+                    const Vec3 across = p - op.p0 - axis * along;
+                    if (dot(across, across) <= radius * radius && is_kept_by(clips, p))
+                        nodes[slab].push_back({static_cast<std::uint32_t>(y),
+                                               static_cast<std::uint32_t>(z),
+                                               static_cast<std::uint32_t>(z) + 1});
+                }
+            sort_and_join(nodes[slab]);
+        },
+        1);
+    return nodes;
+}
+
 std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
                                      const std::vector<ClipPlane>& clips, std::uint16_t mk)
 {

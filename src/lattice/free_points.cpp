@@ -454,15 +454,20 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
     return out;
 }
 
+bool fills_free_cylinder(const CylinderOp& op, DrawMode mode)
+{
+    return mode != DrawMode::Face && op.layers_dp.empty() &&
+           std::all_of(op.is_visible.begin(), op.is_visible.end(),
+                       [](bool visible) { return visible; });
+}
+
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
 {
     std::vector<Vec3> out;
     for (const CylinderLayer& layer : op.layers)
         add_cylinder(layer.p0, layer.p1, layer.radius, {op.is_visible, false, false}, dp, out);
     if (!op.layers.empty()) return out;
-    const bool fills =
-        mode != DrawMode::Face && std::all_of(op.is_visible.begin(), op.is_visible.end(),
-                                              [](bool visible) { return visible; });
+    const bool fills = fills_free_cylinder(op, mode);
     CylinderParts parts{op.is_visible, fills, fills && mode == DrawMode::Full};
     if (fills && mode == DrawMode::Solid) parts.faces = {false, false, false};
     add_cylinder(op.p0, op.p1, op.radius, parts, dp, out);

@@ -92,4 +92,8 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 /// and the visible covers outwards by layer * dp.
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp);
 
+/// Whether a cylinder is drawn with its inside. Its nodes are emptied before it then
+/// (emptied_by_cylinder()).
+bool fills_free_cylinder(const CylinderOp& op, DrawMode mode);
+
 } // namespace fppg

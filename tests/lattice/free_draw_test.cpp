@@ -142,6 +142,20 @@ std::vector<Vec3> in_plane(const std::string& corners)
         .walls.volume.positions;
 }
 
+TEST(FreeDraw, EmptiesWhatStandsAtAFilledCylinderOnly)
+{
+    const std::string cylinder = R"(<drawcylinder radius="0.3"><point x="0.5" y="0.5" z="0.2" />)"
+                                 R"(<point x="0.5" y="0.5" z="0.8" /></drawcylinder>)";
+    // On the node at a distance of 0.06 from the tube.
+    const std::string beside = R"(<drawpoint x="0.8" y="0.7" z="0.5" />)";
+    const auto count = [](const std::string& commands)
+    { return field_of(commands).walls.volume.size(); };
+    EXPECT_EQ(count(beside + cylinder), count(cylinder));
+    const std::string face = "<setdrawmode mode=\"face\" />";
+    EXPECT_EQ(count(face + "<drawpoint x=\"0.8\" y=\"0.8\" z=\"0.5\" />" + cylinder),
+              count(face + cylinder) + 1);
+}
+
 TEST(FreeDraw, DrawsAQuadThatCrossesThePlaneOfA2dCaseAsLines)
 {
     EXPECT_EQ(in_plane(R"(<point x="0.2" y="-0.2" z="0.1" /><point x="1.13" y="0.3" z="0.4" />)"
