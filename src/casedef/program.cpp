@@ -137,21 +137,24 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
                         std::move(what)});
 }
 
+void ProgramRunner::take_next_mk(const Element& e)
+{
+    if (state_.mk.kind == MkKind::Void) return;
+    ++state_.mk.mk;
+    ++state_.mk.mk_type;
+    shared_state_.reset();
+    const int count = state_.mk.kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
+    if (state_.mk.mk_type >= count)
+        read_.fail(e, fmt::format("setmknextauto goes on to mk {}, <mkconfig> leaves 0 to {}",
+                                  state_.mk.mk_type, count - 1));
+}
+
 void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
 {
     const auto add_part = [&](DrawVariant part)
     {
-        const int count = state_.mk.kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
-        if (state_.mk.kind != MkKind::Void && state_.mk.mk_type >= count)
-            read_.fail(e, fmt::format("setmknextauto needs mk {}, <mkconfig> leaves 0 to {}",
-                                      state_.mk.mk_type, count - 1));
         add_whole(e, std::move(part));
-        if (state_.mk.kind != MkKind::Void)
-        {
-            ++state_.mk.mk;
-            ++state_.mk.mk_type;
-        }
-        shared_state_.reset();
+        take_next_mk(e);
     };
     const bool is_drawn =
         std::holds_alternative<FigureOp>(what) || std::holds_alternative<LinesOp>(what) ||

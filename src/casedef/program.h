@@ -64,6 +64,8 @@ private:
     void add_whole(const Element& e, DrawVariant what);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
     void add_in_parts(const Element& e, DrawVariant what);
+    /// Goes on to the next mk, which must exist even where nothing is drawn with it, as for GenCase.
+    void take_next_mk(const Element& e);
     void add_figure(const Element& e, FigureOp figure);
     std::vector<Vec3> points_of(const Element& e, std::size_t at_least, std::size_t at_most) const;
     std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,

@@ -192,12 +192,7 @@ void ProgramRunner::draw_box(const Element& e)
     if (is_solid && !layers.empty()) layers = {*std::max_element(layers.begin(), layers.end())};
     for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers, def_.grid.dp))
         add_figure(e, std::move(figure));
-    if (state_.mk_next_auto && state_.mk.kind != MkKind::Void && !is_free_block)
-    {
-        ++state_.mk.mk;
-        ++state_.mk.mk_type;
-        shared_state_.reset();
-    }
+    if (state_.mk_next_auto && !is_free_block) take_next_mk(e);
 }
 
 /// Found by experiment with GenCase v5.4.354 (9 of 10 chosen matrices, 10 of 12 random ones):
