@@ -33,8 +33,7 @@ bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p)
 {
     return std::all_of(clips.begin(), clips.end(),
-                       [&](const ClipPlane& clip)
-                       { return dot(p - clip.point, clip.normal) <= 0; });
+                       [&](const ClipPlane& plane) { return Clip(plane).keeps(p); });
 }
 
 /// Calls body(x, y, z) for the nodes of a particle that lie in the lattice.

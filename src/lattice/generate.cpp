@@ -147,14 +147,14 @@ private:
         return spans;
     }
 
-    void paint_region(const SlabRegion& region)
+    void paint_region(const SlabRegion& region, bool clips = true)
     {
         if (!state().draw_points || region.x_end <= region.x_begin) return;
         parallel_for(region.x_end - region.x_begin, threads_,
                      [&](std::size_t i)
                      {
                          const auto x = region.x_begin + static_cast<std::uint32_t>(i);
-                         paint_slab(x, listed(region, x, true));
+                         paint_slab(x, listed(region, x, clips));
                      });
     }
 
@@ -475,7 +475,14 @@ private:
         if (is_off_lattice())
             draw_free([&] { return op.points; });
         else
-            paint_region(points_region(op.points, grid()));
+        {
+            // Clips keep or drop a point where it is, not its node (8 points at two planes, GenCase
+            // v5.0).
+            std::vector<Vec3> kept = op.points;
+            for (const ClipPlane& plane : state().clips)
+                std::erase_if(kept, [clip = Clip(plane)](const Vec3& p) { return !clip.keeps(p); });
+            paint_region(points_region(kept, grid()), false);
+        }
     }
 
     void draw(const LinesOp& op)

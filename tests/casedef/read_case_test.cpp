@@ -778,6 +778,26 @@ TEST(Definition, GoesThroughPointref)
     expect_near(grid.origin, {-0.4, 0, 0.1});
 }
 
+TEST(Definition, IsThatOfGenCaseToTheLastBit)
+{
+    // pointmin, pointref, dp and the lowest node of GenCase v5.4.354; of the last, the node at
+    // pointmin is lost to a rounding error.
+    const double values[][4] = {{-0.421, -0.493, 0.125, -0.49299999999999994},
+                                {0.164, 0.284, 0.125, 0.15899999999999995},
+                                {0.122, 0.313, 0.08, 0.07299999999999997},
+                                {-0.483, -0.163, 0.08, -0.483},
+                                {0.224, 0.464, 0.08, 0.14400000000000007}};
+    for (const auto& [low, ref, dp, lowest] : values)
+    {
+        CaseText text;
+        text.pointmin =
+            fmt::format(R"(<pointref x="{}" /><pointmin x="{}" y="0" z="0" />)", ref, low);
+        CaseOptions options;
+        options.dp = dp;
+        EXPECT_EQ(read(text, options).grid.origin.x, lowest) << low << " through " << ref;
+    }
+}
+
 TEST(Definition, TakesDpFromTheCommandLine)
 {
     CaseOptions options;

@@ -95,8 +95,7 @@ TEST(GenerateLattice, KeepsOnlyTheNodesBehindEveryClip)
                                 for (const ClipPlane& c : drawing.state.clips)
                                 {
                                     // Of nodes on the plane, rounding decides as in GenCase.
-                                    const Vec3 once = c.normal / norm(c.normal);
-                                    const Vec3 unit = once / norm(once);
+                                    const Vec3 unit = c.normal / norm(c.normal);
                                     is_kept = is_kept &&
                                               dot(unit, position(n, grid)) <= dot(unit, c.point);
                                 }
