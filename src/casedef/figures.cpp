@@ -333,6 +333,7 @@ QuadKind quad_kind(const FigureOp& figure, const FigureFace& face, double dp)
 std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp)
 {
     if (figure.solid == SolidKind::Box) return 1;
+    if (mode == DrawMode::Wire) return count_parts(figure, mode);
     const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
     std::size_t count = fills ? 1 : 0;
     for (const FigureFace& f : figure.faces)

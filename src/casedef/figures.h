@@ -62,9 +62,9 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 /// polygons and extrusions).
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
 
-/// The same off the lattice (setfrdrawmode; not for wires): a solid box is one part, of others the
+/// The same off the lattice (setfrdrawmode): a solid box is one part in every mode, of others the
 /// inside is one, then come the faces, of which parallelograms and trapezoids are one part and
-/// others one a triangle.
+/// others one a triangle; wires have the parts that they have on the lattice.
 std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp);
 
 /// What setfrdrawmode takes four corners 0, 1, 2, 3 for.
