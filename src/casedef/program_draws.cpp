@@ -334,11 +334,12 @@ bool ProgramRunner::run_draw(const Element& e)
         const double radius = radius_of(e);
         if (state_.mode == DrawMode::Wire)
         {
-            // The wire of a sphere is that of the solid box around it (24 of 24 spheres in GenCase
-            // v5.4).
+            // The wire of a sphere is that of the solid box around it, turned and scaled with it
+            // (24 of 24 spheres in GenCase v5.4, 7 matrices in v5.0).
             const Vec3 reach{radius, radius, radius};
-            add(e, make_box(center - reach, 2 * reach, {true, true, true, true, true, true}, true,
-                            {}, def_.grid.dp)[0]);
+            add_figure(e,
+                       make_box(points_of(e, 1, 1)[0] - reach, 2 * reach,
+                                {true, true, true, true, true, true}, true, {}, def_.grid.dp)[0]);
         }
         else
         {

@@ -126,13 +126,13 @@ std::size_t FreePainter::claim_of(std::uint32_t x, std::uint32_t y, std::uint32_
     return static_cast<std::size_t>(found - claims_.begin());
 }
 
-std::vector<char> FreePainter::staying_particles() const
+std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) const
 {
     std::vector<std::vector<std::uint32_t>> of_mk(65536);
     for (std::size_t i = 0; i < mk_.size(); ++i)
         of_mk[mk_[i]].push_back(static_cast<std::uint32_t>(i));
     std::vector<char> stays(positions_.size());
-    std::vector<char> is_held(claims_.size());
+    is_emptied.assign(claims_.size(), 0);
     for (std::size_t mk = of_mk.size(); mk-- > 0;)
     {
         const std::vector<std::uint32_t>& particles = of_mk[mk];
@@ -146,15 +146,17 @@ std::vector<char> FreePainter::staying_particles() const
                 nodes_of(particles[i],
                          [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
                              keeps = keeps && (mk_at(field_->slabs[x], y, z) == mk ||
-                                               is_held[claim_of(x, y, z)]);
+                                               is_emptied[claim_of(x, y, z)]);
                          });
                 stays[particles[i]] = keeps;
             },
             1024);
         for (const std::uint32_t particle : particles)
-            if (stays[particle])
-                nodes_of(particle, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
-                         { is_held[claim_of(x, y, z)] = 1; });
+            nodes_of(particle,
+                     [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                     {
+                         if (mk_at(field_->slabs[x], y, z) == mk) is_emptied[claim_of(x, y, z)] = 1;
+                     });
     }
     return stays;
 }
@@ -164,7 +166,8 @@ void FreePainter::finish()
     if (positions_.empty()) return;
     const LatticeGrid& grid = field_->grid;
     sort_claims();
-    const std::vector<char> stays = staying_particles();
+    std::vector<char> is_emptied;
+    const std::vector<char> stays = staying_particles(is_emptied);
 
     const double reach = nearest_dp * grid.dp;
     PointGrid points(reach, positions_.size());
@@ -188,8 +191,11 @@ void FreePainter::finish()
 
     // Nodes of particles that do not stay are empty, those of the others are hidden.
     std::vector<Spans> empty(field_->slabs.size());
-    for (const Claim& c : claims_)
-        if (mk_at(field_->slabs[c.x], c.y, c.z) == c.mk) empty[c.x].push_back({c.y, c.z, c.z + 1});
+    for (std::size_t i = 0; i < claims_.size(); ++i)
+    {
+        const Claim& c = claims_[i];
+        if (is_emptied[i]) empty[c.x].push_back({c.y, c.z, c.z + 1});
+    }
     std::vector<std::vector<Run>> hidden(field_->slabs.size());
     VolumeParticles& out = field_->walls.volume;
     for (std::size_t i = 0; i < positions_.size(); ++i)

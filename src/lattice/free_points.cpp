@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/figures.h"
+#include "casedef/polygon_cut.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
 #include "lattice/snap.h"
@@ -19,6 +20,8 @@ namespace
 {
 
 constexpr double nearest_dp = 0.75;
+/// Corners of a quad this near to the plane of a 2D case lie in it, dp.
+constexpr double in_plane_dp = 0.01;
 /// Steps of angles are taken in degrees and then turned into radians: their rounding decides
 /// whether there is a particle at a pole.
 constexpr double radian = std::numbers::pi / 180;
@@ -243,6 +246,8 @@ std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp)
 
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
 {
+    if (corners.size() == 1) return corners;
+    if (corners.size() == 2) return free_line(corners[0], corners[1], grid.dp);
     if (corners.size() == 3) return free_triangle({corners[0], corners[1], corners[2]}, grid);
     const std::array<Vec3, 4> quad{corners[0], corners[1], corners[2], corners[3]};
     if (quad_kind(quad, grid.dp) == QuadKind::Trapezoid) return free_trapezoid(quad, grid.dp);
@@ -252,11 +257,95 @@ std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGr
 namespace
 {
 
+bool leaves_plane(const std::array<Vec3, 4>& corners, const LatticeGrid& grid)
+{
+    return grid.is_2d &&
+           std::any_of(corners.begin(), corners.end(),
+                       [&](const Vec3& corner)
+                       { return std::fabs(corner.y - grid.origin.y) > in_plane_dp * grid.dp; });
+}
+
+/// The triangles of a quad that the plane of a 2D case cuts: those of less area together, in a flat
+/// quad as polygons are cut.
+std::array<std::array<Vec3, 3>, 2> halves_of(const std::array<Vec3, 4>& c)
+{
+    const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r)
+    { return norm(cross(q - p, r - p)); };
+    const double first = area(c[0], c[1], c[2]) + area(c[0], c[2], c[3]);
+    const double second = area(c[1], c[2], c[3]) + area(c[1], c[3], c[0]);
+    bool is_first = first < second;
+    if (std::fabs(first - second) <= 1e-9 * (first + second))
+        is_first = cut_polygon({c.begin(), c.end()}, {0, 1, 2, 3}).front()[1] % 2 == 1;
+    if (is_first) return {{{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}};
+    return {{{c[3], c[0], c[1]}, {c[3], c[1], c[2]}}};
+}
+
+/// Where a triangle meets the plane at y: nothing, a point or the ends of a line, of rising x.
+std::vector<Vec3> section_of(const std::array<Vec3, 3>& t, double y, double dp)
+{
+    std::array<int, 3> side{};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (std::fabs(t[k].y - y) > in_plane_dp * dp) side[k] = t[k].y < y ? -1 : 1;
+    std::vector<Vec3> out;
+    if (side == std::array<int, 3>{}) return out;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        const Vec3& p = t[k];
+        const Vec3& q = t[(k + 1) % 3];
+        if (side[k] == 0)
+            out.push_back({p.x, y, p.z});
+        else if (side[k] * side[(k + 1) % 3] < 0)
+        {
+            const Vec3 at = p + (q - p) * ((y - p.y) / (q.y - p.y));
+            out.push_back({at.x, y, at.z});
+        }
+    }
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Vec3& a, const Vec3& b) { return a.x < b.x; });
+    return out;
+}
+
+/// The pieces of a quad that leaves the plane of a 2D case.
+void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
+                 std::vector<std::vector<Vec3>>& out)
+{
+    std::vector<std::vector<Vec3>> lines;
+    std::vector<std::vector<Vec3>> points;
+    for (const std::array<Vec3, 3>& half : halves_of(c))
+    {
+        std::vector<Vec3> section = section_of(half, grid.origin.y, grid.dp);
+        if (section.size() > 1)
+            lines.insert(lines.begin(), std::move(section));
+        else if (!section.empty())
+            points.push_back(std::move(section));
+    }
+    if (lines.empty()) lines = std::move(points);
+    if (lines.size() == 2 && lines[0].size() == 2)
+        for (std::size_t i = 0; i < 2; ++i)
+            for (std::size_t j = 0; j < 2; ++j)
+            {
+                const Vec3& middle = lines[0][i];
+                if (norm(middle - lines[1][j]) > 1e-9 * grid.dp) continue;
+                Vec3 from = lines[0][1 - i];
+                Vec3 to = lines[1][1 - j];
+                if (to.x < from.x) std::swap(from, to);
+                if (!(from.x < middle.x && middle.x < to.x)) continue;
+                out.push_back({from, to});
+                return;
+            }
+    for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
+}
+
 /// The pieces of a quad, as free_pieces() has them.
-void add_quad(const std::array<Vec3, 4>& c, const Transform& matrix, double dp,
+void add_quad(const std::array<Vec3, 4>& c, const Transform& matrix, const LatticeGrid& grid,
               std::vector<std::vector<Vec3>>& out)
 {
-    const QuadKind kind = quad_kind(c, dp);
+    if (leaves_plane(c, grid))
+    {
+        add_section(c, grid, out);
+        return;
+    }
+    const QuadKind kind = quad_kind(c, grid.dp);
     if (kind == QuadKind::TurnedTrapezoid)
         out.push_back({c[1], c[2], c[3], c[0]});
     else if (kind != QuadKind::Other)
@@ -280,7 +369,7 @@ std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transfo
         if (face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty())
         {
             const auto corner = [&](std::size_t k) { return figure.vertices[face.vertices[k]]; };
-            add_quad({corner(0), corner(1), corner(2), corner(3)}, matrix, grid.dp, out);
+            add_quad({corner(0), corner(1), corner(2), corner(3)}, matrix, grid, out);
             continue;
         }
         for (const auto& t : face_triangles(figure, face))
@@ -340,7 +429,7 @@ std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& m
             std::vector<std::vector<Vec3>> pieces;
             add_quad({figure.vertices[i], figure.vertices[j], figure.vertices[n + j],
                       figure.vertices[n + i]},
-                     matrix, grid.dp, pieces);
+                     matrix, grid, pieces);
             for (const std::vector<Vec3>& corners : pieces)
             {
                 const std::vector<Vec3> points = free_polygon(corners, grid);

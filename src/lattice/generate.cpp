@@ -741,7 +741,7 @@ private:
     /// Calls body(corners) for the triangles and quads of a file, with indices into its vertices.
     /// Bent quads of bathymetries are two triangles.
     template <typename Body>
-    static void for_each_polygon(const MeshFileOp& op, const MeshFile& file, const Body& body)
+    void for_each_polygon(const MeshFileOp& op, const MeshFile& file, const Body& body) const
     {
         const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry;
         auto quad = file.quads.begin();
@@ -751,7 +751,7 @@ private:
             std::vector<std::uint32_t> corners{first, first + 1, first + 2};
             const bool is_quad = quad != file.quads.end() && *quad == t;
             if (is_quad) ++quad;
-            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first])))
+            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first], grid().dp)))
             {
                 corners.push_back(first + 5);
                 ++t;
@@ -775,19 +775,26 @@ private:
             draw_free([&] { return free_faces(figure, state().matrix, grid()); });
     }
 
-    /// The sides of all triangles and quads, as lines.
+    /// The sides of all triangles and quads, as lines; but the triangles of bent quads in
+    /// bathymetries are painted (GenCase v5.4.354: a peak on 3 x 3 quads, two random ones).
     void draw_wire(const MeshFileOp& op, const MeshFile& file)
     {
+        const bool is_bathymetry = op.reading.format == MeshFormat::Bathymetry;
         std::vector<std::pair<Node, Node>> segments;
+        std::vector<SnappedTriangle> triangles;
         for_each_polygon(op, file,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              std::vector<Node> nodes;
                              for (const std::uint32_t v : corners)
                                  nodes.push_back(snap(op.transform(file.soup.vertices[v]), grid()));
-                             for (std::size_t i = 0; i < nodes.size(); ++i)
-                                 segments.emplace_back(nodes[i], nodes[(i + 1) % nodes.size()]);
+                             if (is_bathymetry && nodes.size() == 3)
+                                 triangles.push_back({nodes[0], nodes[1], nodes[2]});
+                             else
+                                 for (std::size_t i = 0; i < nodes.size(); ++i)
+                                     segments.emplace_back(nodes[i], nodes[(i + 1) % nodes.size()]);
                          });
+        if (!triangles.empty()) draw_triangles(std::move(triangles));
         paint_region(lines_region(segments, grid(), state().constants.line));
     }
 

@@ -234,7 +234,8 @@ private:
             const std::uint32_t a = first + 3 * t;
             const bool is_quad = quad != file.quads.end() && *quad == t;
             if (is_quad) ++quad;
-            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[3 * std::size_t{t}])))
+            if (is_quad && (may_be_bent ||
+                            is_flat_quad(&file.soup.vertices[3 * std::size_t{t}], def_.grid.dp)))
             {
                 out.polygons.push_back({a, a + 1, a + 2, a + 5});
                 ++t;

@@ -65,6 +65,13 @@ private:
     bool has_walls_;
 };
 
+/// Whether a node counts for hswl: also one that a particle off the lattice hides, as it does in
+/// GenCase, but none in the zone of a fitted wall.
+bool counts_for_hswl(const RunField& field, const Run& run)
+{
+    return field.walls.bodies.empty() || (run.mk & wall_zone_bit) == 0;
+}
+
 /// The node of water that gives a particle off the lattice its depth.
 struct Host
 {
@@ -459,8 +466,10 @@ void compute_densities(const CaseDef& def, const RunField& field,
             for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
             {
                 const Run& r = field.slabs[x][i];
-                if (meter.medium(r.mk) != Medium::Water || !is_particle(r)) continue;
-                w.deepest = std::max(w.deepest, top[x][i] + (r.z_end - r.z_begin - 1));
+                if (meter.medium(r.mk) != Medium::Water) continue;
+                if (counts_for_hswl(field, r))
+                    w.deepest = std::max(w.deepest, top[x][i] + (r.z_end - r.z_begin - 1));
+                if (!is_particle(r)) continue;
                 if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
                 w.z_max = std::max(w.z_max, r.z_end - 1);
                 if (g > 0 && by_height)
@@ -516,7 +525,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
         tilted.for_each(
             [&](std::size_t x, std::size_t i, std::uint32_t, double d)
             {
-                if (is_particle(field.slabs[x][i])) most = std::max(most, d);
+                if (counts_for_hswl(field, field.slabs[x][i])) most = std::max(most, d);
             },
             [&](const TiltedDepths::Slab& slab) { free.measure(tilted, slab); });
         constants.hswl = std::max(most, free.deepest());

@@ -127,6 +127,34 @@ TEST(FreeDraw, RefusesATrapezoidWhoseSecondLegIsLonger)
     EXPECT_THROW(field_of(trapezoid(0.873)), CaseError);
 }
 
+/// The particles of a quad that is drawn off the lattice in a 2D case at y = 0.
+std::vector<Vec3> in_plane(const std::string& corners)
+{
+    const test::TemporaryFolder folder;
+    test::CaseText text;
+    text.pointmin = R"(<pointmin x="-0.5" y="0" z="-0.5" />)";
+    text.pointmax = R"(<pointmax x="1.5" y="0" z="1.5" />)";
+    text.mainlist = "<setfrdrawmode auto=\"true\" /><setmkbound mk=\"0\" /><drawquadri>" + corners +
+                    "</drawquadri>";
+    test::write_text(folder / "Case_Def.xml", text.text());
+    LatticeReport report;
+    return generate_lattice(read_case(folder / "Case_Def.xml", {}), 2, {}, report)
+        .walls.volume.positions;
+}
+
+TEST(FreeDraw, DrawsAQuadThatCrossesThePlaneOfA2dCaseAsLines)
+{
+    EXPECT_EQ(in_plane(R"(<point x="0.2" y="-0.2" z="0.1" /><point x="1.13" y="0.3" z="0.4" />)"
+                       R"(<point x="0.5" y="0.25" z="1.1" /><point x="0.1" y="-0.25" z="0.9" />)")
+                  .size(),
+              9u);
+    // At right angles to x the two triangles keep a line each: four intervals of 0.47, not five.
+    EXPECT_EQ(in_plane(R"(<point x="0.1" y="-0.3" z="0.1" /><point x="0.1" y="-0.3" z="0.57" />)"
+                       R"(<point x="0.1" y="0.3" z="0.57" /><point x="0.1" y="0.3" z="0.1" />)")
+                  .size(),
+              5u);
+}
+
 TEST(FreeDraw, IsTheSameWithOneAndEightThreads)
 {
     const std::string sphere =
