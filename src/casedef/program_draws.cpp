@@ -340,6 +340,9 @@ bool ProgramRunner::run_draw(const Element& e)
             add_figure(e,
                        make_box(points_of(e, 1, 1)[0] - reach, 2 * reach,
                                 {true, true, true, true, true, true}, true, {}, def_.grid.dp)[0]);
+            // Its box leaves one mk out, off the lattice none, and the sphere one more.
+            if (state_.mk_next_auto)
+                for (int i = state_.off_lattice ? 1 : 0; i < 2; ++i) take_next_mk(e);
         }
         else
         {

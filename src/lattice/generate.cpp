@@ -508,6 +508,61 @@ private:
                                       state().constants.triangle_limits));
     }
 
+    /// How to draw each part of a figure off the lattice, but for solid boxes and wires.
+    std::vector<std::function<void()>> free_parts(const FigureOp& op)
+    {
+        std::vector<std::function<void()>> parts;
+        const auto add_face = [&](std::vector<std::uint32_t> corners)
+        {
+            FigureOp face;
+            face.vertices = op.vertices;
+            face.faces.push_back({std::move(corners), true, {}, 0, {}});
+            parts.push_back(
+                [this, face = std::move(face)]
+                { draw_free([&] { return free_faces(face, state().matrix, grid()); }); });
+        };
+        const auto add_insides = [&]
+        {
+            std::size_t next = 0;
+            std::vector<SlabRegion> regions = solid_parts(
+                op, grid(), state().constants.triangle_weight, state().constants.triangle_limits);
+            const auto add_inside = [&] {
+                parts.push_back([this, region = std::move(regions.at(next++))]
+                                { paint_region(region); });
+            };
+            if (op.solid != SolidKind::Prism)
+            {
+                while (next < regions.size()) add_inside();
+                return;
+            }
+            // The faces between the parts are drawn off the lattice too, in the order of
+            // solid_parts().
+            const auto n = static_cast<std::uint32_t>(op.vertices.size() / 2);
+            for_each_part_and_side(bottom_triangles(op), add_inside,
+                                   [&](std::size_t from, std::size_t to)
+                                   {
+                                       const auto i = static_cast<std::uint32_t>(from);
+                                       const auto j = static_cast<std::uint32_t>(to);
+                                       add_face({i, j, n + j, n + i});
+                                       ++next;
+                                   });
+        };
+        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
+        const bool fills_last = fills && op.solid == SolidKind::Faces;
+        if (fills && !fills_last) add_insides();
+        if (!fills || state().mode == DrawMode::Full)
+            for (const FigureFace& f : op.faces)
+            {
+                if (!f.is_visible) continue;
+                if (f.triangles.empty() && f.cut.empty())
+                    add_face(f.vertices);
+                else
+                    for (const auto& t : face_triangles(op, f)) add_face({t.begin(), t.end()});
+            }
+        if (fills_last) add_insides();
+        return parts;
+    }
+
     /// A figure off the lattice: a solid box is a grid of points in every mode but wire; of other
     /// solids the inside stands on the lattice, below the faces.
     void draw_free_figure(const FigureOp& op)
@@ -524,15 +579,7 @@ private:
         }
         if (op.part_count > 0)
         {
-            const std::uint32_t insides = fills ? 1 : 0;
-            if (op.part < insides)
-                paint_region(solid_of(op));
-            else
-                draw_free(
-                    [&] {
-                        return free_polygon(
-                            free_pieces(op, state().matrix, grid()).at(op.part - insides), grid());
-                    });
+            free_parts(op).at(op.part)();
             return;
         }
         const bool is_prism = op.solid == SolidKind::Prism;
