@@ -296,8 +296,8 @@ bool ProgramRunner::run_draw(const Element& e)
                        fmt::format("has {} points, expected as many for the bottom as for the top",
                                    points.size()));
         FigureOp op = make_prism(points);
-        hide_faces(op, mask_of(e));
         cut_faces(op);
+        hide_faces(op, mask_of(e));
         add_figure(e, std::move(op));
     }
     else if (name == "drawbeach")
@@ -306,8 +306,8 @@ bool ProgramRunner::run_draw(const Element& e)
         if (op.vertices.size() < 6)
             read_.fail(e,
                        fmt::format("has {} points, expected at least 3", op.vertices.size() / 2));
-        hide_faces(op, mask_of(e));
         cut_faces(op);
+        hide_faces(op, mask_of(e));
         add_figure(e, std::move(op));
     }
     else if (name == "drawpyramid")
