@@ -58,6 +58,14 @@ TEST(MkNextAuto, LeavesOneMkOutAfterABox)
     EXPECT_EQ(nodes_of_parts("full", solid_box + point).rbegin()->first, 15);
 }
 
+TEST(MkNextAuto, DrawsTheOutermostLayerOfABoxFirstAndLeavesNoMkOut)
+{
+    EXPECT_EQ(nodes_of_parts("face", R"(<drawbox><boxfill>back | top</boxfill>
+<point x="0.1" y="0.1" z="0.2" /><size x="0.6" y="0.5" z="0.4" /><layers vdp="0,1" /></drawbox>)" +
+                                         point),
+              (std::map<int, int>{{2, 42}, {3, 42}, {4, 35}, {5, 35}, {6, 1}}));
+}
+
 TEST(MkNextAuto, CountsSegmentsOfLinesButNoPoints)
 {
     const std::string lines =
