@@ -325,30 +325,9 @@ QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp)
     return QuadKind::Other;
 }
 
-QuadKind quad_kind(const FigureOp& figure, const FigureFace& face, double dp)
+std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode)
 {
-    if (face.vertices.size() != 4 || !face.triangles.empty() || !face.cut.empty())
-        return QuadKind::Other;
-    const auto corner = [&](std::size_t i) { return figure.vertices[face.vertices[i]]; };
-    return quad_kind({corner(0), corner(1), corner(2), corner(3)}, dp);
-}
-
-std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp)
-{
-    if (figure.solid == SolidKind::Box) return 1;
-    const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
-    std::size_t count = fills ? 1 : 0;
-    for (const FigureFace& f : figure.faces)
-    {
-        if (!f.is_visible || (fills && mode == DrawMode::Solid)) continue;
-        if (!f.triangles.empty())
-            count += f.triangles.size();
-        else if (!f.cut.empty())
-            count += f.cut.size() - 2;
-        else
-            count += quad_kind(figure, f, dp) != QuadKind::Other ? 1 : f.vertices.size() - 2;
-    }
-    return static_cast<std::uint32_t>(count);
+    return figure.solid == SolidKind::Box ? 1 : count_parts(figure, mode);
 }
 
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)

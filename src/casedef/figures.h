@@ -39,7 +39,8 @@ FigureOp make_pyramid(const std::vector<Vec3>& points);
 
 /// Triangles (0, i, i + 1).
 FigureOp make_fan(const std::vector<Vec3>& points);
-/// Triangles (i, i + 1, i + 2).
+/// Triangles (i, i + 1, i + 2), every other one the other way round (its sides in wire mode are
+/// drawn in this order: 6 strips under setmknextauto).
 FigureOp make_strip(const std::vector<Vec3>& points);
 /// One polygon, cut by least perimeter.
 FigureOp make_polygon(const std::vector<Vec3>& points);
@@ -62,10 +63,8 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 /// polygons and extrusions).
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
 
-/// The same off the lattice (setfrdrawmode; not for wires): a solid box is one part, of others the
-/// inside is one, then come the faces, of which parallelograms and trapezoids are one part and
-/// others one a triangle.
-std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, double dp);
+/// The same off the lattice (setfrdrawmode), where a solid box is one part in every mode.
+std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode);
 
 /// What setfrdrawmode takes four corners 0, 1, 2, 3 for.
 enum class QuadKind
@@ -80,9 +79,6 @@ enum class QuadKind
 /// within 0.01 dp (found by experiment with GenCase v5.4.354: limits of 0.00100 and 0.00050 at dp
 /// 0.1 and 0.05 within the plane, of 0.0346 across it at a height of 0.6 and dp 0.1).
 QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp);
-
-/// Other for a face that has not four corners, or is cut otherwise than into (0, 1, 2), (0, 2, 3).
-QuadKind quad_kind(const FigureOp& figure, const FigureFace& face, double dp);
 
 /// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers);

@@ -1,9 +1,11 @@
 #include "casedef/program.h"
 
 #include "fppg/error.h"
+#include "fppg/shapes.h"
 
 #include "casedef/figures.h"
 #include "casedef/known_commands.h"
+#include "casedef/mesh_path.h"
 
 #include <fmt/format.h>
 
@@ -137,28 +139,66 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
                         std::move(what)});
 }
 
+std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp& op) const
+{
+    const MeshFormat format = op.reading.format;
+    if (format == MeshFormat::Bathymetry || format == MeshFormat::CsvBathymetry)
+        read_.fail_unsupported(e, "setmknextauto for heights");
+    if (op.fill_inside) read_.fail_unsupported(e, "setmknextauto together with fppg:fill");
+    if (op.clip_resize && !op.advanced)
+        read_.fail_unsupported(e, "setmknextauto together with <clipdomain>");
+    if (op.advanced && !op.container.empty())
+        read_.fail_unsupported(e, "setmknextauto for data sets drawn by their depth");
+    const std::string path = find_mesh_file(def_, {e.line, e.name}, op.file);
+    MeshFile file;
+    try
+    {
+        file = read_mesh_file(path, op.reading);
+    }
+    catch (const GeometryError& error)
+    {
+        throw GeometryError(
+            fmt::format("{}:{}: <{}>: {}", def_.file, e.line, e.name, error.what()));
+    }
+    const bool is_wire = state_.mode == DrawMode::Wire;
+    const std::size_t quads = file.quads.size();
+    std::size_t count =
+        is_wire ? 3 * (file.soup.size() - 2 * quads) + 4 * quads : file.soup.size() - quads;
+    if (!op.advanced)
+        for (const std::vector<Vec3>& line : file.lines) count += line.size();
+    return static_cast<std::uint32_t>(count);
+}
+
+void ProgramRunner::take_next_mk(const Element& e)
+{
+    if (state_.mk.kind == MkKind::Void) return;
+    ++state_.mk.mk;
+    ++state_.mk.mk_type;
+    shared_state_.reset();
+    const int count = state_.mk.kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
+    if (state_.mk.mk_type >= count)
+        read_.fail(e, fmt::format("setmknextauto goes on to mk {}, <mkconfig> leaves 0 to {}",
+                                  state_.mk.mk_type, count - 1));
+}
+
 void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
 {
     const auto add_part = [&](DrawVariant part)
     {
-        const int count = state_.mk.kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
-        if (state_.mk.kind != MkKind::Void && state_.mk.mk_type >= count)
-            read_.fail(e, fmt::format("setmknextauto needs mk {}, <mkconfig> leaves 0 to {}",
-                                      state_.mk.mk_type, count - 1));
         add_whole(e, std::move(part));
-        if (state_.mk.kind != MkKind::Void)
-        {
-            ++state_.mk.mk;
-            ++state_.mk.mk_type;
-        }
-        shared_state_.reset();
+        take_next_mk(e);
     };
     const bool is_drawn =
         std::holds_alternative<FigureOp>(what) || std::holds_alternative<LinesOp>(what) ||
         std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
         std::holds_alternative<EllipsoidOp>(what);
-    if (std::holds_alternative<MeshFileOp>(what))
-        read_.fail_unsupported(e, "setmknextauto for mesh files");
+    if (const auto* file = std::get_if<MeshFileOp>(&what))
+    {
+        const std::uint32_t count = count_file_parts(e, *file);
+        add_whole(e, std::move(what));
+        for (std::uint32_t part = 0; part < count; ++part) take_next_mk(e);
+        return;
+    }
     if (!is_drawn)
         add_whole(e, std::move(what)); // points and fills do not count
     else if (const auto* lines = std::get_if<LinesOp>(&what))
@@ -166,16 +206,8 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
         const bool is_free = state_.off_lattice;
-        if (is_free && state_.mode == DrawMode::Wire)
-            read_.fail_unsupported(e, "setmknextauto together with setfrdrawmode in wire mode");
-        if (is_free && e.name == "drawquadri" &&
-            quad_kind(*figure, figure->faces.at(0), def_.grid.dp) != QuadKind::Parallelogram)
-            read_.fail(e, "setmknextauto together with setfrdrawmode needs a parallelogram here");
-        if (is_free && def_.grid.is_2d && figure->solid != SolidKind::Box)
-            read_.fail_unsupported(
-                e, "setmknextauto together with setfrdrawmode for faces in a 2D case");
-        figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid.dp)
-                                     : count_parts(*figure, state_.mode);
+        figure->part_count =
+            is_free ? count_free_parts(*figure, state_.mode) : count_parts(*figure, state_.mode);
         for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
     }
     else

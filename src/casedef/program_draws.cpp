@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace fppg
@@ -185,19 +186,16 @@ void ProgramRunner::draw_box(const Element& e)
     const Element* end = e.find_child("endpoint");
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
     std::vector<double> layers = layers_of(e);
-    // GenCase leaves one mk out after every box but one that is a block of free particles.
-    const bool is_free_block = state_.off_lattice && is_solid && layers.empty();
+    // GenCase leaves one mk out after every box but one with layers and one that is a block of free
+    // particles; of layers the outermost is the first part (30 boxes of v5.0).
+    const bool leaves_one_out = layers.empty() && !(state_.off_lattice && is_solid);
+    if (state_.mk_next_auto) std::sort(layers.begin(), layers.end(), std::greater<>());
     // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in
     // face mode the others leave no shell).
     if (is_solid && !layers.empty()) layers = {*std::max_element(layers.begin(), layers.end())};
     for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers, def_.grid.dp))
         add_figure(e, std::move(figure));
-    if (state_.mk_next_auto && state_.mk.kind != MkKind::Void && !is_free_block)
-    {
-        ++state_.mk.mk;
-        ++state_.mk.mk_type;
-        shared_state_.reset();
-    }
+    if (state_.mk_next_auto && leaves_one_out) take_next_mk(e);
 }
 
 /// Found by experiment with GenCase v5.4.354 (9 of 10 chosen matrices, 10 of 12 random ones):
@@ -345,6 +343,9 @@ bool ProgramRunner::run_draw(const Element& e)
             add_figure(e,
                        make_box(points_of(e, 1, 1)[0] - reach, 2 * reach,
                                 {true, true, true, true, true, true}, true, {}, def_.grid.dp)[0]);
+            // Its box leaves one mk out, off the lattice none, and the sphere one more.
+            if (state_.mk_next_auto)
+                for (int i = state_.off_lattice ? 1 : 0; i < 2; ++i) take_next_mk(e);
         }
         else
         {

@@ -515,6 +515,61 @@ private:
                                       state().constants.triangle_limits));
     }
 
+    /// How to draw each part of a figure off the lattice, but for solid boxes and wires.
+    std::vector<std::function<void()>> free_parts(const FigureOp& op)
+    {
+        std::vector<std::function<void()>> parts;
+        const auto add_face = [&](std::vector<std::uint32_t> corners)
+        {
+            FigureOp face;
+            face.vertices = op.vertices;
+            face.faces.push_back({std::move(corners), true, {}, 0, {}});
+            parts.push_back(
+                [this, face = std::move(face)]
+                { draw_free([&] { return free_faces(face, state().matrix, grid()); }); });
+        };
+        const auto add_insides = [&]
+        {
+            std::size_t next = 0;
+            std::vector<SlabRegion> regions = solid_parts(
+                op, grid(), state().constants.triangle_weight, state().constants.triangle_limits);
+            const auto add_inside = [&] {
+                parts.push_back([this, region = std::move(regions.at(next++))]
+                                { paint_region(region); });
+            };
+            if (op.solid != SolidKind::Prism)
+            {
+                while (next < regions.size()) add_inside();
+                return;
+            }
+            // The faces between the parts are drawn off the lattice too, in the order of
+            // solid_parts().
+            const auto n = static_cast<std::uint32_t>(op.vertices.size() / 2);
+            for_each_part_and_side(bottom_triangles(op), add_inside,
+                                   [&](std::size_t from, std::size_t to)
+                                   {
+                                       const auto i = static_cast<std::uint32_t>(from);
+                                       const auto j = static_cast<std::uint32_t>(to);
+                                       add_face({i, j, n + j, n + i});
+                                       ++next;
+                                   });
+        };
+        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
+        const bool fills_last = fills && op.solid == SolidKind::Faces;
+        if (fills && !fills_last) add_insides();
+        if (!fills || state().mode == DrawMode::Full)
+            for (const FigureFace& f : op.faces)
+            {
+                if (!f.is_visible) continue;
+                if (f.triangles.empty() && f.cut.empty())
+                    add_face(f.vertices);
+                else
+                    for (const auto& t : face_triangles(op, f)) add_face({t.begin(), t.end()});
+            }
+        if (fills_last) add_insides();
+        return parts;
+    }
+
     /// A figure off the lattice: a solid box is a grid of points in every mode but wire; of other
     /// solids the inside stands on the lattice, below the faces.
     void draw_free_figure(const FigureOp& op)
@@ -531,15 +586,7 @@ private:
         }
         if (op.part_count > 0)
         {
-            const std::uint32_t insides = fills ? 1 : 0;
-            if (op.part < insides)
-                paint_region(solid_of(op));
-            else
-                draw_free(
-                    [&] {
-                        return free_polygon(
-                            free_pieces(op, state().matrix, grid()).at(op.part - insides), grid());
-                    });
+            free_parts(op).at(op.part)();
             return;
         }
         const bool is_prism = op.solid == SolidKind::Prism;
@@ -567,6 +614,7 @@ private:
             else
                 for (const auto& t : face_triangles(op, face)) add_sides(t);
         }
+        if (op.part_count > 0) segments = {segments.at(op.part)};
         draw_free_lines(segments);
     }
 
@@ -843,8 +891,82 @@ private:
         paint_region(lines_region(segments, grid(), state().constants.line));
     }
 
+    /// Under setmknextauto: calls body() for the draw with an mk that is so many further.
+    template <typename Body>
+    void with_mk(std::uint32_t steps, const Body& body)
+    {
+        const DrawOp* whole = op_;
+        auto state = std::make_shared<DrawState>(*whole->state);
+        if (state->mk.kind != MkKind::Void)
+            state->mk.mk = static_cast<std::uint16_t>(state->mk.mk + steps);
+        const DrawOp part{whole->source, std::move(state), whole->what};
+        op_ = &part;
+        body();
+        op_ = whole;
+    }
+
+    /// The parts of a mesh file under setmknextauto, which are those that reading the case counts.
+    void draw_in_parts(const MeshFileOp& op, const MeshFile& file)
+    {
+        std::uint32_t part = 0;
+        const auto draw_sides = [&](const std::vector<Vec3>& corners, bool is_closed)
+        {
+            for (std::size_t i = 0; i + (is_closed ? 0 : 1) < corners.size(); ++i)
+                with_mk(part++,
+                        [&] {
+                            draw(LinesOp{{{corners[i], corners[(i + 1) % corners.size()]}}});
+                        });
+        };
+        if (!op.advanced)
+        {
+            MeshFile points;
+            points.points = file.points;
+            draw_points_and_lines(points, op.transform);
+            for (const std::vector<Vec3>& line : file.lines)
+            {
+                ++part; // the first point, which the first segment draws again
+                std::vector<Vec3> moved;
+                for (const Vec3& p : line) moved.push_back(op.transform(p));
+                draw_sides(moved, false);
+            }
+        }
+        const TriangleSoup moved = moved_soup(file.soup, op.transform);
+        const bool is_wire = state().mode == DrawMode::Wire;
+        for_each_polygon(op, file,
+                         [&](const std::vector<std::uint32_t>& corners)
+                         {
+                             FigureOp face;
+                             for (const std::uint32_t v : corners)
+                                 face.vertices.push_back(moved.vertices[v]);
+                             if (op.advanced)
+                                 part += is_wire ? static_cast<std::uint32_t>(corners.size()) : 1;
+                             else if (is_wire)
+                                 draw_sides(face.vertices, true);
+                             else
+                             {
+                                 face.faces.push_back({{0, 1, 2}, true, {}, 0, {}});
+                                 if (corners.size() == 4) face.faces[0].vertices.push_back(3);
+                                 with_mk(part++, [&] { draw(face); });
+                             }
+                         });
+        if (op.advanced || op.autofill) checks_.check_closed(*op_, moved);
+        with_mk(part,
+                [&]
+                {
+                    if (op.advanced)
+                        paint_region(depth_region(moved, op, grid(), threads_));
+                    else if (op.autofill)
+                        autofill(moved, file.soup, file, op.transform);
+                });
+    }
+
     void draw(const MeshFileOp& op)
     {
+        if (state().mk_next_auto)
+        {
+            draw_in_parts(op, mesh(op));
+            return;
+        }
         // GenCase does not heed <clipdomain> with advanced.
         if (!op.clip_resize || op.advanced)
             draw_mesh(op, mesh(op));

@@ -187,6 +187,10 @@ private:
     void draw(const MeshFileOp& op)
     {
         assert(file_ != nullptr);
+        if (state_.mk_next_auto)
+            throw GeometryError(
+                "setmknextauto draws a mesh file part by part, which body-fitted "
+                "particles cannot follow; switch one of the two off");
         ShapeMesh mesh;
         mesh.is_solid = op.autofill || op.fill_inside || op.advanced;
         mesh.soup.vertices.reserve(file_->vertices.size());

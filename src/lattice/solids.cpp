@@ -71,26 +71,6 @@ private:
         parts.push_back(std::move(part));
     }
 
-    /// Calls body(t, i, j) for every side (i, j) of a triangle t that is also one of another
-    /// triangle, the last side of each triangle first.
-    template <typename Body>
-    static void for_each_shared_side(const Triangles& cut, const Body& body)
-    {
-        for (std::size_t t = 0; t < cut.size(); ++t)
-            for (std::size_t k = 3; k-- > 0;)
-            {
-                const std::size_t i = cut[t][k];
-                const std::size_t j = cut[t][(k + 1) % 3];
-                for (std::size_t u = 0; u < cut.size(); ++u)
-                {
-                    const auto& other = cut[u];
-                    if (u != t && std::find(other.begin(), other.end(), i) != other.end() &&
-                        std::find(other.begin(), other.end(), j) != other.end())
-                        body(t, i, j);
-                }
-            }
-    }
-
     void cut_prism(const FigureOp& figure)
     {
         const std::size_t n = nodes_.size() / 2;
@@ -112,10 +92,12 @@ private:
             add_part(std::move(planes));
         }
         // Each of two neighbours cuts the quad between them by its own diagonal.
-        for_each_shared_side(
-            cut,
-            [&](std::size_t t, std::size_t i, std::size_t j)
+        std::size_t count = 0;
+        for_each_part_and_side(
+            cut, [&] { ++count; },
+            [&](std::size_t i, std::size_t j)
             {
+                const std::size_t t = count - 1;
                 const Node& a = nodes_[i];
                 const Node& b = nodes_[j];
                 const Node& b_top = nodes_[n + j];
@@ -141,9 +123,12 @@ private:
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
             add_part(std::move(planes));
         }
-        for_each_shared_side(
-            cut,
-            [&](std::size_t t, std::size_t i, std::size_t j) {
+        std::size_t count = 0;
+        for_each_part_and_side(
+            cut, [&] { ++count; },
+            [&](std::size_t i, std::size_t j)
+            {
+                const std::size_t t = count - 1;
                 inner_faces.push_back({{{apex, nodes_[i], nodes_[j]}}, {parts[t].planes[0]}, t});
             });
     }

@@ -1,4 +1,5 @@
 #include "fppg/case_def.h"
+#include "fppg/error.h"
 #include "fppg/lattice.h"
 
 #include "helpers/case_text.h"
@@ -13,9 +14,11 @@ namespace
 {
 
 /// Nodes per mkbound of a case that draws `commands` from mkbound 2 on under setmknextauto.
-std::map<int, int> nodes_of_parts(const std::string& mode, const std::string& commands)
+std::map<int, int> nodes_of_parts(const std::string& mode, const std::string& commands,
+                                  const std::string& vtk = "")
 {
     const test::TemporaryFolder folder;
+    if (!vtk.empty()) test::write_text(folder / "a.vtk", vtk);
     test::CaseText text;
     text.mainlist = "<setdrawmode mode=\"" + mode + "\" /><setmkbound mk=\"2\" />";
     text.mainlist += "<setmknextauto auto=\"true\" />" + commands;
@@ -55,6 +58,14 @@ TEST(MkNextAuto, LeavesOneMkOutAfterABox)
     EXPECT_EQ(nodes_of_parts("full", solid_box + point).rbegin()->first, 15);
 }
 
+TEST(MkNextAuto, DrawsTheOutermostLayerOfABoxFirstAndLeavesNoMkOut)
+{
+    EXPECT_EQ(nodes_of_parts("face", R"(<drawbox><boxfill>back | top</boxfill>
+<point x="0.1" y="0.1" z="0.2" /><size x="0.6" y="0.5" z="0.4" /><layers vdp="0,1" /></drawbox>)" +
+                                         point),
+              (std::map<int, int>{{2, 42}, {3, 42}, {4, 35}, {5, 35}, {6, 1}}));
+}
+
 TEST(MkNextAuto, CountsSegmentsOfLinesButNoPoints)
 {
     const std::string lines =
@@ -88,6 +99,52 @@ TEST(MkNextAuto, TakesAllLayersOfASphereAsOne)
     EXPECT_EQ(nodes_of_parts("full", R"(<drawsphere radius="0.3"><point x="0.2" y="0.2" z="0.2" />
 <layers vdp="0,1" /></drawsphere>)" + point),
               (std::map<int, int>{{2, 380}, {3, 1}}));
+}
+
+TEST(MkNextAuto, DrawsTheInsideOfAFigureAfterItsFaces)
+{
+    const std::string figure = R"(<drawfigure><points><point x="0" y="0" z="0" />
+<point x="0.5" y="0" z="0" /><point x="0" y="0.5" z="0" /><point x="0" y="0" z="0.5" /></points>
+<triangles><triangle x="0" y="1" z="3" /></triangles></drawfigure>)";
+    const std::map<int, int> nodes = nodes_of_parts("full", figure + point);
+    EXPECT_EQ(nodes.at(2), 21);
+    EXPECT_EQ(nodes.rbegin()->first, 4);
+}
+
+/// A line, a quad and a triangle.
+const std::string three_shapes = R"(# vtk DataFile Version 3.0
+x
+ASCII
+DATASET POLYDATA
+POINTS 5 float
+0 0 0  0.4 0 0  0.4 0.4 0  0 0.4 0  0 0 0.4
+LINES 1 3
+2 2 4
+POLYGONS 2 9
+4 0 1 2 3
+3 0 1 4
+)";
+
+TEST(MkNextAuto, NumbersTheShapesOfAMeshFile)
+{
+    EXPECT_EQ(nodes_of_parts("full", R"(<drawfilevtk file="a.vtk" />)" + point, three_shapes),
+              (std::map<int, int>{{3, 3}, {4, 20}, {5, 15}, {6, 1}}));
+}
+
+TEST(MkNextAuto, NumbersTheSidesOfAMeshFileInAWire)
+{
+    const std::map<int, int> nodes =
+        nodes_of_parts("wire", R"(<drawfilevtk file="a.vtk" />)" + point, three_shapes);
+    EXPECT_EQ(nodes.rbegin()->first, 11);
+}
+
+TEST(MkNextAuto, RefusesADrawThatLeavesNoMk)
+{
+    const std::string mk = R"(<setmkfluid mk="8" />)";
+    EXPECT_NO_THROW(nodes_of_parts("full", mk + point));
+    const std::string line =
+        R"(<drawline><point x="0" y="0" z="0" /><point x="1" y="0" z="0" /></drawline>)";
+    EXPECT_THROW(nodes_of_parts("full", mk + line), CaseError);
 }
 
 } // namespace
