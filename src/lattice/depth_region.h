@@ -25,7 +25,7 @@ namespace fppg
 /// draws with and without; it is no flood here)
 ///
 /// A row through an edge of a facet meets it or not by rounding, in GenCase's order of operations
-/// (7664 rows through edges of random facets, all equal; on further lattices 1.7 million nodes):
+/// (7664 rows through edges of random facets, all equal; on further lattices 1.4 million nodes):
 /// - the plane of a facet is its normal and its offset, each divided by the normal's length
 /// - a row is the segment from half a dp before the node at or below the mesh's lowest x to half a
 /// dp behind its highest; the place is the segment's start plus its length times a share

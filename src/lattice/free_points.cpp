@@ -456,7 +456,7 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 
 bool fills_free_cylinder(const CylinderOp& op, DrawMode mode)
 {
-    return mode != DrawMode::Face && op.layers_dp.empty() &&
+    return mode != DrawMode::Face && op.layers.empty() &&
            std::all_of(op.is_visible.begin(), op.is_visible.end(),
                        [](bool visible) { return visible; });
 }

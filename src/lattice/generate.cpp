@@ -856,7 +856,9 @@ private:
                 const std::size_t last = first + face.vertices.size() - 2;
                 const bool is_flat = face.vertices.size() == 4 &&
                                      is_flat_quad(&cells.vertices[face.vertices[0]], grid().dp);
-                if (is_flat && quad_kind(cells, face, grid().dp) != QuadKind::Other)
+                const auto corner = [&](std::size_t i) { return cells.vertices[face.vertices[i]]; };
+                if (is_flat && quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
+                                   QuadKind::Other)
                     cells.faces.push_back(std::move(face));
                 else
                     others.insert(others.end(),
