@@ -88,6 +88,8 @@ private:
     /// throws CaseError where it is not above 0
     double radius_of(const Element& e) const;
     /// throws CaseError for a layer without a radius
+    /// The box around a cube that the matrix has moved.
+    Box3 moved_cube(const Vec3& center, double radius) const;
     void check_layers(const Element& e, double radius, const std::vector<double>& layers) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;

@@ -125,6 +125,15 @@ double ProgramRunner::radius_of(const Element& e) const
     return radius;
 }
 
+Box3 ProgramRunner::moved_cube(const Vec3& center, double radius) const
+{
+    Box3 box;
+    for (const double x : {-radius, radius})
+        for (const double y : {-radius, radius})
+            for (const double z : {-radius, radius}) box.add(matrix_(center + Vec3{x, y, z}));
+    return box;
+}
+
 void ProgramRunner::check_layers(const Element& e, double radius,
                                  const std::vector<double>& layers) const
 {
@@ -323,7 +332,9 @@ bool ProgramRunner::run_draw(const Element& e)
     {
         const Vec3 extrude = read_.child_vec3(e, "extrude");
         const bool is_closed = flag_of(e, "closed");
-        const std::vector<double> layers = layers_of(e);
+        std::vector<double> layers = layers_of(e);
+        // As of boxes, the outermost layer is the first part (7 lists of layers of v5.4).
+        if (state_.mk_next_auto) std::sort(layers.begin(), layers.end(), std::greater<>());
         const std::vector<Vec3> points = points_of(e, 2, many);
         for (const double layer : layers)
             add_figure(e, make_extrusion(
@@ -352,7 +363,15 @@ bool ProgramRunner::run_draw(const Element& e)
             // Free spheres without a radius are a point.
             const std::vector<double> layers = layers_of(e);
             if (!state_.off_lattice) check_layers(e, radius, layers);
-            add(e, SphereOp{center, radius, layers});
+            SphereOp op{center, radius, layers};
+            if (!matrix_.is_identity())
+            {
+                const Vec3 written = points_of(e, 1, 1)[0];
+                for (const double layer : layers)
+                    op.limits.push_back(moved_cube(written, radius + layer * def_.grid.dp));
+                if (layers.empty()) op.limits.push_back(moved_cube(written, radius));
+            }
+            add(e, std::move(op));
         }
     }
     else if (name == "drawcylinder")

@@ -461,6 +461,30 @@ bool fills_free_cylinder(const CylinderOp& op, DrawMode mode)
                        [](bool visible) { return visible; });
 }
 
+std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp)
+{
+    std::vector<Vec3> out;
+    const auto add = [&](double whole, bool has_disc)
+    {
+        const double away = y - op.center.y;
+        const double radius = std::sqrt(std::max(0.0, whole * whole - away * away));
+        const Vec3 center{op.center.x, y, op.center.z};
+        if (radius <= nearest_dp * dp)
+        {
+            out.push_back(center);
+            return;
+        }
+        if (!has_disc) return;
+        const int rings = std::max(1, interval_count(radius, dp));
+        if (radius / rings > nearest_dp * dp) out.push_back(center);
+        for (int k = 1; k <= rings; ++k)
+            add_ring(center, {0, 0, 1}, {1, 0, 0}, radius / rings * k, dp, out);
+    };
+    for (const double layer : op.layers_dp) add(op.radius + layer * dp, true);
+    if (op.layers_dp.empty()) add(op.radius, mode != DrawMode::Solid);
+    return out;
+}
+
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
 {
     std::vector<Vec3> out;

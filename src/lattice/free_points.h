@@ -85,6 +85,13 @@ std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& m
 std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawMode mode,
                               double dp);
 
+/// A sphere in a 2D case: the disc of radius r where it meets the plane y, as rings of radius
+/// r k / n with n = ceil(r / dp), each with ceil(2 pi r k / (n dp)) points from +z on, and the
+/// centre where the rings are more than 0.75 dp apart. Solid mode draws none, layers one each in
+/// every mode; a radius up to 0.75 dp, and a sphere beside the plane, are their centre (21 spheres
+/// and layers of GenCase v5.4.354).
+std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp);
+
 /// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with
 /// n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end discs, the tube is the ring
 /// k = n of every disc; solid mode takes the inner rings of the inner discs without the axis, full

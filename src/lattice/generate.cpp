@@ -716,10 +716,28 @@ private:
     void draw(const SphereOp& op)
     {
         if (is_off_lattice())
-            draw_free([&] { return free_sphere(op, state().matrix, state().mode, grid().dp); });
+            draw_free_sphere(op);
         else
             paint_region(sphere_region(op, state(), grid()));
     }
+
+    void draw_free_sphere(const SphereOp& op)
+    {
+        if (!grid().is_2d)
+        {
+            draw_free([&] { return free_sphere(op, state().matrix, state().mode, grid().dp); });
+            return;
+        }
+        Transform turn;
+        turn.linear = state().matrix.linear;
+        if (!turn.is_identity())
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: with setfrdrawmode under a turn or scale is not "
+                                        "supported in a 2D case",
+                                        op_->source.command));
+        draw_free([&] { return free_disc(op, state().mode, grid().origin.y, grid().dp); });
+    }
+
     void draw(const CylinderOp& op)
     {
         if (is_off_lattice())
@@ -801,12 +819,18 @@ private:
         return moved;
     }
 
+    static bool has_heights(const MeshFileOp& op)
+    {
+        return op.reading.format == MeshFormat::Bathymetry ||
+               op.reading.format == MeshFormat::CsvBathymetry;
+    }
+
     /// Calls body(corners) for the triangles and quads of a file, with indices into its vertices.
     /// Bent quads of bathymetries are two triangles.
     template <typename Body>
     void for_each_polygon(const MeshFileOp& op, const MeshFile& file, const Body& body) const
     {
-        const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry;
+        const bool may_be_bent = !has_heights(op);
         auto quad = file.quads.begin();
         for (std::uint32_t t = 0; t < file.soup.size(); ++t)
         {
@@ -854,11 +878,10 @@ private:
                 FigureFace face{std::move(corners), true, {}, 0, {}};
                 const std::size_t first = face.vertices[0] / 3;
                 const std::size_t last = first + face.vertices.size() - 2;
-                const bool is_flat = face.vertices.size() == 4 &&
-                                     is_flat_quad(&cells.vertices[face.vertices[0]], grid().dp);
                 const auto corner = [&](std::size_t i) { return cells.vertices[face.vertices[i]]; };
-                if (is_flat && quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
-                                   QuadKind::Other)
+                if (face.vertices.size() == 4 &&
+                    quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
+                        QuadKind::Other)
                     cells.faces.push_back(std::move(face));
                 else
                     others.insert(others.end(),
@@ -874,7 +897,6 @@ private:
     /// bathymetries are painted (GenCase v5.4.354: a peak on 3 x 3 quads, two random ones).
     void draw_wire(const MeshFileOp& op, const MeshFile& file)
     {
-        const bool is_bathymetry = op.reading.format == MeshFormat::Bathymetry;
         std::vector<std::pair<Node, Node>> segments;
         std::vector<SnappedTriangle> triangles;
         for_each_polygon(op, file,
@@ -883,7 +905,7 @@ private:
                              std::vector<Node> nodes;
                              for (const std::uint32_t v : corners)
                                  nodes.push_back(snap(op.transform(file.soup.vertices[v]), grid()));
-                             if (is_bathymetry && nodes.size() == 3)
+                             if (has_heights(op) && nodes.size() == 3)
                                  triangles.push_back({nodes[0], nodes[1], nodes[2]});
                              else
                                  for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -987,11 +1009,13 @@ private:
         const Box3 box = clip_box(def_, *op.clip_resize);
         for (int axis = 0; axis < 3; ++axis)
             if (box.min[axis] >= box.max[axis])
-                throw CaseError(
-                    def_.file, op_->source.line,
-                    fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
-                                "along {}",
-                                op_->source.command, *op.clip_resize, "xyz"[axis]));
+            {
+                report_.warnings.push_back(
+                    fmt::format("{}: <clipdomain resize=\"{:g}\"> leaves nothing of the domain "
+                                "along {}: the mesh is not drawn",
+                                place(), *op.clip_resize, "xyz"[axis]));
+                return;
+            }
         const MeshFile& file = mesh(op);
         if (is_within(file, op.transform, box))
         {
@@ -1014,9 +1038,10 @@ private:
         if (op.is_drawn_before) return;
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
-        // A table of heights is always drawn by its triangles on the lattice, but for
-        // parallelograms with setfrdrawmode.
+        // A table of heights is drawn by its triangles on the lattice, but for parallelograms with
+        // setfrdrawmode and its sides in wire mode.
         const bool has_modes = !op.advanced && op.reading.format != MeshFormat::CsvBathymetry;
+        const bool has_wire = !op.advanced && (has_modes || !is_off_lattice());
         if (has_modes && is_off_lattice())
         {
             draw_free_mesh(op, file);
@@ -1025,7 +1050,7 @@ private:
             if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
-        if (has_modes && !op.fill_inside && state().mode == DrawMode::Wire)
+        if (has_wire && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(op, file);
             if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);

@@ -78,10 +78,21 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
         double radius = 0;
         bool has_ball = false; // distance <= ball
         double ball = 0;
+        NodeBox limits;
     };
     std::vector<Shell> shells;
-    const auto add = [&](double radius, bool face, bool ball) {
-        shells.push_back({face, rounded_radius(radius, grid.dp) * grid.dp, ball, radius});
+    const auto add = [&](double radius, bool face, bool ball)
+    {
+        NodeBox limits = whole_lattice(grid);
+        if (shells.size() < sphere.limits.size())
+        {
+            const Box3& box = sphere.limits[shells.size()];
+            const Node low = snap(box.min, grid);
+            const Node high = snap(box.max, grid);
+            limits = intersect(
+                limits, {{low.x - 1, low.y - 1, low.z - 1}, {high.x + 2, high.y + 2, high.z + 2}});
+        }
+        shells.push_back({face, rounded_radius(radius, grid.dp) * grid.dp, ball, radius, limits});
     };
     if (!sphere.layers_dp.empty())
         for (const double layer : sphere.layers_dp)
@@ -97,7 +108,6 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
     SlabRegion region = region_of(box);
     region.emit = [=](std::uint32_t slab, Spans& out)
     {
-        const Interval column{box.begin[2], box.end[2] - 1};
         const double dx = center.x - (grid.origin.x + slab * grid.dp);
         for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
         {
@@ -108,8 +118,9 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
                 const double dz = center.z - (grid.origin.z + static_cast<double>(z) * grid.dp);
                 return std::sqrt(flat + dz * dz);
             };
-            // Nodes nearer than `limit`, an interval around the centre.
-            const auto ball = [&](double limit, const auto& holds) -> Interval
+            // Nodes of `column` nearer than `limit`, an interval around the centre.
+            const auto ball = [&](const Interval& column, double limit,
+                                  const auto& holds) -> Interval
             {
                 const double rest = limit * limit - flat;
                 if (limit < 0 || rest < -4 * grid.dp * limit) return {};
@@ -121,17 +132,26 @@ SlabRegion sphere_region(const SphereOp& sphere, const DrawState& state, const L
             };
             for (const Shell& s : shells)
             {
+                if (slab < s.limits.begin[0] || slab >= s.limits.end[0] || y < s.limits.begin[1] ||
+                    y >= s.limits.end[1])
+                    continue;
+                const Interval column =
+                    meet({box.begin[2], box.end[2] - 1}, {s.limits.begin[2], s.limits.end[2] - 1});
+                if (column.is_empty()) continue;
                 if (s.has_face)
                 {
-                    const Interval outer = ball(s.radius + width, [&](std::int64_t z)
-                                                { return distance(z) - s.radius < width; });
-                    const Interval inner = ball(s.radius - width, [&](std::int64_t z)
-                                                { return !(s.radius - distance(z) < width); });
+                    const Interval outer =
+                        ball(column, s.radius + width,
+                             [&](std::int64_t z) { return distance(z) - s.radius < width; });
+                    const Interval inner =
+                        ball(column, s.radius - width,
+                             [&](std::int64_t z) { return !(s.radius - distance(z) < width); });
                     push_without(out, y, outer, inner);
                 }
                 if (s.has_ball)
                     push_without(
-                        out, y, ball(s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }),
+                        out, y,
+                        ball(column, s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }),
                         {});
             }
         }
