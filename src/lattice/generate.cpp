@@ -1008,7 +1008,14 @@ private:
                                         op_->source.command));
         const Box3 box = clip_box(def_, *op.clip_resize);
         for (int axis = 0; axis < 3; ++axis)
-            if (box.min[axis] >= box.max[axis])
+        {
+            if (box.min[axis] > box.max[axis])
+                throw CaseError(
+                    def_.file, op_->source.line,
+                    fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
+                                "along {}",
+                                op_->source.command, *op.clip_resize, "xyz"[axis]));
+            if (box.min[axis] == box.max[axis])
             {
                 report_.warnings.push_back(
                     fmt::format("{}: <clipdomain resize=\"{:g}\"> leaves nothing of the domain "
@@ -1016,6 +1023,7 @@ private:
                                 place(), *op.clip_resize, "xyz"[axis]));
                 return;
             }
+        }
         const MeshFile& file = mesh(op);
         if (is_within(file, op.transform, box))
         {
@@ -1144,8 +1152,10 @@ private:
             const float low = static_cast<float>(bounds.min[axis]) - dp;
             const float high = static_cast<float>(bounds.max[axis]) + dp;
             const float size = high - low;
-            grown.min[axis] = low;
-            grown.max[axis] = static_cast<double>(low) + static_cast<double>(size);
+            // As fill boxes, it takes in its limits with setboxlimitmode full.
+            const double more = state().box_limit_full ? grid().dp : 0;
+            grown.min[axis] = low - more;
+            grown.max[axis] = static_cast<double>(low) + static_cast<double>(size) + more;
         }
         NodeBox box = whole_lattice(grid());
         SpanSet mask;
