@@ -1015,14 +1015,13 @@ private:
                     fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
                                 "along {}",
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
+            // Of a domain without thickness GenCase draws a few nodes by rounding.
             if (box.min[axis] == box.max[axis])
-            {
-                report_.warnings.push_back(
-                    fmt::format("{}: <clipdomain resize=\"{:g}\"> leaves nothing of the domain "
-                                "along {}: the mesh is not drawn",
-                                place(), *op.clip_resize, "xyz"[axis]));
-                return;
-            }
+                throw CaseError(
+                    def_.file, op_->source.line,
+                    fmt::format("<{}>: <clipdomain> is not supported in a 2D case, expected a "
+                                "resize above 0",
+                                op_->source.command));
         }
         const MeshFile& file = mesh(op);
         if (is_within(file, op.transform, box))
