@@ -127,19 +127,38 @@ TEST(FreeDraw, RefusesATrapezoidWhoseSecondLegIsLonger)
     EXPECT_THROW(field_of(trapezoid(0.873)), CaseError);
 }
 
-/// The particles of a quad that is drawn off the lattice in a 2D case at y = 0.
-std::vector<Vec3> in_plane(const std::string& corners)
+/// The particles of `commands` off the lattice in a 2D case at y = 0.
+std::vector<Vec3> drawn_in_plane(const std::string& commands)
 {
     const test::TemporaryFolder folder;
     test::CaseText text;
     text.pointmin = R"(<pointmin x="-0.5" y="0" z="-0.5" />)";
     text.pointmax = R"(<pointmax x="1.5" y="0" z="1.5" />)";
-    text.mainlist = "<setfrdrawmode auto=\"true\" /><setmkbound mk=\"0\" /><drawquadri>" + corners +
-                    "</drawquadri>";
+    text.mainlist = "<setfrdrawmode auto=\"true\" /><setmkbound mk=\"0\" />" + commands;
     test::write_text(folder / "Case_Def.xml", text.text());
     LatticeReport report;
     return generate_lattice(read_case(folder / "Case_Def.xml", {}), 2, {}, report)
         .walls.volume.positions;
+}
+
+std::vector<Vec3> in_plane(const std::string& corners)
+{
+    return drawn_in_plane("<drawquadri>" + corners + "</drawquadri>");
+}
+
+TEST(FreeDraw, DrawsASphereOfA2dCaseAsADisc)
+{
+    const auto count = [](const std::string& mode, double y)
+    {
+        return drawn_in_plane(fmt::format(R"(<setdrawmode mode="{}" /><drawsphere radius="0.35">)"
+                                          R"(<point x="0.68" y="{}" z="0.62" /></drawsphere>)",
+                                          mode, y))
+            .size();
+    };
+    EXPECT_EQ(count("full", 0), 57U);
+    EXPECT_EQ(count("face", 0), 57U);
+    EXPECT_EQ(count("solid", 0), 0U);
+    EXPECT_EQ(count("full", 0.4), 1U);
 }
 
 TEST(FreeDraw, EmptiesWhatStandsAtAFilledCylinderOnly)
