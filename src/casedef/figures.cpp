@@ -289,11 +289,8 @@ std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
     const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
     std::uint32_t count = 0;
     std::uint32_t corners = 3;
-    const auto solid_corners = static_cast<std::uint32_t>(figure.solid_vertices.size());
     if (figure.solid == SolidKind::Box || figure.solid == SolidKind::Prism)
-        corners = solid_corners / 2;
-    else if (figure.solid == SolidKind::Pyramid && !figure.faces[0].cut.empty())
-        corners = solid_corners - 1; // of a base that is not flat
+        corners = static_cast<std::uint32_t>(figure.solid_vertices.size() / 2);
     if (fills) count = corners - 2 + 2 * (corners - 3);
     if (fills && mode == DrawMode::Solid) return count;
     for (const FigureFace& f : figure.faces)

@@ -344,16 +344,15 @@ bool ProgramRunner::run_draw(const Element& e)
     }
     else if (name == "drawsphere")
     {
-        const Vec3 center = transformed_points(e, 1, 1)[0];
+        const Vec3 center = points_of(e, 1, 1)[0];
         const double radius = radius_of(e);
         if (state_.mode == DrawMode::Wire)
         {
             // The wire of a sphere is that of the solid box around it, turned and scaled with it
             // (24 of 24 spheres in GenCase v5.4, 7 matrices in v5.0).
             const Vec3 reach{radius, radius, radius};
-            add_figure(e,
-                       make_box(points_of(e, 1, 1)[0] - reach, 2 * reach,
-                                {true, true, true, true, true, true}, true, {}, def_.grid.dp)[0]);
+            add_figure(e, make_box(center - reach, 2 * reach, {true, true, true, true, true, true},
+                                   true, {}, def_.grid.dp)[0]);
             // Its box leaves one mk out, off the lattice none, and the sphere one more.
             if (state_.mk_next_auto)
                 for (int i = state_.off_lattice ? 1 : 0; i < 2; ++i) take_next_mk(e);
@@ -363,13 +362,12 @@ bool ProgramRunner::run_draw(const Element& e)
             // Free spheres without a radius are a point.
             const std::vector<double> layers = layers_of(e);
             if (!state_.off_lattice) check_layers(e, radius, layers);
-            SphereOp op{center, radius, layers};
+            SphereOp op{matrix_(center), radius, layers};
             if (!matrix_.is_identity())
             {
-                const Vec3 written = points_of(e, 1, 1)[0];
                 for (const double layer : layers)
-                    op.limits.push_back(moved_cube(written, radius + layer * def_.grid.dp));
-                if (layers.empty()) op.limits.push_back(moved_cube(written, radius));
+                    op.limits.push_back(moved_cube(center, radius + layer * def_.grid.dp));
+                if (layers.empty()) op.limits.push_back(moved_cube(center, radius));
             }
             add(e, std::move(op));
         }

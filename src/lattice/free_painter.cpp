@@ -30,10 +30,9 @@ bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
     return true;
 }
 
-bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p)
+bool is_kept_by(const std::vector<Clip>& clips, const Vec3& p)
 {
-    return std::all_of(clips.begin(), clips.end(),
-                       [&](const ClipPlane& plane) { return Clip(plane).keeps(p); });
+    return std::all_of(clips.begin(), clips.end(), [&](const Clip& clip) { return clip.keeps(p); });
 }
 
 /// Calls body(x, y, z) for the nodes of a particle that lie in the lattice.
@@ -88,6 +87,7 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
         begin[i] = static_cast<std::int64_t>(std::clamp(low, 0.0, n));
         end[i] = static_cast<std::int64_t>(std::clamp(high + 1, 0.0, n));
     }
+    const std::vector<Clip> kept(clips.begin(), clips.end());
     std::vector<Spans> nodes(grid.n[0]);
     parallel_for(
         nodes.size(), threads,
@@ -102,7 +102,7 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
                     const double along = dot(p - op.p0, axis);
                     if (along < -wide || along > length + wide) continue;
                     const Vec3 across = p - op.p0 - axis * along;
-                    if (dot(across, across) <= radius * radius && is_kept_by(clips, p))
+                    if (dot(across, across) <= radius * radius && is_kept_by(kept, p))
                         nodes[slab].push_back({static_cast<std::uint32_t>(y),
                                                static_cast<std::uint32_t>(z),
                                                static_cast<std::uint32_t>(z) + 1});
@@ -117,6 +117,7 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
                                      const std::vector<ClipPlane>& clips, std::uint16_t mk)
 {
     const LatticeGrid& grid = field_->grid;
+    const std::vector<Clip> kept(clips.begin(), clips.end());
     std::vector<Spans> nodes(field_->slabs.size());
     for (Vec3 p : points)
     {
@@ -125,7 +126,7 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
             if (!(std::abs(p.y - grid.origin.y) <= plane_distance_dp * grid.dp)) continue;
             p.y = grid.origin.y;
         }
-        if (!is_in_domain(p, grid) || !is_kept_by(clips, p)) continue;
+        if (!is_in_domain(p, grid) || !is_kept_by(kept, p)) continue;
         bool has_node = false;
         for_each_node(p, grid,
                       [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)

@@ -13,6 +13,7 @@
 #include "lattice/domain_clip.h"
 #include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
+#include "lattice/file_polygons.h"
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
@@ -545,14 +546,15 @@ private:
             // The faces between the parts are drawn off the lattice too, in the order of
             // solid_parts().
             const auto n = static_cast<std::uint32_t>(op.vertices.size() / 2);
-            for_each_part_and_side(bottom_triangles(op), add_inside,
-                                   [&](std::size_t from, std::size_t to)
-                                   {
-                                       const auto i = static_cast<std::uint32_t>(from);
-                                       const auto j = static_cast<std::uint32_t>(to);
-                                       add_face({i, j, n + j, n + i});
-                                       ++next;
-                                   });
+            for_each_part_and_side(
+                bottom_triangles(op), [&](std::size_t) { add_inside(); },
+                [&](std::size_t, std::size_t from, std::size_t to)
+                {
+                    const auto i = static_cast<std::uint32_t>(from);
+                    const auto j = static_cast<std::uint32_t>(to);
+                    add_face({i, j, n + j, n + i});
+                    ++next;
+                });
         };
         const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
         const bool fills_last = fills && op.solid == SolidKind::Faces;
@@ -819,40 +821,12 @@ private:
         return moved;
     }
 
-    static bool has_heights(const MeshFileOp& op)
-    {
-        return op.reading.format == MeshFormat::Bathymetry ||
-               op.reading.format == MeshFormat::CsvBathymetry;
-    }
-
-    /// Calls body(corners) for the triangles and quads of a file, with indices into its vertices.
-    /// Bent quads of bathymetries are two triangles.
-    template <typename Body>
-    void for_each_polygon(const MeshFileOp& op, const MeshFile& file, const Body& body) const
-    {
-        const bool may_be_bent = !has_heights(op);
-        auto quad = file.quads.begin();
-        for (std::uint32_t t = 0; t < file.soup.size(); ++t)
-        {
-            const std::uint32_t first = 3 * t;
-            std::vector<std::uint32_t> corners{first, first + 1, first + 2};
-            const bool is_quad = quad != file.quads.end() && *quad == t;
-            if (is_quad) ++quad;
-            if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first], grid().dp)))
-            {
-                corners.push_back(first + 5);
-                ++t;
-            }
-            body(std::move(corners));
-        }
-    }
-
     /// The triangles and quads of a file, or their sides, off the lattice.
     void draw_free_mesh(const MeshFileOp& op, const MeshFile& file)
     {
         FigureOp figure;
         figure.vertices = moved_soup(file.soup, op.transform).vertices;
-        for_each_polygon(op, file,
+        for_each_polygon(file, op.reading.format, grid().dp,
                          [&](std::vector<std::uint32_t> corners) {
                              figure.faces.push_back({std::move(corners), true, {}, 0, {}});
                          });
@@ -872,7 +846,7 @@ private:
         cells.vertices = moved_soup(file.soup, op.transform).vertices;
         std::vector<SnappedTriangle> others;
         for_each_polygon(
-            op, file,
+            file, op.reading.format, grid().dp,
             [&](std::vector<std::uint32_t> corners)
             {
                 FigureFace face{std::move(corners), true, {}, 0, {}};
@@ -899,13 +873,13 @@ private:
     {
         std::vector<std::pair<Node, Node>> segments;
         std::vector<SnappedTriangle> triangles;
-        for_each_polygon(op, file,
+        for_each_polygon(file, op.reading.format, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              std::vector<Node> nodes;
                              for (const std::uint32_t v : corners)
                                  nodes.push_back(snap(op.transform(file.soup.vertices[v]), grid()));
-                             if (has_heights(op) && nodes.size() == 3)
+                             if (has_heights(op.reading.format) && nodes.size() == 3)
                                  triangles.push_back({nodes[0], nodes[1], nodes[2]});
                              else
                                  for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -956,7 +930,7 @@ private:
         }
         const TriangleSoup moved = moved_soup(file.soup, op.transform);
         const bool is_wire = state().mode == DrawMode::Wire;
-        for_each_polygon(op, file,
+        for_each_polygon(file, op.reading.format, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              FigureOp face;

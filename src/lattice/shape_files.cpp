@@ -5,6 +5,7 @@
 
 #include "casedef/mesh_path.h"
 #include "lattice/domain_clip.h"
+#include "lattice/file_polygons.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 
@@ -224,25 +225,14 @@ private:
                 before = next;
             }
         }
-        const bool may_be_bent = op.reading.format != MeshFormat::Bathymetry &&
-                                 op.reading.format != MeshFormat::CsvBathymetry;
         const auto first = static_cast<std::uint32_t>(out.vertices.size());
         for (const Vec3& v : file.soup.vertices) add_vertex(v);
-        auto quad = file.quads.begin();
-        for (std::uint32_t t = 0; t < file.soup.size(); ++t)
-        {
-            const std::uint32_t a = first + 3 * t;
-            const bool is_quad = quad != file.quads.end() && *quad == t;
-            if (is_quad) ++quad;
-            if (is_quad && (may_be_bent ||
-                            is_flat_quad(&file.soup.vertices[3 * std::size_t{t}], def_.grid.dp)))
-            {
-                out.polygons.push_back({a, a + 1, a + 2, a + 5});
-                ++t;
-            }
-            else
-                out.polygons.push_back({a, a + 1, a + 2});
-        }
+        for_each_polygon(file, op.reading.format, def_.grid.dp,
+                         [&](std::vector<std::uint32_t> corners)
+                         {
+                             for (std::uint32_t& c : corners) c += first;
+                             out.polygons.push_back(std::move(corners));
+                         });
     }
 
     double radius(double r, bool snapped) const

@@ -92,12 +92,10 @@ private:
             add_part(std::move(planes));
         }
         // Each of two neighbours cuts the quad between them by its own diagonal.
-        std::size_t count = 0;
         for_each_part_and_side(
-            cut, [&] { ++count; },
-            [&](std::size_t i, std::size_t j)
+            cut, [](std::size_t) {},
+            [&](std::size_t t, std::size_t i, std::size_t j)
             {
-                const std::size_t t = count - 1;
                 const Node& a = nodes_[i];
                 const Node& b = nodes_[j];
                 const Node& b_top = nodes_[n + j];
@@ -123,12 +121,9 @@ private:
             for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
             add_part(std::move(planes));
         }
-        std::size_t count = 0;
         for_each_part_and_side(
-            cut, [&] { ++count; },
-            [&](std::size_t i, std::size_t j)
-            {
-                const std::size_t t = count - 1;
+            cut, [](std::size_t) {},
+            [&](std::size_t t, std::size_t i, std::size_t j) {
                 inner_faces.push_back({{{apex, nodes_[i], nodes_[j]}}, {parts[t].planes[0]}, t});
             });
     }

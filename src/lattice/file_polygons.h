@@ -1,0 +1,43 @@
+#pragma once
+
+#include "fppg/mesh.h"
+#include "fppg/mesh_reading.h"
+
+#include "lattice/plane_shapes.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// Whether a file of this format is a table of heights.
+inline bool has_heights(MeshFormat format)
+{
+    return format == MeshFormat::Bathymetry || format == MeshFormat::CsvBathymetry;
+}
+
+/// Calls body(corners) for the triangles and quads of a file, with indices into the vertices of its
+/// soup. A quad of a table of heights that is not flat is two triangles.
+template <typename Body>
+void for_each_polygon(const MeshFile& file, MeshFormat format, double dp, const Body& body)
+{
+    const bool may_be_bent = !has_heights(format);
+    auto quad = file.quads.begin();
+    for (std::uint32_t t = 0; t < file.soup.size(); ++t)
+    {
+        const std::uint32_t first = 3 * t;
+        std::vector<std::uint32_t> corners{first, first + 1, first + 2};
+        const bool is_quad = quad != file.quads.end() && *quad == t;
+        if (is_quad) ++quad;
+        if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first], dp)))
+        {
+            corners.push_back(first + 5);
+            ++t;
+        }
+        body(std::move(corners));
+    }
+}
+
+} // namespace fppg
