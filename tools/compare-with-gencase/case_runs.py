@@ -18,6 +18,9 @@ NAME = "Case"
 # What in Case.bi4 says who wrote it, not what.
 UNCOMPARED = {"AppName", "Date", "CaseName", "RunCode"}
 
+# Of GenCase, that it has no answer; it crashes on some cases without a message.
+NO_ANSWER = ("hangs", "crashes")
+
 
 @dataclass
 class Outcome:
@@ -65,18 +68,22 @@ def run_program(program, folder, out, timeout):
     target = os.path.join(folder, out)
     shutil.rmtree(target, ignore_errors=True)
     os.makedirs(target)
-    try:
-        run = subprocess.Popen([program, NAME + "_Def", f"{out}/{NAME}", "-save:bi"], cwd=folder,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               start_new_session=True)
-    except OSError as error:
-        sys.exit(f"{program}: {error.strerror}")
-    try:
-        text = run.communicate(timeout=timeout)[0].decode("utf-8", "replace")
-    except subprocess.TimeoutExpired:
-        os.killpg(run.pid, signal.SIGKILL)
-        run.communicate()
-        return Outcome("hangs", f"no end within {timeout} s")
+    # Into a file: what a program leaves behind (Wine's server, a debugger after a crash) would hold a pipe open.
+    with open(os.path.join(target, "said.txt"), "w+b") as said:
+        try:
+            run = subprocess.Popen([program, NAME + "_Def", f"{out}/{NAME}", "-save:bi"], cwd=folder,
+                                   stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+                                   start_new_session=True)
+        except OSError as error:
+            sys.exit(f"{program}: {error.strerror}")
+        try:
+            run.wait(timeout)
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, signal.SIGKILL)
+            run.wait()
+            return Outcome("hangs", f"no end within {timeout} s")
+        said.seek(0)
+        text = said.read().decode("utf-8", "replace")
     base = os.path.join(target, NAME)
     if run.returncode != 0:
         # GenCase refuses with 1, fppg with 2 to 4; anything else is no message of theirs.
@@ -119,12 +126,12 @@ def is_near(a, b, relative):
 
 
 def compare(ours, theirs, dp):
-    """The difference of two outcomes, or None. A refusal of both is none, nor is a GenCase without end."""
-    refusals = ("refuses", "crashes")
-    if theirs.status == "hangs":
+    """The difference of two outcomes, or None. A refusal of both is none, nor is a GenCase that crashes or does not
+    end."""
+    if theirs.status in NO_ANSWER:
         return None
     if ours.status != "accepts" or theirs.status != "accepts":
-        if ours.status == "refuses" and theirs.status in refusals:
+        if ours.status == "refuses" and theirs.status == "refuses":
             return None
         words = ours.message if ours.status != "accepts" else theirs.message
         key = " ".join(re.findall("[a-z]{3,}", re.sub(r"^.*xml:[0-9]+:|^Text:", "", words).lower()))[:60]

@@ -16,23 +16,26 @@ import shutil
 import sys
 import tempfile
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from case_grammar import COMMANDS, random_case, used_commands  # noqa: E402 (found by the path above)
 from case_reducer import reduce_case  # noqa: E402
-from case_runs import compare, run_program, summary, write_case  # noqa: E402
+from case_runs import NO_ANSWER, compare, run_program, summary, write_case  # noqa: E402
+from rounding_ties import is_rounding_tie  # noqa: E402
 
 
 @dataclass
 class Result:
-    """Of one case: the difference, or None; `culprits` are the commands left in the reduced case."""
+    """Of one case: the kind of difference, or the message of GenCase; `culprits` are the commands left in the reduced
+    case, `lines` say what differs."""
     index: int
     commands: set
     status: str
     kind: str = ""
     culprits: tuple = ()
+    lines: list = field(default_factory=list)
 
 
 class Comparison:
@@ -49,6 +52,11 @@ class Comparison:
                         for program, out in zip(self.programs, ("fppg", "gencase")))
         dp = float(case.root.find(".//definition").get("dp"))
         return ours, theirs, compare(ours, theirs, dp)
+
+    def run_gencase(self, case, name):
+        folder = os.path.join(self.work, name)
+        write_case(case, folder)
+        return run_program(self.programs[1], folder, "gencase", self.timeout)
 
     def reduced(self, case, name, kind, most_runs):
         """The smallest case that differs in the same kind of way; with its outcomes and difference."""
@@ -90,9 +98,14 @@ def check_case(comparison, seed, index, only, folder, most_runs):
     name = f"case_{seed}_{index}"
     ours, theirs, difference = comparison.run(case, name)
     if difference is None:
-        status = "no answer" if theirs.status == "hangs" else "equal" if ours.status == "accepts" else "both refuse"
+        status = "no answer" if theirs.status in NO_ANSWER else "equal" if ours.status == "accepts" else "both refuse"
         shutil.rmtree(os.path.join(comparison.work, name))
         return Result(index, commands, status, kind=theirs.message)
+    if is_rounding_tie(case, ours, theirs, lambda moved: comparison.run_gencase(moved, name)):
+        shutil.rmtree(os.path.join(comparison.work, name))
+        if folder:
+            keep(os.path.join(folder, "rounding_ties"), name, case, case, 0, (ours, theirs), difference)
+        return Result(index, commands, "rounding tie", difference.kind, lines=difference.lines)
     small, runs, (ours, theirs, left) = comparison.reduced(case, name, difference.kind, most_runs)
     left = left or difference
     shutil.rmtree(os.path.join(comparison.work, name))
@@ -103,18 +116,27 @@ def check_case(comparison, seed, index, only, folder, most_runs):
 
 
 def print_tables(results, only):
-    print("\ncommand             cases  equal  both refuse  no answer  differ  left in the reduced case")
+    statuses = ("equal", "both refuse", "no answer", "rounding tie", "differs")
+    heads = "".join(f"{status:>14}" for status in statuses)
+
+    def row(name, rows, more=""):
+        counts = Counter(r.status for r in rows)
+        print(f"{name:19}{len(rows):6}" + "".join(f"{counts[status]:14}" for status in statuses) + more)
+
+    print(f"\n{'command':19} cases{heads}  left in the reduced case")
     for name in COMMANDS:
         of_name = [r for r in results if name in r.commands]
         if of_name:
-            counts = Counter(r.status for r in of_name)
-            left = sum(name in r.culprits for r in of_name)
-            print(f"{name:19}{len(of_name):6}{counts['equal']:7}{counts['both refuse']:13}{counts['no answer']:11}{counts['differs']:8}{left:6}")
-    counts = Counter(r.status for r in results)
-    print(f"{'all':19}{len(results):6}{counts['equal']:7}{counts['both refuse']:13}{counts['no answer']:11}{counts['differs']:8}")
+            row(name, of_name, f"{sum(name in r.culprits for r in of_name):6}")
+    row("all", results)
     unseen = [n for n in COMMANDS if not any(n in r.commands for r in results)]
     if unseen and not only:
         print(f"In no case: {', '.join(unseen)}")
+    ties = [r for r in results if r.status == "rounding tie"]
+    if ties:
+        print("\nRounding ties: GenCase's own answer turns when the case is moved by a millionth of dp or less:")
+    for r in ties:
+        print(f"case {r.index}: {'; '.join(r.lines)}")
     groups = {}
     for r in results:
         if r.status == "differs":
