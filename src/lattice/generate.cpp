@@ -1329,8 +1329,9 @@ private:
     {
         const Limits limits = limits_of(op.region);
         for (int i = 0; i < op.times; ++i)
-            repaint_nodes(limits.kept(
-                redraw_near_nodes(field_, op, limits.box, def_.mk_bound_first, threads_)));
+            repaint_nodes(redraw_near_nodes(field_, op, limits.box,
+                                            limits.mask ? &*limits.mask : nullptr,
+                                            def_.mk_bound_first, threads_));
     }
 
     void draw(const ResetOp&)

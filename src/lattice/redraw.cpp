@@ -163,7 +163,8 @@ std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const
 }
 
 std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op,
-                                     const NodeBox& box, std::uint16_t mk_bound_first, int threads)
+                                     const NodeBox& box, const SpanSet* mask,
+                                     std::uint16_t mk_bound_first, int threads)
 {
     const NodeBox whole = whole_lattice(field.grid);
     // A border node one step outside the box counts for a target inside it.
@@ -173,7 +174,10 @@ std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& 
         --reach.begin[axis];
         ++reach.end[axis];
     }
-    const std::vector<Spans> targets = nodes_of(field, op.target, box, mk_bound_first, threads);
+    std::vector<Spans> targets = nodes_of(field, op.target, box, mk_bound_first, threads);
+    if (mask != nullptr)
+        for (std::size_t x = 0; x < targets.size(); ++x)
+            targets[x] = intersect(targets[x], mask->slabs[x]);
     const std::vector<Spans> borders =
         nodes_of(field, op.border, intersect(reach, whole), mk_bound_first, threads);
     const bool all_neighbours =

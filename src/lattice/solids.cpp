@@ -31,6 +31,15 @@ struct InnerFace
     std::size_t owner = 0; ///< the part that it belongs to
 };
 
+/// GenCase draws such a face within no limits: a solid prism of four corners or more of which a
+/// dividing face shrinks to one node has this node (12 prisms of v5.4.354).
+bool is_one_node(const InnerFace& face)
+{
+    return std::all_of(face.triangles.begin(), face.triangles.end(),
+                       [&](const SnappedTriangle& t)
+                       { return t.a == t.b && t.b == t.c && t.a == face.triangles[0].a; });
+}
+
 class SolidCutter
 {
 public:
@@ -257,6 +266,11 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
             if (cutter->inner_faces[f].owner != p) continue;
             SlabRegion face =
                 triangles_region(cutter->inner_faces[f].triangles, grid, weight_dp, limits_dp);
+            if (is_one_node(cutter->inner_faces[f]))
+            {
+                regions.push_back(std::move(face));
+                continue;
+            }
             face.emit = [cutter, f, grid, all = face.emit](std::uint32_t slab, Spans& out)
             {
                 const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
