@@ -186,23 +186,22 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     }
     op.transform = file_transform(e);
     if (op.advanced) read_depth(e, op);
-    // The file's own placement is a later transform: it takes the clips along, for this draw only
-    // (a ball moved by drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the
-    // template ClipDomain).
-    const std::vector<ClipPlane> clips = state_.clips;
+    // The file's own placement is a later transform: it takes the clips along for this draw (a ball
+    // moved by drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the template
+    // ClipDomain), and behind it the clips stand where the matrix puts them, also those that came
+    // after it and had not been moved before (one and two placed meshes under five matrices, a box
+    // behind them, GenCase v5.4.354).
     const bool is_placed = std::any_of(
         e.children.begin(), e.children.end(),
         [](const Element& c)
         { return c.name == "drawscale" || c.name == "drawrotate" || c.name == "drawmove"; });
-    const bool moves_clips = is_placed && !clips.empty();
+    const bool moves_clips = is_placed && !state_.clips.empty();
     if (moves_clips) put_clips(op.transform);
     if (e.name == "drawfilevtm")
         draw_vtm_file(e, std::move(op));
     else
         add(e, std::move(op));
-    if (!moves_clips) return;
-    state_.clips = clips;
-    shared_state_.reset();
+    if (moves_clips) place_clips();
 }
 
 /// Found by experiment with GenCase v5.4.354: only the first block of the file is read; indices are
