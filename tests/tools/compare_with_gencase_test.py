@@ -14,6 +14,8 @@ import case_grammar  # noqa: E402 (found by the path above)
 import case_reducer  # noqa: E402
 import case_runs  # noqa: E402
 import compare_with_gencase  # noqa: E402
+import numpy as np  # noqa: E402
+import rounding_ties  # noqa: E402
 
 PROGRAM = os.environ.get("FPPG_PROGRAM")
 needs_program = unittest.skipUnless(PROGRAM, "FPPG_PROGRAM names no program")
@@ -108,6 +110,63 @@ class CompareWithGenCase(unittest.TestCase):
         self.assertEqual((text.count("<drawsphere"), text.count("<drawcylinder")), (1, 0))
         with open(os.path.join(kept, name, "summary.txt"), encoding="utf-8") as file:
             self.assertIn("only GenCase: 0", file.read())
+
+    def point_case(self, x):
+        """A case of one point, and what a program that puts it on its nearest node, upwards at a half, makes of it."""
+        case = case_grammar.random_case(1, 0, ("drawpoint",))
+        definition = case.root.find(".//definition")
+        definition.set("dp", "0.1")
+        for axis in "xyz":
+            definition.find("pointmin").set(axis, "0")
+            definition.find("pointmax").set(axis, "1")
+
+        def run(moved):
+            definition = moved.root.find(".//definition")
+            dp, low = float(definition.get("dp")), float(definition.find("pointmin").get("x"))
+            return self.outcome(low + dp * np.floor((x - low) / dp + 0.5))
+
+        return case, run
+
+    @staticmethod
+    def outcome(*places):
+        return case_runs.Outcome("accepts", "", ["fluid"] * len(places), np.ones(len(places)),
+                                 np.array([[x, 0, 0] for x in places], float).reshape(-1, 3))
+
+    def test_a_point_at_half_a_step_is_a_rounding_tie(self):
+        case, run = self.point_case(0.35)
+        other = self.outcome(0.7 - run(case).positions[0, 0])
+        self.assertTrue(rounding_ties.is_rounding_tie(case, other, run(case), run))
+        self.assertFalse(rounding_ties.is_rounding_tie(case, self.outcome(0.5), run(case), run))
+
+    def test_a_point_off_half_a_step_is_no_rounding_tie(self):
+        for x in (0.36, 0.3501, 0.4):
+            case, run = self.point_case(x)
+            self.assertFalse(rounding_ties.is_rounding_tie(case, self.outcome(0.3), run(case), run))
+
+    def test_one_real_difference_beside_a_tie_counts(self):
+        case, point = self.point_case(0.35)
+
+        def run(moved):
+            return self.outcome(point(moved).positions[0, 0], 0.8)
+
+        tied = 0.7 - run(case).positions[0, 0]
+        self.assertTrue(rounding_ties.is_rounding_tie(case, self.outcome(tied, 0.8), run(case), run))
+        self.assertFalse(rounding_ties.is_rounding_tie(case, self.outcome(tied, 0.9), run(case), run))
+        self.assertFalse(rounding_ties.is_rounding_tie(case, self.outcome(tied), run(case), run))
+
+    def test_another_order_is_a_tie_where_it_turns(self):
+        case, point = self.point_case(0.35)
+
+        def run(moved):
+            places = (0.8, 0.2)
+            return self.outcome(*(places if point(moved).positions[0, 0] > 0.37 else reversed(places)))
+
+        def never(_):
+            return self.outcome(0.8, 0.2)
+
+        ours = self.outcome(*run(case).positions[::-1, 0])
+        self.assertTrue(rounding_ties.is_rounding_tie(case, ours, run(case), run))
+        self.assertFalse(rounding_ties.is_rounding_tie(case, self.outcome(0.2, 0.8), never(case), never))
 
     @needs_program
     def test_two_equal_programs_agree(self):

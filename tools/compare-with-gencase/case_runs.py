@@ -55,12 +55,11 @@ def write_case(case, folder):
 
 
 def message_of(text):
-    """The line that says why a program refused: `*** Error:` of fppg, `Text:` of GenCase."""
+    """The line that says why a program refused: `*** Error:` of fppg, `Text:` of GenCase. Empty without one."""
     for line in text.splitlines():
         if line.startswith("Text:") or line.startswith("*** Error"):
             return line.strip()
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return lines[-1] if lines else ""
+    return ""
 
 
 def run_program(program, folder, out, timeout):
@@ -87,8 +86,9 @@ def run_program(program, folder, out, timeout):
     base = os.path.join(target, NAME)
     if run.returncode != 0:
         # GenCase refuses with 1, fppg with 2 to 4; anything else is no message of theirs.
-        status = "refuses" if run.returncode in (1, 2, 3, 4) else "crashes"
-        return Outcome(status, message_of(text) or f"exit code {run.returncode}")
+        message = message_of(text)
+        status = "refuses" if run.returncode in (1, 2, 3, 4) and message else "crashes"
+        return Outcome(status, message or f"exit code {run.returncode}")
     if not os.path.exists(base + ".bi4"):
         return Outcome("crashes", "exit code 0 and no particle file")
     return read_outcome(base)
