@@ -95,6 +95,8 @@ private:
     FillFilter fill_filter(const Element& e, const std::string& words) const;
     std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute,
                                              MkKind kind) const;
+    /// Fails where an attribute names no mk of this kind.
+    void check_mk(const Element& e, const char* attribute, MkKind kind) const;
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     void draw_box(const Element& e);
     void draw_wave(const Element& e);

@@ -429,7 +429,23 @@ FillFilter ProgramRunner::fill_filter(const Element& e, const std::string& words
     }
     filter.mkbound = absolute_mk(e, "mkbound", MkKind::Bound);
     filter.mkfluid = absolute_mk(e, "mkfluid", MkKind::Fluid);
+    if (filter.names[static_cast<std::size_t>(MkKind::Bound)])
+        check_mk(e, "mkbound", MkKind::Bound);
+    if (filter.names[static_cast<std::size_t>(MkKind::Fluid)])
+        check_mk(e, "mkfluid", MkKind::Fluid);
     return filter;
+}
+
+void ProgramRunner::check_mk(const Element& e, const char* attribute, MkKind kind) const
+{
+    const bool is_bound = kind == MkKind::Bound;
+    const int count = is_bound ? def_.mkbound_count : def_.mkfluid_count;
+    if (e.find_attribute(attribute) == nullptr) return;
+    const int number = read_.integer(e, attribute, 0, 65000, false);
+    if (number >= count)
+        read_.fail(e, fmt::format("{}=\"{}\" is invalid, expected 0 to {} (<mkconfig {}=\"{}\">)",
+                                  attribute, number, count - 1,
+                                  is_bound ? "boundcount" : "fluidcount", count));
 }
 
 std::optional<std::uint16_t> ProgramRunner::absolute_mk(const Element& e, const char* attribute,
@@ -454,7 +470,9 @@ MkFilter ProgramRunner::near_filter(const Element& e, const char* type, const ch
     else
         read_.fail(e, fmt::format("attribute {}=\"{}\" is invalid, expected void, fluid or bound",
                                   type, word));
-    if (filter.kind != MkKind::Void) filter.mk = absolute_mk(e, mk, filter.kind);
+    if (filter.kind == MkKind::Void) return filter;
+    check_mk(e, mk, filter.kind);
+    filter.mk = absolute_mk(e, mk, filter.kind);
     return filter;
 }
 
@@ -484,10 +502,13 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
     else if (name == "redraw" || name == "redrawbox")
     {
         RedrawOp op;
-        if (const auto mk = absolute_mk(e, "mkfluid", MkKind::Fluid))
-            op.filters.push_back({MkKind::Fluid, mk});
-        if (const auto mk = absolute_mk(e, "mkbound", MkKind::Bound))
-            op.filters.push_back({MkKind::Bound, mk});
+        // With both attributes mkbound alone counts. A mkfluid beyond those of <mkconfig> is the
+        // number of a boundary: with six of them mkfluid="6" recolours mkbound 0 (GenCase
+        // v5.4.354, which refuses such a number in fills and redrawnear).
+        const auto mkbound = absolute_mk(e, "mkbound", MkKind::Bound);
+        const auto mk = mkbound ? mkbound : absolute_mk(e, "mkfluid", MkKind::Fluid);
+        if (mk)
+            op.filters.push_back({*mk >= def_.mk_bound_first ? MkKind::Bound : MkKind::Fluid, mk});
         if (name == "redrawbox")
         {
             // Without an mk it is for void nodes alone (seen with GenCase v5.4).
