@@ -826,7 +826,7 @@ private:
     {
         FigureOp figure;
         figure.vertices = moved_soup(file.soup, op.transform).vertices;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](std::vector<std::uint32_t> corners) {
                              figure.faces.push_back({std::move(corners), true, {}, 0, {}});
                          });
@@ -846,7 +846,7 @@ private:
         cells.vertices = moved_soup(file.soup, op.transform).vertices;
         std::vector<SnappedTriangle> others;
         for_each_polygon(
-            file, op.reading.format, grid().dp,
+            file, op, grid().dp,
             [&](std::vector<std::uint32_t> corners)
             {
                 FigureFace face{std::move(corners), true, {}, 0, {}};
@@ -873,7 +873,7 @@ private:
     {
         std::vector<std::pair<Node, Node>> segments;
         std::vector<SnappedTriangle> triangles;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              std::vector<Node> nodes;
@@ -930,7 +930,7 @@ private:
         }
         const TriangleSoup moved = moved_soup(file.soup, op.transform);
         const bool is_wire = state().mode == DrawMode::Wire;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              FigureOp face;

@@ -2,7 +2,7 @@
 
 A node halfway between two answers gets one of them by the last bits of sums; GenCase's own answer there turns when the
 case is moved by a millionth of dp. So a case that differs is run through GenCase again with its lattice moved a little
-in every direction, and with a slightly other dp. It is a rounding tie when everything in which fppg differs is GenCase's
+in many directions, and with a slightly other dp. It is a rounding tie when everything in which fppg differs is GenCase's
 own answer in one of these runs.
 """
 
@@ -15,18 +15,21 @@ from case_grammar import AXES, Case
 
 # Lengths by which the lattice is moved, in dp: the rounding of double, and of float, in which GenCase keeps some limits.
 STEPS = (1e-8, 1e-6)
+# In which directions the lattice is moved, and whether dp grows or shrinks.
+MOVES = [(*signs, 0) for signs in itertools.product((-1, 0, 1), repeat=3)] + [(0, 0, 0, -1), (0, 0, 0, 1)]
 # Two runs have the same particle where they have one of its type and mk within this distance, dp.
 SAME_PLACE = 1e-3
 
 
 def moved_cases(case):
-    """The case with its lattice and domain moved by STEPS in the eight diagonal directions, with dp larger and smaller
-    by a tenth of that in turn."""
+    """The case with its lattice and domain moved by STEPS in 26 directions, and with a dp larger and smaller by STEPS."""
     dp = float(case.root.find(".//definition").get("dp"))
-    for step, signs in itertools.product(STEPS, itertools.product((-1, 1), repeat=3)):
+    for step, (*signs, growth) in itertools.product(STEPS, MOVES):
+        if not any(signs) and growth == 0:
+            continue
         root = copy.deepcopy(case.root)
         definition = root.find(".//definition")
-        definition.set("dp", f"{dp * (1 + signs[0] * signs[1] * signs[2] * step / 10):.17g}")
+        definition.set("dp", f"{dp * (1 + growth * step):.17g}")
         for name in ("pointref", "pointmin", "pointmax"):
             point = definition.find(name)
             for axis, sign in zip(AXES, signs) if point is not None else ():
