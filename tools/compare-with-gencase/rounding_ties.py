@@ -29,7 +29,9 @@ def moved_cases(case):
             continue
         root = copy.deepcopy(case.root)
         definition = root.find(".//definition")
-        definition.set("dp", f"{dp * (1 + growth * step):.17g}")
+        for element in (definition, *root.iter("grid")):  # that of a drawbathymetry has its own
+            if not element.get("dp").startswith("#"):
+                element.set("dp", f"{float(element.get('dp')) * (1 + growth * step):.17g}")
         for name in ("pointref", "pointmin", "pointmax"):
             point = definition.find(name)
             for axis, sign in zip(AXES, signs) if point is not None else ():
