@@ -1,5 +1,7 @@
 #include "casedef/expression.h"
 
+#include "core/float32.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -141,7 +143,7 @@ constexpr std::array functions{
              {
                  if (std::abs(a[0]) > static_cast<double>(std::numeric_limits<float>::max()))
                      throw FunctionError{"the value is beyond a 32-bit real number"};
-                 return static_cast<double>(static_cast<float>(a[0]));
+                 return as_float32(a[0]);
              }},
     Function{"int", 1, 1, [](Arguments a, Vars) { return cut_to_int(a[0]); }},
     Function{"floor", 1, 1, [](Arguments a, Vars) { return std::floor(a[0]); }},

@@ -1,4 +1,5 @@
 #include "core/file_map.h"
+#include "core/float32.h"
 #include "fppg/error.h"
 #include "fppg/read_shapes.h"
 
@@ -112,11 +113,11 @@ private:
         if (n > bytes_.size()) fail(fmt::format("it is too short for its {} points", n));
         const auto coordinate = [&]
         {
-            if (!is_binary_) return static_cast<double>(static_cast<float>(text_number<double>()));
+            if (!is_binary_) return as_float32(text_number<double>());
             if (type == "float")
                 return static_cast<double>(
                     std::bit_cast<float>(static_cast<std::uint32_t>(bits(4))));
-            return static_cast<double>(static_cast<float>(std::bit_cast<double>(bits(8))));
+            return as_float32(std::bit_cast<double>(bits(8)));
         };
         out.vertices.resize(n);
         for (Vec3& p : out.vertices)

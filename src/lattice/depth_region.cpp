@@ -1,4 +1,5 @@
 #include "lattice/depth_region.h"
+#include "core/float32.h"
 
 #include "core/parallel.h"
 #include "lattice/snap.h"
@@ -62,13 +63,6 @@ double distance_to(const Vec3& p, const std::array<Vec3, 3>& t)
     return std::fabs(dot(n, ap)) / norm(n);
 }
 
-/// Through memory, because g++ 12 drops the rounding of a vector of three at -O2.
-double rounded_to_float(double value)
-{
-    const volatile float f = static_cast<float>(value);
-    return f;
-}
-
 /// Through the edge from a to b, at right angles to the facet; its normal points outwards.
 Plane side_plane(const Vec3& a, const Vec3& b, const Vec3& raised, const Vec3& normal)
 {
@@ -120,7 +114,7 @@ public:
             add_facet(soup, t);
             for (std::size_t i = 0; i < 3; ++i)
             {
-                const double x = rounded_to_float(soup.vertices[3 * t + i].x);
+                const double x = as_float32(soup.vertices[3 * t + i].x);
                 lowest_x = std::min(lowest_x, x);
                 highest_x = std::max(highest_x, x);
             }
@@ -162,10 +156,10 @@ public:
                         grid_.origin.x +
                         static_cast<double>(box_.begin[0] + static_cast<std::int64_t>(i)) *
                             grid_.dp;
-                    const double node = rounded_to_float(x);
+                    const double node = as_float32(x);
                     while (crossing != next &&
-                           (crossing->is_entry ? rounded_to_float(crossing->x) <= node
-                                               : rounded_to_float(crossing->x) < node))
+                           (crossing->is_entry ? as_float32(crossing->x) <= node
+                                               : as_float32(crossing->x) < node))
                         counts = (crossing++)->is_entry;
                     if (counts) append_node(slabs[i], y, z);
                 }
@@ -223,7 +217,7 @@ private:
         for (std::size_t i = 0; i < 3; ++i)
         {
             const Vec3& v = soup.vertices[3 * t + i];
-            f.corners[i] = {rounded_to_float(v.x), rounded_to_float(v.y), rounded_to_float(v.z)};
+            f.corners[i] = {as_float32(v.x), as_float32(v.y), as_float32(v.z)};
         }
         const Vec3 normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
         for (int axis = 0; axis < 3; ++axis)

@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/mesh_path.h"
+#include "lattice/cylinder_rings.h"
 #include "lattice/domain_clip.h"
 #include "lattice/file_polygons.h"
 #include "lattice/plane_shapes.h"
@@ -19,17 +20,6 @@ namespace fppg
 {
 namespace
 {
-
-/// Two directions across an axis. The corners of cylinders begin at the first one, which GenCase
-/// v5.4.354 takes from the first coordinate of the axis that is not zero (found with 12 axes).
-std::pair<Vec3, Vec3> across(const Vec3& axis)
-{
-    Vec3 v{1, 1, 1};
-    const int k = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
-    v[k] = -(axis[(k + 1) % 3] + axis[(k + 2) % 3]) / axis[k];
-    v = v / norm(v);
-    return {v, cross(axis / norm(axis), v)};
-}
 
 class ShapeCollector
 {
@@ -271,22 +261,26 @@ private:
     {
         if (norm(b - a) == 0) return;
         const auto n = static_cast<std::uint32_t>(sides);
-        const auto [v, w] = across(b - a);
-        for (const Vec3& end : {a, b})
-            for (std::uint32_t i = 0; i < n; ++i)
-            {
-                const double turn = 2 * std::numbers::pi * i / n;
-                out.vertices.push_back(end + v * (r * std::cos(turn)) + w * (r * std::sin(turn)));
-            }
+        const auto rings = cylinder_rings(a, b, r, sides);
+        for (const std::vector<Vec3>& ring : rings)
+            out.vertices.insert(out.vertices.end(), ring.begin(), ring.end());
         out.vertices.push_back(a);
         out.vertices.push_back(b);
-        for (std::uint32_t i = 0; i < n; ++i)
+        const auto for_each_side = [&](const auto& add)
         {
-            const std::uint32_t j = (i + 1) % n;
-            if (cylinder.is_visible[0]) out.polygons.push_back({j, i, 2 * n});
-            if (cylinder.is_visible[1]) out.polygons.push_back({n + i, n + j, 2 * n + 1});
-            if (cylinder.is_visible[2]) out.polygons.push_back({i, j, n + j, n + i});
-        }
+            for (std::uint32_t i = 0; i < n; ++i) add(i, (i + 1) % n);
+        };
+        const auto add = [&](std::vector<std::uint32_t> corners)
+        { out.polygons.push_back(std::move(corners)); };
+        if (cylinder.is_visible[0])
+            for_each_side([&](std::uint32_t i, std::uint32_t j) { add({i, j, 2 * n}); });
+        if (cylinder.is_visible[1])
+            for_each_side(
+                [&](std::uint32_t i, std::uint32_t j) {
+                    add({n + i, 2 * n + 1, n + j});
+                });
+        if (cylinder.is_visible[2])
+            for_each_side([&](std::uint32_t i, std::uint32_t j) { add({j, i, n + i, n + j}); });
     }
 
     const CaseDef& def_;

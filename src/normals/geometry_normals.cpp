@@ -1,4 +1,5 @@
 #include "normals/geometry_normals.h"
+#include "core/float32.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,12 +70,7 @@ std::vector<NormalFacet> normal_facets(const std::vector<ShapePolygons>& geometr
         for (const std::vector<std::uint32_t>& polygon : shape.polygons)
         {
             const auto corner = [&](std::size_t i)
-            {
-                const Vec3& v = shape.vertices[polygon[i]];
-                return Vec3{static_cast<double>(static_cast<float>(v.x)),
-                            static_cast<double>(static_cast<float>(v.y)),
-                            static_cast<double>(static_cast<float>(v.z))};
-            };
+            { return as_float32(shape.vertices[polygon[i]]); };
             const auto add = [&](std::initializer_list<std::size_t> places)
             {
                 NormalFacet facet;

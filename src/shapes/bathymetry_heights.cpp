@@ -1,4 +1,5 @@
 #include "shapes/bathymetry_heights.h"
+#include "core/float32.h"
 
 #include "core/parallel.h"
 
@@ -13,13 +14,6 @@ namespace fppg
 {
 namespace
 {
-
-/// GenCase keeps heights as float32.
-double rounded(double height)
-{
-    const volatile float f = static_cast<float>(height);
-    return static_cast<double>(f);
-}
 
 /// The points sorted into square cells. Rows and columns of cells are counted from 0.
 class PointCells
@@ -239,7 +233,7 @@ KnownMean known_mean(const std::vector<double>& z, const std::vector<double>& xs
             weights += weight;
             out.score += a == i || b == j ? 2 : 1;
         }
-    out.height = rounded(sum / weights);
+    out.height = as_float32(sum / weights);
     return out;
 }
 
@@ -284,7 +278,8 @@ std::vector<double> heights_at(const std::vector<Vec3>& points, const std::vecto
     std::vector<double> z(xs.size() * ys.size());
     parallel_for(
         z.size(), threads,
-        [&](std::size_t n) { z[n] = rounded(finder.height(xs[n % xs.size()], ys[n / xs.size()])); },
+        [&](std::size_t n)
+        { z[n] = as_float32(finder.height(xs[n % xs.size()], ys[n / xs.size()])); },
         256);
     fill_from_neighbours(z, xs, ys, threads);
     return z;

@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "core/float32.h"
 #include "shapes/bathymetry_heights.h"
 #include "shapes/readers.h"
 
@@ -17,15 +18,9 @@ namespace
 /// More nodes than this are no bathymetry but a wrong number.
 constexpr double most_nodes = 1e8;
 
-/// GenCase keeps heights as float32, points and lines as double: 0.35 falls below the tie of a
-/// lattice of dp 0.1 (golden file_bathy_periodic), and 0.167 moved by -0.067 below that of 0.1.
-double rounded(double height)
-{
-    const volatile float f = static_cast<float>(height);
-    return static_cast<double>(f);
-}
-
-/// Heights over lines of constant x and y: z[j * xs.size() + i].
+/// Heights over lines of constant x and y: z[j * xs.size() + i]. GenCase keeps heights as float32,
+/// points and lines as double: 0.35 falls below the tie of a lattice of dp 0.1 (golden
+/// file_bathy_periodic), and 0.167 moved by -0.067 below that of 0.1.
 struct HeightGrid
 {
     std::vector<double> xs;
@@ -131,7 +126,7 @@ private:
                     fmt::format("point {} is ({:g}, {:g}), expected ({:g}, {:g}): the points are "
                                 "no grid",
                                 i, p.x, p.y, grid.xs[column], grid.ys.back()));
-            grid.z.push_back(rounded(p.z));
+            grid.z.push_back(as_float32(p.z));
         }
         for (const auto* lines : {&grid.xs, &grid.ys})
             for (std::size_t i = 1; i < lines->size(); ++i)
@@ -235,7 +230,7 @@ private:
     static double between(const HeightGrid& grid, const double* row, std::size_t after, double x)
     {
         const double t = (x - grid.xs[after - 1]) / (grid.xs[after] - grid.xs[after - 1]);
-        return rounded(row[after - 1] + t * (row[after] - row[after - 1]));
+        return as_float32(row[after - 1] + t * (row[after] - row[after - 1]));
     }
 
     /// Adds a column before the first; `height` empty: that of the first column.
@@ -249,7 +244,7 @@ private:
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
         {
             const double* const row = &grid.z[j * n];
-            out.z.push_back(height ? rounded(*height) : row[0]);
+            out.z.push_back(height ? as_float32(*height) : row[0]);
             out.z.insert(out.z.end(), row, row + n);
         }
         grid = std::move(out);
@@ -262,7 +257,7 @@ private:
             cut_begin(grid, grid.xs[0] - ramp.size);
             if (ramp.z)
                 for (std::size_t j = 0; j < grid.ys.size(); ++j)
-                    grid.z[j * grid.xs.size()] = rounded(*ramp.z);
+                    grid.z[j * grid.xs.size()] = as_float32(*ramp.z);
         }
         if (ramp.size > 0) add_begin(grid, ramp.size, ramp.z);
         if (ramp.size2 > 0) add_begin(grid, ramp.size2, ramp.z2);
@@ -288,7 +283,7 @@ private:
         const std::size_t n = grid.xs.size();
         std::vector<double> means;
         for (std::size_t j = 0; j < grid.ys.size(); ++j)
-            means.push_back(rounded((grid.z[j * n] + grid.z[j * n + n - 1]) / 2));
+            means.push_back(as_float32((grid.z[j * n] + grid.z[j * n + n - 1]) / 2));
         if (period.ramp_width > 0)
         {
             add_begin(grid, grid.xs.front() - first, 0.0);
@@ -314,7 +309,7 @@ private:
             for (std::size_t i = 0; i < n; ++i)
                 mesh.points.push_back(
                     {grid.xs[i] + settings_.final_move.x, grid.ys[j] + settings_.final_move.y,
-                     rounded(grid.z[j * n + i] + rounded(settings_.final_move.z))});
+                     as_float32(grid.z[j * n + i] + as_float32(settings_.final_move.z))});
         for (std::uint64_t j = 0; j + 1 < grid.ys.size(); ++j)
             for (std::uint64_t i = 0; i + 1 < n; ++i)
             {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/file_map.h"
+#include "core/float32.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
 #include "shapes/facet_checks.h"
@@ -222,7 +223,7 @@ private:
         if (result.ec == std::errc{})
             return std::abs(value) > std::numeric_limits<float>::max()
                        ? std::copysign(std::numeric_limits<double>::infinity(), value)
-                       : static_cast<double>(static_cast<float>(value));
+                       : as_float32(value);
         const std::string_view digits(begin, static_cast<std::size_t>(end - begin));
         const bool is_tiny = digits.find("e-") != std::string_view::npos ||
                              digits.find("E-") != std::string_view::npos;
