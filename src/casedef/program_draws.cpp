@@ -115,6 +115,10 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
                 fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
         out.push_back(value);
     }
+    // GenCase draws the outermost layer first: it is the first part under setmknextauto (30 boxes
+    // of v5.0, 7 extrusions of v5.4), and of free particles nearer than 0.75 dp those of inner
+    // layers stay (5 spheres, cylinders and extrusions of v5.4).
+    std::sort(out.begin(), out.end(), std::greater<>());
     return out;
 }
 
@@ -196,12 +200,11 @@ void ProgramRunner::draw_box(const Element& e)
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
     std::vector<double> layers = layers_of(e);
     // GenCase leaves one mk out after every box but one with layers and one that is a block of free
-    // particles; of layers the outermost is the first part (30 boxes of v5.0).
+    // particles (30 boxes of v5.0).
     const bool leaves_one_out = layers.empty() && !(state_.off_lattice && is_solid);
-    if (state_.mk_next_auto) std::sort(layers.begin(), layers.end(), std::greater<>());
     // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in
     // face mode the others leave no shell).
-    if (is_solid && !layers.empty()) layers = {*std::max_element(layers.begin(), layers.end())};
+    if (is_solid && !layers.empty()) layers.erase(layers.begin() + 1, layers.end());
     for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers, def_.grid.dp))
         add_figure(e, std::move(figure));
     if (state_.mk_next_auto && leaves_one_out) take_next_mk(e);
@@ -332,9 +335,7 @@ bool ProgramRunner::run_draw(const Element& e)
     {
         const Vec3 extrude = read_.child_vec3(e, "extrude");
         const bool is_closed = flag_of(e, "closed");
-        std::vector<double> layers = layers_of(e);
-        // As of boxes, the outermost layer is the first part (7 lists of layers of v5.4).
-        if (state_.mk_next_auto) std::sort(layers.begin(), layers.end(), std::greater<>());
+        const std::vector<double> layers = layers_of(e);
         const std::vector<Vec3> points = points_of(e, 2, many);
         for (const double layer : layers)
             add_figure(e, make_extrusion(

@@ -203,8 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
             R"(<fillpoint x="0" y="0" z="0" mkfluid="10"><modefill>void | fluid</modefill></fillpoint>)",
             "<fillpoint>: mkfluid=\"10\" is invalid, expected 0 to 8 (<mkconfig "
             "fluidcount=\"9\">)"),
-        in_mainlist("NearNoMk",
-                    R"(<redrawnear targettp="void" bordertp="bound" bordermk="240" />)",
+        in_mainlist("NearNoMk", R"(<redrawnear targettp="void" bordertp="bound" bordermk="240" />)",
                     "<redrawnear>: bordermk=\"240\" is invalid, expected 0 to 239"),
         in_mainlist("BadNearType", R"(<redrawnear targettp="air" bordertp="bound" />)",
                     "<redrawnear>: attribute targettp=\"air\" is invalid"),

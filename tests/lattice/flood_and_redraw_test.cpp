@@ -221,10 +221,10 @@ TEST(RedrawNearNodes, AreTargetsWithANeighbourOfTheBorderType)
         };
         const RunField field = test::runs_of(nodes);
         for (const int threads : {1, 8})
-            ASSERT_EQ(
-                difference(dense(grid, redraw_near_nodes(field, op, box, nullptr, bound_first, threads)),
-                           test::where(grid, holds)),
-                "")
+            ASSERT_EQ(difference(dense(grid, redraw_near_nodes(field, op, box, nullptr, bound_first,
+                                                               threads)),
+                                 test::where(grid, holds)),
+                      "")
                 << "case " << i << ", " << threads << " threads";
     }
 }
