@@ -1,4 +1,5 @@
 #include "fppg/case_def.h"
+#include "fppg/domain_clip.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
@@ -10,7 +11,6 @@
 #include "lattice/boolean_wall.h"
 #include "lattice/cavity_fill.h"
 #include "lattice/depth_region.h"
-#include "lattice/domain_clip.h"
 #include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
 #include "lattice/file_polygons.h"
@@ -960,16 +960,19 @@ private:
 
     void draw(const MeshFileOp& op)
     {
-        if (state().mk_next_auto)
-        {
-            draw_in_parts(op, mesh(op));
-            return;
-        }
         // GenCase does not heed <clipdomain> with advanced.
         if (!op.clip_resize || op.advanced)
-            draw_mesh(op, mesh(op));
+            draw_file(op, mesh(op));
         else
             draw_clipped(op);
+    }
+
+    void draw_file(const MeshFileOp& op, const MeshFile& file)
+    {
+        if (state().mk_next_auto)
+            draw_in_parts(op, file);
+        else
+            draw_mesh(op, file);
     }
 
     /// Draws what `<clipdomain>` leaves of a file: its triangles cut at the grown domain.
@@ -980,38 +983,21 @@ private:
                             fmt::format("<{}>: fppg:fill=\"inside\" is not possible together with "
                                         "<clipdomain>, which opens the surface",
                                         op_->source.command));
-        const Box3 box = clip_box(def_, *op.clip_resize);
+        const Box3 box = clip_box(def_.case_pos_min, def_.case_pos_max, *op.clip_resize);
         for (int axis = 0; axis < 3; ++axis)
-        {
             if (box.min[axis] > box.max[axis])
                 throw CaseError(
                     def_.file, op_->source.line,
                     fmt::format("<{}>: <clipdomain resize=\"{:g}\">: nothing is left of the domain "
                                 "along {}",
                                 op_->source.command, *op.clip_resize, "xyz"[axis]));
-            // Of a domain without thickness GenCase draws a few nodes by rounding.
-            if (box.min[axis] == box.max[axis])
-                throw CaseError(
-                    def_.file, op_->source.line,
-                    fmt::format("<{}>: <clipdomain> is not supported in a 2D case, expected a "
-                                "resize above 0",
-                                op_->source.command));
-        }
-        const MeshFile& file = mesh(op);
+        MeshFileOp whole = op;
+        whole.reading = reading_to_clip(op.reading);
+        const MeshFile& file = mesh(whole);
         if (is_within(file, op.transform, box))
-        {
-            draw_mesh(op, file);
-            return;
-        }
-        const FigureOp cut =
-            clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
-        draw(cut);
-        if (!op.autofill) return;
-        TriangleSoup soup;
-        for (const FigureFace& face : cut.faces)
-            for (const auto& triangle : face_triangles(cut, face))
-                for (const std::size_t v : triangle) soup.vertices.push_back(cut.vertices[v]);
-        autofill(soup, soup, MeshFile{}, {});
+            draw_file(op, mesh(op));
+        else
+            draw_file(op, clip_to_box(file, op.transform, box, op.reading));
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
