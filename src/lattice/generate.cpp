@@ -833,7 +833,8 @@ private:
         if (state().mode == DrawMode::Wire)
             draw_free_wire(figure);
         else
-            draw_free([&] { return free_faces(figure, state().matrix, grid()); });
+            // With the placement of the file, which is a part of the matrix then.
+            draw_free([&] { return free_faces(figure, op.transform, grid()); });
     }
 
     /// Of a table of heights the cells that are parallelograms within 0.1 dp, off the lattice (as
@@ -960,11 +961,10 @@ private:
 
     void draw(const MeshFileOp& op)
     {
-        // GenCase does not heed <clipdomain> with advanced.
-        if (!op.clip_resize || op.advanced)
-            draw_file(op, mesh(op));
-        else
+        if (op.clip_resize)
             draw_clipped(op);
+        else
+            draw_file(op, mesh(op));
     }
 
     void draw_file(const MeshFileOp& op, const MeshFile& file)
@@ -995,9 +995,19 @@ private:
         whole.reading = reading_to_clip(op.reading);
         const MeshFile& file = mesh(whole);
         if (is_within(file, op.transform, box))
+        {
             draw_file(op, mesh(op));
-        else
-            draw_file(op, clip_to_box(file, op.transform, box, op.reading));
+            return;
+        }
+        const MeshFile cut = clip_to_box(file, op.transform, box, op.reading);
+        // GenCase passes over this for the other formats.
+        if (op.reading.format == MeshFormat::Ply && cut.soup.vertices.empty())
+            throw CaseError(def_.file, op_->source.line,
+                            fmt::format("<{}>: {}: <clipdomain> leaves nothing of it, expected "
+                                        "that it reaches into the domain",
+                                        op_->source.command, op.file));
+        // With advanced GenCase draws all of the file nevertheless.
+        draw_file(op, op.advanced ? mesh(op) : cut);
     }
 
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
@@ -1102,6 +1112,11 @@ private:
             for (const Vec3& p : line) bounds.add(p);
         for (const Vec3& v : source.vertices) bounds.add(v);
         if (bounds.is_empty()) return;
+        // A file in one plane across an axis is not filled (GenCase v5.4.354: flat rings across x,
+        // y and z, in 2D and 3D; one bent by 1e-9 m, or what a clipdomain leaves beyond the plane
+        // of a 2D case by 1e-17 m, is).
+        for (int axis = 0; axis < 3; ++axis)
+            if (bounds.min[axis] == bounds.max[axis]) return;
         // The limits are the strict interior of the box grown by dp, in float as in GenCase (70
         // boxes with a side on a snap tie: all upper limits and 67 lower ones are the same).
         Box3 grown;
