@@ -1,5 +1,6 @@
 #include "casedef/program.h"
 
+#include "fppg/domain_clip.h"
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
@@ -145,15 +146,16 @@ std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp
     if (format == MeshFormat::Bathymetry || format == MeshFormat::CsvBathymetry)
         read_.fail_unsupported(e, "setmknextauto for heights");
     if (op.fill_inside) read_.fail_unsupported(e, "setmknextauto together with fppg:fill");
-    if (op.clip_resize && !op.advanced)
-        read_.fail_unsupported(e, "setmknextauto together with <clipdomain>");
     if (op.advanced && !op.container.empty())
         read_.fail_unsupported(e, "setmknextauto for data sets drawn by their depth");
     const std::string path = find_mesh_file(def_, {e.line, e.name}, op.file);
     MeshFile file;
     try
     {
-        file = read_mesh_file(path, op.reading);
+        file = op.clip_resize && !op.advanced
+                   ? read_clipped(path, op.reading, op.transform,
+                                  clip_box(def_.case_pos_min, def_.case_pos_max, *op.clip_resize))
+                   : read_mesh_file(path, op.reading);
     }
     catch (const GeometryError& error)
     {

@@ -160,6 +160,9 @@ std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, cons
 {
     const int n = exact_interval_count(norm(first - corner), dp);
     const int m = exact_interval_count(norm(last - corner), dp);
+    // Without a length across there is nothing, whatever the other side (GenCase v5.4.354: ten
+    // quads of two or one place, sides of 1e-12 and 1e-9 m; one of 1e-6 dp is refused).
+    if (n == 0 || m == 0) return {};
     const Vec3 u = interval(first - corner, n);
     const Vec3 v = interval(last - corner, m);
     check_spacing({u, v, u + v, u - v}, dp);
@@ -336,8 +339,9 @@ void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
     for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
 }
 
-/// The pieces of a quad, as free_pieces() has them.
-void add_quad(const std::array<Vec3, 4>& c, const Transform& matrix, const LatticeGrid& grid,
+/// The pieces of a quad, as free_pieces() has them. Of one in the plane of a 2D case all corners
+/// are put there, so that it is flat (GenCase v5.4.354: six bent ones, six without width).
+void add_quad(std::array<Vec3, 4> c, const Transform& matrix, const LatticeGrid& grid,
               std::vector<std::vector<Vec3>>& out)
 {
     if (leaves_plane(c, grid))
@@ -345,6 +349,8 @@ void add_quad(const std::array<Vec3, 4>& c, const Transform& matrix, const Latti
         add_section(c, grid, out);
         return;
     }
+    if (grid.is_2d)
+        for (Vec3& corner : c) corner.y = grid.origin.y;
     const QuadKind kind = quad_kind(c, grid.dp);
     if (kind == QuadKind::TurnedTrapezoid)
         out.push_back({c[1], c[2], c[3], c[0]});

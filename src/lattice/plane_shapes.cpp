@@ -99,7 +99,10 @@ Span one_node(std::int64_t y, std::int64_t z)
 /// The arithmetic is GenCase's, found by experiment with v5.4.354 (2592 random triangles, two
 /// thirds of them with nodes exactly at the limit, no node different): the distance from the plane
 /// is the plane's value over the length of its normal; beyond the edges three planes across the
-/// triangle, moved outwards by the limit, refuse what is not strictly behind them.
+/// triangle, moved outwards by the limit, refuse what is not strictly behind them. Corners in one
+/// line have the planes that rounding leaves them: of half of such triangles nothing is drawn, of
+/// others nodes along the line (GenCase v5.4.354: 720 triangles, 360 of them in 2D, none
+/// different).
 class TriangleTest
 {
 public:
@@ -108,11 +111,6 @@ public:
         : grid_(grid), box_(box_of(t, grid)), weight_(weight_dp * grid.dp)
     {
         is_node_ = t.a == t.b && t.b == t.c;
-        const std::array<std::int64_t, 3> u{t.b.x - t.a.x, t.b.y - t.a.y, t.b.z - t.a.z};
-        const std::array<std::int64_t, 3> v{t.c.x - t.a.x, t.c.y - t.a.y, t.c.z - t.a.z};
-        is_flat_ =
-            u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
-        if (is_flat_) return;
         const Vec3 a = position(t.a, grid);
         const Vec3 b = position(t.b, grid);
         const Vec3 c = position(t.c, grid);
@@ -130,11 +128,18 @@ public:
             const Vec3 shift = outward * factor;
             limits_[e] = plane_through(p + shift, q + shift, above + shift);
         }
+        const auto has_normal = [](const Plane& plane)
+        {
+            const double length = norm(plane.normal);
+            return length > 0 && std::isfinite(length);
+        };
+        holds_nothing_ =
+            !has_normal(plane_) || !std::all_of(limits_.begin(), limits_.end(), has_normal);
     }
 
     const NodeBox& box() const { return box_; }
     bool is_node() const { return is_node_; }
-    bool is_flat() const { return is_flat_; }
+    bool holds_nothing() const { return holds_nothing_; }
 
     bool holds(const Vec3& x) const
     {
@@ -242,7 +247,7 @@ private:
     NodeBox box_;
     double weight_;
     bool is_node_ = false;
-    bool is_flat_ = false;
+    bool holds_nothing_ = false;
     Plane plane_;
     double length_ = 1;
     std::array<Plane, 3> limits_;
@@ -397,7 +402,7 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
                             const TriangleTest test((*shared)[item], grid, weight_dp, limits_dp);
                             if (test.is_node())
                                 out.push_back(one_node(test.box().begin[1], test.box().begin[2]));
-                            else if (!test.is_flat())
+                            else if (!test.holds_nothing())
                                 test.emit(x, out);
                         });
     };

@@ -27,7 +27,7 @@ struct SnappedTriangle
 
 /// The nodes of triangles (rule P3): those of the index box of the corners that are nearer to the
 /// plane than weight_dp * dp and not farther beyond any edge than limits_dp * dp. Three equal
-/// corners give their node; a triangle with no area gives nothing.
+/// corners give their node; corners in one line what rounding makes of these conditions.
 SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
                             double weight_dp, double limits_dp);
 

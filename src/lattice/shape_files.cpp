@@ -1,11 +1,11 @@
 #include "fppg/case_def.h"
+#include "fppg/domain_clip.h"
 #include "fppg/files.h"
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
 #include "casedef/mesh_path.h"
 #include "lattice/cylinder_rings.h"
-#include "lattice/domain_clip.h"
 #include "lattice/file_polygons.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
@@ -178,31 +178,16 @@ private:
     void add_mesh(ShapePolygons& out, const MeshFileOp& op, const std::string& path,
                   bool snapped) const
     {
-        const MeshFile file = read_mesh_file(path, op.reading);
+        const MeshFile file =
+            op.clip_resize && !op.advanced
+                ? read_clipped(path, op.reading, op.transform,
+                               clip_box(def_.case_pos_min, def_.case_pos_max, *op.clip_resize))
+                : read_mesh_file(path, op.reading);
         const auto add_vertex = [&](const Vec3& v)
         {
             out.vertices.push_back(place(op.transform(v), snapped));
             return static_cast<std::uint32_t>(out.vertices.size() - 1);
         };
-        const Box3 box = clip_box(def_, op.clip_resize.value_or(0));
-        if (op.clip_resize && !op.advanced && !is_within(file, op.transform, box))
-        {
-            const auto first = static_cast<std::uint32_t>(out.vertices.size());
-            const FigureOp cut =
-                clip_to_box(file, op.transform, box, op.reading.format != MeshFormat::Stl);
-            for (const Vec3& v : cut.vertices) out.vertices.push_back(place(v, snapped));
-            const auto add_polygon = [&](const auto& corners)
-            {
-                auto& polygon = out.polygons.emplace_back();
-                for (const std::uint32_t v : corners) polygon.push_back(first + v);
-            };
-            for (const FigureFace& face : cut.faces)
-            {
-                if (face.triangles.empty()) add_polygon(face.vertices);
-                for (const auto& triangle : face.triangles) add_polygon(triangle);
-            }
-            return;
-        }
         for (const std::vector<Vec3>& line : file.lines)
         {
             if (op.advanced) break; // takes surfaces only

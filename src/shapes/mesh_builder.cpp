@@ -35,6 +35,10 @@ public:
         const double size = norm(box.max - box.min);
         // What rounding to float32 and the products themselves may change.
         slack_ = 1e-7 * size * size * norm(area_);
+        is_line_ = norm(area_) <= 1e-7 * size * size;
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            for (std::size_t j = i + 1; j < corners.size(); ++j)
+                has_copies_ = has_copies_ || corners[i] == corners[j];
     }
 
     std::vector<std::array<std::size_t, 3>> run()
@@ -44,10 +48,12 @@ public:
         while (rest_.size() > 3)
         {
             const std::size_t k = next_corner();
+            if (k == rest_.size()) return triangles;
             triangles.push_back({before(k), rest_[k], after(k)});
             rest_.erase(rest_.begin() + static_cast<std::ptrdiff_t>(k));
         }
-        triangles.push_back({rest_[0], rest_[1], rest_[2]});
+        if (!has_copies_ || is_ear_among_copies(0))
+            triangles.push_back({rest_[0], rest_[1], rest_[2]});
         return triangles;
     }
 
@@ -76,11 +82,41 @@ private:
                             });
     }
 
-    /// The corner to cut off; where no corner is an ear, the one of least perimeter.
+    /// Where corners coincide an ear has three places, none of which another corner shares.
+    bool is_ear_among_copies(std::size_t k) const
+    {
+        const Vec3& a = corners_[before(k)];
+        const Vec3& b = corners_[rest_[k]];
+        const Vec3& c = corners_[after(k)];
+        if (a == b || b == c || a == c) return false;
+        if (!is_line_ && side(a, b, c) <= slack_) return false;
+        Box3 box;
+        for (const Vec3& p : {a, b, c}) box.add(p);
+        const auto is_in_box = [&](const Vec3& p)
+        {
+            for (int axis = 0; axis < 3; ++axis)
+                if (p[axis] < box.min[axis] || p[axis] > box.max[axis]) return false;
+            return true;
+        };
+        for (const std::size_t i : rest_)
+        {
+            const Vec3& p = corners_[i];
+            if (i == before(k) || i == rest_[k] || i == after(k)) continue;
+            if (is_line_ ? is_in_box(p)
+                         : side(a, b, p) >= -slack_ && side(b, c, p) >= -slack_ &&
+                               side(c, a, p) >= -slack_)
+                return false;
+        }
+        return true;
+    }
+
+    /// The corner to cut off; where no corner is an ear, the one of least perimeter, or none if
+    /// corners coincide.
     std::size_t next_corner() const
     {
         for (const bool only_ears : {true, false})
         {
+            if (!only_ears && has_copies_) return rest_.size();
             std::size_t best = rest_.size();
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t k = 0; k < rest_.size(); ++k)
@@ -89,7 +125,8 @@ private:
                 const Vec3& b = corners_[rest_[k]];
                 const Vec3& c = corners_[after(k)];
                 const double perimeter = norm(a - b) + norm(b - c) + norm(a - c);
-                if (perimeter < least && (!only_ears || is_ear(k)))
+                if (perimeter < least &&
+                    (!only_ears || (has_copies_ ? is_ear_among_copies(k) : is_ear(k))))
                 {
                     least = perimeter;
                     best = k;
@@ -104,6 +141,8 @@ private:
     std::vector<std::size_t> rest_;
     Vec3 area_;
     double slack_ = 0;
+    bool is_line_ = false;
+    bool has_copies_ = false; ///< two corners in one place
 };
 
 class MeshBuilder

@@ -48,7 +48,10 @@ struct IndexedMesh
 /// - four corners are the triangles (0, 1, 2), (0, 2, 3), whatever their shape
 /// - five and more corners are cut by ears of least perimeter, on the coordinates of the file,
 ///   before any transform. The same triangles as GenCase's for polygons in one plane; two polygons
-///   of six and five corners that are not in one plane were cut otherwise there
+///   of six and five corners that are not in one plane were cut otherwise there. Where corners
+///   coincide an ear has three places that no other corner shares, and cutting ends where there is
+///   none: all that GenCase draws but 3 of 4 triangles of 80 polygons in one line, which rounding
+///   decides, 98 of 167 triangles of 80 others (19 are not its)
 /// - a strip's triangle i is (i, i + 1, i + 2), every second one turned round; strips count as
 ///   triangles
 /// - polygons of five and more corners are taken only where triangles, quads and other polygons are

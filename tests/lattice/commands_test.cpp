@@ -1,9 +1,9 @@
 #include "fppg/case_def.h"
+#include "fppg/domain_clip.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 
 #include "helpers/case_text.h"
-#include "lattice/domain_clip.h"
 
 #include <gtest/gtest.h>
 
@@ -272,10 +272,12 @@ TEST(ClipToBox, CutsATriangleIntoTheQuadInside)
 {
     MeshFile mesh;
     mesh.soup.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-    const FigureOp cut = clip_to_box(mesh, {}, {{-1, -1, -1}, {1, 3, 1}}, true);
-    ASSERT_EQ(cut.faces.size(), 1u);
-    EXPECT_EQ(cut.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 2, 0}}));
-    EXPECT_TRUE(clip_to_box(mesh, {}, {{3, 3, 3}, {4, 4, 4}}, true).faces.empty());
+    const MeshFile cut = clip_to_box(mesh, {}, {{-1, -1, -1}, {1, 3, 1}}, {MeshFormat::Ply});
+    EXPECT_EQ(cut.quads, std::vector<std::uint32_t>{0});
+    EXPECT_EQ(
+        cut.soup.vertices,
+        (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 2, 0}}));
+    EXPECT_TRUE(clip_to_box(mesh, {}, {{3, 3, 3}, {4, 4, 4}}, {}).soup.vertices.empty());
 }
 
 // -- clips
