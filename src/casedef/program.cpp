@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/free_parts.h"
 #include "casedef/known_commands.h"
 #include "casedef/mesh_path.h"
 
@@ -206,13 +207,10 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
         const bool is_free = state_.off_lattice;
-        if (is_free && def_.grid.is_2d && figure->solid != SolidKind::Box)
-            read_.fail_unsupported(
-                e, "setmknextauto together with setfrdrawmode for faces in a 2D case");
         if (e.name == "drawpyramid" && !figure->faces.at(0).cut.empty())
             read_.fail_unsupported(e, "setmknextauto for a pyramid whose base is not flat");
         figure->part_count =
-            is_free ? count_free_parts(*figure, state_.mode) : count_parts(*figure, state_.mode);
+            is_free ? count_free_parts(*figure, state_.mode, def_.grid) : count_parts(*figure, state_.mode);
         for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
     }
     else
