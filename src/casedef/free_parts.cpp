@@ -35,10 +35,12 @@ std::array<std::array<Vec3, 3>, 2> halves_of(const std::array<Vec3, 4>& c)
     if (std::fabs(first - second) <= 1e-9 * (first + second))
         is_first = cut_polygon({c.begin(), c.end()}, {0, 1, 2, 3}).front()[1] % 2 == 1;
     if (is_first) return {{{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}};
-    return {{{c[3], c[0], c[1]}, {c[3], c[1], c[2]}}};
+    return {{{c[3], c[0], c[1]}, {c[1], c[2], c[3]}}};
 }
 
 /// Where a triangle meets the plane at y: nothing, a point or the ends of a line, of rising x.
+/// Their y is that of rounding, which clips see; sides are walked as (0, 1), (1, 2), (0, 2) (60
+/// lines of GenCase v5.4.354 to the last bit).
 std::vector<Vec3> section_of(const std::array<Vec3, 3>& t, double y, double dp)
 {
     std::array<int, 3> side{};
@@ -46,20 +48,18 @@ std::vector<Vec3> section_of(const std::array<Vec3, 3>& t, double y, double dp)
         if (std::fabs(t[k].y - y) > in_plane_dp * dp) side[k] = t[k].y < y ? -1 : 1;
     std::vector<Vec3> out;
     if (side == std::array<int, 3>{}) return out;
-    for (std::size_t k = 0; k < 3; ++k)
+    for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 2}})
     {
-        const Vec3& p = t[k];
-        const Vec3& q = t[(k + 1) % 3];
-        if (side[k] == 0)
-            out.push_back({p.x, y, p.z});
-        else if (side[k] * side[(k + 1) % 3] < 0)
-        {
-            const Vec3 at = p + (q - p) * ((y - p.y) / (q.y - p.y));
-            out.push_back({at.x, y, at.z});
-        }
+        const Vec3& p = t[static_cast<std::size_t>(i)];
+        const Vec3& q = t[static_cast<std::size_t>(j)];
+        if (side[static_cast<std::size_t>(i)] * side[static_cast<std::size_t>(j)] < 0)
+            out.push_back(p + (q - p) * ((y - p.y) / (q.y - p.y)));
     }
+    for (std::size_t k = 0; k < 3; ++k)
+        if (side[k] == 0) out.push_back(t[k]);
     std::stable_sort(out.begin(), out.end(),
-                     [](const Vec3& a, const Vec3& b) { return a.x < b.x; });
+                     [](const Vec3& a, const Vec3& b)
+                     { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
     return out;
 }
 
@@ -80,17 +80,11 @@ void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
     if (lines.empty()) lines = std::move(points);
     if (lines.size() == 2 && lines[0].size() == 2)
         for (std::size_t i = 0; i < 2; ++i)
-            for (std::size_t j = 0; j < 2; ++j)
-            {
-                const Vec3& middle = lines[0][i];
-                if (norm(middle - lines[1][j]) > 1e-9 * grid.dp) continue;
-                Vec3 from = lines[0][1 - i];
-                Vec3 to = lines[1][1 - j];
-                if (to.x < from.x) std::swap(from, to);
-                if (!(from.x < middle.x && middle.x < to.x)) continue;
-                out.push_back({from, to});
-                return;
-            }
+        {
+            if (norm(lines[i][1] - lines[1 - i][0]) > 1e-9 * grid.dp) continue;
+            out.push_back({lines[i][0], lines[1 - i][1]});
+            return;
+        }
     for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
 }
 
@@ -195,25 +189,60 @@ std::vector<Vec3> box_section(const FigureOp& box, const LatticeGrid& grid)
     return corners;
 }
 
+namespace
+{
+
+/// The parts of a solid box in a 2D case.
+std::vector<FreePart> section_parts(const FigureOp& box, DrawMode mode, const Transform& matrix,
+                                    const LatticeGrid& grid)
+{
+    const std::vector<Vec3> corners = box_section(box, grid);
+    const std::size_t n = corners.size();
+    std::vector<FreePart> parts;
+    if (n == 2)
+        parts.push_back({{corners}});
+    else if (n > 2 && mode == DrawMode::Wire)
+        for (std::size_t i = 0; i < n; ++i) parts.push_back({{{corners[i], corners[(i + 1) % n]}}});
+    else if (n == 4)
+    {
+        parts.emplace_back();
+        add_quad({corners[0], corners[1], corners[2], corners[3]}, matrix, grid, parts[0].pieces);
+    }
+    else if (n == 3)
+        parts.push_back({{corners}});
+    else
+        parts.emplace_back();
+    for (FreePart& part : parts) part.is_section = true;
+    parts.back().ends_quad = true;
+    return parts;
+}
+
+} // namespace
+
 std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Transform& matrix,
                                  const LatticeGrid& grid)
 {
+    if (figure.solid == SolidKind::Box) return section_parts(figure, mode, matrix, grid);
     std::vector<FreePart> parts;
     const auto add_face = [&](const FigureFace& face)
     {
         std::vector<std::vector<Vec3>> pieces = pieces_of(figure, face, matrix, grid);
-        if (face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty())
+        const bool is_quad =
+            face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty();
+        FreePart quad;
+        quad.ends_quad = true;
+        for (std::vector<Vec3>& piece : pieces)
         {
-            FreePart quad;
-            for (std::vector<Vec3>& piece : pieces)
-                if (piece.size() == 2)
-                    parts.push_back({{std::move(piece)}, {}});
-                else
-                    quad.pieces.push_back(std::move(piece));
-            parts.push_back(std::move(quad));
+            const bool is_section = piece.size() < 3;
+            if (is_quad && piece.size() != 2)
+            {
+                quad.is_section = is_section;
+                quad.pieces.push_back(std::move(piece));
+            }
+            else
+                parts.push_back({{std::move(piece)}, {}, is_section});
         }
-        else
-            for (std::vector<Vec3>& piece : pieces) parts.push_back({{std::move(piece)}, {}});
+        if (is_quad) parts.push_back(std::move(quad));
     };
     std::size_t insides = 0;
     const auto add_insides = [&]
@@ -249,13 +278,9 @@ std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Tr
 
 std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, const LatticeGrid& grid)
 {
-    if (figure.solid == SolidKind::Box)
-    {
-        if (!grid.is_2d || mode != DrawMode::Wire) return 1;
-        const std::size_t corners = box_section(figure, grid).size();
-        return corners < 3 ? 1 : static_cast<std::uint32_t>(corners);
-    }
-    if (mode == DrawMode::Wire) return count_parts(figure, mode);
+    const bool is_box = figure.solid == SolidKind::Box;
+    if (is_box && !grid.is_2d) return 1;
+    if (!is_box && mode == DrawMode::Wire) return count_parts(figure, mode);
     return static_cast<std::uint32_t>(free_parts(figure, mode, {}, grid).size());
 }
 

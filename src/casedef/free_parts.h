@@ -38,20 +38,23 @@ std::vector<Vec3> box_section(const FigureOp& box, const LatticeGrid& grid);
 struct FreePart
 {
     std::vector<std::vector<Vec3>> pieces;
-    std::optional<std::size_t> inside; ///< of a prism the index in solid_parts(), else 0
+    std::optional<std::size_t> inside{}; ///< of a prism the index in solid_parts(), else 0
+    bool is_section = false;             ///< where a quad or a box meets the plane of a 2D case
+    bool ends_quad = false;              ///< the last part of a quad, or of a box in a 2D case
 };
 
-/// The parts of a figure that is no solid box, in GenCase's order of drawing; a figure drawn as a
-/// whole is drawn in the same order, which decides which of two near particles stays. A triangular
-/// part of a prism is followed by the quads between it and its neighbours, each of which so is
-/// drawn twice. A quad that leaves the plane of a 2D case has one part for each line where it meets
-/// the plane and then one more, which has nothing but the points where it only touches the plane
-/// (60 boxes, prisms, pyramids and quads of GenCase v5.4.354 in all modes).
+/// The parts of a figure in GenCase's order of drawing; a figure drawn as a whole is drawn in the
+/// same order, which decides which of two near particles stays. A triangular part of a prism is
+/// followed by the quads between it and its neighbours, each of which so is drawn twice. A quad
+/// that leaves the plane of a 2D case has one part for each line where it meets the plane and then
+/// one more, which has nothing but the points where it only touches the plane; a solid box has its
+/// section, or in wire mode the sides of that (60 boxes, prisms, pyramids and quads of GenCase
+/// v5.4.354 in all modes). Not for wires of other shapes, nor for a solid box in 3D, which is one
+/// part.
 std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Transform& matrix,
                                  const LatticeGrid& grid);
 
-/// Their number; a solid box is one part, but for its wire in 2D, which has the sides of its
-/// section.
+/// Their number, that of the sides in wire mode.
 std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, const LatticeGrid& grid);
 
 } // namespace fppg

@@ -121,12 +121,13 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
     std::vector<Spans> nodes(field_->slabs.size());
     for (Vec3 p : points)
     {
+        if (!is_kept_by(kept, p)) continue;
         if (grid.is_2d)
         {
             if (!(std::abs(p.y - grid.origin.y) <= plane_distance_dp * grid.dp)) continue;
             p.y = grid.origin.y;
         }
-        if (!is_in_domain(p, grid) || !is_kept_by(kept, p)) continue;
+        if (!is_in_domain(p, grid)) continue;
         bool has_node = false;
         for_each_node(p, grid,
                       [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)

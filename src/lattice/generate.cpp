@@ -521,9 +521,13 @@ private:
     /// lattice.
     void draw_free_figure(const FigureOp& op)
     {
-        if (op.solid == SolidKind::Box)
+        if (op.solid == SolidKind::Box && !grid().is_2d)
         {
-            draw_free_box(op);
+            const auto corner = [&](std::size_t i) { return op.vertices[op.solid_vertices[i]]; };
+            draw_free(
+                [&] {
+                    return free_block(corner(0), {corner(1), corner(3), corner(4)}, grid().dp);
+                });
             return;
         }
         std::vector<FreePart> parts = free_parts(op, state().mode, state().matrix, grid());
@@ -558,35 +562,6 @@ private:
                 }
                 return points;
             });
-    }
-
-    /// A grid of points in every mode; in 2D that of its section, or in wire mode the sides of it.
-    void draw_free_box(const FigureOp& box)
-    {
-        const auto corner = [&](std::size_t i) { return box.vertices[box.solid_vertices[i]]; };
-        if (!grid().is_2d)
-        {
-            draw_free(
-                [&] {
-                    return free_block(corner(0), {corner(1), corner(3), corner(4)}, grid().dp);
-                });
-            return;
-        }
-        FigureOp section;
-        section.vertices = box_section(box, grid());
-        const auto n = static_cast<std::uint32_t>(section.vertices.size());
-        if (n < 2) return;
-        if (n == 2)
-        {
-            draw_free_lines({{section.vertices[0], section.vertices[1]}});
-            return;
-        }
-        section.faces.push_back({{0, 1, 2}, true, {}, 0, {}});
-        if (n == 4) section.faces[0].vertices.push_back(3);
-        if (state().mode == DrawMode::Wire)
-            draw_free_wire(section);
-        else
-            draw_free_pieces(free_pieces(section, state().matrix, grid()));
     }
 
     void draw_free_wire(const FigureOp& op)
