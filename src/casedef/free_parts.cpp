@@ -262,7 +262,7 @@ std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Tr
             {
                 const auto i = static_cast<std::uint32_t>(from);
                 const auto j = static_cast<std::uint32_t>(to);
-                add_face({{j, n + j, n + i, i}, true, {}, 0, {}});
+                add_face({{j, i, n + i, n + j}, true, {}, 0, {}});
                 ++insides;
             });
     };
