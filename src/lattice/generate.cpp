@@ -707,7 +707,16 @@ private:
                 const std::vector<Spans> nodes =
                     emptied_by_cylinder(op, state().clips, grid(), threads_);
                 parallel_for(nodes.size(), threads_,
-                             [&](std::size_t x) { paint_slab(x, nodes[x], MkValue{}, false); });
+                             [&](std::size_t x)
+                             {
+                                 // A pattern leaves nodes out here, though not of the particles.
+                                 const auto slab = static_cast<std::uint32_t>(x);
+                                 const Spans emptied =
+                                     state().pattern
+                                         ? split_by_pattern(*state().pattern, nodes[x], slab).drawn
+                                         : nodes[x];
+                                 paint_slab(x, emptied, MkValue{}, false);
+                             });
             }
             draw_free([&] { return free_cylinder(op, state().mode, grid().dp); });
         }
