@@ -35,7 +35,8 @@ bool is_kept_by(const std::vector<Clip>& clips, const Vec3& p)
     return std::all_of(clips.begin(), clips.end(), [&](const Clip& clip) { return clip.keeps(p); });
 }
 
-/// Calls body(x, y, z) for the nodes of a particle that lie in the lattice.
+/// Calls body(x, y, z, is_near) for the nodes of a particle that lie in the lattice; only the
+/// nearest one may be far from it.
 template <typename Body>
 void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
 {
@@ -48,9 +49,10 @@ void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
                 const Node n{x, y, z};
                 if (!is_inside(n, grid)) continue;
                 const Vec3 away = position(n, grid) - p;
-                if (n == nearest || dot(away, away) < reach * reach)
+                const bool is_near = dot(away, away) < reach * reach;
+                if (n == nearest || is_near)
                     body(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                         static_cast<std::uint32_t>(z));
+                         static_cast<std::uint32_t>(z), is_near);
             }
 }
 
@@ -130,7 +132,7 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
         if (!is_in_domain(p, grid)) continue;
         bool has_node = false;
         for_each_node(p, grid,
-                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
                       {
                           has_node = true;
                           nodes[x].push_back({y, z, z + 1});
@@ -191,8 +193,9 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
             {
                 bool keeps = true;
                 nodes_of(particles[i],
-                         [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-                             keeps = keeps && (mk_at(field_->slabs[x], y, z) == mk ||
+                         [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
+                         {
+                             keeps = keeps && (!is_near || mk_at(field_->slabs[x], y, z) == mk ||
                                                is_emptied[claim_of(x, y, z)]);
                          });
                 stays[particles[i]] = keeps;
@@ -200,7 +203,7 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
             1024);
         for (const std::uint32_t particle : particles)
             nodes_of(particle,
-                     [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                     [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
                      {
                          if (mk_at(field_->slabs[x], y, z) == mk) is_emptied[claim_of(x, y, z)] = 1;
                      });
@@ -249,8 +252,11 @@ void FreePainter::finish()
     {
         if (!is_last[i]) continue;
         for_each_node(positions_[i], grid,
-                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-                          hidden[x].push_back({y, z, z + 1, mk_at(field_->slabs[x], y, z)});
+                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
+                      {
+                          const std::uint16_t mk = mk_at(field_->slabs[x], y, z);
+                          if (is_near || mk == mk_[i] || is_emptied[claim_of(x, y, z)])
+                              hidden[x].push_back({y, z, z + 1, mk});
                       });
         out.positions.push_back(positions_[i]);
         out.mk.push_back(mk_[i]);
