@@ -251,13 +251,14 @@ void FreePainter::finish()
     for (std::size_t i = 0; i < positions_.size(); ++i)
     {
         if (!is_last[i]) continue;
-        for_each_node(positions_[i], grid,
-                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
-                      {
-                          const std::uint16_t mk = mk_at(field_->slabs[x], y, z);
-                          if (is_near || mk == mk_[i] || is_emptied[claim_of(x, y, z)])
-                              hidden[x].push_back({y, z, z + 1, mk});
-                      });
+        for_each_node(
+            positions_[i], grid,
+            [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
+            {
+                // An emptied node is free for the particle of the lowest mk there.
+                if (is_emptied[claim_of(x, y, z)] || mk_at(field_->slabs[x], y, z) == mk_[i])
+                    hidden[x].push_back({y, z, z + 1, mk_[i]});
+            });
         out.positions.push_back(positions_[i]);
         out.mk.push_back(mk_[i]);
         out.distances.push_back(distance_of_nodes);
@@ -276,7 +277,7 @@ void FreePainter::finish()
             std::sort(
                 hidden[x].begin(), hidden[x].end(),
                 [](const Run& a, const Run& b)
-                { return std::tuple(a.mk, a.y, a.z_begin) < std::tuple(b.mk, b.y, b.z_begin); });
+                { return std::tuple(b.mk, a.y, a.z_begin) < std::tuple(a.mk, b.y, b.z_begin); });
             for (auto run = hidden[x].begin(); run != hidden[x].end();)
             {
                 const std::uint16_t mk = run->mk;
