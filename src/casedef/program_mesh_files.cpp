@@ -186,23 +186,21 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     }
     op.transform = file_transform(e);
     if (op.advanced) read_depth(e, op);
-    // The file's own placement is a later transform: it takes the clips along, for this draw only
-    // (a ball moved by drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the
-    // template ClipDomain).
-    const std::vector<ClipPlane> clips = state_.clips;
+    // The file's own placement is a later transform: it takes the clips along (a ball moved by
+    // drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the template ClipDomain).
+    // After it the clips are under the matrix before, also those defined where another stood (8
+    // draws on and off the lattice, in 2D and 3D).
     const bool is_placed = std::any_of(
         e.children.begin(), e.children.end(),
         [](const Element& c)
         { return c.name == "drawscale" || c.name == "drawrotate" || c.name == "drawmove"; });
-    const bool moves_clips = is_placed && !clips.empty();
+    const bool moves_clips = is_placed && !state_.clips.empty();
     if (moves_clips) put_clips(op.transform);
     if (e.name == "drawfilevtm")
         draw_vtm_file(e, std::move(op));
     else
         add(e, std::move(op));
-    if (!moves_clips) return;
-    state_.clips = clips;
-    shared_state_.reset();
+    if (moves_clips) place_clips();
 }
 
 /// Found by experiment with GenCase v5.4.354: only the first block of the file is read; indices are
