@@ -322,11 +322,6 @@ QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp)
     return QuadKind::Other;
 }
 
-std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode)
-{
-    return figure.solid == SolidKind::Box ? 1 : count_parts(figure, mode);
-}
-
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 {
     for (const int number : numbers)
@@ -366,6 +361,26 @@ std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism)
     // The face looks down.
     for (const auto& t : prism.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
     return cut;
+}
+
+std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
+                                                       const FigureFace& face)
+{
+    std::vector<std::array<std::size_t, 3>> out;
+    for (const auto& t : face.triangles) out.push_back({t[0], t[1], t[2]});
+    if (!face.triangles.empty()) return out;
+    if (face.cut.empty())
+    {
+        for (std::size_t i = 2; i < face.vertices.size(); ++i)
+            out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
+        return out;
+    }
+    for (auto t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+    {
+        if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
+        out.push_back({t[0] + face.cut_offset, t[1] + face.cut_offset, t[2] + face.cut_offset});
+    }
+    return out;
 }
 
 void transform_figure(FigureOp& figure, const Transform& transform)

@@ -2,7 +2,9 @@
 
 #include "fppg/case_def.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace fppg
@@ -63,9 +65,6 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 /// polygons and extrusions).
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
 
-/// The same off the lattice (setfrdrawmode), where a solid box is one part in every mode.
-std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode);
-
 /// What setfrdrawmode takes four corners 0, 1, 2, 3 for.
 enum class QuadKind
 {
@@ -97,6 +96,32 @@ void cut_faces(FigureOp& figure);
 /// The triangles that the bottom of a prism is cut into, as indices of its vertices, in the order
 /// that its corners go around; as cut_faces() left them, else by the corners as they stand.
 std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism);
+
+/// Calls part(t) for every triangle t of the bottom of a prism, and after it side(t, i, j) for each
+/// of its sides, from its corner i to j, that is one of another triangle too, the last side first.
+template <typename Part, typename Side>
+void for_each_part_and_side(const std::vector<std::array<std::size_t, 3>>& cut, const Part& part,
+                            const Side& side)
+{
+    const auto has = [](const std::array<std::size_t, 3>& t, std::size_t corner)
+    { return std::find(t.begin(), t.end(), corner) != t.end(); };
+    for (std::size_t n = 0; n < cut.size(); ++n)
+    {
+        const auto& t = cut[n];
+        part(n);
+        for (std::size_t k = 3; k-- > 0;)
+        {
+            const std::size_t i = t[k];
+            const std::size_t j = t[(k + 1) % 3];
+            for (const auto& other : cut)
+                if (&other != &t && has(other, i) && has(other, j)) side(n, i, j);
+        }
+    }
+}
+
+/// The triangles of one face of a figure, as indices into its vertices.
+std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
+                                                       const FigureFace& face);
 
 /// Applies a transform to all vertices.
 void transform_figure(FigureOp& figure, const Transform& transform);

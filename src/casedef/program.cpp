@@ -5,6 +5,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/free_parts.h"
 #include "casedef/known_commands.h"
 #include "casedef/mesh_path.h"
 
@@ -123,8 +124,11 @@ bool ProgramRunner::run_flow_command(const Element& e)
 
 void ProgramRunner::add(const Element& e, DrawVariant what)
 {
+    const auto* figure = std::get_if<FigureOp>(&what);
     if (state_.mk_next_auto)
         add_in_parts(e, std::move(what));
+    else if (figure != nullptr && has_quads_move_clips(*figure))
+        add_between_clips(e, *figure);
     else
         add_whole(e, std::move(what));
 }
@@ -183,6 +187,29 @@ void ProgramRunner::take_next_mk(const Element& e)
                                   state_.mk.mk_type, count - 1));
 }
 
+bool ProgramRunner::has_quads_move_clips(const FigureOp& figure) const
+{
+    return state_.off_lattice && def_.grid.is_2d && !defined_clips_.empty() &&
+           (state_.mode != DrawMode::Wire || figure.solid == SolidKind::Box);
+}
+
+void ProgramRunner::add_between_clips(const Element& e, FigureOp figure)
+{
+    const std::vector<FreePart> parts = free_parts(figure, state_.mode, matrix_, def_.grid);
+    figure.part_count = static_cast<std::uint32_t>(parts.size());
+    for (figure.part = 0; figure.part < figure.part_count; ++figure.part)
+    {
+        const FreePart& part = parts[figure.part];
+        if (part.is_section)
+            put_clips({});
+        else if (part.ends_quad)
+            place_clips();
+        add_whole(e, figure);
+        if (part.ends_quad) place_clips();
+        if (state_.mk_next_auto) take_next_mk(e);
+    }
+}
+
 void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
 {
     const auto add_part = [&](DrawVariant part)
@@ -208,13 +235,15 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
         const bool is_free = state_.off_lattice;
-        if (is_free && def_.grid.is_2d && figure->solid != SolidKind::Box)
-            read_.fail_unsupported(
-                e, "setmknextauto together with setfrdrawmode for faces in a 2D case");
         if (e.name == "drawpyramid" && !figure->faces.at(0).cut.empty())
             read_.fail_unsupported(e, "setmknextauto for a pyramid whose base is not flat");
-        figure->part_count =
-            is_free ? count_free_parts(*figure, state_.mode) : count_parts(*figure, state_.mode);
+        if (has_quads_move_clips(*figure))
+        {
+            add_between_clips(e, std::move(*figure));
+            return;
+        }
+        figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid)
+                                     : count_parts(*figure, state_.mode);
         for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
     }
     else

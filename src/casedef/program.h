@@ -62,6 +62,13 @@ private:
     void put_clips(const Transform& matrix);
     void add(const Element& e, DrawVariant what);
     void add_whole(const Element& e, DrawVariant what);
+    bool has_quads_move_clips(const FigureOp& figure) const;
+    /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a
+    /// solid box, meets the plane of a 2D case, and then puts it back, with all clips: particles
+    /// there are clipped by the clips as written, and all that comes later by those under the
+    /// matrix, a quad in the plane too (17 shapes of one case; a quad that does not meet the plane
+    /// counts).
+    void add_between_clips(const Element& e, FigureOp figure);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
     void add_in_parts(const Element& e, DrawVariant what);
     /// Goes on to the next mk, which must exist even where nothing is drawn with it, as for

@@ -35,7 +35,8 @@ bool is_kept_by(const std::vector<Clip>& clips, const Vec3& p)
     return std::all_of(clips.begin(), clips.end(), [&](const Clip& clip) { return clip.keeps(p); });
 }
 
-/// Calls body(x, y, z) for the nodes of a particle that lie in the lattice.
+/// Calls body(x, y, z, is_near) for the nodes of a particle that lie in the lattice; only the
+/// nearest one may be far from it.
 template <typename Body>
 void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
 {
@@ -48,9 +49,10 @@ void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
                 const Node n{x, y, z};
                 if (!is_inside(n, grid)) continue;
                 const Vec3 away = position(n, grid) - p;
-                if (n == nearest || dot(away, away) < reach * reach)
+                const bool is_near = dot(away, away) < reach * reach;
+                if (n == nearest || is_near)
                     body(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                         static_cast<std::uint32_t>(z));
+                         static_cast<std::uint32_t>(z), is_near);
             }
 }
 
@@ -121,15 +123,16 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
     std::vector<Spans> nodes(field_->slabs.size());
     for (Vec3 p : points)
     {
+        if (!is_kept_by(kept, p)) continue;
         if (grid.is_2d)
         {
             if (!(std::abs(p.y - grid.origin.y) <= plane_distance_dp * grid.dp)) continue;
             p.y = grid.origin.y;
         }
-        if (!is_in_domain(p, grid) || !is_kept_by(kept, p)) continue;
+        if (!is_in_domain(p, grid)) continue;
         bool has_node = false;
         for_each_node(p, grid,
-                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
                       {
                           has_node = true;
                           nodes[x].push_back({y, z, z + 1});
@@ -190,8 +193,9 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
             {
                 bool keeps = true;
                 nodes_of(particles[i],
-                         [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-                             keeps = keeps && (mk_at(field_->slabs[x], y, z) == mk ||
+                         [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
+                         {
+                             keeps = keeps && (!is_near || mk_at(field_->slabs[x], y, z) == mk ||
                                                is_emptied[claim_of(x, y, z)]);
                          });
                 stays[particles[i]] = keeps;
@@ -199,7 +203,7 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
             1024);
         for (const std::uint32_t particle : particles)
             nodes_of(particle,
-                     [&](std::uint32_t x, std::uint32_t y, std::uint32_t z)
+                     [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
                      {
                          if (mk_at(field_->slabs[x], y, z) == mk) is_emptied[claim_of(x, y, z)] = 1;
                      });
@@ -247,10 +251,14 @@ void FreePainter::finish()
     for (std::size_t i = 0; i < positions_.size(); ++i)
     {
         if (!is_last[i]) continue;
-        for_each_node(positions_[i], grid,
-                      [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-                          hidden[x].push_back({y, z, z + 1, mk_at(field_->slabs[x], y, z)});
-                      });
+        for_each_node(
+            positions_[i], grid,
+            [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)
+            {
+                // An emptied node is free for the particle of the lowest mk there.
+                if (is_emptied[claim_of(x, y, z)] || mk_at(field_->slabs[x], y, z) == mk_[i])
+                    hidden[x].push_back({y, z, z + 1, mk_[i]});
+            });
         out.positions.push_back(positions_[i]);
         out.mk.push_back(mk_[i]);
         out.distances.push_back(distance_of_nodes);
@@ -269,7 +277,7 @@ void FreePainter::finish()
             std::sort(
                 hidden[x].begin(), hidden[x].end(),
                 [](const Run& a, const Run& b)
-                { return std::tuple(a.mk, a.y, a.z_begin) < std::tuple(b.mk, b.y, b.z_begin); });
+                { return std::tuple(b.mk, a.y, a.z_begin) < std::tuple(a.mk, b.y, b.z_begin); });
             for (auto run = hidden[x].begin(); run != hidden[x].end();)
             {
                 const std::uint16_t mk = run->mk;

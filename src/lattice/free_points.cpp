@@ -185,7 +185,7 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
     // The sign of both axes decides how positions are rounded.
     Vec3 u{1, 0, 0};
     const double flat = std::sqrt(normal.z * normal.z + normal.x * normal.x);
-    if (flat > 1e-12) u = {normal.z / flat, 0, -normal.x / flat};
+    if (flat > 0) u = {normal.z / flat, 0, -normal.x / flat};
     if (u.x < 0 || (u.x == 0 && u.z < 0)) u = u * -1.0;
     const bool is_turned = normal.x + normal.y + normal.z < 0;
     Vec3 v = cross(is_turned ? normal * -1.0 : normal, u);
@@ -257,133 +257,6 @@ std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGr
     return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
 }
 
-namespace
-{
-
-bool leaves_plane(const std::array<Vec3, 4>& corners, const LatticeGrid& grid)
-{
-    return grid.is_2d &&
-           std::any_of(corners.begin(), corners.end(),
-                       [&](const Vec3& corner)
-                       { return std::fabs(corner.y - grid.origin.y) > in_plane_dp * grid.dp; });
-}
-
-/// The triangles of a quad that the plane of a 2D case cuts: those of less area together, in a flat
-/// quad as polygons are cut.
-std::array<std::array<Vec3, 3>, 2> halves_of(const std::array<Vec3, 4>& c)
-{
-    const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r)
-    { return norm(cross(q - p, r - p)); };
-    const double first = area(c[0], c[1], c[2]) + area(c[0], c[2], c[3]);
-    const double second = area(c[1], c[2], c[3]) + area(c[1], c[3], c[0]);
-    bool is_first = first < second;
-    if (std::fabs(first - second) <= 1e-9 * (first + second))
-        is_first = cut_polygon({c.begin(), c.end()}, {0, 1, 2, 3}).front()[1] % 2 == 1;
-    if (is_first) return {{{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}};
-    return {{{c[3], c[0], c[1]}, {c[3], c[1], c[2]}}};
-}
-
-/// Where a triangle meets the plane at y: nothing, a point or the ends of a line, of rising x.
-std::vector<Vec3> section_of(const std::array<Vec3, 3>& t, double y, double dp)
-{
-    std::array<int, 3> side{};
-    for (std::size_t k = 0; k < 3; ++k)
-        if (std::fabs(t[k].y - y) > in_plane_dp * dp) side[k] = t[k].y < y ? -1 : 1;
-    std::vector<Vec3> out;
-    if (side == std::array<int, 3>{}) return out;
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-        const Vec3& p = t[k];
-        const Vec3& q = t[(k + 1) % 3];
-        if (side[k] == 0)
-            out.push_back({p.x, y, p.z});
-        else if (side[k] * side[(k + 1) % 3] < 0)
-        {
-            const Vec3 at = p + (q - p) * ((y - p.y) / (q.y - p.y));
-            out.push_back({at.x, y, at.z});
-        }
-    }
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Vec3& a, const Vec3& b) { return a.x < b.x; });
-    return out;
-}
-
-/// The pieces of a quad that leaves the plane of a 2D case.
-void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
-                 std::vector<std::vector<Vec3>>& out)
-{
-    std::vector<std::vector<Vec3>> lines;
-    std::vector<std::vector<Vec3>> points;
-    for (const std::array<Vec3, 3>& half : halves_of(c))
-    {
-        std::vector<Vec3> section = section_of(half, grid.origin.y, grid.dp);
-        if (section.size() > 1)
-            lines.insert(lines.begin(), std::move(section));
-        else if (!section.empty())
-            points.push_back(std::move(section));
-    }
-    if (lines.empty()) lines = std::move(points);
-    if (lines.size() == 2 && lines[0].size() == 2)
-        for (std::size_t i = 0; i < 2; ++i)
-            for (std::size_t j = 0; j < 2; ++j)
-            {
-                const Vec3& middle = lines[0][i];
-                if (norm(middle - lines[1][j]) > 1e-9 * grid.dp) continue;
-                Vec3 from = lines[0][1 - i];
-                Vec3 to = lines[1][1 - j];
-                if (to.x < from.x) std::swap(from, to);
-                if (!(from.x < middle.x && middle.x < to.x)) continue;
-                out.push_back({from, to});
-                return;
-            }
-    for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
-}
-
-/// The pieces of a quad, as free_pieces() has them. Of one in the plane of a 2D case all corners
-/// are put there, so that it is flat (GenCase v5.4.354: six bent ones, six without width).
-void add_quad(std::array<Vec3, 4> c, const Transform& matrix, const LatticeGrid& grid,
-              std::vector<std::vector<Vec3>>& out)
-{
-    if (leaves_plane(c, grid))
-    {
-        add_section(c, grid, out);
-        return;
-    }
-    if (grid.is_2d)
-        for (Vec3& corner : c) corner.y = grid.origin.y;
-    const QuadKind kind = quad_kind(c, grid.dp);
-    if (kind == QuadKind::TurnedTrapezoid)
-        out.push_back({c[1], c[2], c[3], c[0]});
-    else if (kind != QuadKind::Other)
-        out.push_back({c[0], c[1], c[2], c[3]});
-    else
-    {
-        out.push_back({matrix(c[0]), matrix(c[1]), matrix(c[2])});
-        out.push_back({matrix(c[0]), matrix(c[2]), matrix(c[3])});
-    }
-}
-
-} // namespace
-
-std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
-                                           const LatticeGrid& grid)
-{
-    std::vector<std::vector<Vec3>> out;
-    for (const FigureFace& face : figure.faces)
-    {
-        if (!face.is_visible) continue;
-        if (face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty())
-        {
-            const auto corner = [&](std::size_t k) { return figure.vertices[face.vertices[k]]; };
-            add_quad({corner(0), corner(1), corner(2), corner(3)}, matrix, grid, out);
-            continue;
-        }
-        for (const auto& t : face_triangles(figure, face))
-            out.push_back({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
-    }
-    return out;
-}
-
 std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp)
 {
     std::array<int, 3> n{};
@@ -400,48 +273,6 @@ std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neig
             for (int k = 0; k <= n[2]; ++k)
                 out.push_back(corner + step[0] * static_cast<double>(i) +
                               step[1] * static_cast<double>(j) + step[2] * static_cast<double>(k));
-    return out;
-}
-
-std::vector<Vec3> free_faces(const FigureOp& figure, const Transform& matrix,
-                             const LatticeGrid& grid)
-{
-    std::vector<Vec3> out;
-    for (const std::vector<Vec3>& corners : free_pieces(figure, matrix, grid))
-    {
-        const std::vector<Vec3> points = free_polygon(corners, grid);
-        out.insert(out.end(), points.begin(), points.end());
-    }
-    return out;
-}
-
-std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& matrix,
-                                      const LatticeGrid& grid)
-{
-    const std::size_t n = figure.vertices.size() / 2;
-    const auto cut = bottom_triangles(figure);
-    std::vector<Vec3> out;
-    const auto has = [](const std::array<std::size_t, 3>& t, std::size_t corner)
-    { return std::find(t.begin(), t.end(), corner) != t.end(); };
-    for (std::size_t t = 0; t < cut.size(); ++t)
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const std::size_t i = cut[t][k];
-            const std::size_t j = cut[t][(k + 1) % 3];
-            const bool is_shared =
-                std::any_of(cut.begin() + static_cast<std::ptrdiff_t>(t) + 1, cut.end(),
-                            [&](const auto& other) { return has(other, i) && has(other, j); });
-            if (!is_shared) continue;
-            std::vector<std::vector<Vec3>> pieces;
-            add_quad({figure.vertices[i], figure.vertices[j], figure.vertices[n + j],
-                      figure.vertices[n + i]},
-                     matrix, grid, pieces);
-            for (const std::vector<Vec3>& corners : pieces)
-            {
-                const std::vector<Vec3> points = free_polygon(corners, grid);
-                out.insert(out.end(), points.begin(), points.end());
-            }
-        }
     return out;
 }
 

@@ -42,38 +42,14 @@ std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp);
 /// axes has no y.
 std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid);
 
-/// What free_pieces() gives: a point, two corners as free_line(), three as free_triangle(), four as
+/// A piece of free_pieces(): a point, two corners as free_line(), three as free_triangle(), four as
 /// free_parallelogram() or free_trapezoid().
 std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid);
-
-/// The corners of what the faces of a figure that are not hidden are drawn as: parallelograms,
-/// trapezoids and triangles, four other corners as (0, 1, 2) and (0, 2, 3), to which GenCase
-/// applies the current matrix once more (a quad moved by 0.4 stands 0.8 away).
-///
-/// In 2D a quad with a corner more than 0.01 dp beside the plane is drawn as where it meets the
-/// plane: the lines of its two triangles, and one line from end to end where the x of their common
-/// point lies between those of the ends (so lines of constant x stay two); where they only touch
-/// the plane, the points. Lines run towards larger x. Of the two ways to cut a bent quad the one of
-/// less area counts, a flat one is cut as cut_polygon() does (1200 random quads, flat and bent, of
-/// GenCase v5.0, with which v5.4.354 agrees: 94 of 100 the same; of those with lines at all places
-/// the bent ones with folded triangles differ, 44 of 1500).
-std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
-                                           const LatticeGrid& grid);
 
 /// A parallelepiped by a corner and its three neighbours, ceil(L / dp) equal intervals an edge.
 ///
 /// throws  GeometryError as free_parallelogram()
 std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp);
-
-/// The faces of a figure that are not hidden, one after the other.
-std::vector<Vec3> free_faces(const FigureOp& figure, const Transform& matrix,
-                             const LatticeGrid& grid);
-
-/// The faces between the triangular prisms that a prism of four corners or more is cut into, which
-/// GenCase v5.4.354 draws off the lattice in solid and full mode (a turned prism of four corners
-/// gave 54 points of its diagonal face in solid mode).
-std::vector<Vec3> free_dividing_faces(const FigureOp& figure, const Transform& matrix,
-                                      const LatticeGrid& grid);
 
 /// A sphere as shells of radius R k / n with n = ceil(R / dp): k = n in face mode, k < n in solid
 /// mode, all in full mode, rising. A shell of radius r has rings at 2 ceil(pi r / (2 dp)) equal
@@ -89,7 +65,8 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 /// r k / n with n = ceil(r / dp), each with ceil(2 pi r k / (n dp)) points from +z on, and the
 /// centre where the rings are more than 0.75 dp apart. Solid mode draws none, layers one each in
 /// every mode; a radius up to 0.75 dp, and a sphere beside the plane, are their centre (21 spheres
-/// and layers of GenCase v5.4.354).
+/// and layers of GenCase v5.4.354). A matrix moves its centre alone (turns, scales and mirrors of
+/// the same sphere: the same rings).
 std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp);
 
 /// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with

@@ -5,6 +5,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/free_parts.h"
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -516,68 +517,11 @@ private:
                                       state().constants.triangle_limits));
     }
 
-    /// How to draw each part of a figure off the lattice, but for solid boxes and wires.
-    std::vector<std::function<void()>> free_parts(const FigureOp& op)
-    {
-        std::vector<std::function<void()>> parts;
-        const auto add_face = [&](std::vector<std::uint32_t> corners)
-        {
-            FigureOp face;
-            face.vertices = op.vertices;
-            face.faces.push_back({std::move(corners), true, {}, 0, {}});
-            parts.push_back(
-                [this, face = std::move(face)]
-                { draw_free([&] { return free_faces(face, state().matrix, grid()); }); });
-        };
-        const auto add_insides = [&]
-        {
-            std::size_t next = 0;
-            std::vector<SlabRegion> regions = solid_parts(
-                op, grid(), state().constants.triangle_weight, state().constants.triangle_limits);
-            const auto add_inside = [&] {
-                parts.push_back([this, region = std::move(regions.at(next++))]
-                                { paint_region(region); });
-            };
-            if (op.solid != SolidKind::Prism)
-            {
-                while (next < regions.size()) add_inside();
-                return;
-            }
-            // The faces between the parts are drawn off the lattice too, in the order of
-            // solid_parts().
-            const auto n = static_cast<std::uint32_t>(op.vertices.size() / 2);
-            for_each_part_and_side(
-                bottom_triangles(op), [&](std::size_t) { add_inside(); },
-                [&](std::size_t, std::size_t from, std::size_t to)
-                {
-                    const auto i = static_cast<std::uint32_t>(from);
-                    const auto j = static_cast<std::uint32_t>(to);
-                    add_face({i, j, n + j, n + i});
-                    ++next;
-                });
-        };
-        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
-        const bool fills_last = fills && op.solid == SolidKind::Faces;
-        if (fills && !fills_last) add_insides();
-        if (!fills || state().mode == DrawMode::Full)
-            for (const FigureFace& f : op.faces)
-            {
-                if (!f.is_visible) continue;
-                if (f.triangles.empty() && f.cut.empty())
-                    add_face(f.vertices);
-                else
-                    for (const auto& t : face_triangles(op, f)) add_face({t.begin(), t.end()});
-            }
-        if (fills_last) add_insides();
-        return parts;
-    }
-
-    /// A figure off the lattice: a solid box is a grid of points in every mode but wire; of other
-    /// solids the inside stands on the lattice, below the faces.
+    /// A figure off the lattice, part by part; of solids but boxes the inside stands on the
+    /// lattice.
     void draw_free_figure(const FigureOp& op)
     {
-        const bool fills = state().mode != DrawMode::Face && op.solid != SolidKind::None;
-        if (op.solid == SolidKind::Box)
+        if (op.solid == SolidKind::Box && !grid().is_2d)
         {
             const auto corner = [&](std::size_t i) { return op.vertices[op.solid_vertices[i]]; };
             draw_free(
@@ -586,17 +530,38 @@ private:
                 });
             return;
         }
-        if (op.part_count > 0)
+        std::vector<FreePart> parts = free_parts(op, state().mode, state().matrix, grid());
+        if (op.part_count > 0) parts = {parts.at(op.part)};
+        std::vector<SlabRegion> insides;
+        for (const FreePart& part : parts)
         {
-            free_parts(op).at(op.part)();
-            return;
+            if (!part.inside)
+            {
+                draw_free_pieces(part.pieces);
+                continue;
+            }
+            if (insides.empty())
+                insides = op.solid == SolidKind::Prism
+                              ? solid_parts(op, grid(), state().constants.triangle_weight,
+                                            state().constants.triangle_limits)
+                              : std::vector<SlabRegion>{solid_of(op)};
+            paint_region(insides.at(*part.inside));
         }
-        const bool is_prism = op.solid == SolidKind::Prism;
-        if (fills) paint_region(is_prism ? inside_of_parts(op, grid()) : solid_of(op));
-        if (fills && is_prism)
-            draw_free([&] { return free_dividing_faces(op, state().matrix, grid()); });
-        if (!fills || state().mode == DrawMode::Full)
-            draw_free([&] { return free_faces(op, state().matrix, grid()); });
+    }
+
+    void draw_free_pieces(const std::vector<std::vector<Vec3>>& pieces)
+    {
+        draw_free(
+            [&]
+            {
+                std::vector<Vec3> points;
+                for (const std::vector<Vec3>& corners : pieces)
+                {
+                    const std::vector<Vec3> more = free_polygon(corners, grid());
+                    points.insert(points.end(), more.begin(), more.end());
+                }
+                return points;
+            });
     }
 
     void draw_free_wire(const FigureOp& op)
@@ -730,13 +695,6 @@ private:
             draw_free([&] { return free_sphere(op, state().matrix, state().mode, grid().dp); });
             return;
         }
-        Transform turn;
-        turn.linear = state().matrix.linear;
-        if (!turn.is_identity())
-            throw CaseError(def_.file, op_->source.line,
-                            fmt::format("<{}>: with setfrdrawmode under a turn or scale is not "
-                                        "supported in a 2D case",
-                                        op_->source.command));
         draw_free([&] { return free_disc(op, state().mode, grid().origin.y, grid().dp); });
     }
 
@@ -749,7 +707,16 @@ private:
                 const std::vector<Spans> nodes =
                     emptied_by_cylinder(op, state().clips, grid(), threads_);
                 parallel_for(nodes.size(), threads_,
-                             [&](std::size_t x) { paint_slab(x, nodes[x], MkValue{}, false); });
+                             [&](std::size_t x)
+                             {
+                                 // A pattern leaves nodes out here, though not of the particles.
+                                 const auto slab = static_cast<std::uint32_t>(x);
+                                 const Spans emptied =
+                                     state().pattern
+                                         ? split_by_pattern(*state().pattern, nodes[x], slab).drawn
+                                         : nodes[x];
+                                 paint_slab(x, emptied, MkValue{}, false);
+                             });
             }
             draw_free([&] { return free_cylinder(op, state().mode, grid().dp); });
         }
@@ -834,7 +801,7 @@ private:
             draw_free_wire(figure);
         else
             // With the placement of the file, which is a part of the matrix then.
-            draw_free([&] { return free_faces(figure, op.transform, grid()); });
+            draw_free_pieces(free_pieces(figure, op.transform, grid()));
     }
 
     /// Of a table of heights the cells that are parallelograms within 0.1 dp, off the lattice (as
@@ -864,8 +831,7 @@ private:
                                   triangles.begin() + static_cast<std::ptrdiff_t>(last));
             });
         triangles = std::move(others);
-        if (!cells.faces.empty())
-            draw_free([&] { return free_faces(cells, state().matrix, grid()); });
+        if (!cells.faces.empty()) draw_free_pieces(free_pieces(cells, state().matrix, grid()));
     }
 
     /// The sides of all triangles and quads, as lines; but the triangles of bent quads in

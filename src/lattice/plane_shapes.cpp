@@ -1,6 +1,6 @@
 #include "lattice/plane_shapes.h"
-#include "casedef/polygon_cut.h"
 
+#include "casedef/figures.h"
 #include "lattice/planes.h"
 
 #include <algorithm>
@@ -414,26 +414,6 @@ bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp)
     const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const Vec3 last = corners[3] - corners[0];
     return std::fabs(dot(normal, last)) <= 0.1 * dp * norm(normal);
-}
-
-std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
-                                                       const FigureFace& face)
-{
-    std::vector<std::array<std::size_t, 3>> out;
-    for (const auto& t : face.triangles) out.push_back({t[0], t[1], t[2]});
-    if (!face.triangles.empty()) return out;
-    if (face.cut.empty())
-    {
-        for (std::size_t i = 2; i < face.vertices.size(); ++i)
-            out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
-        return out;
-    }
-    for (auto t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
-    {
-        if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
-        out.push_back({t[0] + face.cut_offset, t[1] + face.cut_offset, t[2] + face.cut_offset});
-    }
-    return out;
 }
 
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,

@@ -31,10 +31,6 @@ struct SnappedTriangle
 SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
                             double weight_dp, double limits_dp);
 
-/// The triangles of one face of a figure, as indices into its vertices.
-std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
-                                                       const FigureFace& face);
-
 /// Whether a quad counts as one: its last corner is not farther than 0.1 dp from the plane of the
 /// others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp on quads of one and two dp, two dps).
 bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp);

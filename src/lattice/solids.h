@@ -38,26 +38,4 @@ SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid);
 std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
                                     double weight_dp, double limits_dp);
 
-/// Calls part(t) for every triangle t of the bottom of a prism, and after it side(t, i, j) for each
-/// of its sides, from its corner i to j, that is one of another triangle too, the last side first.
-template <typename Part, typename Side>
-void for_each_part_and_side(const std::vector<std::array<std::size_t, 3>>& cut, const Part& part,
-                            const Side& side)
-{
-    const auto has = [](const std::array<std::size_t, 3>& t, std::size_t corner)
-    { return std::find(t.begin(), t.end(), corner) != t.end(); };
-    for (std::size_t n = 0; n < cut.size(); ++n)
-    {
-        const auto& t = cut[n];
-        part(n);
-        for (std::size_t k = 3; k-- > 0;)
-        {
-            const std::size_t i = t[k];
-            const std::size_t j = t[(k + 1) % 3];
-            for (const auto& other : cut)
-                if (&other != &t && has(other, i) && has(other, j)) side(n, i, j);
-        }
-    }
-}
-
 } // namespace fppg
