@@ -389,8 +389,8 @@ bool ProgramRunner::run_clip(const Element& e)
         {
             Transform rotation;
             const Vec3 angles = read_.vec3(*c);
-            for (const int axis : {1, 0, 2})
-                rotation = rotation_about_axis(axis, radians(angles[axis])) * rotation;
+            for (const int axis : {2, 0, 1})
+                rotation = rotation * rotation_about_axis(axis, radians(angles[axis]));
             turned = around(low, rotation);
         }
         const bool is_turned = !turned.is_identity();
@@ -398,7 +398,7 @@ bool ProgramRunner::run_clip(const Element& e)
         {
             if (!faces[which]) return;
             ClipPlane plane{at, outward};
-            if (is_turned) plane = {turned(at), turned(at + outward) - turned(at)};
+            if (is_turned) plane = placed(plane, turned);
             add_clip(plane);
         };
         side(BoxBottom, low, {0, 0, -1});

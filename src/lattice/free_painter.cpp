@@ -195,7 +195,8 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
                 nodes_of(particles[i],
                          [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
                          {
-                             keeps = keeps && (!is_near || mk_at(field_->slabs[x], y, z) == mk ||
+                             const std::uint16_t found = mk_at(field_->slabs[x], y, z);
+                             keeps = keeps && (found == mk || (!is_near && found < mk) ||
                                                is_emptied[claim_of(x, y, z)]);
                          });
                 stays[particles[i]] = keeps;
