@@ -38,6 +38,12 @@ std::array<std::array<Vec3, 3>, 2> halves_of(const std::array<Vec3, 4>& c)
     return {{{c[3], c[0], c[1]}, {c[1], c[2], c[3]}}};
 }
 
+/// Order of the points of a line, where rounding of y decides between those of one x.
+bool is_before(const Vec3& a, const Vec3& b)
+{
+    return std::pair(a.x, a.y) < std::pair(b.x, b.y);
+}
+
 /// Where a triangle meets the plane at y: nothing, a point or the ends of a line, of rising x.
 /// Their y is that of rounding, which clips see; sides are walked as (0, 1), (1, 2), (0, 2) (60
 /// lines of GenCase v5.4.354 to the last bit).
@@ -57,9 +63,7 @@ std::vector<Vec3> section_of(const std::array<Vec3, 3>& t, double y, double dp)
     }
     for (std::size_t k = 0; k < 3; ++k)
         if (side[k] == 0) out.push_back(t[k]);
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Vec3& a, const Vec3& b)
-                     { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
+    std::stable_sort(out.begin(), out.end(), is_before);
     return out;
 }
 
@@ -69,7 +73,8 @@ void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
 {
     std::vector<std::vector<Vec3>> lines;
     std::vector<std::vector<Vec3>> points;
-    for (const std::array<Vec3, 3>& half : halves_of(c))
+    const std::array<std::array<Vec3, 3>, 2> halves = halves_of(c);
+    for (const std::array<Vec3, 3>& half : halves)
     {
         std::vector<Vec3> section = section_of(half, grid.origin.y, grid.dp);
         if (section.size() > 1)
@@ -85,6 +90,12 @@ void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
             out.push_back({lines[i][0], lines[1 - i][1]});
             return;
         }
+    // The second line comes first; but of two of one x from the cut 1-3 the one of lower y.
+    const bool is_turned = halves[0][0] == c[3];
+    if (is_turned && lines.size() == 2 && lines[0].size() == 2 &&
+        std::fabs(lines[0][0].x - lines[1][0].x) <= 1e-9 * grid.dp &&
+        !is_before(lines[1][0], lines[0][0]))
+        std::swap(lines[0], lines[1]);
     for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
 }
 

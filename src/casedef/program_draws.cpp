@@ -201,7 +201,8 @@ void ProgramRunner::draw_box(const Element& e)
     std::vector<double> layers = layers_of(e);
     // GenCase leaves one mk out after every box but one with layers and one that is a block of free
     // particles (30 boxes of v5.0).
-    const bool leaves_one_out = layers.empty() && !(state_.off_lattice && is_solid);
+    const bool leaves_one_out =
+        layers.empty() && !(state_.off_lattice && is_solid && !def_.grid.is_2d);
     // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in
     // face mode the others leave no shell).
     if (is_solid && !layers.empty()) layers.erase(layers.begin() + 1, layers.end());

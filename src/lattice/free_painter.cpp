@@ -196,7 +196,8 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
                          [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool is_near)
                          {
                              const std::uint16_t found = mk_at(field_->slabs[x], y, z);
-                             keeps = keeps && (found == mk || (!is_near && found < mk) ||
+                             keeps = keeps && (found == mk ||
+                                               (!is_near && found > mk && !of_mk[found].empty()) ||
                                                is_emptied[claim_of(x, y, z)]);
                          });
                 stays[particles[i]] = keeps;

@@ -25,13 +25,15 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
 ///   a point at (0.13, 0.1, 0.1) leaves out x = 0.1 and 0.2, around one at (0.15, 0.15, 0.15) only
 ///   (0.2, 0.2, 0.2)
 /// - nothing is removed while drawing. At the end, from the highest mk down, a particle stays when
-///   each of its nodes nearer than 0.75 dp carries its mk or has been emptied (eight particles in
-///   the middle between nodes stayed when a fill, a redraw or a prism painted over all), then the nodes of all particles of this
+///   each of its nodes carries its mk or has been emptied, then the nodes of all particles of this
 ///   mk that carry it are emptied (400 cases of 2 to 25 points of three mk, none different). So of
 ///   two that share a node the earlier one goes when its mk is the higher one, and both stay when
 ///   it is the lower one (mk 11 then 10, fluid 1 then 0, bound then fluid; all the other way
 ///   round). A node painted over with another mk and back again, or redrawn 0 -> 1 -> 0, leaves it;
-///   a redraw with another mk turns its nodes into lattice particles
+///   a redraw with another mk turns its nodes into lattice particles. A nearest node that is 0.75
+///   dp away or farther may also carry another mk that is drawn off the lattice (50 of 54 particles
+///   in the middle between nodes, painted over in several ways)
+/// - an emptied node counts for hswl as that of the lowest mk of the particles around it that stay
 /// - of those that stay, one is removed when a later one is nearer than 0.75 dp. A removed one
 ///   still removes others: of seven points 0.06 apart at dp 0.1 the last stays
 /// - void points only empty their nodes
