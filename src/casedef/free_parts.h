@@ -21,7 +21,7 @@ namespace fppg
 /// other begins, as one line. Where they only touch the plane, the points. Of the two ways to cut a
 /// bent quad the one of less area counts (247 of 261 bent quads of GenCase v5.4.354; the others
 /// have the other cut), a flat one is cut as cut_polygon() does. Sections of upright slanted
-/// prisms: 126 of 140 in v5.4.354; the others are of one x and one y to the last bit, where it
+/// prisms: 116 of 120 in v5.4.354; the others are of one x and one y to the last bit, where it
 /// draws two lines that this joins.
 std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
                                            const LatticeGrid& grid);
@@ -30,7 +30,7 @@ std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transfo
 /// box is drawn in its place. It starts with the line on the first face that meets the plane, of
 /// bottom, top, front, right, back and left, towards larger x: that decides which trapezoids are
 /// refused (120 of 120 random turned boxes of GenCase v5.4.354). A section of five or six corners
-/// is not drawn (20 of 20), nor is one of a box that lies in the plane with two sides. Corners of
+/// is not drawn (14 of 14), nor is one of a box that lies in the plane with two sides. Corners of
 /// the box up to 0.01 dp beside the plane lie in it.
 std::vector<Vec3> box_section(const FigureOp& box, const LatticeGrid& grid);
 
@@ -49,7 +49,7 @@ struct FreePart
 /// followed by the quads between it and its neighbours, each of which so is drawn twice. A quad
 /// that leaves the plane of a 2D case has one part for each line where it meets the plane and then
 /// one more, which has nothing but the points where it only touches the plane; a solid box has its
-/// section, or in wire mode the sides of that (60 boxes, prisms, pyramids and quads of GenCase
+/// section, or in wire mode the sides of that (51 boxes, prisms, pyramids and quads of GenCase
 /// v5.4.354 in all modes). Not for wires of other shapes, nor for a solid box in 3D, which is one
 /// part.
 std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Transform& matrix,

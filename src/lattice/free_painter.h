@@ -31,7 +31,7 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
 ///   it is the lower one (mk 11 then 10, fluid 1 then 0, bound then fluid; all the other way
 ///   round). A node painted over with another mk and back again, or redrawn 0 -> 1 -> 0, leaves it;
 ///   a redraw with another mk turns its nodes into lattice particles. A nearest node that is 0.75
-///   dp away or farther may also carry another mk that is drawn off the lattice (50 of 54 particles
+///   dp away or farther may also carry another mk that is drawn off the lattice (60 of 64 particles
 ///   in the middle between nodes, painted over in several ways)
 /// - an emptied node counts for hswl as that of the lowest mk of the particles around it that stay
 /// - of those that stay, one is removed when a later one is nearer than 0.75 dp. A removed one
