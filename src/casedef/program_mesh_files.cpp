@@ -124,13 +124,15 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     bool is_limited = false;
     if (const Element* depth = e.find_child("depth"))
     {
-        // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing.
+        // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing. Nor
+        // is a depthmax below 0; a depthmin below 0 lets all depths in (a cube and an L with 8
+        // pairs of limits, with and without reverse).
         op.depth_min = read_.number_or(*depth, "depthmin", 0);
         const double high = read_.number_or(*depth, "depthmax", 0);
         is_limited = high != 0 || op.depth_min != 0;
-        if (high != 0)
+        if (high > 0)
             op.depth_max = high;
-        else if (op.depth_min != 0)
+        else if (is_limited)
             op.depth_max = std::numeric_limits<double>::infinity();
     }
     op.any_depth = op.autofill && !is_limited;

@@ -509,7 +509,9 @@ INSTANTIATE_TEST_SUITE_P(
             "has a value v already"},
         Section{R"(<floatings><Floating mkbound="0" rhopbody="1" /></floatings>)", ""},
         Section{R"(<vres active="false" />)", ""},
-        Section{R"(<vres><bufferbox /></vres>)", "the element <dpratio> is missing in it"}));
+        Section{R"(<vres><bufferbox /></vres>)", "the element <dpratio> is missing in it"},
+        Section{R"(<vres active="#1"><bufferbox active="#0" /></vres>)", "not a valid boolean"},
+        Section{R"(<vres><bufferbox active="#0" /></vres>)", "no region is defined"}));
 
 TEST(PropertyFile, GivesPropertiesToLinkedMks)
 {
