@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/file_polygons.h"
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -13,7 +14,6 @@
 #include "lattice/domain_clip.h"
 #include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
-#include "lattice/file_polygons.h"
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
@@ -701,12 +701,7 @@ private:
         if (fills_last)
             for (SlabRegion& inside : solid_parts(op, grid(), c.triangle_weight, c.triangle_limits))
                 parts.push_back(std::move(inside));
-        if (parts.size() != op.part_count)
-            throw CaseError(def_.file, op_->source.line,
-                            fmt::format("<{}>: setmknextauto with a base that is not flat on the "
-                                        "lattice is not supported yet",
-                                        op_->source.command));
-        paint_region(parts[op.part]);
+        paint_region(parts.at(op.part));
     }
 
     SlabRegion solid_of(const FigureOp& op) const
@@ -826,7 +821,7 @@ private:
     {
         FigureOp figure;
         figure.vertices = moved_soup(file.soup, op.transform).vertices;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](std::vector<std::uint32_t> corners) {
                              figure.faces.push_back({std::move(corners), true, {}, 0, {}});
                          });
@@ -836,35 +831,104 @@ private:
             draw_free([&] { return free_faces(figure, state().matrix, grid()); });
     }
 
-    /// Of a table of heights the cells that are parallelograms within 0.1 dp, off the lattice (as
-    /// trapezoids from 0.05 dp on); removes them from `triangles`. Cells bent by more stand on the
-    /// lattice (24 cells of GenCase v5.4.354 with one corner off by 0.04 to 0.4 dp, six saddles).
-    void draw_free_cells(const MeshFileOp& op, const MeshFile& file,
-                         std::vector<SnappedTriangle>& triangles)
+    bool is_parallelogram(const TriangleSoup& soup, const std::vector<std::uint32_t>& quad) const
     {
+        const auto corner = [&](std::size_t i) { return soup.vertices[quad[i]]; };
+        return quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
+               QuadKind::Other;
+    }
+
+    /// The triangles of one cell of a table of heights, on the lattice.
+    void add_cell(const TriangleSoup& soup, const std::vector<std::uint32_t>& corners,
+                  std::vector<SnappedTriangle>& triangles) const
+    {
+        const auto node = [&](std::size_t i) { return snap(soup.vertices[corners[i]], grid()); };
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            triangles.push_back({node(0), node(i - 1), node(i)});
+    }
+
+    /// A table of heights off the lattice: the cells that are parallelograms within 0.1 dp (as
+    /// trapezoids from 0.05 dp on), in wire mode the sides of all flat ones. The triangles of the
+    /// others stand on the lattice. Each cell comes after the one before, which it may remove (24
+    /// cells of GenCase v5.4.354 with one corner off by 0.04 to 0.4 dp, six saddles).
+    void draw_free_heights(const MeshFileOp& op, const MeshFile& file)
+    {
+        const bool is_wire = state().mode == DrawMode::Wire;
+        const TriangleSoup moved = moved_soup(file.soup, op.transform);
         FigureOp cells;
-        cells.vertices = moved_soup(file.soup, op.transform).vertices;
+        cells.vertices = moved.vertices;
         std::vector<SnappedTriangle> others;
+        const auto draw_cells = [&]
+        {
+            if (cells.faces.empty()) return;
+            if (is_wire)
+                draw_free_wire(cells);
+            else
+                draw_free([&] { return free_faces(cells, state().matrix, grid()); });
+            cells.faces.clear();
+        };
+        const auto draw_others = [&]
+        {
+            if (!others.empty()) draw_triangles(std::move(others));
+            others.clear();
+        };
         for_each_polygon(
-            file, op.reading.format, grid().dp,
+            file, op, grid().dp,
             [&](std::vector<std::uint32_t> corners)
             {
-                FigureFace face{std::move(corners), true, {}, 0, {}};
-                const std::size_t first = face.vertices[0] / 3;
-                const std::size_t last = first + face.vertices.size() - 2;
-                const auto corner = [&](std::size_t i) { return cells.vertices[face.vertices[i]]; };
-                if (face.vertices.size() == 4 &&
-                    quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
-                        QuadKind::Other)
-                    cells.faces.push_back(std::move(face));
+                if (corners.size() == 4 && (is_wire || is_parallelogram(moved, corners)))
+                {
+                    draw_others();
+                    cells.faces.push_back({std::move(corners), true, {}, 0, {}});
+                }
                 else
-                    others.insert(others.end(),
-                                  triangles.begin() + static_cast<std::ptrdiff_t>(first),
-                                  triangles.begin() + static_cast<std::ptrdiff_t>(last));
+                {
+                    draw_cells();
+                    add_cell(moved, corners, others);
+                }
             });
-        triangles = std::move(others);
-        if (!cells.faces.empty())
-            draw_free([&] { return free_faces(cells, state().matrix, grid()); });
+        draw_cells();
+        draw_others();
+    }
+
+    /// The cells of a table of heights under setmknextauto: every flat one is a part, in wire mode
+    /// each of its sides. Bent ones get the mk that is next and leave it to the cell behind them.
+    void draw_heights_in_parts(const MeshFileOp& op, const MeshFile& file)
+    {
+        const TriangleSoup moved = moved_soup(file.soup, op.transform);
+        std::uint32_t part = 0;
+        for_each_polygon(
+            file, op, grid().dp,
+            [&](const std::vector<std::uint32_t>& corners)
+            {
+                const bool is_bent = corners.size() == 3;
+                if (state().mode == DrawMode::Wire && !is_bent)
+                {
+                    for (std::size_t i = 0; i < 4; ++i)
+                        with_mk(part++,
+                                [&] {
+                                    draw(LinesOp{{{moved.vertices[corners[i]],
+                                                   moved.vertices[corners[(i + 1) % 4]]}}});
+                                });
+                    return;
+                }
+                with_mk(is_bent ? part : part++,
+                        [&]
+                        {
+                            FigureOp cell;
+                            if (!is_bent && is_off_lattice() && is_parallelogram(moved, corners))
+                            {
+                                for (const std::uint32_t v : corners)
+                                    cell.vertices.push_back(moved.vertices[v]);
+                                cell.faces.push_back({{0, 1, 2, 3}, true, {}, 0, {}});
+                                draw(cell);
+                                return;
+                            }
+                            std::vector<SnappedTriangle> triangles;
+                            add_cell(moved, corners, triangles);
+                            draw_triangles(std::move(triangles));
+                        });
+            });
     }
 
     /// The sides of all triangles and quads, as lines; but the triangles of bent quads in
@@ -873,7 +937,7 @@ private:
     {
         std::vector<std::pair<Node, Node>> segments;
         std::vector<SnappedTriangle> triangles;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              std::vector<Node> nodes;
@@ -930,7 +994,7 @@ private:
         }
         const TriangleSoup moved = moved_soup(file.soup, op.transform);
         const bool is_wire = state().mode == DrawMode::Wire;
-        for_each_polygon(file, op.reading.format, grid().dp,
+        for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
                              FigureOp face;
@@ -962,7 +1026,10 @@ private:
     {
         if (state().mk_next_auto)
         {
-            draw_in_parts(op, mesh(op));
+            if (has_heights(op.reading.format))
+                draw_heights_in_parts(op, mesh(op));
+            else
+                draw_in_parts(op, mesh(op));
             return;
         }
         // GenCase does not heed <clipdomain> with advanced.
@@ -1019,11 +1086,12 @@ private:
         if (op.is_drawn_before) return;
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
-        // A table of heights is drawn by its triangles on the lattice, but for parallelograms with
-        // setfrdrawmode and its sides in wire mode.
-        const bool has_modes = !op.advanced && op.reading.format != MeshFormat::CsvBathymetry;
-        const bool has_wire = !op.advanced && (has_modes || !is_off_lattice());
-        if (has_modes && is_off_lattice())
+        if (has_heights(op.reading.format) && is_off_lattice())
+        {
+            draw_free_heights(op, file);
+            return;
+        }
+        if (!op.advanced && is_off_lattice())
         {
             draw_free_mesh(op, file);
             const TriangleSoup moved = moved_soup(source, op.transform);
@@ -1031,7 +1099,7 @@ private:
             if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
-        if (has_wire && !op.fill_inside && state().mode == DrawMode::Wire)
+        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(op, file);
             if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);
@@ -1047,8 +1115,6 @@ private:
                 triangles[t] = {corner(0), corner(1), corner(2)};
             },
             4096);
-        if (op.reading.format == MeshFormat::CsvBathymetry && is_off_lattice())
-            draw_free_cells(op, file, triangles);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
         if (op.advanced || op.fill_inside || op.autofill)

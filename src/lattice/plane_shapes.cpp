@@ -404,13 +404,6 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
     return region;
 }
 
-bool is_flat_quad(const Vec3* corners, double dp)
-{
-    const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const Vec3 last = corners[5] - corners[0];
-    return std::fabs(dot(normal, last)) <= 0.1 * dp * norm(normal);
-}
-
 std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
                                                        const FigureFace& face)
 {

@@ -35,11 +35,6 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
 std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
                                                        const FigureFace& face);
 
-/// Whether a quad, given by the six corners of its two triangles, counts as one: its last corner is
-/// not farther than 0.1 dp from the plane of the others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp
-/// on quads of one and two dp, two dps).
-bool is_flat_quad(const Vec3* corners, double dp);
-
 /// Cuts the faces of a figure into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule P5).
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible);

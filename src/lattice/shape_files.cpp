@@ -3,9 +3,9 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/file_polygons.h"
 #include "casedef/mesh_path.h"
 #include "lattice/domain_clip.h"
-#include "lattice/file_polygons.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 
@@ -227,7 +227,7 @@ private:
         }
         const auto first = static_cast<std::uint32_t>(out.vertices.size());
         for (const Vec3& v : file.soup.vertices) add_vertex(v);
-        for_each_polygon(file, op.reading.format, def_.grid.dp,
+        for_each_polygon(file, op, def_.grid.dp,
                          [&](std::vector<std::uint32_t> corners)
                          {
                              for (std::uint32_t& c : corners) c += first;

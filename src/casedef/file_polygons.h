@@ -1,10 +1,11 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/mesh.h"
-#include "fppg/mesh_reading.h"
 
-#include "lattice/plane_shapes.h"
+#include "casedef/figures.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -19,11 +20,18 @@ inline bool has_heights(MeshFormat format)
 }
 
 /// Calls body(corners) for the triangles and quads of a file, with indices into the vertices of its
-/// soup. A quad of a table of heights that is not flat is two triangles.
+/// soup. A quad of a table of heights that is not flat where it is drawn is two triangles.
 template <typename Body>
-void for_each_polygon(const MeshFile& file, MeshFormat format, double dp, const Body& body)
+void for_each_polygon(const MeshFile& file, const MeshFileOp& op, double dp, const Body& body)
 {
-    const bool may_be_bent = !has_heights(format);
+    const bool may_be_bent = !has_heights(op.reading.format);
+    const auto is_flat = [&](std::size_t first)
+    {
+        std::array<Vec3, 6> corners;
+        for (std::size_t i = 0; i < 6; ++i)
+            corners[i] = op.transform(file.soup.vertices[first + i]);
+        return is_flat_quad(corners.data(), dp);
+    };
     auto quad = file.quads.begin();
     for (std::uint32_t t = 0; t < file.soup.size(); ++t)
     {
@@ -31,7 +39,7 @@ void for_each_polygon(const MeshFile& file, MeshFormat format, double dp, const 
         std::vector<std::uint32_t> corners{first, first + 1, first + 2};
         const bool is_quad = quad != file.quads.end() && *quad == t;
         if (is_quad) ++quad;
-        if (is_quad && (may_be_bent || is_flat_quad(&file.soup.vertices[first], dp)))
+        if (is_quad && (may_be_bent || is_flat(first)))
         {
             corners.push_back(first + 5);
             ++t;
