@@ -145,8 +145,6 @@ std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp
     if (op.fill_inside) read_.fail_unsupported(e, "setmknextauto together with fppg:fill");
     if (op.clip_resize && !op.advanced)
         read_.fail_unsupported(e, "setmknextauto together with <clipdomain>");
-    if (op.advanced && !op.container.empty())
-        read_.fail_unsupported(e, "setmknextauto for data sets drawn by their depth");
     const std::string path = find_mesh_file(def_, {e.line, e.name}, op.file);
     MeshFile file;
     try

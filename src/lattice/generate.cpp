@@ -994,6 +994,8 @@ private:
         }
         const TriangleSoup moved = moved_soup(file.soup, op.transform);
         const bool is_wire = state().mode == DrawMode::Wire;
+        const auto count = [&](const std::vector<std::uint32_t>& corners)
+        { part += is_wire ? static_cast<std::uint32_t>(corners.size()) : 1; };
         for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
@@ -1001,7 +1003,7 @@ private:
                              for (const std::uint32_t v : corners)
                                  face.vertices.push_back(moved.vertices[v]);
                              if (op.advanced)
-                                 part += is_wire ? static_cast<std::uint32_t>(corners.size()) : 1;
+                                 count(corners);
                              else if (is_wire)
                                  draw_sides(face.vertices, true);
                              else
@@ -1011,12 +1013,14 @@ private:
                                  with_mk(part++, [&] { draw(face); });
                              }
                          });
+        for (const std::string& other : op.joined)
+            for_each_polygon(joined_file(op, other), op, grid().dp, count);
         if (op.advanced || op.autofill) checks_.check_closed(*op_, moved);
         with_mk(part,
                 [&]
                 {
                     if (op.advanced)
-                        paint_region(depth_region(moved, op, grid(), threads_));
+                        draw_by_depth(op, moved);
                     else if (op.autofill)
                         autofill(moved, file.soup, file, op.transform);
                 });
@@ -1024,6 +1028,7 @@ private:
 
     void draw(const MeshFileOp& op)
     {
+        if (op.is_drawn_before) return;
         if (state().mk_next_auto)
         {
             if (has_heights(op.reading.format))
@@ -1081,9 +1086,27 @@ private:
         autofill(soup, soup, MeshFile{}, {});
     }
 
+    /// A file drawn by its depth, with the others of its mesh. `moved` is its own surface.
+    void draw_by_depth(const MeshFileOp& op, TriangleSoup moved)
+    {
+        for (const std::string& other : op.joined)
+        {
+            const TriangleSoup more = moved_soup(joined_file(op, other).soup, op.transform);
+            moved.vertices.insert(moved.vertices.end(), more.vertices.begin(), more.vertices.end());
+        }
+        if (state().normal_invert) turn_over(moved);
+        paint_region(depth_region(moved, op, grid(), threads_));
+    }
+
+    const MeshFile& joined_file(const MeshFileOp& op, const std::string& other)
+    {
+        MeshFileOp joined = op;
+        joined.file = other;
+        return mesh(joined);
+    }
+
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
     {
-        if (op.is_drawn_before) return;
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
         if (has_heights(op.reading.format) && is_off_lattice())
@@ -1124,16 +1147,7 @@ private:
         }
         if (op.advanced)
         {
-            for (const std::string& other : op.joined)
-            {
-                MeshFileOp joined = op;
-                joined.file = other;
-                const TriangleSoup more = moved_soup(mesh(joined).soup, op.transform);
-                moved.vertices.insert(moved.vertices.end(), more.vertices.begin(),
-                                      more.vertices.end());
-            }
-            if (state().normal_invert) turn_over(moved);
-            paint_region(depth_region(moved, op, grid(), threads_));
+            draw_by_depth(op, std::move(moved));
             return;
         }
         if (op.fill_inside)

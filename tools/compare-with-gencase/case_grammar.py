@@ -706,7 +706,7 @@ class Grammar:
         elif switch == "setfrdrawmode":
             self.is_free, exclude = True, NOT_FREE + ("drawfilevtm",)
         elif switch == "setmknextauto":
-            exclude = FILE_DRAWS
+            exclude = tuple(n for n in FILE_DRAWS if n not in ("drawfilecsv", "drawbathymetry"))
             out[-1] = element("setmkbound", {"mk": self.rng.randint(0, 8)})
         transforms = self.some_of(TRANSFORMS)
         is_turned = bool(transforms) and self.chance(0.3 if not self.only else 0.8)
