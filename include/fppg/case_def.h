@@ -232,7 +232,8 @@ struct MeshFileOp
 struct WaveOp
 {
     Vec3 corner;      ///< lowest corner of the box, before snapping
-    Vec3 size;        ///< of the box, not negative
+    Vec3 size;        ///< of the box, not negative, as drawn
+    Transform matrix; ///< moves the corner's node and the size behind it to the far corner
     double depth = 0; ///< metres, above 0
     double h_max = 0; ///< height of the crest above still water, metres
     double x0 = 0;    ///< of the crest

@@ -234,10 +234,14 @@ private:
     void enter_zone()
     {
         if (!def_.vres.is_active()) return;
-        if (field_.walls.volume.size() > 0)
+        const bool are_plain =
+            std::all_of(def_.vres.zones.begin(), def_.vres.zones.end(),
+                        [](const VresZone& zone) { return zone.inner.is_plain; });
+        if (field_.walls.volume.size() > 0 && (!are_plain || !def_.point_files.empty()))
             throw CaseError(def_.file, def_.vres.zones[0].line,
-                            "<vres>: regions of other resolution together with particles off the "
-                            "lattice (<setfrdrawmode>) are not supported yet");
+                            "<vres>: turned regions of other resolution together with particles "
+                            "off the lattice (<setfrdrawmode>), and any with point files, are not "
+                            "supported yet");
         clip_to_zone(def_.vres, def_.zone, field_);
     }
 

@@ -117,7 +117,7 @@ int AttributeReader::integer(const Element& e, std::string_view name, int min, i
     return result;
 }
 
-bool AttributeReader::flag_or(const Element& e, std::string_view name, bool otherwise) const
+bool AttributeReader::plain_flag_or(const Element& e, std::string_view name, bool otherwise) const
 {
     const std::string* value = e.find_attribute(name);
     if (value == nullptr) return otherwise;
@@ -128,6 +128,13 @@ bool AttributeReader::flag_or(const Element& e, std::string_view name, bool othe
     if (lower == "false" || lower == "0") return false;
     fail(e, fmt::format("attribute {}=\"{}\" is not a valid boolean, expected true or false", name,
                         *value));
+}
+
+bool AttributeReader::flag_or(const Element& e, std::string_view name, bool otherwise) const
+{
+    const std::string* value = e.find_attribute(name);
+    if (value != nullptr && value->starts_with('#')) return number(e, name) != 0;
+    return plain_flag_or(e, name, otherwise);
 }
 
 Vec3 AttributeReader::vec3(const Element& e) const
@@ -175,6 +182,8 @@ std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
 {
     std::vector<std::uint16_t> out;
     const std::string& list = text(e, name);
+    if (list.starts_with('#') && list.find_first_of(",-") == std::string::npos)
+        return {static_cast<std::uint16_t>(integer(e, name, 0, 65000, true))};
     const auto wrong = [&]
     {
         fail(e,

@@ -40,7 +40,12 @@ public:
     /// A plain whole number within [min, max]; expressions only where `may_be_expression`.
     int integer(const Element& e, std::string_view name, int min, int max,
                 bool may_be_expression) const;
+    /// A flag, or an expression behind a '#', which is true unless it is 0.
     bool flag_or(const Element& e, std::string_view name, bool otherwise) const;
+    /// A flag where GenCase v5.4 takes no expression: auto of constants and of setmknextauto,
+    /// next, invert, printcall, reset and active of `<vres>`; it does in the 33 others of the
+    /// templates (13 texts).
+    bool plain_flag_or(const Element& e, std::string_view name, bool otherwise) const;
 
     /// Attributes x, y, z.
     Vec3 vec3(const Element& e) const;
@@ -61,7 +66,8 @@ public:
     std::vector<std::string> words(const Element& e, const std::string& list, const char* what,
                                    const std::vector<std::string_view>& known) const;
 
-    /// A list like "1-3,5" of whole numbers from 0.
+    /// A list like "1-3,5" of whole numbers from 0, or one expression behind a '#', cut to a whole
+    /// number. Of lists with expressions in them GenCase v5.4 leaves numbers out: "#1,2" is 2.
     std::vector<std::uint16_t> number_list(const Element& e, std::string_view name) const;
 
     /// Replaces [expressions] in a text.

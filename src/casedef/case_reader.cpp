@@ -56,7 +56,7 @@ public:
         if (const Element* before = geometry.find_child("predefinition"))
             run_predefinition(*before);
         const Element* vres = casedef.find_child("vres");
-        if (vres != nullptr && !read_.flag_or(*vres, "active", true)) vres = nullptr;
+        if (vres != nullptr && !read_.plain_flag_or(*vres, "active", true)) vres = nullptr;
         if (vres != nullptr) def_.case_name = zone_name(options_.case_name, options_.zone);
         const Element& definition = read_.child(geometry, "definition");
         read_definition(definition);
@@ -174,7 +174,7 @@ private:
             if (is_required) read_.child(constants, name);
             return std::nullopt;
         }
-        if (read_.flag_or(*e, "auto", false)) return std::nullopt;
+        if (read_.plain_flag_or(*e, "auto", false)) return std::nullopt;
         return read_.number(*e, "value");
     }
 

@@ -178,12 +178,13 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     if (is_flat_base(points))
         for (std::uint32_t i = n; i >= 3; --i) base.triangles.push_back({1, i, i - 1});
     else
-        base.cut = base.vertices;
+        base.cut.assign(base.vertices.rbegin(), base.vertices.rend());
     pyramid.faces.push_back(std::move(base));
     for (std::uint32_t i = 0; i < n; ++i)
         pyramid.faces.push_back({{0, 1 + i, 1 + (i + 1) % n}, true, {}, 0, {}});
     pyramid.solid = SolidKind::Pyramid;
     pyramid.solid_vertices = all_vertices(pyramid);
+    cut_faces(pyramid);
     return pyramid;
 }
 
@@ -270,6 +271,14 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
     return out;
 }
 
+std::optional<std::uint32_t> part_between(const FigureOp& figure, DrawMode mode)
+{
+    const bool fills = mode == DrawMode::Solid || mode == DrawMode::Full;
+    if (!fills || figure.solid != SolidKind::Pyramid || figure.faces.at(0).cut.empty())
+        return std::nullopt;
+    return static_cast<std::uint32_t>(figure.faces[0].cut.size()) - 2;
+}
+
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
 {
     if (mode == DrawMode::Wire)
@@ -292,6 +301,7 @@ std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
     if (figure.solid == SolidKind::Box || figure.solid == SolidKind::Prism)
         corners = static_cast<std::uint32_t>(figure.solid_vertices.size() / 2);
     if (fills) count = corners - 2 + 2 * (corners - 3);
+    if (const auto between = part_between(figure, mode)) count = *between + 1;
     if (fills && mode == DrawMode::Solid) return count;
     for (const FigureFace& f : figure.faces)
     {
@@ -322,6 +332,13 @@ QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp)
     return QuadKind::Other;
 }
 
+bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp)
+{
+    const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const Vec3 last = corners[3] - corners[0];
+    return std::fabs(dot(normal, last)) <= 0.1 * dp * norm(normal);
+}
+
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 {
     for (const int number : numbers)
@@ -334,7 +351,8 @@ void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 
 void cut_faces(FigureOp& figure)
 {
-    const bool is_prism = figure.solid == SolidKind::Prism;
+    // Bases are cut as seen from above and look down.
+    const bool looks_down = figure.solid == SolidKind::Prism || figure.solid == SolidKind::Pyramid;
     for (FigureFace& face : figure.faces)
     {
         if (face.cut.empty()) continue;
@@ -343,7 +361,7 @@ void cut_faces(FigureOp& figure)
             std::array<std::uint32_t, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] = static_cast<std::uint32_t>(t[k]) + face.cut_offset;
-            if (is_prism) std::swap(corners[1], corners[2]);
+            if (looks_down) std::swap(corners[1], corners[2]);
             face.triangles.push_back(corners);
         }
     }

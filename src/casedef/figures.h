@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace fppg
@@ -62,8 +63,13 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
 /// the faces between them; a prism of n corners n - 2 prisms and 2 (n - 3) faces between them),
 /// then triangles, and quads as one; in wire mode the sides of those triangles and quads, one by
 /// one (found by experiment with GenCase v5.4.354 on boxes, prisms, pyramids, quads, strips,
-/// polygons and extrusions).
+/// polygons and extrusions). For a pyramid over a base that is not flat see part_between().
 std::uint32_t count_parts(const FigureOp& figure, DrawMode mode);
+
+/// A filled pyramid over a base that is not flat as drawn has a tetrahedron a part. The faces
+/// between them do not count: they get the mk of the part behind them. Those of the last one are
+/// this part, which takes no mk of its own.
+std::optional<std::uint32_t> part_between(const FigureOp& figure, DrawMode mode);
 
 /// What setfrdrawmode takes four corners 0, 1, 2, 3 for.
 enum class QuadKind
@@ -78,6 +84,11 @@ enum class QuadKind
 /// within 0.01 dp (found by experiment with GenCase v5.4.354: limits of 0.00100 and 0.00050 at dp
 /// 0.1 and 0.05 within the plane, of 0.0346 across it at a height of 0.6 and dp 0.1).
 QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp);
+
+/// Whether a quad counts as one: its last corner is not farther than 0.1 dp from the plane of the
+/// others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp
+/// on quads of one and two dp, two dps).
+bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp);
 
 /// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers);

@@ -65,7 +65,7 @@ private:
             read_.fail(e, is_bound       ? "mkbound and mkfluid are given, expected one of them"
                           : may_be_bound ? "attribute 'mkbound' or 'mkfluid' is missing"
                                          : "attribute 'mkfluid' is missing");
-        const int number = read_.integer(e, is_bound ? "mkbound" : "mkfluid", 0, 65000, false);
+        const int number = read_.integer(e, is_bound ? "mkbound" : "mkfluid", 0, 65000, true);
         const int first = is_bound ? def_.mk_bound_first : def_.mk_fluid_first;
         // Numbers beyond those of <mkconfig> name nothing; 0 is the mk of no particle.
         const bool exists = number < (is_bound ? def_.mkbound_count : def_.mkfluid_count);

@@ -5,6 +5,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/file_polygons.h"
 #include "casedef/free_parts.h"
 #include "casedef/known_commands.h"
 #include "casedef/mesh_path.h"
@@ -94,7 +95,7 @@ bool ProgramRunner::run_flow_command(const Element& e)
         const int times = e.find_attribute("times") != nullptr
                               ? read_.integer(e, "times", 0, 1'000'000'000, true)
                               : 1;
-        const bool is_printed = read_.flag_or(*found->second, "printcall", true);
+        const bool is_printed = read_.plain_flag_or(*found->second, "printcall", true);
         for (int i = 0; i < times; ++i)
         {
             // An empty list counts too: each call leaves a line in the log.
@@ -146,12 +147,7 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
 
 std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp& op) const
 {
-    const MeshFormat format = op.reading.format;
-    if (format == MeshFormat::Bathymetry || format == MeshFormat::CsvBathymetry)
-        read_.fail_unsupported(e, "setmknextauto for heights");
     if (op.fill_inside) read_.fail_unsupported(e, "setmknextauto together with fppg:fill");
-    if (op.advanced && !op.container.empty())
-        read_.fail_unsupported(e, "setmknextauto for data sets drawn by their depth");
     const std::string path = find_mesh_file(def_, {e.line, e.name}, op.file);
     MeshFile file;
     try
@@ -167,6 +163,15 @@ std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp
             fmt::format("{}:{}: <{}>: {}", def_.file, e.line, e.name, error.what()));
     }
     const bool is_wire = state_.mode == DrawMode::Wire;
+    if (has_heights(op.reading.format))
+    {
+        // Cells that are bent do not count.
+        std::uint32_t cells = 0;
+        for_each_polygon(file, op, def_.grid.dp,
+                         [&](const std::vector<std::uint32_t>& corners)
+                         { cells += corners.size() == 4 ? 1 : 0; });
+        return is_wire ? 4 * cells : cells;
+    }
     const std::size_t quads = file.quads.size();
     std::size_t count =
         is_wire ? 3 * (file.soup.size() - 2 * quads) + 4 * quads : file.soup.size() - quads;
@@ -235,8 +240,6 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
     else if (auto* figure = std::get_if<FigureOp>(&what))
     {
         const bool is_free = state_.off_lattice;
-        if (e.name == "drawpyramid" && !figure->faces.at(0).cut.empty())
-            read_.fail_unsupported(e, "setmknextauto for a pyramid whose base is not flat");
         if (has_quads_move_clips(*figure))
         {
             add_between_clips(e, std::move(*figure));
@@ -244,7 +247,12 @@ void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
         }
         figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid)
                                      : count_parts(*figure, state_.mode);
-        for (figure->part = 0; figure->part < figure->part_count; ++figure->part) add_part(*figure);
+        const std::optional<std::uint32_t> between = part_between(*figure, state_.mode);
+        for (figure->part = 0; figure->part < figure->part_count; ++figure->part)
+            if (figure->part == between)
+                add_whole(e, *figure);
+            else
+                add_part(*figure);
     }
     else
         add_part(std::move(what)); // all layers of a round shape are one part
@@ -283,7 +291,7 @@ void ProgramRunner::shape_out(const Element& e)
         read_.fail(e, fmt::format("format=\"{}\" is invalid, expected vtk, vtp, vtu or stl",
                                   read_.text(e, "format")));
     op.normal_dp = read_.number_or(e, "savenormal", 0);
-    op.reset = read_.flag_or(e, "reset", true);
+    op.reset = read_.plain_flag_or(e, "reset", true);
     op.actual = shape_forms_[0];
     op.snapped = shape_forms_[1];
     op.kinds = shape_kinds_;

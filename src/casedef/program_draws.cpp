@@ -211,28 +211,17 @@ void ProgramRunner::draw_box(const Element& e)
     if (state_.mk_next_auto && leaves_one_out) take_next_mk(e);
 }
 
-/// Found by experiment with GenCase v5.4.354 (9 of 10 chosen matrices, 10 of 12 random ones):
-/// corner, crest and even the size are moved, turned and scaled as points, so that a move makes the
-/// box larger; depth and height of the wave stay. A box that has a negative size afterwards draws
-/// nothing. The others had a turn together with a move, for which no rule was found.
 void ProgramRunner::draw_wave(const Element& e)
 {
-    const Vec3 origin = matrix_({0, 0, 0});
-    bool is_turned = false;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        Vec3 unit;
-        unit[axis] = 1;
-        const Vec3 image = matrix_(unit) - origin;
-        for (int other = 0; other < 3; ++other) is_turned |= other != axis && image[other] != 0;
-    }
-    if (is_turned && origin != Vec3{}) read_.fail_unsupported(e, "a turn together with a move");
+    if (state_.off_lattice)
+        read_.fail(e, "is not possible with setfrdrawmode (GenCase refuses it too)");
     WaveOp op;
     op.corner = matrix_(read_.child_vec3(e, "point"));
     const Vec3 size = read_.child_vec3(e, "size");
     if (size.x < 0 || size.y < 0 || size.z < 0)
         read_.fail(*e.find_child("size"), "negative values are not possible here");
-    op.size = matrix_(size);
+    op.size = size;
+    op.matrix = matrix_;
     op.depth = read_.number(e, "depth");
     op.h_max = read_.number(e, "hmaxwave");
     if (!(op.depth > 0)) read_.fail(e, fmt::format("depth={:g}, expected more than 0", op.depth));
@@ -242,9 +231,9 @@ void ProgramRunner::draw_wave(const Element& e)
     op.z0 = crest.z;
     if (!matrix_.is_identity())
         def_.warnings.push_back(
-            fmt::format("{}:{}: <drawwave>: as in GenCase, the matrix moves and turns the size of "
-                        "the box as if it were a point: {:g}, {:g}, {:g}.",
-                        def_.file, e.line, op.size.x, op.size.y, op.size.z));
+            fmt::format("{}:{}: <drawwave>: as in GenCase, the matrix acts twice on the far corner "
+                        "of the box and not at all on depth and height of the wave.",
+                        def_.file, e.line));
     add(e, op);
 }
 
@@ -328,9 +317,9 @@ bool ProgramRunner::run_draw(const Element& e)
     }
     else if (name == "drawpyramid")
     {
-        FigureOp op = make_pyramid(transformed_points(e, 4, many));
+        FigureOp op = make_pyramid(points_of(e, 4, many));
         hide_faces(op, mask_of(e));
-        add(e, std::move(op));
+        add_figure(e, std::move(op));
     }
     else if (name == "drawextrude")
     {

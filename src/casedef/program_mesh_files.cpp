@@ -124,13 +124,15 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
     bool is_limited = false;
     if (const Element* depth = e.find_child("depth"))
     {
-        // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing.
+        // A limit of 0 is none, as with GenCase v5.4: 2 dp apply where both are 0 or missing. Nor
+        // is a depthmax below 0; a depthmin below 0 lets all depths in (a cube and an L with 8
+        // pairs of limits, with and without reverse).
         op.depth_min = read_.number_or(*depth, "depthmin", 0);
         const double high = read_.number_or(*depth, "depthmax", 0);
         is_limited = high != 0 || op.depth_min != 0;
-        if (high != 0)
+        if (high > 0)
             op.depth_max = high;
-        else if (op.depth_min != 0)
+        else if (is_limited)
             op.depth_max = std::numeric_limits<double>::infinity();
     }
     op.any_depth = op.autofill && !is_limited;
@@ -209,7 +211,10 @@ void ProgramRunner::draw_mesh_file(const Element& e)
 /// mkbound or mkfluid there must be as many numbers as data sets, taken in the order of both lists;
 /// without, and behind the command, the mk is that of before. With advanced all data sets of one mk
 /// are one mesh, whichever onlysurfaces they come from: rows count from where they enter the first
-/// to where they leave one (two and three balls and cubes, with and without reverse).
+/// to where they leave one (two and three balls and cubes, with and without reverse). Under
+/// setmknextauto that mesh gets the mk behind those of all polygons of its data sets; data sets
+/// with an mk of their own do not change the mk behind the command (7 selections of three cubes, in
+/// wire mode too).
 void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
 {
     op.container = op.file;
@@ -221,6 +226,9 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
             def_.file, e.line, e.name, path, n));
     std::vector<char> is_selected(entries.size(), 0);
     std::map<std::uint16_t, std::size_t> first_of_mk;
+    // Under setmknextauto the polygons of all data sets of one mk count before their one mesh.
+    const bool counts_at_end = op.advanced && state_.mk_next_auto;
+    std::uint32_t count = 0;
     const auto draw = [&](std::size_t i)
     {
         op.file = entries[i].file;
@@ -232,7 +240,17 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
             if (!is_new)
                 std::get<MeshFileOp>(def_.ops[first->second].what).joined.push_back(op.file);
         }
-        add(e, op);
+        if (counts_at_end)
+            add_whole(e, op);
+        else
+            add(e, op);
+    };
+    const auto count_parts_of = [&](std::size_t i)
+    {
+        if (!counts_at_end) return;
+        MeshFileOp one = op;
+        one.file = entries[i].file;
+        count += count_file_parts(e, one);
     };
     bool has_selection = false;
     for (const Element& select : e.children)
@@ -269,7 +287,11 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
             read_.fail(select, "has both mkbound and mkfluid, expected one of them");
         if (!has_bound && !has_fluid)
         {
-            for (const std::size_t i : found) draw(i);
+            for (const std::size_t i : found)
+            {
+                draw(i);
+                count_parts_of(i);
+            }
             continue;
         }
         const std::vector<std::uint16_t> mks =
@@ -287,7 +309,12 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
         shared_state_.reset();
     }
     if (!has_selection)
-        for (std::size_t i = 0; i < entries.size(); ++i) draw(i);
+        for (std::size_t i = 0; i < entries.size(); ++i)
+        {
+            draw(i);
+            count_parts_of(i);
+        }
+    for (; count > 0; --count) take_next_mk(e);
 }
 
 /// Found by experiment with GenCase v5.4.354, on the polygons that its shapeout writes: a grid that

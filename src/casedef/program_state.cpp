@@ -67,7 +67,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     const std::string& name = e.name;
     const auto next_mk = [&](MkKind kind)
     {
-        const int step = read_.flag_or(e, "next", true) ? 1 : -1;
+        const int step = read_.plain_flag_or(e, "next", true) ? 1 : -1;
         const int next = state_.mk.kind == kind ? state_.mk.mk_type + step : 0;
         if (next < 0)
             read_.fail(e,
@@ -95,7 +95,10 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "setmknextbound")
         next_mk(MkKind::Bound);
     else if (name == "setmknextauto")
-        state_.mk_next_auto = flag_of(e, "auto");
+    {
+        read_.text(e, "auto");
+        state_.mk_next_auto = read_.plain_flag_or(e, "auto", false);
+    }
     else if (name == "setdrawmode")
     {
         const std::string& mode = read_.text(e, "mode");
@@ -121,7 +124,10 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "setfrdrawmode")
         state_.off_lattice = flag_of(e, "auto");
     else if (name == "setnormalinvert")
-        state_.normal_invert = flag_of(e, "invert");
+    {
+        read_.text(e, "invert");
+        state_.normal_invert = read_.plain_flag_or(e, "invert", false);
+    }
     else if (name == "setactive")
     {
         for (const Element::Attribute& a : e.attributes)

@@ -63,7 +63,7 @@ class VresReader
 {
 public:
     VresReader(const Element& definition, const AttributeReader& read, Variables& variables,
-               const CaseDef& def)
+               CaseDef& def)
         : definition_(definition), read_(read), variables_(variables), def_(def)
     {
         const ConstantsDef& c = def.constants;
@@ -198,7 +198,13 @@ private:
     {
         check_children(e, {"bufferbox", "dpratio", "buffsizeh", "overlappingh", "point", "size",
                            "endpoint", "tracking", "simulationdomain", "extra", "transform"});
-        check_attributes(e, {"active"});
+        for (const Element::Attribute& attribute : e.attributes)
+            if (attribute.name != "active" && attribute.name != "comment" &&
+                !attribute.name.starts_with('_'))
+                def_.warnings.push_back(
+                    fmt::format("{}:{}: <bufferbox>: attribute '{}' is not heeded, as in GenCase; "
+                                "active=\"#...\" takes an expression.",
+                                def_.file, e.line, attribute.name));
         VresZone zone;
         zone.line = e.line;
         zone.parent = static_cast<int>(parent);
@@ -459,7 +465,7 @@ private:
     const Element& definition_;
     const AttributeReader& read_;
     Variables& variables_;
-    const CaseDef& def_;
+    CaseDef& def_;
     double h_per_dp_ = 0;
     VresDef out_;
 };
@@ -467,7 +473,7 @@ private:
 } // namespace
 
 VresDef read_vres(const Element& vres, const Element& definition, const AttributeReader& read,
-                  Variables& variables, const CaseDef& def, const Vec3& ref)
+                  Variables& variables, CaseDef& def, const Vec3& ref)
 {
     return VresReader(definition, read, variables, def).run(vres, ref);
 }

@@ -5,6 +5,7 @@
 #include "fppg/shapes.h"
 
 #include "casedef/figures.h"
+#include "casedef/file_polygons.h"
 #include "casedef/free_parts.h"
 #include "casedef/mesh_path.h"
 #include "core/memory.h"
@@ -14,7 +15,6 @@
 #include "lattice/depth_region.h"
 #include "lattice/draw_checks.h"
 #include "lattice/draw_pattern.h"
-#include "lattice/file_polygons.h"
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/free_painter.h"
@@ -666,12 +666,7 @@ private:
         if (fills_last)
             for (SlabRegion& inside : solid_parts(op, grid(), c.triangle_weight, c.triangle_limits))
                 parts.push_back(std::move(inside));
-        if (parts.size() != op.part_count)
-            throw CaseError(def_.file, op_->source.line,
-                            fmt::format("<{}>: setmknextauto with a base that is not flat on the "
-                                        "lattice is not supported yet",
-                                        op_->source.command));
-        paint_region(parts[op.part]);
+        paint_region(parts.at(op.part));
     }
 
     SlabRegion solid_of(const FigureOp& op) const
@@ -804,34 +799,104 @@ private:
             draw_free_pieces(free_pieces(figure, op.transform, grid()));
     }
 
-    /// Of a table of heights the cells that are parallelograms within 0.1 dp, off the lattice (as
-    /// trapezoids from 0.05 dp on); removes them from `triangles`. Cells bent by more stand on the
-    /// lattice (24 cells of GenCase v5.4.354 with one corner off by 0.04 to 0.4 dp, six saddles).
-    void draw_free_cells(const MeshFileOp& op, const MeshFile& file,
-                         std::vector<SnappedTriangle>& triangles)
+    bool is_parallelogram(const TriangleSoup& soup, const std::vector<std::uint32_t>& quad) const
     {
+        const auto corner = [&](std::size_t i) { return soup.vertices[quad[i]]; };
+        return quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
+               QuadKind::Other;
+    }
+
+    /// The triangles of one cell of a table of heights, on the lattice.
+    void add_cell(const TriangleSoup& soup, const std::vector<std::uint32_t>& corners,
+                  std::vector<SnappedTriangle>& triangles) const
+    {
+        const auto node = [&](std::size_t i) { return snap(soup.vertices[corners[i]], grid()); };
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            triangles.push_back({node(0), node(i - 1), node(i)});
+    }
+
+    /// A table of heights off the lattice: the cells that are parallelograms within 0.1 dp (as
+    /// trapezoids from 0.05 dp on), in wire mode the sides of all flat ones. The triangles of the
+    /// others stand on the lattice. Each cell comes after the one before, which it may remove (24
+    /// cells of GenCase v5.4.354 with one corner off by 0.04 to 0.4 dp, six saddles).
+    void draw_free_heights(const MeshFileOp& op, const MeshFile& file)
+    {
+        const bool is_wire = state().mode == DrawMode::Wire;
+        const TriangleSoup moved = moved_soup(file.soup, op.transform);
         FigureOp cells;
-        cells.vertices = moved_soup(file.soup, op.transform).vertices;
+        cells.vertices = moved.vertices;
         std::vector<SnappedTriangle> others;
+        const auto draw_cells = [&]
+        {
+            if (cells.faces.empty()) return;
+            if (is_wire)
+                draw_free_wire(cells);
+            else
+                draw_free_pieces(free_pieces(cells, state().matrix, grid()));
+            cells.faces.clear();
+        };
+        const auto draw_others = [&]
+        {
+            if (!others.empty()) draw_triangles(std::move(others));
+            others.clear();
+        };
         for_each_polygon(
             file, op, grid().dp,
             [&](std::vector<std::uint32_t> corners)
             {
-                FigureFace face{std::move(corners), true, {}, 0, {}};
-                const std::size_t first = face.vertices[0] / 3;
-                const std::size_t last = first + face.vertices.size() - 2;
-                const auto corner = [&](std::size_t i) { return cells.vertices[face.vertices[i]]; };
-                if (face.vertices.size() == 4 &&
-                    quad_kind({corner(0), corner(1), corner(2), corner(3)}, grid().dp) !=
-                        QuadKind::Other)
-                    cells.faces.push_back(std::move(face));
+                if (corners.size() == 4 && (is_wire || is_parallelogram(moved, corners)))
+                {
+                    draw_others();
+                    cells.faces.push_back({std::move(corners), true, {}, 0, {}});
+                }
                 else
-                    others.insert(others.end(),
-                                  triangles.begin() + static_cast<std::ptrdiff_t>(first),
-                                  triangles.begin() + static_cast<std::ptrdiff_t>(last));
+                {
+                    draw_cells();
+                    add_cell(moved, corners, others);
+                }
             });
-        triangles = std::move(others);
-        if (!cells.faces.empty()) draw_free_pieces(free_pieces(cells, state().matrix, grid()));
+        draw_cells();
+        draw_others();
+    }
+
+    /// The cells of a table of heights under setmknextauto: every flat one is a part, in wire mode
+    /// each of its sides. Bent ones get the mk that is next and leave it to the cell behind them.
+    void draw_heights_in_parts(const MeshFileOp& op, const MeshFile& file)
+    {
+        const TriangleSoup moved = moved_soup(file.soup, op.transform);
+        std::uint32_t part = 0;
+        for_each_polygon(
+            file, op, grid().dp,
+            [&](const std::vector<std::uint32_t>& corners)
+            {
+                const bool is_bent = corners.size() == 3;
+                if (state().mode == DrawMode::Wire && !is_bent)
+                {
+                    for (std::size_t i = 0; i < 4; ++i)
+                        with_mk(part++,
+                                [&] {
+                                    draw(LinesOp{{{moved.vertices[corners[i]],
+                                                   moved.vertices[corners[(i + 1) % 4]]}}});
+                                });
+                    return;
+                }
+                with_mk(is_bent ? part : part++,
+                        [&]
+                        {
+                            FigureOp cell;
+                            if (!is_bent && is_off_lattice() && is_parallelogram(moved, corners))
+                            {
+                                for (const std::uint32_t v : corners)
+                                    cell.vertices.push_back(moved.vertices[v]);
+                                cell.faces.push_back({{0, 1, 2, 3}, true, {}, 0, {}});
+                                draw(cell);
+                                return;
+                            }
+                            std::vector<SnappedTriangle> triangles;
+                            add_cell(moved, corners, triangles);
+                            draw_triangles(std::move(triangles));
+                        });
+            });
     }
 
     /// The sides of all triangles and quads, as lines; but the triangles of bent quads in
@@ -897,6 +962,8 @@ private:
         }
         const TriangleSoup moved = moved_soup(file.soup, op.transform);
         const bool is_wire = state().mode == DrawMode::Wire;
+        const auto count = [&](const std::vector<std::uint32_t>& corners)
+        { part += is_wire ? static_cast<std::uint32_t>(corners.size()) : 1; };
         for_each_polygon(file, op, grid().dp,
                          [&](const std::vector<std::uint32_t>& corners)
                          {
@@ -904,7 +971,7 @@ private:
                              for (const std::uint32_t v : corners)
                                  face.vertices.push_back(moved.vertices[v]);
                              if (op.advanced)
-                                 part += is_wire ? static_cast<std::uint32_t>(corners.size()) : 1;
+                                 count(corners);
                              else if (is_wire)
                                  draw_sides(face.vertices, true);
                              else
@@ -914,12 +981,14 @@ private:
                                  with_mk(part++, [&] { draw(face); });
                              }
                          });
+        for (const std::string& other : op.joined)
+            for_each_polygon(joined_file(op, other), op, grid().dp, count);
         if (op.advanced || op.autofill) checks_.check_closed(*op_, moved);
         with_mk(part,
                 [&]
                 {
                     if (op.advanced)
-                        paint_region(depth_region(moved, op, grid(), threads_));
+                        draw_by_depth(op, moved);
                     else if (op.autofill)
                         autofill(moved, file.soup, file, op.transform);
                 });
@@ -927,6 +996,7 @@ private:
 
     void draw(const MeshFileOp& op)
     {
+        if (op.is_drawn_before) return;
         if (op.clip_resize)
             draw_clipped(op);
         else
@@ -935,10 +1005,12 @@ private:
 
     void draw_file(const MeshFileOp& op, const MeshFile& file)
     {
-        if (state().mk_next_auto)
-            draw_in_parts(op, file);
-        else
+        if (!state().mk_next_auto)
             draw_mesh(op, file);
+        else if (has_heights(op.reading.format))
+            draw_heights_in_parts(op, file);
+        else
+            draw_in_parts(op, file);
     }
 
     /// Draws what `<clipdomain>` leaves of a file: its triangles cut at the grown domain.
@@ -977,16 +1049,35 @@ private:
         draw_file(op, cut);
     }
 
+    /// A file drawn by its depth, with the others of its mesh. `moved` is its own surface.
+    void draw_by_depth(const MeshFileOp& op, TriangleSoup moved)
+    {
+        for (const std::string& other : op.joined)
+        {
+            const TriangleSoup more = moved_soup(joined_file(op, other).soup, op.transform);
+            moved.vertices.insert(moved.vertices.end(), more.vertices.begin(), more.vertices.end());
+        }
+        if (state().normal_invert) turn_over(moved);
+        paint_region(depth_region(moved, op, grid(), threads_));
+    }
+
+    const MeshFile& joined_file(const MeshFileOp& op, const std::string& other)
+    {
+        MeshFileOp joined = op;
+        joined.file = other;
+        return mesh(joined);
+    }
+
     void draw_mesh(const MeshFileOp& op, const MeshFile& file)
     {
-        if (op.is_drawn_before) return;
         const TriangleSoup& source = file.soup;
         if (!op.advanced) draw_points_and_lines(file, op.transform);
-        // A table of heights is drawn by its triangles on the lattice, but for parallelograms with
-        // setfrdrawmode and its sides in wire mode.
-        const bool has_modes = !op.advanced && op.reading.format != MeshFormat::CsvBathymetry;
-        const bool has_wire = !op.advanced && (has_modes || !is_off_lattice());
-        if (has_modes && is_off_lattice())
+        if (has_heights(op.reading.format) && is_off_lattice())
+        {
+            draw_free_heights(op, file);
+            return;
+        }
+        if (!op.advanced && is_off_lattice())
         {
             draw_free_mesh(op, file);
             const TriangleSoup moved = moved_soup(source, op.transform);
@@ -994,7 +1085,7 @@ private:
             if (op.autofill) autofill(moved, source, file, op.transform);
             return;
         }
-        if (has_wire && !op.fill_inside && state().mode == DrawMode::Wire)
+        if (!op.advanced && !op.fill_inside && state().mode == DrawMode::Wire)
         {
             draw_wire(op, file);
             if (op.autofill) autofill(moved_soup(source, op.transform), source, file, op.transform);
@@ -1010,8 +1101,6 @@ private:
                 triangles[t] = {corner(0), corner(1), corner(2)};
             },
             4096);
-        if (op.reading.format == MeshFormat::CsvBathymetry && is_off_lattice())
-            draw_free_cells(op, file, triangles);
         // The corners themselves are needed for the inside only.
         TriangleSoup moved;
         if (op.advanced || op.fill_inside || op.autofill)
@@ -1021,16 +1110,7 @@ private:
         }
         if (op.advanced)
         {
-            for (const std::string& other : op.joined)
-            {
-                MeshFileOp joined = op;
-                joined.file = other;
-                const TriangleSoup more = moved_soup(mesh(joined).soup, op.transform);
-                moved.vertices.insert(moved.vertices.end(), more.vertices.begin(),
-                                      more.vertices.end());
-            }
-            if (state().normal_invert) turn_over(moved);
-            paint_region(depth_region(moved, op, grid(), threads_));
+            draw_by_depth(op, std::move(moved));
             return;
         }
         if (op.fill_inside)

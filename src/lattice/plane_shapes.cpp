@@ -409,13 +409,6 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
     return region;
 }
 
-bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp)
-{
-    const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const Vec3 last = corners[3] - corners[0];
-    return std::fabs(dot(normal, last)) <= 0.1 * dp * norm(normal);
-}
-
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible)
 {

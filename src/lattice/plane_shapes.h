@@ -31,10 +31,6 @@ struct SnappedTriangle
 SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
                             double weight_dp, double limits_dp);
 
-/// Whether a quad counts as one: its last corner is not farther than 0.1 dp from the plane of the
-/// others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp on quads of one and two dp, two dps).
-bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp);
-
 /// Cuts the faces of a figure into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule P5).
 std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
                                                bool only_visible);

@@ -4,9 +4,9 @@
 #include "fppg/lattice.h"
 #include "fppg/shapes.h"
 
+#include "casedef/file_polygons.h"
 #include "casedef/mesh_path.h"
 #include "lattice/cylinder_rings.h"
-#include "lattice/file_polygons.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/snap.h"
 

@@ -113,21 +113,18 @@ private:
             });
     }
 
-    /// Over a base that is not flat as drawn.
+    /// Over a base that is not flat as drawn. The face looks down.
     void cut_pyramid(const FigureOp& figure)
     {
-        const std::size_t n = nodes_.size() - 1;
-        std::vector<std::size_t> base(n);
-        std::iota(base.begin(), base.end(), std::size_t{1});
         const Node& apex = nodes_[0];
-        // The base is cut as it is seen from outside.
-        Triangles cut = cut_polygon(figure.vertices, {base.rbegin(), base.rend()});
-        for (auto& t : cut) std::swap(t[0], t[2]);
+        Triangles cut;
+        for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
         for (const auto& t : cut)
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
             std::vector<Plane> planes{plane(b[0], b[1], b[2])};
-            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(apex, b[(i + 1) % 3], b[i]));
+            // The corners in this order decide on nodes in a side.
+            for (std::size_t i = 0; i < 3; ++i) planes.push_back(plane(b[(i + 1) % 3], b[i], apex));
             add_part(std::move(planes));
         }
         for_each_part_and_side(
@@ -257,10 +254,14 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
                                     double weight_dp, double limits_dp)
 {
     const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
+    const bool are_apart = figure.solid != SolidKind::Pyramid;
     std::vector<SlabRegion> regions;
+    std::vector<SlabRegion> faces; // of the part before, that go with this one
     for (std::size_t p = 0; p < cutter->parts.size(); ++p)
     {
-        regions.push_back(inside_of(cutter, p, grid));
+        faces.push_back(inside_of(cutter, p, grid));
+        regions.push_back(join(std::move(faces)));
+        faces.clear();
         for (std::size_t f = 0; f < cutter->inner_faces.size(); ++f)
         {
             if (cutter->inner_faces[f].owner != p) continue;
@@ -283,9 +284,10 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
                     if (s.z_begin < s.z_end) out.push_back(s);
                 }
             };
-            regions.push_back(std::move(face));
+            (are_apart ? regions : faces).push_back(std::move(face));
         }
     }
+    if (!faces.empty()) regions.push_back(join(std::move(faces)));
     return regions;
 }
 

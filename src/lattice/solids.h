@@ -34,7 +34,9 @@ SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double 
 SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid);
 
 /// The same inside, part by part in GenCase's order of drawing: a convex part, then the faces that
-/// it turns to its neighbours, that at the last side of its triangle of the bottom first.
+/// it turns to its neighbours, that at the last side of its triangle of the bottom first. Faces
+/// between the parts of a pyramid go with the part behind them, those of the last one by
+/// themselves.
 std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
                                     double weight_dp, double limits_dp);
 

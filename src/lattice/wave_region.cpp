@@ -11,8 +11,7 @@ namespace fppg
 SlabRegion wave_region(const WaveOp& wave, const LatticeGrid& grid)
 {
     const Node low = snap(wave.corner, grid);
-    // The size counts from the corner's node (40 sizes of whole and a half dp in GenCase v5.0).
-    const Node high = snap(position(low, grid) + wave.size, grid);
+    const Node high = snap(wave.matrix(position(low, grid) + wave.size), grid);
     NodeBox box;
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -101,6 +101,36 @@ void erase_nodes(const ZoneBox& box, bool keep, RunField& field)
     }
 }
 
+/// Takes out the particles off the lattice whose nearest node is one of a box, or that are nearer
+/// than 0.75 dp to one, as void nodes drawn later do (60 random cases of three zones in 2D, in
+/// order of ids, and 20 in 3D, in GenCase v5.4.354).
+void erase_free(const NodeBox& box, const LatticeGrid& grid, VolumeParticles& free)
+{
+    if (box.is_empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < free.size(); ++i)
+    {
+        double squared = 0;
+        bool is_nearest = true; // its nearest node is one of the box
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            const double steps = (free.positions[i][axis] - grid.origin[axis]) / grid.dp;
+            const double node = std::clamp(std::round(steps), static_cast<double>(box.begin[k]),
+                                           static_cast<double>(box.end[k] - 1));
+            squared += (steps - node) * (steps - node);
+            is_nearest = is_nearest && node == std::round(steps);
+        }
+        if (is_nearest || squared < 0.75 * 0.75) continue;
+        free.positions[kept] = free.positions[i];
+        free.mk[kept] = free.mk[i];
+        free.distances[kept++] = free.distances[i];
+    }
+    free.positions.resize(kept);
+    free.mk.resize(kept);
+    free.distances.resize(kept);
+}
+
 } // namespace
 
 void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
@@ -112,7 +142,11 @@ void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
     {
         if (inner.parent != static_cast<int>(zone)) continue;
         if (inner.outer_end.is_plain)
-            erase_box(nodes_within(inner.outer_end, field.grid), field);
+        {
+            const NodeBox box = nodes_within(inner.outer_end, field.grid);
+            erase_box(box, field);
+            erase_free(box, field.grid, field.walls.volume);
+        }
         else
             erase_nodes(resized(inner.outer_end, -own.dp, vres.is_2d), false, field);
     }

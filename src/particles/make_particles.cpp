@@ -230,8 +230,10 @@ private:
         free_begin_.assign(out_.blocks.size() + 1, 0);
         if (!has_free()) return;
         for (const ParticleBlock& block : out_.blocks) orders_.push_back(order_of(block.mk));
+        // An mk has no block where a zone of other resolution left no particle of it.
         for (const std::uint16_t mk : field_.walls.free_mks)
-            orders_[block_of_mk_[mk]].use_cells(box_of(out_.blocks[block_of_mk_[mk]]));
+            if (const std::size_t b = block_of_mk_[mk]; b != no_block)
+                orders_[b].use_cells(box_of(out_.blocks[b]));
         out_.free = sort_free_particles(field_.walls, out_.blocks, orders_, threads_, free_begin_);
     }
 
@@ -247,6 +249,7 @@ private:
     {
         for (const std::uint16_t mk : field_.walls.free_mks)
         {
+            if (block_of_mk_[mk] == no_block) continue;
             const ParticleBlock& block = out_.blocks[block_of_mk_[mk]];
             for (const ParticleRun& run : block.runs)
                 for (std::uint32_t k = 0; k < run.count; ++k)

@@ -509,7 +509,31 @@ INSTANTIATE_TEST_SUITE_P(
             "has a value v already"},
         Section{R"(<floatings><Floating mkbound="0" rhopbody="1" /></floatings>)", ""},
         Section{R"(<vres active="false" />)", ""},
-        Section{R"(<vres><bufferbox /></vres>)", "the element <dpratio> is missing in it"}));
+        Section{R"(<vres><bufferbox /></vres>)", "the element <dpratio> is missing in it"},
+        Section{R"(<vres active="#1"><bufferbox active="#0" /></vres>)", "not a valid boolean"},
+        Section{R"(<vres><bufferbox active="#0" /></vres>)", "no region is defined"}));
+
+// The counts are those of GenCase v5.4.354; the lattice line removes the point of mk 11.
+TEST(Regions, TakeOutParticlesOffTheLatticeNearTheirNodes)
+{
+    Scene scene(R"(<setfrdrawmode auto="true" />
+<drawline><point x="0.31" y="0" z="0.27" /><point x="4.61" y="0" z="4.43" /></drawline>
+<drawline><point x="0.3" y="0" z="2.53" /><point x="4.61" y="0" z="2.53" /></drawline>
+<setmkbound mk="1" /><drawpoint x="2.5" y="0" z="2.1" /><setfrdrawmode auto="false" />
+<setmkbound mk="2" /><drawline><point x="0.3" y="0" z="4" /><point x="4.6" y="0" z="0.3" /></drawline>)",
+                R"(<vres><bufferbox><point x="1" y="0" z="1" /><size x="3" y="0" z="3" />
+<dpratio v="2" /></bufferbox></vres>)");
+    scene.text.pointmin = R"(<pointmin x="0" y="0" z="0" />)";
+    scene.text.pointmax = R"(<pointmax x="5" y="0" z="5" />)";
+    const RunResult result = scene.run();
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string outer = scene.out("_vres00.xml");
+    EXPECT_TRUE(contains(outer, R"(<fixed mkbound="0" mk="10" begin="0" count="51")")) << outer;
+    EXPECT_TRUE(contains(outer, R"(<fixed mkbound="2" mk="12" begin="51" count="37")")) << outer;
+    const std::string inner = scene.out("_vres01.xml");
+    EXPECT_TRUE(contains(inner, R"(<fixed mkbound="0" mk="10" begin="0" count="152")")) << inner;
+    EXPECT_TRUE(contains(inner, R"(<fixed mkbound="2" mk="12" begin="152" count="102")")) << inner;
+}
 
 TEST(PropertyFile, GivesPropertiesToLinkedMks)
 {

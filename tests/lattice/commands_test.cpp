@@ -251,17 +251,19 @@ TEST(Wave, FillsItsBoxUpToTheSurface)
     EXPECT_EQ(nodes_of(wave), (Counts{{10, 150}}));
 }
 
-TEST(Wave, TakesItsSizeForAPointUnderAMatrixAsGenCaseDoes)
+// The numbers are those of GenCase v5.4.354.
+TEST(Wave, PutsItsFarCornerTwiceThroughTheMatrix)
 {
     EXPECT_EQ(nodes_of(R"(<move x="0" y="0.2" z="0" />)" + wave), (Counts{{10, 300}}));
-    EXPECT_EQ(nodes_of(R"(<scale x="1" y="2" z="1" />)" + wave), (Counts{{10, 225}}));
+    EXPECT_EQ(nodes_of(R"(<scale x="1" y="2" z="1" />)" + wave), (Counts{{10, 375}}));
+    EXPECT_EQ(
+        nodes_of(R"(<move x="0.1" y="0" z="0" /><rotate ang="5" x="0" y="0" z="1" />)" + wave),
+        (Counts{{10, 79}}));
 }
 
-TEST(Wave, IsRefusedUnderATurnWithAMoveAndForABodyFittedMk)
+TEST(Wave, IsRefusedOffTheLatticeAndForABodyFittedMk)
 {
-    EXPECT_THROW(
-        nodes_of(R"(<move x="1" y="0" z="0" /><rotate ang="5" x="0" y="0" z="1" />)" + wave),
-        CaseError);
+    EXPECT_THROW(nodes_of(R"(<setfrdrawmode auto="true" />)" + wave), CaseError);
     EXPECT_NE(error_when_fitted(wave).find("<drawwave>: it has no surface"), std::string::npos);
 }
 

@@ -69,7 +69,7 @@ void expect_vector(const Vec3& found, const Vec3& wanted, double tolerance = 1e-
 TEST(InitialVelocity, IsTheLastOneGivenWhereItApplies)
 {
     const Started s = start(
-        R"(<velocity mkfluid="0" x="1" y="2" z="3" /><velocity mkfluid="0" x="4" y="0" z="0"><onlypos><posmin x="0.3" /></onlypos></velocity><velocity mkfluid="0" x="9" y="9" z="9" active="false" /><velocity mkfluid="5" x="9" y="9" z="9" />)");
+        R"(<velocity mkfluid="0" x="1" y="2" z="3" /><velocity mkfluid="#4-4" x="4" y="0" z="0"><onlypos><posmin x="0.3" /></onlypos></velocity><velocity mkfluid="0" x="9" y="9" z="9" active="#1==0" /><velocity mkfluid="5" x="9" y="9" z="9" />)");
     expect_vector(s.water(0.2, 0, 0).velocity, {1, 2, 3});
     expect_vector(s.water(0.3, 0, 0).velocity, {4, 0, 0});
 }

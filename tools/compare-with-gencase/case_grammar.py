@@ -79,7 +79,7 @@ COMMANDS = DRAWS + FILLS + REDRAWS + SETTINGS + TRANSFORMS + CLIPS + tuple(SAVES
 
 # GenCase refuses these in wire mode, or while drawing freely.
 NOT_WIRE = ("drawcylinder",)
-NOT_FREE = ("drawellipsoid", "drawwave", "drawbathymetry")
+NOT_FREE = ("drawellipsoid", "drawwave")
 
 
 class Grammar:
@@ -706,12 +706,10 @@ class Grammar:
         elif switch == "setfrdrawmode":
             self.is_free, exclude = True, NOT_FREE + ("drawfilevtm",)
         elif switch == "setmknextauto":
-            exclude = FILE_DRAWS
+            exclude = tuple(n for n in FILE_DRAWS if n not in ("drawfilecsv", "drawbathymetry"))
             out[-1] = element("setmkbound", {"mk": self.rng.randint(0, 8)})
         transforms = self.some_of(TRANSFORMS)
         is_turned = bool(transforms) and self.chance(0.3 if not self.only else 0.8)
-        if is_turned:
-            exclude += ("drawwave",)
         body = self.draw(exclude)
         if self.is_free and self.chance(0.4):
             body += self.draw(exclude)

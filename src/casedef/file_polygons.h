@@ -3,8 +3,9 @@
 #include "fppg/case_def.h"
 #include "fppg/mesh.h"
 
-#include "lattice/plane_shapes.h"
+#include "casedef/figures.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
