@@ -171,9 +171,9 @@ struct SphereOp
     Vec3 center;
     double radius = 0;
     std::vector<double> layers_dp; ///< shells at radius + layer * dp instead of the sphere
-    /// The boxes around the sphere, or around each of its layers, as a matrix leaves them; empty
-    /// without a matrix. Radii are not scaled, but on the lattice nodes lie in the box of the
-    /// snapped corners and one node around it (GenCase v5.0: 300 spheres of random scales).
+    /// The boxes around the sphere or its layers as the matrix leaves them. Radii are not scaled,
+    /// but nodes lie in the box of the snapped corners and one node around it (GenCase v5.0: 300
+    /// spheres of random scales; otherwise it counts where ctesphere is above 1).
     std::vector<Box3> limits{};
 };
 

@@ -354,12 +354,9 @@ bool ProgramRunner::run_draw(const Element& e)
             const std::vector<double> layers = layers_of(e);
             if (!state_.off_lattice) check_layers(e, radius, layers);
             SphereOp op{matrix_(center), radius, layers};
-            if (!matrix_.is_identity())
-            {
-                for (const double layer : layers)
-                    op.limits.push_back(moved_cube(center, radius + layer * def_.grid.dp));
-                if (layers.empty()) op.limits.push_back(moved_cube(center, radius));
-            }
+            for (const double layer : layers)
+                op.limits.push_back(moved_cube(center, radius + layer * def_.grid.dp));
+            if (layers.empty()) op.limits.push_back(moved_cube(center, radius));
             add(e, std::move(op));
         }
     }

@@ -280,9 +280,11 @@ private:
                     {
                         const ParticleRun& r = block.runs[i];
                         if (r.is_free()) continue;
-                        l = {std::min(l[0], r.x), std::min(l[1], r.y), std::min(l[2], r.z)};
+                        const std::uint32_t below =
+                            block.run_descending ? r.z - (r.count - 1) : r.z;
+                        l = {std::min(l[0], r.x), std::min(l[1], r.y), std::min(l[2], below)};
                         h = {std::max(h[0], r.x), std::max(h[1], r.y),
-                             std::max(h[2], r.z + r.count - 1)};
+                             std::max(h[2], below + r.count - 1)};
                     }
                     const std::lock_guard lock(guard);
                     for (std::size_t k = 0; k < 3; ++k)

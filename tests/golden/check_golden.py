@@ -9,7 +9,7 @@ CASE_FOLDER is nodes/NAME or fields/NAME and holds NAME_Def.xml, the files it us
 NAME.expected.csv.gz (one line a particle) and NAME.expected.json.
 
 nodes/   type, mk and lattice node of every particle, in id order: equal, no tolerance. A position
-         stands within 1e-6 dp of its node. Where the record has particles off the lattice, all positions
+         stands within 1e-6 dp of its node, and so do the limits of all. Where the record has particles off the lattice, all positions
          are compared in id order, within 1e-6 dp.
 fields/  the particles of equal id: mk equal; positions within 1e-7 dp + 1e-9 m, velocities within
          1e-6 relative + 1e-5 m/s, densities within 2e-6 rhop0 (both are float32 in the
@@ -78,7 +78,11 @@ def read_known(path, case):
 
 def compare_nodes(case, rows, expected, known):
     """Yields a line for every kind of difference."""
-    _, arrays, types, mks = particles_of(case)
+    values, arrays, types, mks = particles_of(case)
+    if mks:
+        for name, limit in (("CasePosMin", "posmin"), ("CasePosMax", "posmax")):
+            if np.abs(np.array(values[name]) - expected[limit]).max() > 1e-6 * expected["dp"]:
+                yield f"{name} is {values[name]}, expected {expected[limit]}"
     origin, dp = np.array(expected["lattice_origin"]), expected["dp"]
     if any(not r["i"] for r in rows):
         # Particles off the lattice or two a node: every place is compared, in id order.
