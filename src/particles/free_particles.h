@@ -11,6 +11,19 @@
 namespace fppg
 {
 
+/// What GenCase v5.4.354 makes of a <mkorient> where it sorts by cells: z falls where y is in
+/// capitals, whatever z is (all 48 orders, 64 points each, and random ones).
+inline MkOrient orient_of_cells(MkOrient orient)
+{
+    const auto place = [&](int axis)
+    {
+        return static_cast<std::size_t>(std::find(orient.axes.begin(), orient.axes.end(), axis) -
+                                        orient.axes.begin());
+    };
+    orient.descending[place(2)] = orient.descending[place(1)];
+    return orient;
+}
+
 /// The order of the particles of an mk: by coordinates, slowest axis first.
 ///
 /// Where the mk has particles of `setfrdrawmode`, GenCase v5.4.354 sorts all its particles by cells
@@ -27,7 +40,11 @@ public:
     explicit PositionOrder(const MkOrient& orient = {}) : orient_(orient) {}
 
     /// Sorts by cells of this box from now on.
-    void use_cells(const Box3& box) { cells_ = box; }
+    void use_cells(const Box3& box)
+    {
+        cells_ = box;
+        orient_ = orient_of_cells(orient_);
+    }
 
     Key key(const Vec3& p) const
     {
@@ -42,6 +59,11 @@ public:
     }
 
 private:
+    std::size_t place_of_y() const
+    {
+        return static_cast<std::size_t>(std::find(orient_.axes.begin(), orient_.axes.end(), 1) -
+                                        orient_.axes.begin());
+    }
     double cell(double x, int axis) const
     {
         const auto size = static_cast<float>(cells_.max[axis] - cells_.min[axis]);

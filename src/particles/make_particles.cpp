@@ -330,13 +330,16 @@ private:
     /// not the fastest axis, every node becomes a run of its own.
     void orient_blocks()
     {
-        for (const MkOrient& orient : def_.mk_orients)
+        for (const MkOrient& asked : def_.mk_orients)
         {
             const auto found =
                 std::find_if(out_.blocks.begin(), out_.blocks.end(),
-                             [&](const ParticleBlock& b) { return b.mk == orient.mk; });
+                             [&](const ParticleBlock& b) { return b.mk == asked.mk; });
             if (found == out_.blocks.end()) continue;
             ParticleBlock& block = *found;
+            const std::vector<std::uint16_t>& free = field_.walls.free_mks;
+            const bool has_free_ones = std::find(free.begin(), free.end(), asked.mk) != free.end();
+            const MkOrient orient = has_free_ones ? orient_of_cells(asked) : asked;
             const bool z_is_fastest = orient.axes[2] == 2;
             if (!z_is_fastest || !out_.rhop.empty()) split_into_nodes(block);
             block.run_descending = false;
