@@ -290,7 +290,7 @@ class Grammar:
                         *(self.vector("point", p) for p in points))]
 
     def layers(self, share=0.3):
-        if self.is_free or not self.chance(share):
+        if not self.chance(share):
             return []
         values = [str(self.rng.choice((-2, -1, 0, 1, 2, 0.5, 1.5, -1.5))) + self.rng.choice(("", "", "*"))
                   for _ in range(self.rng.randint(1, 3))]
@@ -704,9 +704,8 @@ class Grammar:
         if switch == "wire":
             exclude = NOT_WIRE
         elif switch == "setfrdrawmode":
-            self.is_free, exclude = True, NOT_FREE + ("drawfilevtm",)
+            self.is_free, exclude = True, NOT_FREE
         elif switch == "setmknextauto":
-            exclude = tuple(n for n in FILE_DRAWS if n not in ("drawfilecsv", "drawbathymetry"))
             out[-1] = element("setmkbound", {"mk": self.rng.randint(0, 8)})
         transforms = self.some_of(TRANSFORMS)
         is_turned = bool(transforms) and self.chance(0.3 if not self.only else 0.8)
