@@ -119,7 +119,7 @@ void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderP
 {
     const Vec3 whole = p1 - p0;
     const Vec3 axis = whole * (1 / norm(whole));
-    const int discs = std::max(1, interval_count(norm(whole), dp));
+    const int discs = std::max(1, exact_interval_count(norm(whole), dp));
     const int rings = std::max(1, interval_count(radius, dp));
     const Vec3 step = interval(whole, discs);
     const Vec3 first = ring_start(axis);

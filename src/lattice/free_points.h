@@ -69,11 +69,12 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 /// the same sphere: the same rings).
 std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp);
 
-/// A cylinder as ceil(L / dp) + 1 discs, each of the axis point and rings of radius R k / n with
-/// n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end discs, the tube is the ring
-/// k = n of every disc; solid mode takes the inner rings of the inner discs without the axis, full
-/// mode everything. Layers move the tube
-/// and the visible covers outwards by layer * dp.
+/// A cylinder as ceil(L / dp) + 1 discs, one more where rounding makes L longer than a multiple (60
+/// of 60 lengths, 7 of them so; solid boxes have room for rounding), each of the axis point and
+/// rings of radius R k / n with n = ceil(R / dp) and ceil(2 pi r / dp) points. Covers are the end
+/// discs, the tube is the ring k = n of every disc; solid mode takes the inner rings of the inner
+/// discs without the axis, full mode everything. Layers move the tube and the visible covers
+/// outwards by layer * dp.
 std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp);
 
 /// Whether a cylinder is drawn with its inside. Its nodes are emptied before it then
