@@ -30,7 +30,7 @@ void RunLog::keep(std::string_view text, bool is_printed)
     text_ += '\n';
     if (!is_printed) return;
     StageBar::clear();
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    if (!text.empty()) std::fwrite(text.data(), 1, text.size(), stdout);
     std::fputc('\n', stdout);
     std::fflush(stdout);
 }
