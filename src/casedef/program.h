@@ -94,9 +94,9 @@ private:
     std::vector<double> layers_of(const Element& e) const;
     /// throws CaseError where it is not above 0
     double radius_of(const Element& e) const;
-    /// throws CaseError for a layer without a radius
     /// The box around a cube that the matrix has moved.
     Box3 moved_cube(const Vec3& center, double radius) const;
+    /// throws CaseError for a layer without a radius
     void check_layers(const Element& e, double radius, const std::vector<double>& layers) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;

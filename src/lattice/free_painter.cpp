@@ -154,38 +154,24 @@ void FreePainter::reset()
     claims_.clear();
 }
 
-/// By node and mk, each once; of each node the last one into last_claims_.
+/// By node and mk, each once.
 void FreePainter::sort_claims()
 {
-    const auto place = [](const Claim& c) { return std::tuple(c.x, c.y, c.z); };
-    std::stable_sort(claims_.begin(), claims_.end(),
-                     [&](const Claim& a, const Claim& b) { return place(a) < place(b); });
-    last_claims_.clear();
-    for (std::size_t i = 0; i < claims_.size(); ++i)
-        if (i + 1 == claims_.size() || place(claims_[i]) != place(claims_[i + 1]))
-            last_claims_.push_back(claims_[i]);
-    const auto key = [](const Claim& c) { return std::tuple(c.x, c.y, c.z, c.mk); };
-    std::sort(claims_.begin(), claims_.end(),
-              [&](const Claim& a, const Claim& b) { return key(a) < key(b); });
-    claims_.erase(std::unique(claims_.begin(), claims_.end(),
-                              [&](const Claim& a, const Claim& b) { return key(a) == key(b); }),
-                  claims_.end());
+    std::sort(claims_.begin(), claims_.end());
+    claims_.erase(std::unique(claims_.begin(), claims_.end()), claims_.end());
 }
 
 bool FreePainter::is_claimed(const Claim& claim) const
 {
-    return std::binary_search(
-        claims_.begin(), claims_.end(), claim,
-        [](const Claim& a, const Claim& b)
-        { return std::tuple(a.x, a.y, a.z, a.mk) < std::tuple(b.x, b.y, b.z, b.mk); });
+    return std::binary_search(claims_.begin(), claims_.end(), claim);
 }
 
 std::size_t FreePainter::claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
 {
-    const auto found = std::lower_bound(
-        last_claims_.begin(), last_claims_.end(), std::tuple(x, y, z),
-        [](const Claim& c, const auto& at) { return std::tuple(c.x, c.y, c.z) < at; });
-    return static_cast<std::size_t>(found - last_claims_.begin());
+    const auto found = std::lower_bound(claims_.begin(), claims_.end(), std::tuple(x, y, z),
+                                        [](const Claim& c, const auto& at)
+                                        { return std::tuple(c.x, c.y, c.z) < at; });
+    return static_cast<std::size_t>(found - claims_.begin());
 }
 
 std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) const
@@ -194,7 +180,7 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
     for (std::size_t i = 0; i < mk_.size(); ++i)
         of_mk[mk_[i]].push_back(static_cast<std::uint32_t>(i));
     std::vector<char> stays(positions_.size());
-    is_emptied.assign(last_claims_.size(), 0);
+    is_emptied.assign(claims_.size(), 0);
     for (std::size_t mk = of_mk.size(); mk-- > 0;)
     {
         const std::vector<std::uint32_t>& particles = of_mk[mk];
@@ -258,9 +244,9 @@ void FreePainter::finish()
 
     // Nodes of particles that do not stay are empty, those of the others are hidden.
     std::vector<Spans> empty(field_->slabs.size());
-    for (std::size_t i = 0; i < last_claims_.size(); ++i)
+    for (std::size_t i = 0; i < claims_.size(); ++i)
     {
-        const Claim& c = last_claims_[i];
+        const Claim& c = claims_[i];
         if (is_emptied[i]) empty[c.x].push_back({c.y, c.z, c.z + 1});
     }
     std::vector<std::vector<Run>> hidden(field_->slabs.size());

@@ -5,6 +5,7 @@
 
 #include "lattice/spans.h"
 
+#include <compare>
 #include <vector>
 
 namespace fppg
@@ -68,12 +69,14 @@ private:
         std::uint32_t y = 0;
         std::uint32_t z = 0;
         std::uint16_t mk = 0;
+
+        auto operator<=>(const Claim&) const = default;
     };
 
     void sort_claims();
     /// Whether a particle of this mk has this node.
     bool is_claimed(const Claim& claim) const;
-    /// Index of the last claim of a node that has one.
+    /// Index of the first claim of a node that has one, which stands for the node.
     std::size_t claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
     /// One entry a particle; is_emptied gets one a claim, for the nodes that are not the lattice's.
     std::vector<char> staying_particles(std::vector<char>& is_emptied) const;
@@ -82,8 +85,7 @@ private:
     int threads_;
     std::vector<Vec3> positions_;
     std::vector<std::uint16_t> mk_;
-    std::vector<Claim> claims_; ///< in order of drawing, until sort_claims()
-    std::vector<Claim> last_claims_;
+    std::vector<Claim> claims_; ///< sorted by finish()
 };
 
 } // namespace fppg

@@ -59,11 +59,6 @@ public:
     }
 
 private:
-    std::size_t place_of_y() const
-    {
-        return static_cast<std::size_t>(std::find(orient_.axes.begin(), orient_.axes.end(), 1) -
-                                        orient_.axes.begin());
-    }
     double cell(double x, int axis) const
     {
         const auto size = static_cast<float>(cells_.max[axis] - cells_.min[axis]);
