@@ -39,7 +39,7 @@ def moved_cases(case):
         yield Case(root, case.files)
 
 
-def row_of(outcome, dp):
+def rows_of(outcome, dp):
     """Rows of type, mk and place in dp, and the number of every type."""
     types = {name: i for i, name in enumerate(("fixed", "moving", "floating", "fluid"))}
     numbers = np.array([types.setdefault(t, len(types)) for t in outcome.types], float)
@@ -70,18 +70,18 @@ def is_rounding_tie(case, ours, theirs, run_gencase):
     dp = float(case.root.find(".//definition").get("dp"))
     if ours.status != "accepts" or theirs.status != "accepts" or len(ours.mks) == 0 or len(theirs.mks) == 0:
         return False
-    ours_rows, theirs_rows = row_of(ours, dp), row_of(theirs, dp)
+    ours_rows, theirs_rows = rows_of(ours, dp), rows_of(theirs, dp)
     extra = ours_rows[nearest(ours_rows, theirs_rows) < 0]
     missing = theirs_rows[nearest(theirs_rows, ours_rows) < 0]
     if len(extra) + len(missing) == 0:
-        return has_other_order(case, ours_rows, theirs_rows, run_gencase)
+        return has_other_order(case, dp, ours_rows, theirs_rows, run_gencase)
     is_extra_there = np.zeros(len(extra), bool)
     is_missing_there = np.zeros(len(missing), bool)
     for moved in moved_cases(case):
         outcome = run_gencase(moved)
         if outcome.status != "accepts":
             continue
-        rows = row_of(outcome, dp)
+        rows = rows_of(outcome, dp)
         is_extra_there |= nearest(extra, rows) >= 0
         is_missing_there |= nearest(missing, rows) < 0
         if is_extra_there.all() and is_missing_there.all():
@@ -89,7 +89,7 @@ def is_rounding_tie(case, ours, theirs, run_gencase):
     return False
 
 
-def has_other_order(case, ours, theirs, run_gencase):
+def has_other_order(case, dp, ours, theirs, run_gencase):
     """Whether the particles that have another place in the order are those that change it in GenCase's own runs."""
     place = nearest(ours, theirs)
     differs = theirs[place != np.arange(len(ours))] if len(ours) == len(theirs) else theirs[:0]
@@ -100,5 +100,5 @@ def has_other_order(case, ours, theirs, run_gencase):
     for moved in moved_cases(case):
         outcome = run_gencase(moved)
         if outcome.status == "accepts" and len(outcome.mks) == len(theirs):
-            changes |= nearest(differs, row_of(outcome, dp=float(case.root.find(".//definition").get("dp")))) != before
+            changes |= nearest(differs, rows_of(outcome, dp)) != before
     return bool(changes.all())
