@@ -20,8 +20,6 @@ namespace
 {
 
 constexpr double nearest_dp = 0.75;
-/// Corners of a quad this near to the plane of a 2D case lie in it, dp.
-constexpr double in_plane_dp = 0.01;
 /// Steps of angles are taken in degrees and then turned into radians: their rounding decides
 /// whether there is a particle at a pole.
 constexpr double radian = std::numbers::pi / 180;

@@ -297,13 +297,4 @@ SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double 
     return join(solid_parts(figure, grid, weight_dp, limits_dp));
 }
 
-SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid)
-{
-    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
-    std::vector<SlabRegion> regions;
-    for (std::size_t p = 0; p < cutter->parts.size(); ++p)
-        regions.push_back(inside_of(cutter, p, grid));
-    return join(std::move(regions));
-}
-
 } // namespace fppg

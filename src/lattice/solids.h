@@ -29,10 +29,6 @@ namespace fppg
 SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
-/// The nodes inside the parts alone, without the faces between them: what setfrdrawmode draws of a
-/// prism on the lattice.
-SlabRegion inside_of_parts(const FigureOp& figure, const LatticeGrid& grid);
-
 /// The same inside, part by part in GenCase's order of drawing: a convex part, then the faces that
 /// it turns to its neighbours, that at the last side of its triangle of the bottom first. Faces
 /// between the parts of a pyramid go with the part behind them, those of the last one by
