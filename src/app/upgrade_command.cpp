@@ -93,7 +93,11 @@ void upgrade(const std::string& name, const UpgradeCall& call)
     {
         const std::string copy = back_up(path);
         // A link stays one, and its file is written.
-        write_text(fs::canonical(path).string(), upgraded.text);
+        const fs::path file = fs::canonical(path);
+        const fs::perms permissions = fs::status(file).permissions();
+        write_text(file.string(), upgraded.text);
+        std::error_code ignored;
+        fs::permissions(file, permissions, ignored);
         fmt::print("; written, the file of before is {}\n", copy);
     }
     else

@@ -93,9 +93,9 @@ std::string EditedText::indent_step(const TextNode& node) const
     return outer && outer->find('\t') != std::string::npos ? "\t" : "    ";
 }
 
-std::string EditedText::line_end() const
+std::string EditedText::line_end(std::size_t at) const
 {
-    const std::size_t end = text_.find('\n');
+    const std::size_t end = text_.find('\n', at);
     return end != std::string::npos && end > 0 && text_[end - 1] == '\r' ? "\r\n" : "\n";
 }
 

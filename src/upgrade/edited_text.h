@@ -38,8 +38,8 @@ public:
     std::optional<std::string> indent_at(std::size_t at) const;
     /// One step of the indentation: from the node to its first child on a line of its own.
     std::string indent_step(const TextNode& node) const;
-    /// "\r\n" where the text has it.
-    std::string line_end() const;
+    /// Of the line of that byte: "\r\n" or "\n".
+    std::string line_end(std::size_t at) const;
 
     std::string apply() const;
 

@@ -111,10 +111,11 @@ private:
         {
             const std::string step = edited_.indent_step(normals);
             edited_.insert(first.whole.begin - indent->size(),
-                           *indent + "<norgeometry>" + edited_.line_end());
+                           *indent + "<norgeometry>" + edited_.line_end(first.whole.begin));
             for (const TextNode& child : normals.children)
                 if (const auto blanks = edited_.indent_at(child.whole.begin)) shift(child, step);
-            edited_.insert(last.whole.end, edited_.line_end() + *indent + "</norgeometry>");
+            edited_.insert(last.whole.end,
+                           edited_.line_end(last.whole.end) + *indent + "</norgeometry>");
         }
         else
         {
@@ -130,7 +131,7 @@ private:
         edited_.insert(node.whole.begin, step);
         for (const TextNode& child : node.children)
             if (edited_.indent_at(child.whole.begin)) shift(child, step);
-        if (!node.is_one_tag && edited_.indent_at(node.inside.end))
+        if (!node.is_comment && !node.is_one_tag && edited_.indent_at(node.inside.end))
             edited_.insert(node.inside.end, step);
     }
 
@@ -236,7 +237,7 @@ private:
         {
             const auto own = edited_.indent_at(node.whole.begin);
             if (own) text = indented(text, *own, inner_indent);
-            text = inner_indent + text + edited_.line_end();
+            text = inner_indent + text + edited_.line_end(node.whole.end);
         }
         moved_text_ += text;
         const TextAttribute* mk = node.find_attribute("mkbound");
@@ -263,8 +264,9 @@ private:
 
     void insert_moved(const TextNode& definition, const TextNode* normals)
     {
+        const TextNode& outer_node = normals != nullptr ? *normals : definition;
         const std::string outer = outer_indent_.value_or("");
-        const std::string end = outer_indent_ ? edited_.line_end() : "";
+        const std::string end = outer_indent_ ? edited_.line_end(outer_node.start_tag.end) : "";
         if (normals != nullptr && normals->is_one_tag)
         {
             std::size_t slash = normals->whole.end - 2;
@@ -274,8 +276,7 @@ private:
             return;
         }
         // Before the line of the end tag.
-        const std::size_t closing =
-            normals != nullptr ? normals->inside.end : definition.inside.end;
+        const std::size_t closing = outer_node.inside.end;
         const std::size_t at = closing - edited_.indent_at(closing).value_or("").size();
         edited_.insert(at, normals != nullptr ? moved_text_
                                               : outer + "<normals>" + end + moved_text_ + outer +

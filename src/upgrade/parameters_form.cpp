@@ -157,7 +157,8 @@ private:
             put("key", "DensityDTvalue");
             if (comment_first) put("comment", "Factor of the density diffusion (default=0.1)");
             const auto indent = edited_.indent_at(p.whole.begin);
-            edited_.insert(p.whole.end, indent ? edited_.line_end() + *indent + second : second);
+            edited_.insert(p.whole.end,
+                           indent ? edited_.line_end(p.whole.end) + *indent + second : second);
         }
         set(p, "DensityDT", "1", diffusion_comment);
     }
@@ -181,11 +182,13 @@ private:
                 "(default=0)");
         }
         else
-            edited_.note(p->line,
-                         told(*p) + ": v5.4 does not look at it; " +
-                             (share ? told("MinFluidStop", fmt::format("{:g}", 1 - *share))
-                                    : std::string("MinFluidStop")) +
-                             " stops a run that has less than this part of its fluid left");
+            edited_.note(
+                p->line,
+                fmt::format("{}: v5.4 does not look at it; MinFluidStop took its place{}", told(*p),
+                            share
+                                ? fmt::format(", and {} stops a run where this one meant to stop",
+                                              told("MinFluidStop", fmt::format("{:g}", 1 - *share)))
+                                : ""));
     }
 
     /// The limits of the domain by keys, which `<simulationdomain>` replaces.
@@ -305,7 +308,8 @@ private:
             edited_.report(p->line, told(*p), told_domain());
         }
         const auto indent = edited_.indent_at(old.front()->whole.begin);
-        const std::string line = indent ? edited_.line_end() + *indent : std::string();
+        const std::string line =
+            indent ? edited_.line_end(old.front()->whole.end) + *indent : std::string();
         const std::string step = indent ? edited_.indent_step(parameters_) : std::string();
         edited_.replace(old.front()->whole, "<simulationdomain>" + line + step +
                                                 point("posmin", 0) + line + step +

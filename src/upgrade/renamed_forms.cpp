@@ -98,7 +98,11 @@ private:
             if (!child.is_active()) continue;
             upgrade_shape_modes(child);
             if (child.name != "setshapemode") continue;
-            const std::string before = edited_.part(child.inside);
+            // What GenCase reads of it.
+            const Span text{child.inside.begin, child.children.empty()
+                                                    ? child.inside.end
+                                                    : child.children.front().whole.begin};
+            const std::string before = edited_.part(text);
             const auto words = words_of(before);
             const auto is = [&](std::string_view name)
             {

@@ -79,7 +79,8 @@ void upgrade_chrono_threads(const TextNode& chrono, EditedText& edited)
         return;
     }
     const auto indent = edited.indent_at(collision->whole.begin);
-    const std::string line = indent ? edited.line_end() + *indent : std::string();
+    const std::string line =
+        indent ? edited.line_end(collision->whole.end) + *indent : std::string();
     edited.insert(collision->whole.end, line + edited.part(threads->whole));
     edited.remove(*threads);
     edited.report(threads->line, "<chrono> <collision> <ompthreads>", "<chrono> <ompthreads>");
