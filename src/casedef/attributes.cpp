@@ -40,6 +40,37 @@ std::vector<std::string> split(const std::string& text, char separator)
 
 } // namespace
 
+std::optional<long long> whole_number(std::string_view text)
+{
+    const std::string digits = trimmed(text);
+    if (digits.empty()) return 0;
+    text = digits;
+    if (text[0] == '+') text.remove_prefix(1);
+    long long value = 0;
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    const std::string_view rest(end, static_cast<std::size_t>(last - end));
+    const bool is_whole = rest.empty() || (rest[0] == '.' && rest.find_first_not_of('0', 1) ==
+                                                                 std::string_view::npos);
+    return error == std::errc() && is_whole ? std::optional(value) : std::nullopt;
+}
+
+unsigned sum_of_words(const std::string& list,
+                      const std::function<unsigned(const std::string&)>& bits_of)
+{
+    unsigned bits = 0;
+    if (trimmed(list).empty()) return bits;
+    for (std::size_t begin = 0; begin <= list.size();)
+    {
+        const std::size_t end = std::min(list.find_first_of("|^", begin), list.size());
+        const unsigned word = bits_of(trimmed(std::string_view(list).substr(begin, end - begin)));
+        const bool is_exclusive = begin > 0 && list[begin - 1] == '^';
+        bits = is_exclusive ? bits ^ word : bits | word;
+        begin = end + 1;
+    }
+    return bits;
+}
+
 void AttributeReader::fail(const Element& e, const std::string& text) const
 {
     throw CaseError(file_, e.line, fmt::format("<{}>: {}", e.name, text));
@@ -97,7 +128,6 @@ int AttributeReader::integer(const Element& e, std::string_view name, int min, i
                              bool may_be_expression) const
 {
     const std::string value = trimmed(text(e, name));
-    int result = 0;
     if (may_be_expression && !value.empty() && value[0] == '#')
     {
         const double v = number(e, name);
@@ -106,15 +136,14 @@ int AttributeReader::integer(const Element& e, std::string_view name, int min, i
                                 min, max));
         return static_cast<int>(v);
     }
-    const char* begin = value.data() + (!value.empty() && value[0] == '+' ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, value.data() + value.size(), result);
-    if (error != std::errc() || end != value.data() + value.size())
+    const std::optional<long long> result = whole_number(value);
+    if (!result)
         fail(e, fmt::format("attribute {}=\"{}\" is not a valid integer number, expected {} to {}",
                             name, value, min, max));
-    if (result < min || result > max)
+    if (*result < min || *result > max)
         fail(e, fmt::format("attribute {}=\"{}\" is out of range, expected {} to {}", name, value,
                             min, max));
-    return result;
+    return static_cast<int>(*result);
 }
 
 bool AttributeReader::plain_flag_or(const Element& e, std::string_view name, bool otherwise) const
@@ -163,18 +192,22 @@ std::vector<Vec3> AttributeReader::points(const Element& e) const
     return out;
 }
 
-std::vector<std::string> AttributeReader::words(const Element& e, const std::string& list,
-                                                const char* what,
-                                                const std::vector<std::string_view>& known) const
+unsigned AttributeReader::word_bits(const Element& e, const std::string& list, const char* what,
+                                    const std::vector<Word>& known) const
 {
-    std::vector<std::string> out = split(list, '|');
-    for (const std::string& word : out)
-    {
-        if (std::find(known.begin(), known.end(), word) == known.end())
-            fail(e, fmt::format("{} \"{}\" is invalid, expected {}", what, word,
-                                fmt::join(known, ", ")));
-    }
-    return out;
+    return sum_of_words(
+        list,
+        [&](const std::string& name)
+        {
+            const auto word = std::find_if(known.begin(), known.end(),
+                                           [&](const Word& w) { return w.name == name; });
+            if (word != known.end()) return word->bits;
+            std::vector<std::string_view> names;
+            for (const Word& w : known) names.push_back(w.name);
+            fail(e, fmt::format("{} \"{}\" is invalid, expected {}, joined by | or, to take one "
+                                "away, by ^",
+                                what, name, fmt::join(names, ", ")));
+        });
 }
 
 std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
@@ -193,10 +226,9 @@ std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
     };
     const auto whole = [&](const std::string& part)
     {
-        unsigned value = 0;
-        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-        if (error != std::errc() || end != part.data() + part.size() || value > 65000) wrong();
-        return value;
+        const std::optional<long long> value = whole_number(part);
+        if (part.empty() || !value || *value < 0 || *value > 65000) wrong();
+        return static_cast<unsigned>(*value);
     };
     for (const std::string& part : split(list, ','))
     {

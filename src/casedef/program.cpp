@@ -92,7 +92,7 @@ bool ProgramRunner::run_flow_command(const Element& e)
         const std::string& list = read_.text(e, "name");
         const auto found = lists_.find(list);
         if (found == lists_.end()) read_.fail(e, fmt::format("there is no list named '{}'", list));
-        const int times = e.find_attribute("times") != nullptr
+        const int times = !read_.text_or(e, "times", "").empty()
                               ? read_.integer(e, "times", 0, 1'000'000'000, true)
                               : 1;
         const bool is_printed = read_.plain_flag_or(*found->second, "printcall", true);

@@ -55,7 +55,6 @@ private:
 
     MkValue mk_value(const Element& e, MkKind kind, int mk_type) const;
     void set_mk(const Element& e, MkKind kind, int mk_type);
-    int mk_number(const Element& e) const;
     void add_clip(const ClipPlane& plane);
     /// Puts the clips where the current matrix moves them.
     void place_clips();
@@ -105,6 +104,14 @@ private:
     /// Fails where an attribute names no mk of this kind.
     void check_mk(const Element& e, const char* attribute, MkKind kind) const;
     MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
+    /// Sides by words, in the order of BoxSide; solid stands for all of them, whatever else is
+    /// there.
+    struct BoxSides
+    {
+        std::array<bool, 6> sides{};
+        bool is_solid = false;
+    };
+    BoxSides box_sides(const Element& e, const Element& list) const;
     void draw_box(const Element& e);
     void draw_wave(const Element& e);
     void draw_mesh_file(const Element& e);

@@ -153,48 +153,53 @@ std::vector<int> ProgramRunner::mask_of(const Element& e) const
     std::vector<int> out;
     const std::string* mask = e.find_attribute("mask");
     if (mask == nullptr) return out;
-    std::vector<int> numbers;
-    std::size_t begin = 0;
-    while (begin <= mask->size())
+    constexpr unsigned faces = 32;
+    const auto wrong = [&]
     {
-        const std::size_t end = std::min(mask->find('|', begin), mask->size());
-        std::string part = mask->substr(begin, end - begin);
-        std::erase_if(part, [](char c) { return c == ' ' || c == '\t'; });
-        int value = 0;
-        const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-        if (error != std::errc() || stop != part.data() + part.size())
-            read_.fail(
-                e, fmt::format(
-                       "mask=\"{}\" is invalid, expected face numbers like \"1 | 3\" or a bit mask",
-                       *mask));
-        numbers.push_back(value);
-        begin = end + 1;
-    }
-    // One number alone is a bit mask (rule S10).
-    if (numbers.size() > 1) return numbers;
-    for (int bit = 0; bit < 31; ++bit)
-        if ((numbers[0] >> bit & 1) != 0) out.push_back(bit + 1);
+        read_.fail(e, fmt::format("mask=\"{}\" is invalid, expected face numbers from 1 to {} like "
+                                  "\"1 | 3\", or a bit mask",
+                                  *mask, faces));
+    };
+    unsigned bits = 0;
+    if (mask->find('|') != std::string::npos)
+        bits = sum_of_words(*mask,
+                            [&](const std::string& part)
+                            {
+                                const auto face = whole_number(part);
+                                if (!face || *face < 1 || *face > faces) wrong();
+                                return 1U << (*face - 1);
+                            });
+    else if (const auto number = whole_number(*mask))
+        bits = static_cast<unsigned>(*number);
+    else
+        wrong();
+    for (unsigned face = 1; face <= faces; ++face)
+        if ((bits >> (face - 1) & 1) != 0) out.push_back(static_cast<int>(face));
+    return out;
+}
+
+ProgramRunner::BoxSides ProgramRunner::box_sides(const Element& e, const Element& list) const
+{
+    constexpr unsigned solid = 64;
+    const unsigned bits = read_.word_bits(e, list.text, list.name.c_str(),
+                                          {{"solid", solid},
+                                           {"all", 63},
+                                           {"bottom", 1U << BoxBottom},
+                                           {"top", 1U << BoxTop},
+                                           {"left", 1U << BoxLeft},
+                                           {"right", 1U << BoxRight},
+                                           {"front", 1U << BoxFront},
+                                           {"back", 1U << BoxBack}});
+    BoxSides out;
+    out.is_solid = (bits & solid) != 0;
+    for (std::size_t side = 0; side < 6; ++side)
+        out.sides[side] = out.is_solid || (bits >> side & 1) != 0;
     return out;
 }
 
 void ProgramRunner::draw_box(const Element& e)
 {
-    const Element& fill = read_.child(e, "boxfill");
-    std::array<bool, 6> sides{};
-    bool is_solid = false;
-    for (const std::string& w :
-         read_.words(e, fill.text, "boxfill",
-                     {"solid", "all", "bottom", "top", "left", "right", "front", "back"}))
-    {
-        if (w == "solid") is_solid = true;
-        if (w == "solid" || w == "all") sides = {true, true, true, true, true, true};
-        if (w == "bottom") sides[BoxBottom] = true;
-        if (w == "top") sides[BoxTop] = true;
-        if (w == "left") sides[BoxLeft] = true;
-        if (w == "right") sides[BoxRight] = true;
-        if (w == "front") sides[BoxFront] = true;
-        if (w == "back") sides[BoxBack] = true;
-    }
+    const auto [sides, is_solid] = box_sides(e, read_.child(e, "boxfill"));
     const Vec3 corner = read_.child_vec3(e, "point");
     const Element* end = e.find_child("endpoint");
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
@@ -407,14 +412,12 @@ bool ProgramRunner::run_draw(const Element& e)
 FillFilter ProgramRunner::fill_filter(const Element& e, const std::string& words) const
 {
     FillFilter filter;
-    for (const std::string& w :
-         read_.words(e, words, "modefill", {"void", "fluid", "bound", "border"}))
-    {
-        if (w == "void") filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
-        if (w == "bound") filter.names[static_cast<std::size_t>(MkKind::Bound)] = true;
-        if (w == "fluid") filter.names[static_cast<std::size_t>(MkKind::Fluid)] = true;
-        if (w == "border") filter.border = true;
-    }
+    const unsigned bits = read_.word_bits(e, words, "modefill",
+                                          {{"void", 1}, {"fluid", 2}, {"bound", 4}, {"border", 8}});
+    filter.names[static_cast<std::size_t>(MkKind::Void)] = (bits & 1) != 0;
+    filter.names[static_cast<std::size_t>(MkKind::Fluid)] = (bits & 2) != 0;
+    filter.names[static_cast<std::size_t>(MkKind::Bound)] = (bits & 4) != 0;
+    filter.border = (bits & 8) != 0;
     filter.mkbound = absolute_mk(e, "mkbound", MkKind::Bound);
     filter.mkfluid = absolute_mk(e, "mkfluid", MkKind::Fluid);
     if (filter.names[static_cast<std::size_t>(MkKind::Bound)])
@@ -513,15 +516,17 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         if (e.find_attribute("times") != nullptr)
             op.times = read_.integer(e, "times", 0, 1'000'000, true);
         if (const Element* filter = e.find_child("dirfilter"))
-            for (const std::string& w :
-                 read_.words(e, filter->text, "direction",
-                             {"all", "top", "bottom", "right", "left", "back", "front"}))
-            {
-                constexpr std::array<std::string_view, 6> names{"top",  "bottom", "right",
-                                                                "left", "back",   "front"};
-                for (std::size_t d = 0; d < 6; ++d)
-                    if (w == "all" || w == names[d]) op.directions[d] = true;
-            }
+        {
+            const unsigned bits = read_.word_bits(e, filter->text, "direction",
+                                                  {{"all", 63},
+                                                   {"top", 1},
+                                                   {"bottom", 2},
+                                                   {"right", 4},
+                                                   {"left", 8},
+                                                   {"back", 16},
+                                                   {"front", 32}});
+            for (std::size_t d = 0; d < 6; ++d) op.directions[d] = (bits >> d & 1) != 0;
+        }
         if (name == "redrawnearbox") op.region = limits_of(e, state_.box_limit_full);
         add(e, op);
     }

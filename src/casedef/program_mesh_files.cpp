@@ -170,18 +170,16 @@ void ProgramRunner::draw_mesh_file(const Element& e)
         if (op.reading.format != MeshFormat::Vtk)
             read_.fail(*select, "is possible in <drawfilevtk> and <drawfilevtm> only");
         ShapeSelection& shapes = op.reading.shapes;
-        shapes = {false, false, false, false, false};
-        for (const std::string& w : read_.words(
-                 *select, select->text, "polyselec",
-                 {"all", "points", "lines", "triangles", "quads", "otherpolys", "polygons"}))
-        {
-            const bool is_all = w == "all";
-            shapes.points |= is_all || w == "points";
-            shapes.lines |= is_all || w == "lines";
-            shapes.triangles |= is_all || w == "polygons" || w == "triangles";
-            shapes.quads |= is_all || w == "polygons" || w == "quads";
-            shapes.other_polygons |= is_all || w == "polygons" || w == "otherpolys";
-        }
+        const unsigned bits = read_.word_bits(*select, select->text, "polyselec",
+                                              {{"all", 31},
+                                               {"points", 1},
+                                               {"lines", 2},
+                                               {"triangles", 4},
+                                               {"quads", 8},
+                                               {"otherpolys", 16},
+                                               {"polygons", 4 | 8 | 16}});
+        shapes = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0,
+                  (bits & 16) != 0};
         // With advanced all polygons of the file count, whichever are chosen: GenCase v5.4 draws a
         // cube of triangles, of quads and of both the same with each word.
         if (op.advanced) shapes = {};

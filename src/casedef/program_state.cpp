@@ -48,20 +48,6 @@ void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
     shared_state_.reset();
 }
 
-int ProgramRunner::mk_number(const Element& e) const
-{
-    // GenCase v5.4.354 takes mk="1.0" here, and only here.
-    const std::string& text = read_.text(e, "mk");
-    if (text.find('.') == std::string::npos || text.find('#') != std::string::npos)
-        return read_.integer(e, "mk", 0, 65000, false);
-    const double number = read_.number(e, "mk");
-    if (!(number >= 0 && number <= 65000) || number != std::floor(number))
-        read_.fail(e, fmt::format("attribute mk=\"{}\" is not a valid integer number, expected 0 "
-                                  "to 65000",
-                                  text));
-    return static_cast<int>(number);
-}
-
 bool ProgramRunner::run_state_command(const Element& e)
 {
     const std::string& name = e.name;
@@ -89,7 +75,8 @@ bool ProgramRunner::run_state_command(const Element& e)
     if (name == "setmkvoid")
         set_mk(e, MkKind::Void, 0);
     else if (name == "setmkfluid" || name == "setmkbound")
-        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound, mk_number(e));
+        set_mk(e, name == "setmkfluid" ? MkKind::Fluid : MkKind::Bound,
+               read_.integer(e, "mk", 0, 65000, false));
     else if (name == "setmknextfluid")
         next_mk(MkKind::Fluid);
     else if (name == "setmknextbound")
@@ -218,21 +205,17 @@ bool ProgramRunner::run_state_command(const Element& e)
     }
     else if (name == "setshapemode")
     {
-        const auto words = read_.words(e, e.text, "shape mode",
-                                       {"null", "actual", "dp", "all", "bound", "fluid", "void"});
-        std::array<bool, 2> forms{};
-        std::array<bool, 3> kinds{};
-        for (const std::string& w : words)
-        {
-            if (w == "actual") forms[0] = true;
-            if (w == "dp") forms[1] = true;
-            if (w == "void") kinds[0] = true;
-            if (w == "bound") kinds[1] = true;
-            if (w == "fluid") kinds[2] = true;
-            if (w == "all") kinds = {true, true, true};
-        }
-        shape_forms_ = forms;
-        shape_kinds_ = kinds;
+        const unsigned bits = read_.word_bits(e, e.text, "shape mode",
+                                              {{"null", 0},
+                                               {"actual", 1},
+                                               {"real", 1}, // its name in GenCase v4.0 and v5.0
+                                               {"dp", 2},
+                                               {"all", 4 | 8 | 16},
+                                               {"void", 4},
+                                               {"bound", 8},
+                                               {"fluid", 16}});
+        shape_forms_ = {(bits & 1) != 0, (bits & 2) != 0};
+        shape_kinds_ = {(bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0};
     }
     else
         return false;
@@ -366,22 +349,7 @@ bool ProgramRunner::run_clip(const Element& e)
     else if (name == "clipbox")
     {
         std::array<bool, 6> faces{true, true, true, true, true, true};
-        if (const Element* which = e.find_child("boxfaces"))
-        {
-            faces = {};
-            for (const std::string& w :
-                 read_.words(e, which->text, "box face",
-                             {"all", "bottom", "top", "left", "right", "front", "back"}))
-            {
-                if (w == "all") faces = {true, true, true, true, true, true};
-                if (w == "bottom") faces[BoxBottom] = true;
-                if (w == "top") faces[BoxTop] = true;
-                if (w == "left") faces[BoxLeft] = true;
-                if (w == "right") faces[BoxRight] = true;
-                if (w == "front") faces[BoxFront] = true;
-                if (w == "back") faces[BoxBack] = true;
-            }
-        }
+        if (const Element* which = e.find_child("boxfaces")) faces = box_sides(e, *which).sides;
         const BoxRegion box = box_of(e);
         Vec3 low;
         Vec3 high;

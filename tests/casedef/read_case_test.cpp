@@ -147,6 +147,12 @@ INSTANTIATE_TEST_SUITE_P(
             "WrongBoxfill",
             R"(<drawbox><boxfill>sides</boxfill><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></drawbox>)",
             "<drawbox>: boxfill \"sides\" is invalid, expected solid, all, bottom"),
+        in_mainlist(
+            "BoxfillEndsInASign",
+            R"(<drawbox><boxfill>all ^</boxfill><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></drawbox>)",
+            "<drawbox>: boxfill \"\" is invalid, expected solid, all, bottom"),
+        in_mainlist("ShapeModeInCapitals", "<setshapemode>Real | bound</setshapemode>",
+                    "<setshapemode>: shape mode \"Real\" is invalid, expected null, actual, real"),
         in_mainlist("MissingBoxfill",
                     R"(<drawbox><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></drawbox>)",
                     "<drawbox>: the element <boxfill> is missing in it"),
@@ -191,6 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
             R"(<drawprism mask="a"><point x="0" y="0" z="0" /><point x="1" y="0" z="0" /><point x="0" y="1" z="0" />
 <point x="0" y="0" z="1" /><point x="1" y="0" z="1" /><point x="0" y="1" z="1" /></drawprism>)",
             "<drawprism>: mask=\"a\" is invalid"),
+        in_mainlist(
+            "MaskBeyondTheFaces",
+            R"(<drawcylinder radius="1" mask="1 | 33"><point x="0" y="0" z="0" /><point x="0" y="0" z="1" /></drawcylinder>)",
+            "<drawcylinder>: mask=\"1 | 33\" is invalid, expected face numbers from 1 to 32"),
         in_mainlist(
             "BadLayers",
             R"(<drawsphere radius="1"><point x="0" y="0" z="0" /><layers vdp="0,x" /></drawsphere>)",
@@ -614,6 +624,32 @@ TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
 
 // -- transforms
 // -------------------------------------------------------------------------------------------
+
+TEST(State, KnowsTheOldNameOfActualShapesAndSumsOfShapeModes)
+{
+    const auto shown = [](const std::string& words)
+    {
+        const CaseDef def =
+            run("<setshapemode>" + words + R"(</setshapemode><shapeout file="a" />)");
+        const auto& op = std::get<ShapeOutOp>(def.ops.back().what);
+        return std::tuple(op.actual, op.snapped, op.kinds);
+    };
+    using Kinds = std::array<bool, 3>; // void, bound, fluid
+    EXPECT_EQ(shown("real | bound"), std::tuple(true, false, Kinds{false, true, false}));
+    EXPECT_EQ(shown("real | dp | bound"), std::tuple(true, true, Kinds{false, true, false}));
+    EXPECT_EQ(shown("real ^ actual | all ^ bound"),
+              std::tuple(false, false, Kinds{true, false, true}));
+}
+
+TEST(ReadCase, TakesWholeNumbersWithZerosBehindAPoint)
+{
+    const CaseDef def = run(R"(<setmkbound mk="1.0" /><drawpoint x="0" y="0" z="0" />
+<setmkbound mk="" /><drawpoint x="0" y="0" z="0" /><setmkbound mk=" +2. " /><drawpoint x="0" y="0" z="0" />)");
+    ASSERT_EQ(def.ops.size(), 3U);
+    EXPECT_EQ(def.ops[0].state->mk.mk_type, 1);
+    EXPECT_EQ(def.ops[1].state->mk.mk_type, 0);
+    EXPECT_EQ(def.ops[2].state->mk.mk_type, 2);
+}
 
 TEST(Transforms, ActInReverseOrderOfWriting)
 {
