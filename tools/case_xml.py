@@ -2,9 +2,8 @@
 
 Used by tests/golden and tools/compare-with-gencase; the program does not need it.
 
-Names, order and text of elements, attributes and comments are the same, character by character, in <casedef> and in
-what <execution> takes from the definition. Where a program writes numbers of its own (COMPUTED) they are near:
-GenCase prints six digits of most. What says who wrote a file, and when, is not compared.
+Names, order and text of elements, attributes and comments are the same, character by character; numbers in
+<execution>, of which GenCase prints six digits, are near. What says who wrote a file, and when, is not compared.
 """
 
 import re
@@ -12,8 +11,6 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
-# Children of <execution> whose numbers a program computes.
-COMPUTED = ("particles", "constants", "vres", "uservars", "motion", "vtkout")
 # Half a unit of the sixth digit of a number that begins with 1, and a little for the rounding of ours.
 SIX_DIGITS = 5.1e-6
 # Attributes that tell elements of one name apart.
@@ -183,8 +180,7 @@ def compare_elements(ours, theirs, place, is_computed=False):
     for a, b in alone:
         if a is not None and b is not None:
             below = place if is_comment(a) else f"{place}/{a.tag}".lstrip("/")
-            computed = is_computed or (place == "case/execution" and a.tag in COMPUTED)
-            yield from compare_elements(a, b, below, computed)
+            yield from compare_elements(a, b, below, is_computed or below == "case/execution")
     # The same element at another place is one difference.
     for b in missing:
         a = next((e for e in extra if identity(e) == identity(b)), None)
