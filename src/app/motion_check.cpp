@@ -100,7 +100,8 @@ const Element* movement(const Element& object, const std::string& id)
 }
 
 /// Where an object is at a time, by its own movements: each `<begin>` starts a chain at its time,
-/// the one after it begins where that one left the object. Nothing: a file moves it.
+/// the one after it begins where that one left the object. Nothing: a file moves it, or, with
+/// mvnull, what stands elsewhere for the solver, such as <wavepaddles>.
 std::optional<Transform> place_at(const Element& object, double time)
 {
     std::vector<const Element*> begins;
@@ -121,7 +122,8 @@ std::optional<Transform> place_at(const Element& object, double time)
         {
             const Element* m = movement(object, *id);
             if (m == nullptr) break;
-            if (m->name.ends_with("file") || m->name == "mvpredef") return std::nullopt;
+            if (m->name.ends_with("file") || m->name == "mvpredef" || m->name == "mvnull")
+                return std::nullopt;
             const double duration = number(*m, "duration", 0);
             const double part = duration < 0 ? end - now : std::min(duration, end - now);
             place = moved(*m, part) * place;

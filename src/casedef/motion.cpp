@@ -19,7 +19,6 @@ struct Movement
 {
     std::string_view name;
     std::vector<std::pair<std::string_view, std::vector<std::string_view>>> needs;
-    bool has_angles = false;
 };
 
 const std::vector<Movement>& movements()
@@ -29,25 +28,33 @@ const std::vector<Movement>& movements()
     static const Names ang{"ang"};
     static const Names v{"v"};
     static const Names name{"name"};
+    static const Names columns{"name", "fields", "fieldtime"};
     static const std::vector<Movement> all{
-        {"wait", {}, false},
-        {"mvrect", {{"vel", xyz}}, false},
-        {"mvrectace", {{"ace", xyz}}, false},
-        {"mvrot", {{"vel", ang}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvrotace", {{"ace", ang}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvcir", {{"vel", ang}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvcirace", {{"ace", ang}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvrectsinu", {{"freq", xyz}, {"ampl", xyz}}, true},
-        {"mvrotsinu", {{"freq", v}, {"ampl", v}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvcirsinu",
-         {{"freq", v}, {"ampl", v}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}},
-         true},
-        {"mvrectfile", {{"file", name}}, false},
-        {"mvrotfile", {{"file", name}, {"axisp1", xyz}, {"axisp2", xyz}}, true},
-        {"mvrotadvfile", {{"file", name}}, true},
-        {"mvpathfile", {{"file", name}}, true},
-        {"mvpredef", {{"file", name}}, true}};
+        {"wait", {}},
+        {"mvnull", {}},
+        {"mvrect", {{"vel", xyz}}},
+        {"mvrectace", {{"ace", xyz}}},
+        {"mvrot", {{"vel", ang}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvrotace", {{"ace", ang}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvcir", {{"vel", ang}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvcirace", {{"ace", ang}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvrectsinu", {{"freq", xyz}, {"ampl", xyz}}},
+        {"mvrotsinu", {{"freq", v}, {"ampl", v}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvcirsinu", {{"freq", v}, {"ampl", v}, {"ref", xyz}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvrectfile", {{"file", columns}}},
+        {"mvfile", {{"file", columns}}},
+        {"mvpredef", {{"file", columns}}},
+        {"mvrotfile", {{"file", name}, {"axisp1", xyz}, {"axisp2", xyz}}},
+        {"mvrotadvfile", {{"file", name}, {"center", xyz}}},
+        {"mvpathfile", {{"file", name}, {"center", xyz}}}};
     return all;
+}
+
+/// mvnull leaves the object to what else moves it: GenCase reads its id alone, and writes no other
+/// attribute.
+bool is_null(const Element& movement)
+{
+    return movement.name == "mvnull";
 }
 
 void check_movement(const Element& e, const Movement& movement, const AttributeReader& read)
@@ -60,9 +67,13 @@ void check_movement(const Element& e, const Movement& movement, const AttributeR
                 read.text(c, a);
             else
                 read.number(c, a);
+        if (std::find(attributes.begin(), attributes.end(), "fieldtime") != attributes.end() &&
+            c.find_attribute("fieldx") == nullptr && c.find_attribute("fieldy") == nullptr &&
+            c.find_attribute("fieldz") == nullptr)
+            read.fail(c, "needs at least one of the attributes fieldx, fieldy and fieldz");
     }
+    if (is_null(e)) return;
     read.number(e, "duration");
-    if (!movement.has_angles) return;
     const std::string units = read.text_or(e, "anglesunits", "degrees");
     if (units != "degrees" && units != "radians")
         read.fail(e, fmt::format("attribute anglesunits=\"{}\" is invalid, expected degrees or "
@@ -72,17 +83,26 @@ void check_movement(const Element& e, const Movement& movement, const AttributeR
 
 constexpr int largest = 1'000'000'000;
 
+/// A whole number, which then stands in the element without a sign or zeros behind a point.
+int take_number(Element& e, const char* name, int min, int max, const AttributeReader& read,
+                bool may_be_expression = false)
+{
+    const int value = read.integer(e, name, min, max, may_be_expression);
+    e.set_attribute(name, std::to_string(value));
+    return value;
+}
+
 /// An object (or `<motion>` itself) and those in it. `references` holds those seen.
-void check(const Element& e, const AttributeReader& read, std::set<int>& references)
+void check(Element& e, const AttributeReader& read, std::set<int>& references)
 {
     std::set<int> ids;
-    for (const Element& c : e.children)
+    for (Element& c : e.children)
     {
         if (c.name == "objreal" || c.name == "obj")
         {
             if (c.name == "objreal")
             {
-                const int ref = read.integer(c, "ref", 0, 65000, true);
+                const int ref = take_number(c, "ref", 0, 65000, read, true);
                 if (!references.insert(ref).second)
                     read.fail(c, fmt::format("ref=\"{}\" has a motion already, expected each "
                                              "mkbound once",
@@ -92,7 +112,7 @@ void check(const Element& e, const AttributeReader& read, std::set<int>& referen
         }
         else if (c.name == "begin")
         {
-            read.integer(c, "mov", 0, largest, false);
+            take_number(c, "mov", 0, largest, read);
             read.number(c, "start");
         }
         else
@@ -100,7 +120,10 @@ void check(const Element& e, const AttributeReader& read, std::set<int>& referen
             const auto found = std::find_if(movements().begin(), movements().end(),
                                             [&](const Movement& m) { return m.name == c.name; });
             if (found == movements().end()) read.fail(c, "is not known in <motion>");
-            const int id = read.integer(c, "id", -largest, largest, false);
+            const int id = take_number(c, "id", -largest, largest, read);
+            if (is_null(c))
+                std::erase_if(c.attributes,
+                              [](const Element::Attribute& a) { return a.name != "id"; });
             if (!ids.insert(id).second)
                 read.fail(c, fmt::format("id=\"{}\" is given twice in this object, expected "
                                          "different numbers",
@@ -111,11 +134,11 @@ void check(const Element& e, const AttributeReader& read, std::set<int>& referen
     const bool is_moved = std::any_of(e.children.begin(), e.children.end(),
                                       [](const Element& c) { return c.name == "begin"; });
     if (!is_moved) return; // its movements are never looked at
-    for (const Element& c : e.children)
+    for (Element& c : e.children)
     {
         const char* name = c.name == "begin" ? "mov" : "next";
         if (c.name == "objreal" || c.name == "obj" || c.find_attribute(name) == nullptr) continue;
-        const int id = read.integer(c, name, -largest, largest, false);
+        const int id = take_number(c, name, -largest, largest, read);
         if (!ids.contains(id) && (c.name == "begin" || id > 0))
             read.fail(c, fmt::format("{}=\"{}\" names no movement of this object", name, id));
     }

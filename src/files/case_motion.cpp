@@ -101,8 +101,11 @@ Element case_movement(const Element& movement)
 {
     Element out = movement;
     without_comment(out);
-    if (out.name == "mvpredef") out.name = "mvrectfile";
-    if (has_angles(out.name) && !out.find_attribute("anglesunits"))
+    if (out.name == "mvpredef" || out.name == "mvfile") out.name = "mvrectfile";
+    if (!has_angles(out.name))
+        std::erase_if(out.attributes,
+                      [](const Element::Attribute& a) { return a.name == "anglesunits"; });
+    else if (!out.find_attribute("anglesunits"))
         out.set_attribute("anglesunits", "degrees");
     order_attributes(out);
     const std::string* angles = out.find_attribute("anglesunits");

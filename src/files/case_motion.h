@@ -13,7 +13,8 @@ namespace fppg
 ///   move, it stays as `<obj>`, because they move with it.
 /// - Movements that no `<begin>` reaches, itself or by `next`, are dropped; so are comments.
 /// - `anglesunits` is written where a movement has angles (default degrees), the children of a
-///   movement stand in a fixed order, with units_comment. mvpredef becomes mvrectfile.
+///   movement stand in a fixed order, with units_comment. mvpredef and mvfile become
+///   mvrectfile; anglesunits stands where angles are, and of mvnull the id alone.
 ///
 /// motion  `<motion>` of the definition with numbers evaluated; an empty name: none
 Element case_motion(const Element& motion, const std::vector<ParticleBlock>& blocks);

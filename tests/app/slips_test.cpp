@@ -491,6 +491,18 @@ INSTANTIATE_TEST_SUITE_P(
             "expected degrees or radians"},
         Section{motion(R"(<mvpredef id="1" duration="1" />)"), "<file> is missing"},
         Section{motion(R"(<mvfoo id="1" duration="1" />)"), "not known in <motion>"},
+        Section{motion(R"(<mvnull id="1" anglesunits="x" duration="y" />)"), ""},
+        Section{motion(R"(<mvnull />)"), "'id' is missing"},
+        Section{motion(R"(<wait id="1" duration="1" anglesunits="deg" />)"),
+                "expected degrees or radians"},
+        Section{motion(R"(<mvfile id="1" duration="1"><file name="m.dat" /></mvfile>)"),
+                "'fields' is missing"},
+        Section{
+            motion(
+                R"(<mvpredef id="1" duration="1"><file name="m.dat" fields="2" fieldtime="0" /></mvpredef>)"),
+            "at least one of the attributes fieldx, fieldy and fieldz"},
+        Section{motion(R"(<mvpathfile id="1" duration="1"><file name="m.dat" /></mvpathfile>)"),
+                "<center> is missing"},
         Section{"<motion><objreal ref=\"0\"><begin mov=\"1\" />" + std::string(even) +
                     "</objreal></motion>",
                 "'start' is missing"},
@@ -563,6 +575,27 @@ TEST(Parameters, RefuseWhatGenCaseRefuses)
         R"(<special><anything /></special><parameters><parameter key="A" value="#1+1" /></parameters>)";
     EXPECT_EQ(scene.run().code, 0);
     EXPECT_TRUE(contains(scene.out(".xml"), R"(key="A" value="2")"));
+}
+
+// As GenCase v5.4.354 writes them.
+TEST(Motion, IsWrittenInTheNamesThatTheSolverReads)
+{
+    Scene scene(box_command(R"(x="0" y="0" z="0")", R"(x="0.3" y="0.3" z="0.3")"));
+    write_text(scene.folder / "m.dat", "0 0\n1 1\n");
+    const std::string file = R"(<file name="m.dat" fields="2" fieldtime="0" fieldx="1" />)";
+    scene.text.after_geometry =
+        motion(R"(<mvfile id="1.0" duration="25" next="2" anglesunits="radians">)" + file +
+               R"(</mvfile><mvpredef id="2" duration="3" next="3">)" + file +
+               R"(</mvpredef><mvnull id="3" duration="5" next="4" /><wait id="4" duration="1" />)");
+    const RunResult result = scene.run();
+    ASSERT_EQ(result.code, 0) << result.output;
+    std::string xml = scene.out(".xml");
+    xml = xml.substr(xml.rfind("<motion>"));
+    xml = xml.substr(0, xml.find("</motion>"));
+    EXPECT_TRUE(contains(xml, R"(<mvrectfile id="1" duration="25" next="2">)")) << xml;
+    EXPECT_TRUE(contains(xml, R"(<mvrectfile id="2" duration="3" next="3">)")) << xml;
+    EXPECT_TRUE(contains(xml, R"(<mvnull id="3" />)")) << xml;
+    EXPECT_FALSE(contains(xml, "<wait")) << xml;
 }
 
 TEST(DataFiles, OfMotionsGoBesideTheResult)

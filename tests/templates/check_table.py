@@ -19,7 +19,7 @@ XS = "{http://www.w3.org/2001/XMLSchema}"
 # Lists hold the same commands; motions the same movements.
 ONE_PARENT = {"list": "", "mainlist": "", "obj": "motion", "objreal": "motion"}
 # Elements that may hold anything, and what the templates have in them.
-FREE = {"special", "gauges", "swl", "property", "properties/property", "extra"}
+FREE = {"special", "gauges", "swl", "wavepaddles", "piston", "property", "properties/property", "extra"}
 
 
 # Draws that may have fppg:fill.
