@@ -87,6 +87,14 @@ struct DrawPattern
     std::vector<char> cells;                      ///< 1 for 'X', 0 for '-'; x fastest, z slowest
 };
 
+/// `setshapemode`: in which forms shapes are kept for `shapeout`, and those of which mks.
+struct ShapeMode
+{
+    bool actual = true;                            ///< as drawn
+    bool snapped = false;                          ///< with vertices on the lattice
+    std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid
+};
+
 /// Everything that a draw inherits from the commands before it.
 struct DrawState
 {
@@ -100,6 +108,7 @@ struct DrawState
     bool off_lattice = false;       ///< setfrdrawmode: particles at their true places
     bool draw_points = true;        ///< setactive drawpoints
     bool draw_shapes = true;        ///< setactive drawshapes
+    ShapeMode shape_mode;           ///< setshapemode
     bool normal_invert = false;     ///< setnormalinvert
     bool mk_next_auto = false;      ///< setmknextauto: every part drawn takes the next mk
     Transform matrix;               ///< the current matrix where off_lattice, else none
@@ -306,7 +315,8 @@ enum class ShapeFormat : std::uint8_t
     Stl,
 };
 
-/// `shapeout`: writes the shapes drawn since the last one.
+/// `shapeout`: writes the shapes kept since the last one in every form that its state names; a form
+/// that it does not name keeps its shapes.
 struct ShapeOutOp
 {
     std::string file; ///< may be empty
@@ -314,9 +324,6 @@ struct ShapeOutOp
     /// savenormal: length in dp of the lines that a second file shows the normals by; 0: none.
     double normal_dp = 0;
     bool reset = true;
-    bool actual = true;                            ///< write them as drawn
-    bool snapped = false;                          ///< write them with vertices on the lattice
-    std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
 };
 
 /// How much of a cavity a fill takes.
@@ -409,7 +416,7 @@ struct FloatingDef
     std::optional<Vec3> center;
     std::optional<std::array<Vec3, 3>> inertia;
     std::string property;
-    std::vector<Element> extra; ///< translationDOF and the like, copied into Case.xml
+    std::vector<Element> extra; ///< translationDOF and the like, for Case.xml
 };
 
 /// How the particles of a fitted wall and those near it are evened out: `<relax>`.
@@ -546,8 +553,9 @@ struct CaseDef
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
     Element properties;             ///< `<properties>` of the definition, or empty name
     Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound
-    std::vector<Element> execution; ///< children of `<execution>` before `<particles>`
+    std::vector<Element> execution; ///< children of `<execution>` that Case.xml takes over
     Element casedef;                ///< `<casedef>` as read, for the copy in Case.xml
+    Element document;               ///< the definition as read: children are the root, comments
 
     std::vector<UserVariable> user_variables; ///< in printing order
     std::string variables_log; ///< "List of available variables: ..." at the end of reading
@@ -597,7 +605,8 @@ const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk);
 ///          it uses a command that is known but not built ("not supported yet"), or if `abort` runs
 CaseDef read_case(const std::string& path, const CaseOptions& options);
 
-/// The definition as a tree, not executed; what -clean prints.
+/// The definition as a tree, not executed; what -clean prints. Its children are the root and what
+/// stands around it.
 ///
 /// throws IoError, CaseError as read_case does for a file that is no XML
 Element read_definition_tree(const std::string& path);

@@ -459,7 +459,12 @@ private:
             std::vector<int> mk_fluid;
             for (const ShapePolygons& s : shape_file.shapes)
             {
-                if (s.mk <= 0) continue;
+                if (s.mk <= 0)
+                {
+                    // GenCase lists void as 0 unless it comes before all others.
+                    if (!mk.empty()) mk.push_back(0);
+                    continue;
+                }
                 mk.push_back(s.mk);
                 (s.mk >= def_.mk_bound_first ? mk_bound : mk_fluid)
                     .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first
@@ -608,9 +613,9 @@ void print_info()
 
 int write_clean_copy(const DropInOptions& options)
 {
-    const Element root = read_definition_tree(options.input + ".xml");
+    const Element document = read_definition_tree(options.input + ".xml");
     OutputFile file(options.output + ".xml");
-    file.append("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n" + print_element(root, 0));
+    file.append(print_document(document));
     file.commit();
     fmt::print("{}\n{}.xml\nFinished execution (code=0).\n", full_name(), options.output);
     return 0;

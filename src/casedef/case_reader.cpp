@@ -3,7 +3,9 @@
 
 #include "casedef/attributes.h"
 #include "casedef/draw_block.h"
+#include "casedef/execution.h"
 #include "casedef/fit_block.h"
+#include "casedef/floating_extra.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
@@ -40,7 +42,8 @@ public:
 
     CaseDef run()
     {
-        const Element root = read_xml(def_.file);
+        def_.document = read_document(def_.file);
+        const Element& root = root_of(def_.document);
         if (root.name != "case")
             throw CaseError(def_.file, root.line,
                             fmt::format("<{}>: the root must be <case>, as in a GenCase definition",
@@ -48,7 +51,7 @@ public:
         const Element& casedef = read_.child(root, "casedef");
         check_version(casedef);
         def_.casedef = casedef;
-        read_execution(root);
+        def_.execution = read_execution(root, read_);
         read_constants(read_.child(casedef, "constantsdef"));
         read_mk_config(read_.child(casedef, "mkconfig"));
         const Element& geometry = read_.child(casedef, "geometry");
@@ -71,7 +74,7 @@ public:
         ProgramRunner program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
-        evaluate_parameters();
+        evaluate_execution(def_.execution, read_);
 
         if (const Element* e = casedef.find_child("initials"))
             def_.initials = read_initials(*e, def_, read_);
@@ -117,51 +120,6 @@ private:
                            "the case asks for version {} of GenCase or later, this program follows "
                            "v{}.{}.{}",
                            *wanted, language_version[0], language_version[1], language_version[2]));
-    }
-
-    void read_execution(const Element& root)
-    {
-        const Element* execution = root.find_child("execution");
-        if (execution == nullptr || execution->find_child("parameters") == nullptr)
-            read_.fail(root, "the element <execution><parameters> is missing in it");
-        // Sections that this program writes itself are left out, so that a generated Case.xml is a
-        // valid definition again.
-        const std::set<std::string> own{"particles", "constants", "uservars", "motion", "vtkout"};
-        int blocks = 0;
-        for (const Element& e : execution->children)
-            if (e.kind == Element::Kind::Tag && e.name == "parameters" && ++blocks > 2)
-                // GenCase joins the second with the first and leaves the others, which
-                // DualSPHysics does not read.
-                read_.fail(e, "there are more than two of it in <execution>, expected one");
-        for (const Element& e : execution->children)
-            if (e.kind == Element::Kind::Comment || !own.contains(e.name))
-                def_.execution.push_back(e);
-    }
-
-    /// GenCase evaluates `#expressions` in the values of `<parameters>`.
-    void evaluate_parameters()
-    {
-        for (Element& e : def_.execution)
-        {
-            if (e.name != "parameters") continue;
-            for (Element& parameter : e.children)
-            {
-                if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_'))
-                    continue;
-                if (parameter.name == "parameter")
-                {
-                    read_.text(parameter, "key");
-                    read_.text(parameter, "value");
-                }
-                else if (parameter.name != "simulationdomain")
-                    read_.fail(parameter,
-                               "is not known in <parameters>, expected parameter or "
-                               "simulationdomain");
-                for (Element::Attribute& a : parameter.attributes)
-                    if (a.name == "value" && a.value.starts_with('#'))
-                        a.value = fmt::format("{}", read_.number(parameter, a.name));
-            }
-        }
     }
 
     /// A constant that `auto="true"` leaves to its formula.
@@ -461,20 +419,24 @@ private:
             }
             if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
             read_inertia(e, f);
-            static const std::set<std::string> copied{
-                "translationDOF", "rotationDOF", "linearvelini", "angularvelini",
-                "linearvel",      "angularvel",  "linearforce",  "angularforce"};
-            static const std::set<std::string> own{"massbody",   "rhopbody", "relativeweight",
-                                                   "masspart",   "center",   "inertia",
-                                                   "inertiafull"};
-            for (const Element& c : e.children)
-            {
-                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
-                    continue;
-                if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
-                f.extra.push_back(evaluated_element(c, read_));
-            }
+            read_extras(e, f);
             def_.floatings.push_back(std::move(f));
+        }
+    }
+
+    void read_extras(const Element& e, FloatingDef& f)
+    {
+        std::set<std::string> seen;
+        static const std::set<std::string> own{"massbody", "rhopbody", "relativeweight", "masspart",
+                                               "center",   "inertia",  "inertiafull"};
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
+                continue;
+            if (!seen.insert(c.name).second)
+                read_.fail(c, "there are two of it in <floating>, expected one");
+            if (auto extra = floating_extra(c, read_, def_.warnings))
+                f.extra.push_back(std::move(*extra));
         }
     }
 
@@ -676,7 +638,7 @@ CaseDef read_case(const std::string& path, const CaseOptions& options)
 
 Element read_definition_tree(const std::string& path)
 {
-    return read_xml(path);
+    return read_document(path);
 }
 
 } // namespace fppg

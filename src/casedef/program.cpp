@@ -292,9 +292,6 @@ void ProgramRunner::shape_out(const Element& e)
                                   read_.text(e, "format")));
     op.normal_dp = read_.number_or(e, "savenormal", 0);
     op.reset = read_.plain_flag_or(e, "reset", true);
-    op.actual = shape_forms_[0];
-    op.snapped = shape_forms_[1];
-    op.kinds = shape_kinds_;
     add(e, std::move(op));
 }
 

@@ -142,8 +142,6 @@ private:
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
         saved_mks_;
     std::vector<DrawConstants> saved_constants_;
-    std::array<bool, 2> shape_forms_{true, false};        ///< actual, dp
-    std::array<bool, 3> shape_kinds_{false, true, false}; ///< void, bound, fluid
     int depth_ = 0;
     std::size_t commands_run_ = 0;
 };

@@ -35,11 +35,11 @@ public:
         for (const DrawOp& op : def_.ops)
         {
             if (std::holds_alternative<ResetOp>(op.what))
-                drawn_.clear();
+                kept_ = {};
             else if (const auto* out = std::get_if<ShapeOutOp>(&op.what))
-                write(*out);
+                write(*out, op.state->shape_mode);
             else if (op.state->draw_shapes && is_shape(op.what) && !is_later_part(op.what))
-                drawn_.push_back(&op);
+                keep_shape(op);
         }
         return std::move(files_);
     }
@@ -59,45 +59,57 @@ private:
         return figure != nullptr && figure->part > 0;
     }
 
-    void write(const ShapeOutOp& out)
+    void keep_shape(const DrawOp& op)
+    {
+        const ShapeMode& mode = op.state->shape_mode;
+        if (!mode.kinds[static_cast<std::size_t>(op.state->mk.kind)]) return;
+        if (mode.actual) kept_[0].push_back(&op);
+        if (mode.snapped) kept_[1].push_back(&op);
+    }
+
+    void write(const ShapeOutOp& out, const ShapeMode& mode)
     {
         for (const bool snapped : {true, false})
         {
-            if (!(snapped ? out.snapped : out.actual)) continue;
-            ShapeFile file;
-            constexpr std::array<const char*, 4> endings{".vtk", ".vtp", ".vtu", ".stl"};
-            const char* ending = endings[static_cast<std::size_t>(out.format)];
-            const std::string stem = "_" + out.file + (snapped ? "_Dp" : "_Actual");
-            file.name = stem + ending;
-            file.format = out.format;
-            std::uint32_t id = 0;
-            for (const DrawOp* op : drawn_)
-            {
-                const std::uint32_t object = id++;
-                if (!out.kinds[static_cast<std::size_t>(op->state->mk.kind)]) continue;
-                ShapePolygons shape = polygons(*op, snapped);
-                shape.object_id = object;
-                shape.mk = op->state->mk.kind == MkKind::Void ? -1 : op->state->mk.mk;
-                if (op->state->normal_invert)
-                    for (auto& p : shape.polygons)
-                        if (p.size() > 2) std::reverse(p.begin(), p.end());
-                if (!shape.polygons.empty()) file.shapes.push_back(std::move(shape));
-            }
-            if (file.shapes.empty()) continue;
-            if (out.normal_dp != 0)
-            {
-                ShapeFile shown = file;
-                shown.name = stem + "_Nor" + ending;
-                shown.has_normals = true;
-                std::vector<ShapePolygons> lines = normals(file.shapes, id, out.normal_dp);
-                shown.shapes.insert(shown.shapes.begin(), std::make_move_iterator(lines.begin()),
-                                    std::make_move_iterator(lines.end()));
-                keep(std::move(file));
-                file = std::move(shown);
-            }
-            keep(std::move(file));
+            if (!(snapped ? mode.snapped : mode.actual)) continue;
+            std::vector<const DrawOp*>& ops = kept_[snapped ? 1 : 0];
+            write_form(out, ops, snapped);
+            if (out.reset) ops.clear();
         }
-        if (out.reset) drawn_.clear();
+    }
+
+    void write_form(const ShapeOutOp& out, const std::vector<const DrawOp*>& ops, bool snapped)
+    {
+        ShapeFile file;
+        constexpr std::array<const char*, 4> endings{".vtk", ".vtp", ".vtu", ".stl"};
+        const char* ending = endings[static_cast<std::size_t>(out.format)];
+        const std::string stem = "_" + out.file + (snapped ? "_Dp" : "_Actual");
+        file.name = stem + ending;
+        file.format = out.format;
+        std::uint32_t id = 0;
+        for (const DrawOp* op : ops)
+        {
+            ShapePolygons shape = polygons(*op, snapped);
+            shape.object_id = id++;
+            shape.mk = op->state->mk.kind == MkKind::Void ? -1 : op->state->mk.mk;
+            if (op->state->normal_invert)
+                for (auto& p : shape.polygons)
+                    if (p.size() > 2) std::reverse(p.begin(), p.end());
+            if (!shape.polygons.empty()) file.shapes.push_back(std::move(shape));
+        }
+        if (file.shapes.empty()) return;
+        if (out.normal_dp != 0)
+        {
+            ShapeFile shown = file;
+            shown.name = stem + "_Nor" + ending;
+            shown.has_normals = true;
+            std::vector<ShapePolygons> lines = normals(file.shapes, id, out.normal_dp);
+            shown.shapes.insert(shown.shapes.begin(), std::make_move_iterator(lines.begin()),
+                                std::make_move_iterator(lines.end()));
+            keep(std::move(file));
+            file = std::move(shown);
+        }
+        keep(std::move(file));
     }
 
     /// Of two files with one name the later one counts.
@@ -269,7 +281,7 @@ private:
     }
 
     const CaseDef& def_;
-    std::vector<const DrawOp*> drawn_;
+    std::array<std::vector<const DrawOp*>, 2> kept_; ///< by form: actual, snapped
     std::vector<ShapeFile> files_;
 };
 

@@ -435,18 +435,26 @@ private:
     {
         for (ParticleBlock& block : out_.blocks)
         {
-            std::vector<std::string> names;
+            std::set<std::string> names; // sorted, each once, as GenCase v5.4.354 writes them
+            const auto add = [&](const std::string& sum)
+            {
+                for (std::size_t begin = 0; begin < sum.size();)
+                {
+                    const std::size_t end = std::min(sum.find('+', begin), sum.size());
+                    names.insert(sum.substr(begin, end - begin));
+                    begin = end + 1;
+                }
+            };
             if (block.type == ParticleType::Floating)
                 for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
                     if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) !=
                         f->mkbound.end())
                     {
-                        if (!f->property.empty()) names.push_back(f->property);
+                        add(f->property);
                         break;
                     }
-            for (const auto& [mk, name] : def_.property_links)
-                if (mk == block.mk && std::find(names.begin(), names.end(), name) == names.end())
-                    names.push_back(name);
+            for (const auto& [mk, sum] : def_.property_links)
+                if (mk == block.mk) add(sum);
             block.property = fmt::format("{}", fmt::join(names, "+"));
         }
     }
