@@ -99,7 +99,7 @@ private:
         f.distribute_mass = *f.mass_part == 0;
     }
 
-    void read_inertia(const Element& e, FloatingDef& f) const
+    void read_inertia(const Element& e, FloatingDef& f)
     {
         const Element* full = e.find_child("inertiafull");
         if (const Element* i = e.find_child("inertia"))
@@ -111,11 +111,19 @@ private:
         if (full == nullptr) return;
         std::array<Vec3, 3> rows;
         for (const Element& v : full->children)
+        {
+            if (v.kind != Element::Kind::Tag || v.name.starts_with('_')) continue;
+            if (v.name != "values")
+            {
+                warn(v, "<inertiafull>", "values");
+                continue;
+            }
             for (int row = 0; row < 3; ++row)
                 for (int column = 0; column < 3; ++column)
                     if (const auto value =
                             read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
                         rows[static_cast<std::size_t>(row)][column] = *value;
+        }
         f.inertia = rows;
     }
 
@@ -166,6 +174,7 @@ private:
             else if (file.empty())
                 out.children.push_back(value_at(c, is_force));
         }
+        remove_free_axes(out.children);
         f.extra.push_back(std::move(out));
     }
 
@@ -177,10 +186,25 @@ private:
         {
             std::string word = read_.text_or(e, axis, is_force ? "" : "none");
             for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-            if (is_force || word != "none")
-                out.set_attribute(axis, fmt::format("{}", read_.number(e, axis)));
+            out.set_attribute(axis, !is_force && word == "none"
+                                        ? word
+                                        : fmt::format("{}", read_.number(e, axis)));
         }
         return out;
+    }
+
+    /// Axes on which no entry has a number.
+    static void remove_free_axes(std::vector<Element>& entries)
+    {
+        for (const char* axis : {"x", "y", "z"})
+        {
+            const auto is_free = [&](const Element& e)
+            { return *e.find_attribute(axis) == "none"; };
+            if (!std::all_of(entries.begin(), entries.end(), is_free)) continue;
+            for (Element& e : entries)
+                std::erase_if(e.attributes,
+                              [&](const Element::Attribute& a) { return a.name == axis; });
+        }
     }
 
     const AttributeReader& read_;

@@ -12,7 +12,8 @@ namespace fppg
 ///   the two DOFs, velocities and forces are children, each once; one of the three masses is not 0
 /// - masspart 0 is massbody / n, as distributed_bodymass is
 /// - of a DOF every whole number but 0 is 1; one without a 0, and a velocity of zeros, say nothing
-/// - of a `<vel>` axes with none, and of a file beside them all `<vel>`, are left out
+/// - an axis that a `<vel>` leaves out is none; axes on which all are none are left out, and all
+///   `<vel>` beside a file
 /// - the names of a property count once each, blanks around them do not
 ///
 /// def  gives rhop0 and takes the bodies and warnings of elements that have no effect
