@@ -371,6 +371,7 @@ struct DrawOp
     /// Shared by the commands between two state changes.
     std::shared_ptr<const DrawState> state;
     DrawVariant what;
+    std::size_t call = 0; ///< number of the command that was run; its layers and parts share it
 };
 
 /// `<constantsdef>`: what the case fixes and what it leaves to the formulas.
