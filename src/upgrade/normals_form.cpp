@@ -142,7 +142,7 @@ private:
 /// which the solver of v5.4 refuses: GenCase v5.4 computes them in `<normals>`. The names inside
 /// are the same; so are the normals of planes, spheres and cylinders (four, two and two cases of
 /// 487 particles against the formulas of the old solver's source, to the rounding of single
-/// precision). A plane without mkbound selects nothing in both.
+/// precision; but see note_point()). A plane without mkbound selects nothing in both.
 class BoundNormalsUpgrade
 {
 public:
@@ -240,10 +240,31 @@ private:
             text = inner_indent + text + edited_.line_end(node.whole.end);
         }
         moved_text_ += text;
+        note_point(node);
         const TextAttribute* mk = node.find_attribute("mkbound");
         const std::string attribute = mk == nullptr ? "" : " " + edited_.part(mk->whole);
         edited_.report(node.line, fmt::format("<initialize> <{}{}>", node.name, attribute),
                        fmt::format("<normals> <{}{}>", new_name(node), attribute));
+    }
+
+    /// The old solver found the automatic point of an oblique plane from all particles of the mk,
+    /// GenCase v5.4 from those in onlypos.
+    void note_point(const TextNode& node)
+    {
+        const TextNode* point = node.find("point");
+        const TextNode* normal = node.find("normal");
+        const TextAttribute* automatic = point == nullptr ? nullptr : point->find_attribute("auto");
+        if (automatic == nullptr || !is_true(automatic->value) || normal == nullptr ||
+            node.find("onlypos") == nullptr)
+            return;
+        const auto is_zero = [](const TextAttribute& a) { return literal_number(a.value) == 0.0; };
+        if (std::count_if(normal->attributes.begin(), normal->attributes.end(),
+                          [&](const TextAttribute& a)
+                          { return a.name.size() == 1 && !is_zero(a); }) < 2)
+            return;
+        edited_.note(point->line,
+                     "<point auto>: v5.4 finds the point from the particles in "
+                     "<onlypos>, the solver before it from all of the mk");
     }
 
     /// Lines that begin with the blanks `before` begin with `after` instead.

@@ -143,6 +143,20 @@ TEST(UpgradeNormals, LeavesWhatElseTheSolverInitializes)
                    initialize(flow)));
 }
 
+TEST(UpgradeNormals, NotesAPointThatV54FindsOtherwise)
+{
+    const auto notes = [](const std::string& normal)
+    {
+        return upgrade(definition("", initialize("<boundnormal_plane mkbound=\"1\"><onlypos>"
+                                                 "<posmin x=\"1\"/></onlypos><point "
+                                                 "auto=\"true\"/><normal " +
+                                                 normal + "/></boundnormal_plane>\n")))
+            .notes.size();
+    };
+    EXPECT_EQ(notes("x=\"0\" y=\"0.1\" z=\"1\""), 1U);
+    EXPECT_EQ(notes("x=\"0\" y=\"0\" z=\"-1\""), 0U);
+}
+
 TEST(UpgradeNormals, LeavesNormalsThatV54DoesNotKnow)
 {
     expect_note(
