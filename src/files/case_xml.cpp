@@ -211,14 +211,6 @@ Element inertia_tag(const std::array<Vec3, 3>& rows)
     return out;
 }
 
-bool restricts_motion(const Element& degrees_of_freedom)
-{
-    return std::any_of(
-        degrees_of_freedom.attributes.begin(), degrees_of_freedom.attributes.end(),
-        [](const Element::Attribute& a)
-        { return a.name.size() == 1 && a.value.find_first_not_of("0.") == a.value.npos; });
-}
-
 /// The remaining children of a floating block in their fixed order.
 void add_floating_extras(const std::vector<Element>& extras, Element& out)
 {
@@ -230,22 +222,14 @@ void add_floating_extras(const std::vector<Element>& extras, Element& out)
         for (const Element& extra : extras)
         {
             if (extra.name != name) continue;
-            Element copy = extra;
-            std::erase_if(copy.attributes, [](const Element::Attribute& a)
-                          { return a.name == "comment" || a.name == "units_comment"; });
-            std::erase_if(copy.children,
-                          [](const Element& c) { return c.kind == Element::Kind::Comment; });
+            out.children.push_back(extra);
             if (!units.empty())
-                copy.set_attribute("units_comment", units);
+                out.children.back().set_attribute("units_comment", units);
             else
-            {
-                if (!restricts_motion(copy)) continue;
-                copy.set_attribute(
+                out.children.back().set_attribute(
                     "comment", fmt::format("Use 0 to restrict Degrees Of Freedom for {} "
                                            "(default=(1,1,1))",
                                            name == "translationDOF" ? "translation" : "rotation"));
-            }
-            out.children.push_back(std::move(copy));
         }
 }
 
