@@ -543,6 +543,9 @@ struct CaseDef
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
     std::vector<PointFile> point_files; ///< in the order of the file
+    /// `<fppg><offlattice hydrostatic="true" />`: fluid of `<setfrdrawmode>` has the density of its
+    /// depth, where GenCase v5.4 gives it rhop0.
+    bool hydrostatic_off_lattice = false;
     /// Drawn in place of their parts, where the last of these stands.
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file

@@ -85,8 +85,7 @@ void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
         true_body.inertia =
             f->inertia ? *f->inertia
                        : inertia_about(inertia, true_body.mass_body, center - true_body.center);
-        if (f->distribute_mass)
-            true_body.mass_part = true_body.mass_body / static_cast<double>(block.count);
+        if (f->distribute_mass) true_body.mass_part *= true_body.mass_body / body.mass_body;
         log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
                              text_of(true_body), is_wanted ? " (taken)" : ""));
         if (is_wanted) body = true_body;

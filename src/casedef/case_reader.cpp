@@ -5,7 +5,7 @@
 #include "casedef/draw_block.h"
 #include "casedef/execution.h"
 #include "casedef/fit_block.h"
-#include "casedef/floating_extra.h"
+#include "casedef/floatings.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
@@ -78,7 +78,7 @@ public:
 
         if (const Element* e = casedef.find_child("initials"))
             def_.initials = read_initials(*e, def_, read_);
-        if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
+        if (const Element* e = casedef.find_child("floatings")) read_floatings(*e, read_, def_);
         if (const Element* e = casedef.find_child("properties")) read_properties(*e);
         if (const Element* e = casedef.find_child("motion"))
             def_.motion = evaluated_motion(*e, read_);
@@ -368,95 +368,6 @@ private:
         variables_.predefine("H", def_.h);
         variables_.predefine("MassBound", def_.mass_bound);
         variables_.predefine("MassFluid", def_.mass_fluid);
-    }
-
-    /// The value of an attribute of the floating, or of its child of that name.
-    std::optional<double> floating_value(const Element& e, const char* name) const
-    {
-        if (const auto v = read_.number_if(e, name)) return v;
-        const Element* c = e.find_child(name);
-        return c != nullptr ? std::optional(read_.number(*c, "value")) : std::nullopt;
-    }
-
-    void read_floatings(const Element& list)
-    {
-        for (const Element& e : list.children)
-        {
-            if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
-            if (e.name != "floating")
-            {
-                // GenCase passes over it without a word.
-                def_.warnings.push_back(fmt::format(
-                    "{}:{}: <{}>: is not known in <floatings> and has no effect, expected "
-                    "floating",
-                    def_.file, e.line, e.name));
-                continue;
-            }
-            FloatingDef f;
-            f.line = e.line;
-            f.mkbound = read_.number_list(e, "mkbound");
-            f.property = read_.text_or(e, "property", "");
-            f.mass_body = floating_value(e, "massbody");
-            const auto rhop = floating_value(e, "rhopbody");
-            const auto weight = floating_value(e, "relativeweight");
-            if (rhop && *rhop != 0) f.rhop_body = rhop;
-            if (weight && *weight != 0)
-            {
-                if (f.rhop_body)
-                    read_.fail(
-                        e, "only one value must be defined, massbody, relativeweight or rhopbody");
-                f.rhop_body = *weight * def_.constants.rhop0;
-            }
-            if (f.mass_body && f.rhop_body)
-                read_.fail(e,
-                           "only one value must be defined, massbody, relativeweight or rhopbody");
-            if (!f.mass_body && !f.rhop_body)
-                read_.fail(e, "one value must be defined, massbody, relativeweight or rhopbody");
-            if (const Element* part = e.find_child("masspart"))
-            {
-                f.distribute_mass = read_.text(*part, "value") == "distributed_bodymass";
-                if (!f.distribute_mass) f.mass_part = read_.number(*part, "value");
-            }
-            if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
-            read_inertia(e, f);
-            read_extras(e, f);
-            def_.floatings.push_back(std::move(f));
-        }
-    }
-
-    void read_extras(const Element& e, FloatingDef& f)
-    {
-        std::set<std::string> seen;
-        static const std::set<std::string> own{"massbody", "rhopbody", "relativeweight", "masspart",
-                                               "center",   "inertia",  "inertiafull"};
-        for (const Element& c : e.children)
-        {
-            if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
-                continue;
-            if (!seen.insert(c.name).second)
-                read_.fail(c, "there are two of it in <floating>, expected one");
-            if (auto extra = floating_extra(c, read_, def_.warnings))
-                f.extra.push_back(std::move(*extra));
-        }
-    }
-
-    void read_inertia(const Element& e, FloatingDef& f) const
-    {
-        if (const Element* i = e.find_child("inertia"))
-        {
-            const Vec3 d = read_.vec3(*i);
-            f.inertia = {Vec3{d.x, 0, 0}, Vec3{0, d.y, 0}, Vec3{0, 0, d.z}};
-        }
-        const Element* full = e.find_child("inertiafull");
-        if (full == nullptr) return;
-        std::array<Vec3, 3> rows;
-        for (const Element& v : full->children)
-            for (int row = 0; row < 3; ++row)
-                for (int column = 0; column < 3; ++column)
-                    if (const auto value =
-                            read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
-                        rows[static_cast<std::size_t>(row)][column] = *value;
-        f.inertia = rows;
     }
 
     /// The file is XML; `path` leads from its root to the element whose properties are taken.
