@@ -220,15 +220,14 @@ void add_floating_extras(const std::vector<Element>& extras, Element& out)
         for (const Element& extra : extras)
         {
             if (extra.name != name) continue;
-            Element copy = extra;
+            out.children.push_back(extra);
             if (!units.empty())
-                copy.set_attribute("units_comment", units);
+                out.children.back().set_attribute("units_comment", units);
             else
-                copy.set_attribute(
+                out.children.back().set_attribute(
                     "comment", fmt::format("Use 0 to restrict Degrees Of Freedom for {} "
                                            "(default=(1,1,1))",
                                            name == "translationDOF" ? "translation" : "rotation"));
-            out.children.push_back(std::move(copy));
         }
 }
 
