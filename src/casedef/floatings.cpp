@@ -1,6 +1,7 @@
 #include "casedef/floatings.h"
 
 #include "casedef/initials.h"
+#include "casedef/properties.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +53,7 @@ private:
         FloatingDef f;
         f.line = e.line;
         f.mkbound = read_.number_list(e, "mkbound");
-        f.property = read_.text_or(e, "property", "");
+        f.properties = property_names(read_.text_or(e, "property", ""));
         read_mass(e, f);
         if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
         read_inertia(e, f);

@@ -424,20 +424,9 @@ private:
     {
         for (ParticleBlock& block : out_.blocks)
         {
-            std::set<std::string> names; // sorted, each once, as GenCase v5.4.354 writes them
-            const auto add = [&](const std::string& sum)
-            {
-                for (std::size_t begin = 0; begin < sum.size();)
-                {
-                    const std::size_t end = std::min(sum.find('+', begin), sum.size());
-                    names.insert(sum.substr(begin, end - begin));
-                    begin = end + 1;
-                }
-            };
-            if (block.type == ParticleType::Floating)
-                if (const FloatingDef* f = floating_of(block)) add(f->property);
-            for (const auto& [mk, sum] : def_.property_links)
-                if (mk == block.mk) add(sum);
+            std::set<std::string> names;
+            for (const auto& [mk, name] : def_.property_links)
+                if (mk == block.mk) names.insert(name);
             block.property = fmt::format("{}", fmt::join(names, "+"));
         }
     }
