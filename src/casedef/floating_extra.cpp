@@ -61,6 +61,17 @@ Element table_row(const Element& given, const AttributeReader& read, bool may_le
     return out;
 }
 
+/// Axes on which no row has a number.
+void remove_free_axes(std::vector<Element>& rows)
+{
+    for (const std::string axis : axes)
+        if (std::all_of(rows.begin(), rows.end(),
+                        [&](const Element& row) { return *row.find_attribute(axis) == "none"; }))
+            for (Element& row : rows)
+                std::erase_if(row.attributes,
+                              [&](const Element::Attribute& a) { return a.name == axis; });
+}
+
 Element table(const Element& given, const AttributeReader& read, std::vector<std::string>& warnings)
 {
     Element out = named(given.name);
@@ -78,6 +89,7 @@ Element table(const Element& given, const AttributeReader& read, std::vector<std
                 "{}:{}: <{}> in <{}> has no effect, expected {}", read.file(), c.line, c.name,
                 given.name, file.empty() ? fmt::format("<{}>", row) : "none beside a file"));
     }
+    remove_free_axes(out.children);
     return out;
 }
 
