@@ -1,13 +1,11 @@
 #include "casedef/floatings.h"
 
-#include "casedef/initials.h"
+#include "casedef/floating_extra.h"
 #include "casedef/properties.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <climits>
+#include <set>
 #include <string_view>
 
 namespace fppg
@@ -43,13 +41,7 @@ private:
 
     FloatingDef read_floating(const Element& e)
     {
-        static const std::vector<std::string_view> known{
-            "massbody",       "masspart",    "center",       "inertia",       "inertiafull",
-            "translationDOF", "rotationDOF", "linearvelini", "angularvelini", "linearvel",
-            "angularvel",     "linearforce", "angularforce"};
-        require_known_children(e, known, read_);
-        for (const std::string_view name : known) require_once(e, name);
-
+        require_each_once(e);
         FloatingDef f;
         f.line = e.line;
         f.mkbound = read_.number_list(e, "mkbound");
@@ -57,24 +49,28 @@ private:
         read_mass(e, f);
         if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
         read_inertia(e, f);
-        for (const char* name : {"translationDOF", "rotationDOF"})
-            if (const Element* c = e.find_child(name)) add_freedom(*c, f);
-        for (const char* name : {"linearvelini", "angularvelini"})
-            if (const Element* c = e.find_child(name)) add_velocity(*c, f);
-        for (const char* name : {"linearvel", "angularvel", "linearforce", "angularforce"})
-            if (const Element* c = e.find_child(name)) add_course(*c, f);
+        for (const Element& c : e.children)
+            if (is_extra(c))
+                if (auto extra = floating_extra(c, read_, def_.warnings))
+                    f.extra.push_back(std::move(*extra));
         return f;
     }
 
-    void require_once(const Element& e, std::string_view name) const
+    /// Whether floating_extra() reads it.
+    static bool is_extra(const Element& c)
     {
-        const auto is_it = [&](const Element& c)
-        { return c.kind == Element::Kind::Tag && c.name == name; };
-        const auto first = std::find_if(e.children.begin(), e.children.end(), is_it);
-        if (first == e.children.end()) return;
-        const auto second = std::find_if(first + 1, e.children.end(), is_it);
-        if (second != e.children.end())
-            read_.fail(*second, "is given twice in <floating>, expected once");
+        static const std::set<std::string_view> own{"massbody", "masspart", "center", "inertia",
+                                                    "inertiafull"};
+        return c.kind == Element::Kind::Tag && !c.name.starts_with('_') && !own.contains(c.name);
+    }
+
+    void require_each_once(const Element& e) const
+    {
+        std::set<std::string> seen;
+        for (const Element& c : e.children)
+            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') &&
+                !seen.insert(c.name).second)
+                read_.fail(c, "there are two of it in <floating>, expected one");
     }
 
     void read_mass(const Element& e, FloatingDef& f) const
@@ -126,86 +122,6 @@ private:
                         rows[static_cast<std::size_t>(row)][column] = *value;
         }
         f.inertia = rows;
-    }
-
-    static Element copy_of(const Element& e)
-    {
-        Element out;
-        out.name = e.name;
-        out.line = e.line;
-        return out;
-    }
-
-    void add_freedom(const Element& e, FloatingDef& f) const
-    {
-        Element out = copy_of(e);
-        bool is_held = false;
-        for (const char* axis : {"x", "y", "z"})
-        {
-            const int free = read_.integer(e, axis, INT_MIN, INT_MAX, true);
-            is_held = is_held || free == 0;
-            out.set_attribute(axis, free == 0 ? "0" : "1");
-        }
-        if (is_held) f.extra.push_back(std::move(out));
-    }
-
-    void add_velocity(const Element& e, FloatingDef& f) const
-    {
-        const Vec3 v = read_.vec3(e);
-        if (v == Vec3{}) return;
-        Element out = copy_of(e);
-        for (int axis = 0; axis < 3; ++axis)
-            out.set_attribute(std::string(1, "xyz"[axis]), fmt::format("{}", v[axis]));
-        f.extra.push_back(std::move(out));
-    }
-
-    /// A velocity or force over time, from a file or from children.
-    void add_course(const Element& e, FloatingDef& f)
-    {
-        Element out = copy_of(e);
-        const std::string file = read_.text_or(e, "file", "");
-        const bool is_force = e.name.ends_with("force");
-        const char* child = is_force ? "force" : "vel";
-        if (!file.empty()) out.set_attribute("file", file);
-        for (const Element& c : e.children)
-        {
-            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
-            if (c.name != child)
-                warn(c, fmt::format("<{}>", e.name).c_str(), child);
-            else if (file.empty())
-                out.children.push_back(value_at(c, is_force));
-        }
-        remove_free_axes(out.children);
-        f.extra.push_back(std::move(out));
-    }
-
-    Element value_at(const Element& e, bool is_force) const
-    {
-        Element out = copy_of(e);
-        out.set_attribute("time", fmt::format("{}", read_.number(e, "time")));
-        for (const char* axis : {"x", "y", "z"})
-        {
-            std::string word = read_.text_or(e, axis, is_force ? "" : "none");
-            for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-            out.set_attribute(axis, !is_force && word == "none"
-                                        ? word
-                                        : fmt::format("{}", read_.number(e, axis)));
-        }
-        return out;
-    }
-
-    /// Axes on which no entry has a number.
-    static void remove_free_axes(std::vector<Element>& entries)
-    {
-        for (const char* axis : {"x", "y", "z"})
-        {
-            const auto is_free = [&](const Element& e)
-            { return *e.find_attribute(axis) == "none"; };
-            if (!std::all_of(entries.begin(), entries.end(), is_free)) continue;
-            for (Element& e : entries)
-                std::erase_if(e.attributes,
-                              [&](const Element::Attribute& a) { return a.name == axis; });
-        }
     }
 
     const AttributeReader& read_;

@@ -11,10 +11,6 @@ namespace fppg
 /// - rhopbody and relativeweight are attributes, massbody, masspart, center, inertia, inertiafull,
 ///   the two DOFs, velocities and forces are children, each once; one of the three masses is not 0
 /// - masspart 0 is massbody / n, as distributed_bodymass is
-/// - of a DOF every whole number but 0 is 1; one without a 0, and a velocity of zeros, say nothing
-/// - an axis that a `<vel>` leaves out is none; axes on which all are none are left out, and all
-///   `<vel>` beside a file
-/// - the names of a property count once each, blanks around them do not
 ///
 /// def  gives rhop0 and takes the bodies and warnings of elements that have no effect
 /// throws CaseError for what GenCase refuses: elements that are not known, missing values
