@@ -177,8 +177,12 @@ private:
 
     void read_mk_config(const Element& e)
     {
-        def_.mkbound_count = read_.integer(e, "boundcount", 0, 60000, false);
+        def_.mkbound_count = read_.integer(e, "boundcount", 0, 65520, false);
         def_.mkfluid_count = read_.integer(e, "fluidcount", 0, 5000, false);
+        if (def_.mkbound_count + def_.mkfluid_count > 65530)
+            read_.fail(e, fmt::format("boundcount and fluidcount are {} together, expected at "
+                                      "most 65530",
+                                      def_.mkbound_count + def_.mkfluid_count));
         def_.mk_fluid_first = 1;
         def_.mk_bound_first = static_cast<std::uint16_t>(def_.mkfluid_count + 1);
         for (const Element& o : e.children)
@@ -370,47 +374,45 @@ private:
         variables_.predefine("MassFluid", def_.mass_fluid);
     }
 
-}
-
     /// The files that the solver reads, for the copy beside the result: those of motions, of the
     /// velocities and forces of floatings, of properties, and mesh data as text.
     void note_data_files(const Element& e)
-{
-    for (const char* section : {"motion", "floatings", "properties", "initials"})
-        if (const Element* found = e.find_child(section)) note_files_in(*found);
-}
-
-void note_files_in(const Element& e)
-{
-    for (const Element& c : e.children)
     {
-        if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
-        const std::string name = read_.text_or(c, c.name == "file" ? "name" : "file", "");
-        const bool is_binary = c.name == "meshdata" && !name.ends_with(".csv");
-        if (!name.empty() && !is_binary &&
-            std::none_of(def_.data_files.begin(), def_.data_files.end(),
-                         [&](const DataFileUse& use) { return use.name == name; }))
-            def_.data_files.push_back({name, c.line});
-        note_files_in(c);
+        for (const char* section : {"motion", "floatings", "properties", "initials"})
+            if (const Element* found = e.find_child(section)) note_files_in(*found);
     }
-}
 
-/// The copy of the definition shows the values that -evars gave.
-void apply_overrides(Element& e) const
-{
-    if (e.name == "newvarcte" || e.name == "newvarstrcte")
-        for (Element::Attribute& a : e.attributes)
-            for (const auto& [name, value] : options_.evars)
-                if (a.name == name) a.value = value;
-    for (Element& c : e.children) apply_overrides(c);
-}
+    void note_files_in(const Element& e)
+    {
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+            const std::string name = read_.text_or(c, c.name == "file" ? "name" : "file", "");
+            const bool is_binary = c.name == "meshdata" && !name.ends_with(".csv");
+            if (!name.empty() && !is_binary &&
+                std::none_of(def_.data_files.begin(), def_.data_files.end(),
+                             [&](const DataFileUse& use) { return use.name == name; }))
+                def_.data_files.push_back({name, c.line});
+            note_files_in(c);
+        }
+    }
 
-CaseOptions options_;
-CaseDef def_;
-Vec3 pointref_;
-Variables variables_;
-AttributeReader read_;
-VariableCommands commands_;
+    /// The copy of the definition shows the values that -evars gave.
+    void apply_overrides(Element& e) const
+    {
+        if (e.name == "newvarcte" || e.name == "newvarstrcte")
+            for (Element::Attribute& a : e.attributes)
+                for (const auto& [name, value] : options_.evars)
+                    if (a.name == name) a.value = value;
+        for (Element& c : e.children) apply_overrides(c);
+    }
+
+    CaseOptions options_;
+    CaseDef def_;
+    Vec3 pointref_;
+    Variables variables_;
+    AttributeReader read_;
+    VariableCommands commands_;
 };
 
 } // namespace

@@ -36,10 +36,11 @@ void evaluate_parameters(Element& parameters, const AttributeReader& read)
         if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
         if (e.name == "parameter")
         {
-            read.text(e, "key");
-            read.text(e, "value");
-            for (Element::Attribute& a : e.attributes)
-                if (a.name == "key" || a.name == "value") a.value = read.evaluated(e, a.name);
+            // "#Name" is a parameter that is switched off.
+            const std::string key = read.text(e, "key");
+            const std::string value = read.evaluated(e, "value");
+            e.set_attribute("key", key);
+            e.set_attribute("value", value);
         }
         else if (e.name == "simulationdomain" && !has_domain)
         {

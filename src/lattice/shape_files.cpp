@@ -147,7 +147,7 @@ private:
 
     const CaseDef& def_;
     std::array<std::vector<const DrawOp*>, 2> kept_; ///< by form: actual, snapped
-    std::size_t call_ = 0; ///< of the cells that were added last
+    std::size_t call_ = 0;                           ///< of the cells that were added last
     std::vector<ShapeFile> files_;
 };
 
