@@ -73,7 +73,7 @@ private:
                 read_.fail(c, "there are two of it in <floating>, expected one");
     }
 
-    void read_mass(const Element& e, FloatingDef& f) const
+    void read_mass(const Element& e, FloatingDef& f)
     {
         const Element* body = e.find_child("massbody");
         const double mass = body != nullptr ? read_.number(*body, "value") : 0;
@@ -84,10 +84,16 @@ private:
             read_.fail(e, fmt::format("{} must be defined, the child <massbody> or the attribute "
                                       "relativeweight or rhopbody",
                                       values == 0 ? "one value that is not 0" : "only one value"));
+        const double rhop0 = def_.constants.rhop0;
         if (mass != 0)
             f.mass_body = mass;
         else
-            f.rhop_body = rhop != 0 ? rhop : weight * def_.constants.rhop0;
+            f.rhop_body = (rhop != 0 ? rhop / 1000 : weight) * rhop0;
+        if (rhop != 0 && rhop0 != 1000)
+            def_.warnings.push_back(fmt::format(
+                "{}:{}: <floating>: rhopbody=\"{:g}\" gives {:g} kg/m^3, as GenCase makes it "
+                "rhopbody / 1000 * rhop0; relativeweight=\"{:g}\" gives {:g}",
+                def_.file, e.line, rhop, *f.rhop_body, rhop / rhop0, rhop));
         const Element* part = e.find_child("masspart");
         if (part == nullptr) return;
         f.distribute_mass = read_.text(*part, "value") == "distributed_bodymass";
