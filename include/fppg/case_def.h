@@ -371,6 +371,7 @@ struct DrawOp
     /// Shared by the commands between two state changes.
     std::shared_ptr<const DrawState> state;
     DrawVariant what;
+    std::size_t call = 0; ///< number of the command that was run; its layers and parts share it
 };
 
 /// `<constantsdef>`: what the case fixes and what it leaves to the formulas.
@@ -415,8 +416,8 @@ struct FloatingDef
     bool distribute_mass = false; ///< masspart = massbody / n
     std::optional<Vec3> center;
     std::optional<std::array<Vec3, 3>> inertia;
-    std::string property;
-    std::vector<Element> extra; ///< translationDOF and the like, for Case.xml
+    std::vector<std::string> properties; ///< names, each once
+    std::vector<Element> extra;          ///< translationDOF and the like, for Case.xml
 };
 
 /// How the particles of a fitted wall and those near it are evened out: `<relax>`.
@@ -553,7 +554,7 @@ struct CaseDef
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
-    std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
+    std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, one name
     Element properties;             ///< `<properties>` of the definition, or empty name
     Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound
     std::vector<Element> execution; ///< children of `<execution>` that Case.xml takes over

@@ -184,14 +184,10 @@ private:
         stage("LoadXMLInit",
               [&]
               {
-                  CaseOptions case_options;
-                  case_options.fit = options_.fit;
-                  case_options.dp = options_.dp;
-                  case_options.evars = options_.evars;
-                  case_options.case_name = fs::path(options_.output).filename().string();
-                  case_options.vres = vres;
-                  case_options.zone = zone;
-                  def_ = read_case(options_.input + ".xml", case_options);
+                  CaseOptions of_zone = case_options(options_);
+                  of_zone.vres = vres;
+                  of_zone.zone = zone;
+                  def_ = read_case(options_.input + ".xml", of_zone);
                   output_ =
                       def_.vres.is_active() ? zone_name(options_.output, zone) : options_.output;
                   if (def_.vres.is_active())

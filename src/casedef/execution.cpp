@@ -12,17 +12,9 @@ namespace fppg
 namespace
 {
 
-void evaluate(Element& e, Element::Attribute& a, const AttributeReader& read)
-{
-    if (a.value.starts_with('#'))
-        a.value = fmt::format("{}", read.number(e, a.name));
-    else if (a.value.starts_with('$'))
-        a.value = read.interpolated(e, a.value.substr(1));
-}
-
 void evaluate_all(Element& e, const AttributeReader& read)
 {
-    for (Element::Attribute& a : e.attributes) evaluate(e, a, read);
+    for (Element::Attribute& a : e.attributes) a.value = read.evaluated(e, a.name);
     for (Element& child : e.children)
         if (child.kind == Element::Kind::Tag) evaluate_all(child, read);
 }
@@ -44,10 +36,11 @@ void evaluate_parameters(Element& parameters, const AttributeReader& read)
         if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
         if (e.name == "parameter")
         {
-            read.text(e, "key");
-            read.text(e, "value");
-            for (Element::Attribute& a : e.attributes)
-                if (a.name == "value") evaluate(e, a, read);
+            // "#Name" is a parameter that is switched off.
+            const std::string key = read.text(e, "key");
+            const std::string value = read.evaluated(e, "value");
+            e.set_attribute("key", key);
+            e.set_attribute("value", value);
         }
         else if (e.name == "simulationdomain" && !has_domain)
         {
@@ -64,9 +57,9 @@ void evaluate_parameters(Element& parameters, const AttributeReader& read)
 
 Element* first_of(std::vector<Element>& elements, std::string_view name)
 {
-    const auto found =
-        std::find_if(elements.begin(), elements.end(), [&](const Element& e)
-                     { return e.kind == Element::Kind::Tag && e.name == name; });
+    const auto found = std::find_if(elements.begin(), elements.end(),
+                                    [&](const Element& e)
+                                    { return e.kind == Element::Kind::Tag && e.name == name; });
     return found == elements.end() ? nullptr : &*found;
 }
 

@@ -10,10 +10,8 @@ namespace fppg
 /// Reads `<floatings>` as GenCase v5.4.354 does (found by 80 small definitions):
 /// - rhopbody and relativeweight are attributes, massbody, masspart, center, inertia, inertiafull,
 ///   the two DOFs, velocities and forces are children, each once; one of the three masses is not 0
+/// - rhopbody is 1000 times a relativeweight, whatever rhop0 is: with a warning where that differs
 /// - masspart 0 is massbody / n, as distributed_bodymass is
-/// - of a DOF every whole number but 0 is 1; one without a 0, and a velocity of zeros, say nothing
-/// - axes that a `<vel>` leaves out have none; beside a file all `<vel>` are left out
-/// - the names of a property count once each, blanks around them do not
 ///
 /// def  gives rhop0 and takes the bodies and warnings of elements that have no effect
 /// throws CaseError for what GenCase refuses: elements that are not known, missing values

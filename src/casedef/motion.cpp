@@ -153,11 +153,7 @@ Element evaluated_element(const Element& source, const AttributeReader& read)
     out.name = source.name;
     out.line = source.line;
     for (const Element::Attribute& a : source.attributes)
-    {
-        out.attributes.push_back({a.name, a.value.starts_with('#')
-                                              ? fmt::format("{}", read.number(source, a.name))
-                                              : a.value});
-    }
+        out.attributes.push_back({a.name, read.evaluated(source, a.name)});
     for (const Element& c : source.children)
         if (c.kind == Element::Kind::Tag && !c.name.starts_with('_'))
             out.children.push_back(evaluated_element(c, read));

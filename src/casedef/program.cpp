@@ -142,7 +142,8 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
     const std::string* name = e.find_attribute("fppg:name");
     def_.ops.push_back({{e.line, e.name, name != nullptr ? read_.interpolated(e, *name) : ""},
                         shared_state_,
-                        std::move(what)});
+                        std::move(what),
+                        commands_run_});
 }
 
 std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp& op) const

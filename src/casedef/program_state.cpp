@@ -214,9 +214,8 @@ bool ProgramRunner::run_state_command(const Element& e)
                                                {"void", 4},
                                                {"bound", 8},
                                                {"fluid", 16}});
-        state_.shape_mode = {(bits & 1) != 0,
-                             (bits & 2) != 0,
-                             {(bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0}};
+        state_.shape_mode = {
+            (bits & 1) != 0, (bits & 2) != 0, {(bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0}};
     }
     else
         return false;

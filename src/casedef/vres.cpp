@@ -158,9 +158,8 @@ private:
                 const Element* c = e.find_child(limit);
                 const std::string text =
                     c != nullptr ? read_.text_or(*c, axis, "default") : "default";
-                zone.simulation_domain.push_back(
-                    domain_limit(read_, c != nullptr ? *c : e, text,
-                                 limit == std::string_view("posmin")));
+                zone.simulation_domain.push_back(domain_limit(read_, c != nullptr ? *c : e, text,
+                                                              limit == std::string_view("posmin")));
             }
     }
 

@@ -1,5 +1,6 @@
 // Shape files in the formats other than legacy VTK, and files of points.
 
+#include "files/corner_numbers.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
@@ -50,34 +51,27 @@ std::uint8_t cell_type(std::size_t corners)
 Cells cells_of(const std::vector<ShapePolygons>& shapes)
 {
     Cells out;
-    for (const ShapePolygons& shape : shapes)
-    {
-        for (const Vec3& v : shape.vertices)
-            for (int axis = 0; axis < 3; ++axis) append(out.points, static_cast<float>(v[axis]));
-        out.n_points += shape.vertices.size();
-    }
-    constexpr std::array<std::size_t, 4> sizes{1, 2, 3, std::numeric_limits<std::size_t>::max()};
+    const CornerNumbers corners = number_corners(shapes);
+    out.n_points = corners.places.size();
+    for (const std::array<float, 3>& place : corners.places)
+        for (const float coordinate : place) append(out.points, coordinate);
     for (std::size_t kind = 0; kind < 3; ++kind)
     {
         Cells::Part& part = out.parts[kind];
-        std::int32_t first = 0;
-        for (const ShapePolygons& shape : shapes)
-        {
-            for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+        for (std::size_t s = 0; s < shapes.size(); ++s)
+            for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
             {
-                const std::size_t n = polygon.size();
-                if (n < sizes[kind] || (kind < 2 && n > sizes[kind])) continue;
-                for (const std::uint32_t v : polygon)
-                    append(part.connectivity, first + static_cast<std::int32_t>(v));
+                const std::size_t n = cell.size();
+                if (cell_kind(n) != kind) continue;
+                for (const std::uint32_t v : cell)
+                    append(part.connectivity, static_cast<std::int32_t>(corners.numbers[s][v]));
                 part.end += static_cast<std::int32_t>(n);
                 append(part.offsets, part.end);
                 part.types += static_cast<char>(cell_type(n));
                 ++part.cells;
-                append(out.mk, static_cast<std::int32_t>(shape.mk));
-                append(out.object_id, static_cast<std::int32_t>(shape.object_id));
+                append(out.mk, static_cast<std::int32_t>(shapes[s].mk));
+                append(out.object_id, static_cast<std::int32_t>(shapes[s].object_id));
             }
-            first += static_cast<std::int32_t>(shape.vertices.size());
-        }
     }
     return out;
 }

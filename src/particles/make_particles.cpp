@@ -420,46 +420,13 @@ private:
         return nullptr;
     }
 
-    /// Names of a sum "A + B", each once and sorted, as GenCase v5.4.354 writes them.
-    static void add_names(const std::string& sum, std::set<std::string>& names)
-    {
-        for (std::size_t begin = 0; begin <= sum.size();)
-        {
-            const std::size_t end = std::min(sum.find('+', begin), sum.size());
-            std::string name = sum.substr(begin, end - begin);
-            name.erase(0, name.find_first_not_of(" \t"));
-            name.erase(name.find_last_not_of(" \t") + 1);
-            if (!name.empty()) names.insert(name);
-            begin = end + 1;
-        }
-    }
-
-    /// throws CaseError for a property of a floating body that nothing defines
-    void require_property(const FloatingDef& f, const std::string& name) const
-    {
-        const std::vector<Element>& all = def_.properties.children;
-        if (std::none_of(all.begin(), all.end(),
-                         [&](const Element& p)
-                         { return p.name == "property" && *p.find_attribute("name") == name; }))
-            throw CaseError(def_.file, f.line,
-                            fmt::format("<floating>: there is no property named \"{}\"; expected a "
-                                        "<property name=\"{}\"> in <properties> or its files",
-                                        name, name));
-    }
-
     void set_properties()
     {
         for (ParticleBlock& block : out_.blocks)
         {
             std::set<std::string> names;
-            if (block.type == ParticleType::Floating)
-                if (const FloatingDef* f = floating_of(block))
-                {
-                    add_names(f->property, names);
-                    for (const std::string& name : names) require_property(*f, name);
-                }
-            for (const auto& [mk, sum] : def_.property_links)
-                if (mk == block.mk) add_names(sum, names);
+            for (const auto& [mk, name] : def_.property_links)
+                if (mk == block.mk) names.insert(name);
             block.property = fmt::format("{}", fmt::join(names, "+"));
         }
     }

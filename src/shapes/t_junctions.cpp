@@ -55,7 +55,11 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, int threads)
                     const Vec3 along = mesh.vertices[to] - mesh.vertices[from];
                     const Vec3 away = p - mesh.vertices[from];
                     const double share = dot(away, along) / dot(along, along);
-                    if (!(share > 0 && share < 1) || norm(away - share * along) > room[k]) return;
+                    // At an end it is no junction: a piece between them would have no area.
+                    const double least = room[k] / norm(along);
+                    if (!(share > least && share < 1 - least) ||
+                        norm(away - share * along) > room[k])
+                        return;
                     found[i].push_back({open[k], ends[i], share});
                 });
         },

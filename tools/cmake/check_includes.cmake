@@ -26,7 +26,9 @@ set(compare_may_see report files casedef particles shapes core)
 set(batch_may_see report lattice files casedef shapes particles core)
 # What the solver made of a case, against the true shapes of its draws.
 set(leak_may_see lattice files casedef shapes particles core)
-set(app_may_see leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
+# The text of a definition, in newer forms.
+set(upgrade_may_see core)
+set(app_may_see upgrade leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
