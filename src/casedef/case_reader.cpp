@@ -84,6 +84,8 @@ public:
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
+        for (const char* section : {"floatings", "properties", "motion"})
+            if (const Element* e = casedef.find_child(section)) warn_of_conditions(*e, section);
         note_data_files(casedef);
         read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
@@ -394,6 +396,21 @@ private:
                              [&](const DataFileUse& use) { return use.name == name; }))
                 def_.data_files.push_back({name, c.line});
             note_files_in(c);
+        }
+    }
+
+    /// In these sections GenCase passes over `if` without a word.
+    void warn_of_conditions(const Element& e, const char* section)
+    {
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+            if (c.find_attribute("if") != nullptr)
+                def_.warnings.push_back(
+                    fmt::format("{}:{}: <{}>: attribute if has no effect in <{}>, expected _{} for "
+                                "an element that does not count",
+                                def_.file, c.line, c.name, section, c.name));
+            warn_of_conditions(c, section);
         }
     }
 

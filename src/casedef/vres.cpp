@@ -129,7 +129,7 @@ private:
         if (const Element* extra = e.find_child("extra")) zone.extra = copied(*extra);
     }
 
-    /// Elements and attributes without those of an underscore.
+    /// Elements and attributes without those of an underscore, comments and texts.
     static std::vector<Element> copied(const Element& e)
     {
         std::vector<Element> out;
@@ -137,6 +137,8 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
             Element copy = c;
+            copy.text.clear();
+            copy.tail.clear();
             std::erase_if(copy.attributes,
                           [](const Element::Attribute& a) { return a.name.starts_with('_'); });
             copy.children = copied(c);

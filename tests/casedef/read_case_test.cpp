@@ -635,8 +635,8 @@ TEST(State, KnowsTheOldNameOfActualShapesAndSumsOfShapeModes)
     {
         const CaseDef def =
             run("<setshapemode>" + words + R"(</setshapemode><shapeout file="a" />)");
-        const auto& op = std::get<ShapeOutOp>(def.ops.back().what);
-        return std::tuple(op.actual, op.snapped, op.kinds);
+        const ShapeMode& mode = def.ops.back().state->shape_mode;
+        return std::tuple(mode.actual, mode.snapped, mode.kinds);
     };
     using Kinds = std::array<bool, 3>; // void, bound, fluid
     EXPECT_EQ(shown("real | bound"), std::tuple(true, false, Kinds{false, true, false}));
