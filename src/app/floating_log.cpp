@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fppg
 {
@@ -16,7 +17,12 @@ namespace
 
 std::string text_of(const FloatingBody& body)
 {
-    const auto& i = body.inertia;
+    // Rounding off the diagonal is not shown.
+    std::array<Vec3, 3> i = body.inertia;
+    const double least = 1e-12 * (std::fabs(i[0].x) + std::fabs(i[1].y) + std::fabs(i[2].z));
+    for (Vec3& row : i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::fabs(row[axis]) < least) row[axis] = 0;
     return fmt::format(
         "mass {:.9g} kg, centre ({:.9g}, {:.9g}, {:.9g}) m, inertia xx yy zz "
         "({:.9g}, {:.9g}, {:.9g}) xy xz yz ({:.9g}, {:.9g}, {:.9g}) kg*m^2",

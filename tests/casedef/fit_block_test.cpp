@@ -296,7 +296,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Mistake{"UnknownElement", "<fppg><bodyfit /></fppg>",
                 "<bodyfit>: is not known in <fppg>, expected bodyfitted, boolean, fluidband, fill, "
-                "floatings, points"},
+                "floatings, offlattice, points"},
+        Mistake{"UnknownInOfflattice", R"(<fppg><offlattice hydrostatics="1" /></fppg>)",
+                "<offlattice>: attribute hydrostatics=\"1\" is not known, expected hydrostatic"},
         Mistake{
             "UnknownAttribute", R"(<fppg><bodyfitted angle="30" /></fppg>)",
             "<bodyfitted>: attribute angle=\"30\" is not known, expected mkbound, featureangle,"},

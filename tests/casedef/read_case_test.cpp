@@ -294,24 +294,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "<casedef>: the element <mkconfig> is missing in it"},
         Mistake{"MissingParameters", [](CaseText& text) { text.execution = ""; },
                 "<case>: the element <execution><parameters> is missing in it"},
-        Mistake{"FloatingWithoutMass",
-                [](CaseText& text)
-                { text.after_geometry = R"(<floatings><floating mkbound="0" /></floatings>)"; },
-                "<floating>: one value must be defined, massbody, relativeweight or rhopbody"},
-        Mistake{
-            "FloatingWithTwoMasses",
-            [](CaseText& text)
-            {
-                text.after_geometry =
-                    R"(<floatings><floating mkbound="0" massbody="1" rhopbody="2" /></floatings>)";
-            },
-            "<floating>: only one value must be defined"},
-        Mistake{"BadFloatingList",
-                [](CaseText& text) {
-                    text.after_geometry =
-                        R"(<floatings><floating mkbound="2-1" rhopbody="2" /></floatings>)";
-                },
-                "<floating>: attribute mkbound=\"2-1\" is not a list of whole numbers"},
         Mistake{"UnknownMotion",
                 [](CaseText& text) {
                     text.after_geometry =
