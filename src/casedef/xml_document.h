@@ -7,11 +7,12 @@
 namespace fppg
 {
 
-/// Reads an XML file into a plain tree, as GenCase v5.4 does: runs of blanks in texts become one, and
-/// a byte order mark, blanks and comments may stand before `<?xml` (DesignSPHysics writes a comment
-/// there). A file that is not UTF-8 is taken as Latin-1. The declaration is not kept.
+/// Reads an XML file into a plain tree, as GenCase v5.4 does: runs of blanks in texts become one,
+/// and a byte order mark, blanks and comments may stand before `<?xml` (DesignSPHysics writes a
+/// comment there). A file that is not UTF-8 is taken as Latin-1. The declaration is not kept.
 ///
-/// returns  an element without a name; its children are the root, whatever its name, and what stands
+/// returns  an element without a name; its children are the root, whatever its name, and what
+/// stands
 ///          around it
 /// throws   IoError if the file cannot be read; CaseError with the line where the XML breaks, or if
 ///          there is no root

@@ -81,7 +81,8 @@ const std::vector<KeptChild>& children_of(const std::string& movement)
     const KeptChild turn_ini{"velini", ang, "ANGLES/s"};
     const KeptChild intrinsic{"intrinsic", {{"value", "false"}}};
     const KeptChild axes{"axes", {{"value", "XYZ"}}};
-    const auto sinus = [](const Attributes& values, const char* length) {
+    const auto sinus = [](const Attributes& values, const char* length)
+    {
         return Children{
             {"freq", values, "1/s"}, {"ampl", values, length}, {"phase", values, "ANGLES"}};
     };
@@ -166,8 +167,8 @@ std::optional<Element> case_child(const KeptChild& kept, const Element* given,
 Element case_movement(const Element& movement)
 {
     Element out;
-    out.name = movement.name == "mvpredef" || movement.name == "mvfile" ? "mvrectfile"
-                                                                         : movement.name;
+    out.name =
+        movement.name == "mvpredef" || movement.name == "mvfile" ? "mvrectfile" : movement.name;
     for (const char* name : {"id", "duration", "next"})
         if (const std::string* value = movement.find_attribute(name);
             value != nullptr && (name != std::string_view("next") || *value != "0"))
