@@ -75,10 +75,10 @@ void remove_free_axes(std::vector<Element>& rows)
 Element table(const Element& given, const AttributeReader& read, std::vector<std::string>& warnings)
 {
     Element out = named(given.name);
-    const std::string file = read.interpolated(given, read.text_or(given, "file", ""));
+    const std::string file = read.text_or(given, "file", "");
     const bool is_velocity = given.name.ends_with("vel");
     const char* row = is_velocity ? "vel" : "force";
-    if (!file.empty()) out.set_attribute("file", file.starts_with('$') ? file.substr(1) : file);
+    if (!file.empty()) out.set_attribute("file", file);
     for (const Element& c : given.children)
     {
         if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
