@@ -46,13 +46,13 @@ private:
         f.line = e.line;
         f.mkbound = read_.number_list(e, "mkbound");
         f.properties = property_names(read_.text_or(e, "property", ""));
-        read_mass(e, f);
-        if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
-        read_inertia(e, f);
         for (const Element& c : e.children)
             if (is_extra(c))
                 if (auto extra = floating_extra(c, read_, def_.warnings))
                     f.extra.push_back(std::move(*extra));
+        read_mass(e, f);
+        if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
+        read_inertia(e, f);
         return f;
     }
 

@@ -384,7 +384,7 @@ std::vector<Vec3> water_points(double offset, double noise)
 {
     std::vector<Vec3> out;
     std::mt19937 dice(3);
-    const auto any = [&] { return noise * (dice() / 2147483648.0 - 1); };
+    const auto any = [&] { return noise * (static_cast<double>(dice()) / 2147483648.0 - 1); };
     for (int x = 0; x < 6; ++x)
         for (int y = 0; y < 6; ++y)
             for (int z = 0; z < 20; ++z)
@@ -473,7 +473,7 @@ TEST(PointsOfACase, StandOnTheWaterOfTheLattice)
     write_text(folder / "p.csv", csv_of(points));
     CaseText text;
     text.pointmax = R"(<pointmax x="1.5" y="1.5" z="3" />)";
-    text.mainlist = R"(<setmkfluid mk="1" />)" +
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkfluid mk="1" />)" +
                     box_command(R"(x="0" y="0" z="0")", R"(x="0.5" y="0.5" z="0.5")");
     text.after_geometry = R"(<fppg><points file="p.csv" mkfluid="0" /></fppg>)";
     const RunResult result = run_case(folder, text);
