@@ -657,15 +657,16 @@ TEST(Special, HasItsExpressionsReplacedForTheSolver)
     CaseText text;
     text.mainlist = R"(<newvarcte depth="0.5" /><newvarstrcte m="abc" />)";
     text.execution =
-        R"(<special><a v="#depth*2" comment="# of a"><b w="$x[m]" x="[m]" /><_c y="#nothing" /></a></special>
+        R"(<special><a v="#depth*2" comment="#depth"><b w="$x[m]" x="[m]" /><_c y="# depth " /></a></special>
 <parameters><parameter key="TimeMax" value="$1[depth]" /><parameter key="#Off" value="#depth" /></parameters>)";
     const CaseDef def = read(text);
     const Element& a = *def.execution.at(0).find_child("a");
     EXPECT_EQ(*a.find_attribute("v"), "1");
-    EXPECT_EQ(*a.find_attribute("comment"), "# of a");
     EXPECT_EQ(*a.find_child("b")->find_attribute("w"), "xabc");
     EXPECT_EQ(*a.find_child("b")->find_attribute("x"), "[m]");
-    EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "#nothing");
+    // Comments and elements that do not count too.
+    EXPECT_EQ(*a.find_attribute("comment"), "0.5");
+    EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "0.5");
     EXPECT_EQ(*def.execution.at(1).find_child("parameter")->find_attribute("value"), "10.5");
     const Element& off = def.execution.at(1).children.at(1);
     EXPECT_EQ(*off.find_attribute("key"), "#Off");
