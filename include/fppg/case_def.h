@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/boolean.h"
+#include "fppg/box_picture.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/initials.h"
@@ -179,7 +180,8 @@ struct SphereOp
 {
     Vec3 center;
     double radius = 0;
-    std::vector<double> layers_dp; ///< shells at radius + layer * dp instead of the sphere
+    std::vector<double> layers_dp;         ///< shells at radius + layer * dp instead of the sphere
+    std::vector<double> shown_layers_dp{}; ///< those of them that shape files show
     /// The boxes around the sphere or its layers as the matrix leaves them. Radii are not scaled,
     /// but nodes lie in the box of the snapped corners and one node around it (GenCase v5.0: 300
     /// spheres of random scales; otherwise it counts where ctesphere is above 1).
@@ -192,6 +194,7 @@ struct CylinderLayer
     Vec3 p0;
     Vec3 p1;
     double radius = 0;
+    bool is_shown = true; ///< in shape files
 };
 
 /// `drawcylinder`; faces: cover at the first point, cover at the second, tube
@@ -226,10 +229,12 @@ struct MeshFileOp
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
     bool reverse = false;
-    bool any_depth = false;   ///< advanced together with autofill and without limits of the depth
-    double depth_min = 0;     ///< metres
-    double depth_max = 0;     ///< metres; may be infinite
-    bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
+    bool any_depth = false;    ///< advanced together with autofill and without limits of the depth
+    double depth_min = 0;      ///< metres
+    double depth_max = 0;      ///< metres; may be infinite
+    bool fill_inside = false;  ///< fppg:fill="inside": the true inside instead of autofill's flood
+    bool saves_points = false; ///< `<savepoints>` of drawbathymetry: a picture of its grid's nodes
+    bool saves_grid = false;   ///< `<savegrid>`: one of its cells
     /// advanced, on the lattice: the files of the same VTM file and mk that are one mesh with this
     /// one; their own draws have is_drawn_before.
     std::vector<std::string> joined;
@@ -538,7 +543,8 @@ struct CaseDef
     std::uint16_t mk_fluid_first = 1;
     std::vector<MkOrient> mk_orients;
 
-    std::vector<DrawOp> ops;           ///< in order of execution
+    std::vector<DrawOp> ops; ///< in order of execution
+    std::vector<BoxPicture> box_pictures;
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
     FitDef fit;                         ///< empty: every particle stands on the lattice

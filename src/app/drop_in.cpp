@@ -10,6 +10,7 @@
 #include "fppg/relax_walls.h"
 #include "fppg/version.h"
 
+#include "app/debug_pictures.h"
 #include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -307,6 +308,8 @@ private:
                   copy_meshes();
                   save_shapes(vtk_out);
                   save_node_files();
+                  for (const DebugPicture& picture : debug_pictures(def_, threads_))
+                      write(picture.name, "", picture.write);
                   make_normals();
                   if (options_.save_cells)
                       write("_MkCells.vtk", "",

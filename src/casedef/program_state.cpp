@@ -191,6 +191,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "resetdraw")
     {
         add(e, ResetOp{});
+        pictures_forgotten_ = def_.box_pictures.size();
         line_begin_ = def_.case_pos_min;
         auto pattern = std::move(state_.pattern);
         state_ = {};

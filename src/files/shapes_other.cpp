@@ -93,23 +93,30 @@ private:
     std::string data_;
 };
 
-std::string array_line(const char* indent, const char* type, const char* name, std::uint64_t place)
+std::string array_line(const char* type, const char* name, std::uint64_t place)
 {
-    return fmt::format("{}<DataArray type=\"{}\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                       indent, type, name, place);
+    return fmt::format(
+        "        <DataArray type=\"{}\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
+        name, place);
 }
 
 /// What both formats begin with, up to the points.
 std::string shared_part(const Cells& cells, Appended& appended)
 {
-    return fmt::format(
-        "      <PointData>\n      </PointData>\n      <CellData Scalars=\"Mk\">\n"
-        "{}{}      </CellData>\n      <Points>\n"
-        "        <DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" "
-        "format=\"appended\" offset=\"{}\"/>\n      </Points>\n",
-        array_line("        ", "Int32", "Mk", appended.add(cells.mk)),
-        array_line("        ", "Int32", "ObjId", appended.add(cells.object_id)),
-        appended.add(cells.points));
+    const auto array = [](const std::string& attributes, std::uint64_t place)
+    {
+        return fmt::format(
+            "        <DataArray {} format=\"appended\" offset=\"{}\">\n"
+            "        </DataArray>\n",
+            attributes, place);
+    };
+    std::string out = "      <PointData>\n      </PointData>\n      <CellData Scalars=\"Mk\">\n";
+    out += array("type=\"Int32\" Name=\"Mk\"", appended.add(cells.mk));
+    out += array("type=\"Int32\" Name=\"ObjId\"", appended.add(cells.object_id));
+    out += "      </CellData>\n      <Points>\n";
+    out += array("type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\"",
+                 appended.add(cells.points));
+    return out + "      </Points>\n";
 }
 
 void write_file(OutputFile& file, const char* type, const std::string& piece,
@@ -137,11 +144,10 @@ void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes
     piece += shared_part(cells, appended);
     const auto add = [&](const char* name, const Cells::Part& part)
     {
-        const std::uint64_t connectivity = appended.add(part.connectivity);
-        piece += fmt::format("      <{}>\n{}{}      </{}>\n", name,
-                             array_line("        ", "Int32", "connectivity", connectivity),
-                             array_line("        ", "Int32", "offsets", appended.add(part.offsets)),
-                             name);
+        piece += fmt::format("      <{}>\n", name);
+        piece += array_line("Int32", "connectivity", appended.add(part.connectivity));
+        piece += array_line("Int32", "offsets", appended.add(part.offsets));
+        piece += fmt::format("      </{}>\n", name);
     };
     add("Verts", cells.parts[0]);
     add("Lines", cells.parts[1]);
@@ -172,9 +178,9 @@ void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes
                                     cells.n_points, all.cells);
     piece += shared_part(cells, appended);
     piece += "      <Cells>\n";
-    piece += array_line("        ", "Int32", "connectivity", appended.add(all.connectivity));
-    piece += array_line("        ", "Int32", "offsets", appended.add(all.offsets));
-    piece += array_line("        ", "UInt8", "types", appended.add(all.types));
+    piece += array_line("Int32", "connectivity", appended.add(all.connectivity));
+    piece += array_line("Int32", "offsets", appended.add(all.offsets));
+    piece += array_line("UInt8", "types", appended.add(all.types));
     piece += "      </Cells>\n";
     write_file(file, "UnstructuredGrid", piece, appended);
 }

@@ -76,4 +76,32 @@ void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes
     file.append("\n");
 }
 
+void write_heights_vtk(OutputFile& file, const std::vector<Vec3>& points,
+                       const std::vector<std::vector<std::uint32_t>>& cells)
+{
+    std::string places;
+    std::string heights;
+    for (const Vec3& p : points)
+    {
+        for (int axis = 0; axis < 3; ++axis) append_big_endian(places, p[axis]);
+        append_big_endian(heights, static_cast<float>(p.z));
+    }
+    std::string connectivity;
+    for (const std::vector<std::uint32_t>& cell : cells)
+    {
+        append_big_endian(connectivity, static_cast<std::uint32_t>(cell.size()));
+        for (const std::uint32_t corner : cell) append_big_endian(connectivity, corner);
+    }
+    const bool are_points = !cells.empty() && cells[0].size() == 1;
+    file.append(fmt::format("{}POINTS {} double\n", vtk_head, points.size()));
+    file.append(places);
+    file.append(fmt::format("\n{} {} {}\n", are_points ? "VERTICES" : "POLYGONS", cells.size(),
+                            connectivity.size() / sizeof(std::uint32_t)));
+    file.append(connectivity);
+    file.append(fmt::format("\nPOINT_DATA {}\nSCALARS Height float\nLOOKUP_TABLE default\n",
+                            points.size()));
+    file.append(heights);
+    file.append("\n");
+}
+
 } // namespace fppg

@@ -5,6 +5,7 @@
 
 #include "casedef/file_polygons.h"
 #include "casedef/mesh_path.h"
+#include "core/float32.h"
 #include "lattice/shape_rings.h"
 #include "lattice/snap.h"
 #include "shapes/cut_at_plane.h"
@@ -29,11 +30,10 @@ public:
     std::vector<ShapeCell> run()
     {
         std::visit([this](const auto& what) { draw(what); }, op_.what);
-        if (snapped_) drop_collapsed();
-        for (const ClipPlane& plane : state_.clips) clip(plane);
-        if (state_.normal_invert)
+        if (!state_.clips.empty())
             for (ShapeCell& cell : cells_)
-                if (cell.size() > 2) std::reverse(cell.begin(), cell.end());
+                for (Vec3& corner : cell) corner = as_float32(corner);
+        for (const ClipPlane& plane : state_.clips) clip(plane);
         return std::move(cells_);
     }
 
@@ -50,20 +50,40 @@ private:
 
     bool is_wire() const { return state_.mode == DrawMode::Wire; }
 
+    void add_line(const Vec3& from, const Vec3& to) { cells_.push_back({from, to}); }
+
     void add_face(ShapeCell corners)
     {
-        if (!is_wire())
-        {
-            cells_.push_back(std::move(corners));
+        if (state_.normal_invert) std::reverse(corners.begin(), corners.end());
+        cells_.push_back(std::move(corners));
+    }
+
+    /// Turned over, a face of a sphere or cylinder keeps its first corner.
+    void add_round_face(ShapeCell corners)
+    {
+        if (state_.normal_invert) std::reverse(corners.begin() + 1, corners.end());
+        cells_.push_back(std::move(corners));
+    }
+
+    /// A triangle or quad of a figure or mesh.
+    void add_flat_face(ShapeCell corners)
+    {
+        if (is_wire())
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                add_line(corners[i], corners[(i + 1) % corners.size()]);
+        else if (!snapped_ || corners.size() > 3)
+            add_face(std::move(corners));
+        else if (corners[0] == corners[1] && corners[1] == corners[2])
             return;
-        }
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            cells_.push_back({corners[i], corners[(i + 1) % corners.size()]});
+        else if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+            add_line(corners[0], corners[0] == corners[1] ? corners[2] : corners[1]);
+        else
+            add_face(std::move(corners));
     }
 
     void draw(const LinesOp& lines)
     {
-        for (const auto& [from, to] : lines.segments) cells_.push_back({place(from), place(to)});
+        for (const auto& [from, to] : lines.segments) add_line(place(from), place(to));
     }
 
     void draw(const FigureOp& figure)
@@ -93,15 +113,15 @@ private:
                 ShapeCell corners;
                 for (const std::uint32_t v : face.vertices)
                     corners.push_back(place(figure.vertices[v]));
-                add_face(std::move(corners));
+                add_flat_face(std::move(corners));
                 continue;
             }
             for (auto t : face_triangles(figure, face))
             {
                 // The top of a prism is cut as its bottom, which looks down.
-                if (face.cut_offset > 0) std::reverse(t.begin(), t.end());
-                add_face({place(figure.vertices[t[0]]), place(figure.vertices[t[1]]),
-                          place(figure.vertices[t[2]])});
+                if (face.cut_offset > 0 && !is_wire()) std::reverse(t.begin(), t.end());
+                add_flat_face({place(figure.vertices[t[0]]), place(figure.vertices[t[1]]),
+                               place(figure.vertices[t[2]])});
             }
         }
     }
@@ -109,7 +129,7 @@ private:
     /// Its sides are those of boxfill all, in the same order, whatever it is filled as.
     void draw_solid_box(const FigureOp& box)
     {
-        if (is_wire()) add_faces(box);
+        if (is_wire() && !state_.off_lattice) add_faces(box);
         constexpr std::array<std::array<std::size_t, 4>, 6> sides{
             {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}, {0, 4, 7, 3}}};
         for (const auto& side : sides)
@@ -117,41 +137,38 @@ private:
             ShapeCell corners;
             for (const std::size_t i : side)
                 corners.push_back(place(box.vertices[box.solid_vertices[i]]));
-            cells_.push_back(std::move(corners));
+            add_face(std::move(corners));
         }
     }
 
     void draw(const SphereOp& sphere)
     {
-        for (const double layer : sphere.layers_dp)
+        for (const double layer : sphere.shown_layers_dp)
             add_sphere(sphere.center, sphere.radius + layer * def_.grid.dp);
         if (sphere.layers_dp.empty()) add_sphere(sphere.center, sphere.radius);
     }
 
     void add_sphere(const Vec3& at, double radius)
     {
-        const Vec3 center = place(at);
-        const double r = rounded(radius);
-        const auto rings = sphere_rings(center, r, state_.constants.sphere_sides);
-        const std::size_t n = rings[0].size();
-        const Vec3 low = center - Vec3{0, 0, r};
-        const Vec3 high = center + Vec3{0, 0, r};
-        for (std::size_t i = 0; i < n; ++i)
-            cells_.push_back({low, rings[0][i], rings[0][(i + 1) % n]});
-        for (std::size_t ring = 1; ring < rings.size(); ++ring)
+        const auto rings = sphere_rings(place(at), rounded(radius), state_.constants.sphere_sides);
+        const Vec3& low = rings.front()[0];
+        const Vec3& high = rings.back()[0];
+        const std::vector<Vec3>& lowest = rings[1];
+        const std::vector<Vec3>& highest = rings[rings.size() - 2];
+        const std::size_t n = lowest.size();
+        const auto next = [n](std::size_t i) { return (i + 1) % n; };
+        for (std::size_t i = 0; i < n; ++i) add_face({low, lowest[i], lowest[next(i)]});
+        for (std::size_t ring = 1; ring + 2 < rings.size(); ++ring)
             for (std::size_t i = 0; i < n; ++i)
-            {
-                const std::size_t j = (i + 1) % n;
-                cells_.push_back(
-                    {rings[ring - 1][j], rings[ring - 1][i], rings[ring][i], rings[ring][j]});
-            }
-        for (std::size_t i = 0; i < n; ++i)
-            cells_.push_back({rings.back()[(i + 1) % n], rings.back()[i], high});
+                add_round_face({rings[ring][next(i)], rings[ring][i], rings[ring + 1][i],
+                                rings[ring + 1][next(i)]});
+        for (std::size_t i = 0; i < n; ++i) add_round_face({highest[next(i)], highest[i], high});
     }
 
     void draw(const CylinderOp& cylinder)
     {
-        for (const CylinderLayer& layer : cylinder.layers) add_cylinder(layer, cylinder.is_visible);
+        for (const CylinderLayer& layer : cylinder.layers)
+            if (layer.is_shown) add_cylinder(layer, cylinder.is_visible);
         if (cylinder.layers.empty())
             add_cylinder({cylinder.p0, cylinder.p1, cylinder.radius}, cylinder.is_visible);
     }
@@ -163,16 +180,16 @@ private:
         if (norm(b - a) == 0) return;
         const double more = snapped_ ? state_.constants.cylinder_tube * def_.grid.dp : 0;
         const auto [near, far] =
-            cylinder_rings(a, b, rounded(cylinder.radius) + more, state_.constants.cylinder_sides);
+            cylinder_rings(a, b, cylinder.radius + more, state_.constants.cylinder_sides);
         const std::size_t n = near.size();
         for (std::size_t i = 0; is_visible[0] && i < n; ++i)
-            cells_.push_back({near[i], near[(i + 1) % n], a});
+            add_round_face({near[i], near[(i + 1) % n], a});
         for (std::size_t i = 0; is_visible[1] && i < n; ++i)
-            cells_.push_back({far[i], b, far[(i + 1) % n]});
+            add_round_face({far[i], b, far[(i + 1) % n]});
         for (std::size_t i = 0; is_visible[2] && i < n; ++i)
         {
             const std::size_t j = (i + 1) % n;
-            cells_.push_back({near[j], near[i], far[i], far[j]});
+            add_round_face({near[j], near[i], far[i], far[j]});
         }
     }
 
@@ -191,7 +208,7 @@ private:
         {
             if (mesh.advanced) break; // takes surfaces only
             for (std::size_t i = 0; i < line.size(); ++i)
-                cells_.push_back({placed(line[i == 0 ? 0 : i - 1]), placed(line[i])});
+                add_line(placed(line[i == 0 ? 0 : i - 1]), placed(line[i]));
         }
         for_each_polygon(file, mesh, def_.grid.dp,
                          [&](const std::vector<std::uint32_t>& corners)
@@ -199,7 +216,7 @@ private:
                              ShapeCell cell;
                              for (const std::uint32_t c : corners)
                                  cell.push_back(placed(file.soup.vertices[c]));
-                             add_face(std::move(cell));
+                             add_flat_face(std::move(cell));
                          });
     }
 
@@ -209,25 +226,12 @@ private:
     {
     }
 
-    void drop_collapsed()
-    {
-        for (ShapeCell& cell : cells_)
-        {
-            if (cell.size() != 3) continue;
-            const bool first_two = cell[0] == cell[1];
-            if (!first_two && cell[1] != cell[2] && cell[2] != cell[0]) continue;
-            cell = first_two && cell[1] == cell[2] ? ShapeCell{}
-                                                   : ShapeCell{cell[0], cell[first_two ? 2 : 1]};
-        }
-        std::erase_if(cells_, [](const ShapeCell& cell) { return cell.empty(); });
-    }
-
     void clip(const ClipPlane& plane)
     {
         const auto beyond = [&](const Vec3& p) { return dot(p - plane.point, plane.normal); };
         const auto holds = [&](const Vec3& p) { return beyond(p) <= 0; };
         const auto crossing = [&](const Vec3& a, const Vec3& b)
-        { return a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))); };
+        { return as_float32(a + (b - a) * (-beyond(a) / dot(plane.normal, b - a))); };
         ShapeCell kept;
         for (ShapeCell& cell : cells_)
         {

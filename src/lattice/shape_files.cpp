@@ -2,6 +2,7 @@
 #include "fppg/files.h"
 #include "fppg/lattice.h"
 
+#include "core/float32.h"
 #include "lattice/shape_cells.h"
 
 #include <algorithm>
@@ -80,7 +81,8 @@ private:
         keep(std::move(file));
     }
 
-    /// Objects count from 0 in every file, one a command that leaves cells.
+    /// Objects count from 0 in every file, one a command that leaves cells. Corners are float32,
+    /// as in the files, also for the normals that are made of them.
     void add_cells(const DrawOp& op, bool snapped, std::vector<ShapePolygons>& shapes)
     {
         const std::vector<ShapeCell> cells = shape_cells(def_, op, snapped);
@@ -102,7 +104,7 @@ private:
             for (const Vec3& corner : cell)
             {
                 polygon.push_back(static_cast<std::uint32_t>(shape.vertices.size()));
-                shape.vertices.push_back(corner);
+                shape.vertices.push_back(as_float32(corner));
             }
         }
     }

@@ -113,13 +113,15 @@ std::array<std::vector<Vec3>, 2> cylinder_rings(const Vec3& a, const Vec3& b, do
 std::vector<std::vector<Vec3>> sphere_rings(const Vec3& center, double radius, int sides)
 {
     const Float3 middle = as_float(center);
-    const Matrix up = turn_about(middle, {1, 0, 0}, 180.0 / sides);
+    const auto up = static_cast<float>(radius);
+    const Float3 low = sum(middle, {0, 0, -up});
+    const Matrix rise = turn_about(middle, {1, 0, 0}, 180.0 / sides);
     const Matrix around = turn_about(middle, {0, 0, 1}, 360.0 / sides);
-    std::vector<std::vector<Vec3>> out;
-    Float3 first = as_float(center - Vec3{0, 0, radius});
+    std::vector<std::vector<Vec3>> out{{as_double(low)}};
+    Float3 first = low;
     for (int ring = 1; ring < sides; ++ring)
     {
-        first = product(up, first);
+        first = product(rise, first);
         std::vector<Vec3>& corners = out.emplace_back();
         Float3 corner = first;
         for (int i = 0; i < sides; ++i)
@@ -128,6 +130,7 @@ std::vector<std::vector<Vec3>> sphere_rings(const Vec3& center, double radius, i
             corner = product(around, corner);
         }
     }
+    out.push_back({as_double(sum(middle, {0, 0, up}))});
     return out;
 }
 
