@@ -17,7 +17,7 @@ struct BoxPicture
     int mk = 0;                  ///< absolute; 0 void
     std::array<Vec3, 8> corners; ///< by bits x, y, z, where the matrix puts them; with `full`
                                  ///< limits those of the box that is dp larger on all sides
-    std::optional<Vec3> seed; ///< of fillbox
+    std::optional<Vec3> seed;    ///< of fillbox
 };
 
 } // namespace fppg
