@@ -278,7 +278,7 @@ struct FillOp
 {
     Vec3 seed;
     FillFilter filter;
-    std::variant<std::monostate, BoxRegion, FigureOp> region;
+    std::optional<BoxLimits> region; ///< empty: the whole lattice
 };
 
 /// A filter by type, and by number where one is given.

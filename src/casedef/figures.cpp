@@ -1,4 +1,4 @@
-#include "casedef/figures.h"
+#include "shapes/figures.h"
 
 #include "casedef/polygon_cut.h"
 

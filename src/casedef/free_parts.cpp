@@ -1,6 +1,6 @@
 #include "casedef/free_parts.h"
 
-#include "casedef/figures.h"
+#include "shapes/figures.h"
 #include "casedef/polygon_cut.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
-#include "casedef/figures.h"
-#include "casedef/file_polygons.h"
+#include "shapes/figures.h"
+#include "shapes/file_polygons.h"
 #include "casedef/free_parts.h"
 #include "casedef/known_commands.h"
 #include "casedef/mesh_path.h"

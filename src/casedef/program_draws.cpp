@@ -1,7 +1,7 @@
 // Commands that draw.
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
+#include "shapes/figures.h"
 #include "casedef/program.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Commands that change the state: mk, modes, constants, transforms, clips.
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
+#include "shapes/figures.h"
 #include "casedef/program.h"
 #include "casedef/transforms.h"
 
