@@ -63,6 +63,7 @@ struct RunField
 };
 
 struct CaseDef;
+struct Scene;
 
 /// A mesh file that a draw uses.
 struct MeshFileUse
@@ -96,15 +97,19 @@ struct LatticeReport
 /// Called before every draw with the number of draws done and of all.
 using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Executes the draws of a case on the lattice, in order: each paints over what was there (rule
-/// O1).
+/// Executes the draws of a scene in order, each over what was there (rule O1): body-fitted shapes
+/// by their true surfaces, all others on the nodes of the lattice.
 ///
 /// threads   number of threads; the result does not depend on it
 /// progress  may be empty; an exception thrown in it stops the work
 /// throws    IoError, GeometryError for mesh files; CaseError for what is not supported yet
 /// cost      time and memory O(surface of what is drawn), never O(nodes of the domain)
-RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
-                          LatticeReport& report);
+RunField draw_scene(const Scene& scene, int threads, const LatticeProgress& progress,
+                    LatticeReport& report);
+
+/// The same with every shape on the nodes of the lattice.
+RunField draw_on_lattice(const Scene& scene, int threads, const LatticeProgress& progress,
+                         LatticeReport& report);
 
 /// The nodes of a field with the plain mk of those that walls stand in for (wall_zone_bit);
 /// touching runs of one mk are one. Without the walls.
@@ -118,7 +123,7 @@ RunField plain_nodes(const RunField& field, int threads);
 /// for
 ///         one outside the domain (between its first and last nodes; in 2D off its plane)
 /// warns   of points nearer than dp/2 to a drawn node that is a particle, or equal to another one
-void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report);
+void add_point_files(const Scene& scene, RunField& field, LatticeReport& report);
 
 struct ShapePolygons;
 enum class ShapeFormat : std::uint8_t;
@@ -137,6 +142,6 @@ struct ShapeFile
 /// nothing.
 ///
 /// throws IoError, GeometryError for mesh files
-std::vector<ShapeFile> collect_shape_files(const CaseDef& def);
+std::vector<ShapeFile> collect_shape_files(const Scene& scene);
 
 } // namespace fppg

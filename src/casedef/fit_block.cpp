@@ -3,6 +3,7 @@
 #include "fppg/fitted_walls.h"
 
 #include "casedef/block_reader.h"
+#include "shapes/shape.h"
 
 #include <fmt/format.h>
 
@@ -314,11 +315,8 @@ private:
 
     static bool is_part(const DrawOp& op)
     {
-        return std::holds_alternative<FigureOp>(op.what) ||
-               std::holds_alternative<SphereOp>(op.what) ||
-               std::holds_alternative<CylinderOp>(op.what) ||
-               std::holds_alternative<EllipsoidOp>(op.what) ||
-               std::holds_alternative<MeshFileOp>(op.what);
+        const auto* shape = std::get_if<Shape>(&op.what);
+        return shape != nullptr && has_surface(*shape);
     }
 
     /// What stays of the result is of one kind, and all parts are drawn under the same clips.
@@ -392,18 +390,14 @@ void refuse_stray_blocks(const Element& e, const AttributeReader& read)
 
 bool paints(const DrawOp& op)
 {
-    return !std::holds_alternative<ResetOp>(op.what) &&
-           !std::holds_alternative<ShapeOutOp>(op.what);
+    return std::holds_alternative<Shape>(op.what) || std::holds_alternative<Edit>(op.what);
 }
 
 /// Whether a draw is of a shape that has a surface to put particles on.
-bool has_surface(const DrawOp& op)
+bool draws_surface(const DrawOp& op)
 {
-    return op.state->draw_points && (std::holds_alternative<FigureOp>(op.what) ||
-                                     std::holds_alternative<SphereOp>(op.what) ||
-                                     std::holds_alternative<CylinderOp>(op.what) ||
-                                     std::holds_alternative<EllipsoidOp>(op.what) ||
-                                     std::holds_alternative<MeshFileOp>(op.what));
+    const auto* shape = std::get_if<Shape>(&op.what);
+    return op.state->draw_points && shape != nullptr && has_surface(*shape);
 }
 
 /// An mk with the bit of the zones would be taken for one.
@@ -429,7 +423,7 @@ void warn_of_undrawn_mks(CaseDef& def)
     std::set<std::uint16_t> fluids;
     for (const DrawOp& op : def.ops)
     {
-        if (op.state->mk.kind == MkKind::Bound && has_surface(op)) walls.insert(op.state->mk.mk);
+        if (op.state->mk.kind == MkKind::Bound && draws_surface(op)) walls.insert(op.state->mk.mk);
         if (op.state->mk.kind == MkKind::Fluid && paints(op)) fluids.insert(op.state->mk.mk);
     }
     for (const BooleanDef& boolean : def.booleans)

@@ -1,11 +1,12 @@
 #include "fppg/shapes.h"
 
-#include "casedef/figures.h"
 #include "core/parallel.h"
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/limits.h"
 #include "lattice/paint_mesh.h"
+#include "scene/surfaces.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 

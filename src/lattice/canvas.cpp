@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <utility>
 
 namespace fppg
@@ -16,8 +15,11 @@ namespace fppg
 
 Brush::Brush(const DrawOp& op) : source(&op.source), state(op.state.get()), mk(op.state->mk)
 {
-    heeds_pattern = !std::holds_alternative<RedrawNearOp>(op.what);
-    empties_left_out = std::holds_alternative<FillOp>(op.what);
+    if (const auto* edit = std::get_if<Edit>(&op.what))
+    {
+        heeds_pattern = !std::holds_alternative<RedrawNearOp>(*edit);
+        empties_left_out = std::holds_alternative<FillOp>(*edit);
+    }
 }
 
 Brush Brush::of_part(std::uint32_t steps) const
@@ -38,17 +40,6 @@ Canvas::Canvas(const CaseDef& def, int threads)
     field_.slabs.resize(def.grid.n[0]);
 }
 
-Spans Canvas::listed(const SlabRegion& region, std::uint32_t x,
-                     const std::vector<ClipPlane>& clips) const
-{
-    Spans spans;
-    if (x < region.x_begin || x >= region.x_end) return spans;
-    region.emit(x, spans);
-    for (const ClipPlane& clip : clips) apply_clip(spans, x, clip, grid());
-    sort_and_join(spans);
-    return spans;
-}
-
 void Canvas::paint(const Brush& brush, const SlabRegion& region)
 {
     if (!brush.state->draw_points || region.x_end <= region.x_begin) return;
@@ -58,7 +49,7 @@ void Canvas::paint(const Brush& brush, const SlabRegion& region)
                  [&](std::size_t i)
                  {
                      const auto x = region.x_begin + static_cast<std::uint32_t>(i);
-                     paint_slab(brush, x, listed(region, x, clips));
+                     paint_slab(brush, x, listed(region, x, clips, grid()));
                  });
 }
 
@@ -122,22 +113,6 @@ RunField Canvas::take()
     free_.finish();
     walls_.finish();
     return std::move(field_);
-}
-
-std::string place_of(const CaseDef& def, const SourceRef& source)
-{
-    return fmt::format("{}:{}: <{}>", def.file, source.line, source.command);
-}
-
-SlabRegion region_of(SpanSet set)
-{
-    auto shared = std::make_shared<const SpanSet>(std::move(set));
-    SlabRegion region;
-    region.x_begin = shared->x_begin;
-    region.x_end = shared->x_begin + static_cast<std::uint32_t>(shared->slabs.size());
-    region.emit = [shared](std::uint32_t x, Spans& out)
-    { out = shared->slabs[x - shared->x_begin]; };
-    return region;
 }
 
 } // namespace fppg

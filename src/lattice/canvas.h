@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace fppg
@@ -43,10 +42,6 @@ public:
     const RunField& field() const { return field_; }
     int threads() const { return threads_; }
 
-    /// The spans of a region in one slab, sorted, within the clips where there are some.
-    Spans listed(const SlabRegion& region, std::uint32_t x,
-                 const std::vector<ClipPlane>& clips) const;
-
     /// throws  CaseError where the machine would start to swap or kill the process
     void paint(const Brush& brush, const SlabRegion& region);
     /// nodes  one entry a slab of the lattice; clips are not applied
@@ -76,11 +71,5 @@ private:
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t run_limit_;
 };
-
-/// "Case_Def.xml:41: <drawbox>", the place of a draw for messages.
-std::string place_of(const CaseDef& def, const SourceRef& source);
-
-/// A set of nodes as a region.
-SlabRegion region_of(SpanSet set);
 
 } // namespace fppg

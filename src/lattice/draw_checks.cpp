@@ -1,6 +1,6 @@
 #include "lattice/draw_checks.h"
 
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <fmt/format.h>
 
@@ -43,12 +43,11 @@ Extents extents_of(const Vec3& low, const Vec3& high, const IsFlat& is_flat)
 
 bool is_body(const DrawOp& op)
 {
-    if (const auto* figure = std::get_if<FigureOp>(&op.what))
+    if (const auto* figure = shape_as<FigureOp>(op))
         return figure->solid != SolidKind::None && op.state->mode != DrawMode::Face;
-    if (const auto* sphere = std::get_if<SphereOp>(&op.what)) return sphere->layers_dp.empty();
-    if (const auto* cylinder = std::get_if<CylinderOp>(&op.what)) return cylinder->layers.empty();
-    return std::holds_alternative<EllipsoidOp>(op.what) ||
-           std::holds_alternative<MeshFileOp>(op.what);
+    if (const auto* sphere = shape_as<SphereOp>(op)) return sphere->layers_dp.empty();
+    if (const auto* cylinder = shape_as<CylinderOp>(op)) return cylinder->layers.empty();
+    return shape_as<EllipsoidOp>(op) != nullptr || shape_as<MeshFileOp>(op) != nullptr;
 }
 
 } // namespace
@@ -104,26 +103,26 @@ Box3 bounds_of(const DrawOp& op, double dp)
     Box3 box;
     const auto thickest = [&](const std::vector<double>& layers)
     { return layers.empty() ? 0 : *std::max_element(layers.begin(), layers.end()) * dp; };
-    if (const auto* points = std::get_if<PointsOp>(&op.what))
+    if (const auto* points = shape_as<PointsOp>(op))
         for (const Vec3& p : points->points) box.add(p);
-    else if (const auto* lines = std::get_if<LinesOp>(&op.what))
+    else if (const auto* lines = shape_as<LinesOp>(op))
         for (const auto& [from, to] : lines->segments)
         {
             box.add(from);
             box.add(to);
         }
-    else if (const auto* figure = std::get_if<FigureOp>(&op.what))
+    else if (const auto* figure = shape_as<FigureOp>(op))
         for (const FigureFace& face : figure->faces)
         {
             if (!face.is_visible) continue;
             for (const std::uint32_t v : face.vertices) box.add(figure->vertices[v]);
         }
-    else if (const auto* sphere = std::get_if<SphereOp>(&op.what))
+    else if (const auto* sphere = shape_as<SphereOp>(op))
     {
         const double r = sphere->radius + thickest(sphere->layers_dp);
         add_ball(box, sphere->center, {r, r, r});
     }
-    else if (const auto* cylinder = std::get_if<CylinderOp>(&op.what))
+    else if (const auto* cylinder = shape_as<CylinderOp>(op))
     {
         const Vec3 along = cylinder->p1 - cylinder->p0;
         const double length = norm(along);
@@ -139,7 +138,7 @@ Box3 bounds_of(const DrawOp& op, double dp)
         add_ball(box, cylinder->p0, half);
         add_ball(box, cylinder->p1, half);
     }
-    else if (const auto* ellipsoid = std::get_if<EllipsoidOp>(&op.what))
+    else if (const auto* ellipsoid = shape_as<EllipsoidOp>(op))
     {
         const Vec3 along = ellipsoid->focus1 - ellipsoid->focus0;
         const double a = ellipsoid->radius / 2;
@@ -173,7 +172,7 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
     const auto flat = [this](int axis) { return is_flat(axis); };
     const Extents size = extents_of(bounds.min, bounds.max, flat);
     const Extents domain = extents_of(def_.case_pos_min, def_.case_pos_max, flat);
-    if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+    if (const auto* mesh = shape_as<MeshFileOp>(op))
     {
         const bool is_large = size.largest > 100 * domain.largest;
         if (is_large || (100 * size.largest < domain.largest && size.largest < 4 * grid.dp))

@@ -3,8 +3,8 @@
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
-#include "lattice/snap.h"
-#include "shapes/point_grid.h"
+#include "meshes/point_grid.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <tuple>

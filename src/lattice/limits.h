@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lattice/painting.h"
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <optional>
 #include <vector>

@@ -3,8 +3,8 @@
 #include "fppg/fitted_walls.h"
 
 #include "core/parallel.h"
-#include "lattice/snap.h"
-#include "lattice/spans.h"
+#include "nodes/snap.h"
+#include "nodes/spans.h"
 
 #include <algorithm>
 #include <tuple>

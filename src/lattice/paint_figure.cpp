@@ -1,10 +1,10 @@
 // Points, lines and what planes bound.
-#include "casedef/figures.h"
 #include "lattice/paint_free.h"
 #include "lattice/painting.h"
 #include "lattice/plane_shapes.h"
-#include "lattice/snap.h"
 #include "lattice/solids.h"
+#include "nodes/snap.h"
+#include "shapes/figures.h"
 
 #include <utility>
 #include <vector>

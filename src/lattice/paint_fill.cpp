@@ -7,6 +7,7 @@
 #include "lattice/flood.h"
 #include "lattice/limits.h"
 #include "lattice/redraw.h"
+#include "scene/surfaces.h"
 
 #include <fmt/format.h>
 
@@ -102,7 +103,7 @@ SpanSet mask_of(const Painting& painting, const Brush& brush, const FigureOp& fi
     mask.slabs.resize(painting.grid().n[0]);
     const SlabRegion inside = solid_of(figure, *brush.state, painting.grid());
     for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
-        mask.slabs[x] = painting.canvas.listed(inside, x, {});
+        mask.slabs[x] = listed(inside, x, {}, painting.grid());
     return mask;
 }
 

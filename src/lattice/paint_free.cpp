@@ -2,11 +2,11 @@
 
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
-#include "casedef/free_parts.h"
 #include "lattice/draw_pattern.h"
 #include "lattice/free_points.h"
 #include "lattice/solids.h"
+#include "shapes/figures.h"
+#include "shapes/free_parts.h"
 
 #include <fmt/format.h>
 

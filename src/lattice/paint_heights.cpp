@@ -1,10 +1,10 @@
 // Tables of heights.
-#include "casedef/file_polygons.h"
-#include "casedef/free_parts.h"
 #include "lattice/paint_free.h"
 #include "lattice/paint_mesh.h"
 #include "lattice/plane_shapes.h"
-#include "lattice/snap.h"
+#include "nodes/snap.h"
+#include "shapes/file_polygons.h"
+#include "shapes/free_parts.h"
 
 namespace fppg
 {

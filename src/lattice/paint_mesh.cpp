@@ -5,13 +5,15 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
-#include "casedef/file_polygons.h"
-#include "casedef/free_parts.h"
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_free.h"
 #include "lattice/plane_shapes.h"
-#include "lattice/snap.h"
+#include "meshes/mesh_library.h"
+#include "nodes/snap.h"
+#include "scene/surfaces.h"
+#include "shapes/file_polygons.h"
+#include "shapes/free_parts.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +32,7 @@ void note_use(Painting& painting, const SourceRef& source, const std::string& na
     std::vector<MeshFileUse>& uses = painting.report.mesh_files;
     const auto is_it = [&](const MeshFileUse& use) { return use.name == name; };
     if (name.empty() || std::any_of(uses.begin(), uses.end(), is_it)) return;
-    uses.push_back({name, painting.meshes.find(source, path), source.line});
+    uses.push_back({name, painting.scene.meshes->find(source, path), source.line});
 }
 
 const MeshFile& joined_file(Painting& painting, const Brush& brush, const MeshFileOp& op,
@@ -303,8 +305,8 @@ void paint_clipped(Painting& painting, const Brush& brush, const MeshFileOp& op)
 const MeshFile& mesh_of(Painting& painting, const Brush& brush, const MeshFileOp& op)
 {
     const LibraryMesh& read =
-        painting.meshes.read(*brush.source, op.file, op.reading, painting.canvas.threads());
-    if (painting.used.insert(&read).second)
+        painting.scene.meshes->read(*brush.source, op.file, op.reading, painting.canvas.threads());
+    if (painting.used.insert(&read.mesh).second)
     {
         note_use(painting, *brush.source, op.container, op.container);
         note_use(painting, *brush.source, op.file, read.path);

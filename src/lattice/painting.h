@@ -1,12 +1,11 @@
 #pragma once
 
-#include "fppg/case_def.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "lattice/canvas.h"
 #include "lattice/draw_checks.h"
 #include "lattice/plane_shapes.h"
-#include "shapes/mesh_library.h"
 
 #include <set>
 #include <vector>
@@ -17,23 +16,23 @@ namespace fppg
 /// What the draws of a case share while they are painted in order.
 struct Painting
 {
-    Painting(const CaseDef& case_def, MeshLibrary& library, int threads, LatticeReport& said)
-        : def(case_def),
-          meshes(library),
+    Painting(const Scene& drawn, int threads, LatticeReport& said)
+        : scene(drawn),
+          def(*drawn.def),
           report(said),
-          checks(case_def, said.warnings),
-          canvas(case_def, threads)
+          checks(*drawn.def, said.warnings),
+          canvas(*drawn.def, threads)
     {
     }
 
     const LatticeGrid& grid() const { return def.grid; }
 
+    const Scene& scene;
     const CaseDef& def;
-    MeshLibrary& meshes;
     LatticeReport& report;
     DrawChecks checks;
     Canvas canvas;
-    std::set<const LibraryMesh*> used; ///< mesh files that the report tells of
+    std::set<const MeshFile*> used; ///< mesh files that the report tells of
 };
 
 // A file a kind of draw. Each paints one draw over what is there; clips, pattern and mk are the

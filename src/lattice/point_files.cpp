@@ -1,11 +1,11 @@
-#include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 #include "fppg/particles.h"
+#include "fppg/scene.h"
 #include "fppg/shapes.h"
 
-#include "casedef/mesh_path.h"
-#include "lattice/snap.h"
+#include "meshes/mesh_library.h"
+#include "nodes/snap.h"
 
 #include <fmt/format.h>
 
@@ -176,13 +176,14 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
 
 } // namespace
 
-void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report)
+void add_point_files(const Scene& scene, RunField& field, LatticeReport& report)
 {
+    const CaseDef& def = *scene.def;
     for (const PointFile& file : def.point_files)
     {
         const std::string at = fmt::format("{}:{}: <{} file=\"{}\">", def.file, file.source.line,
                                            file.source.command, file.file);
-        const std::string path = find_mesh_file(def, file.source, file.file);
+        const std::string path = scene.meshes->find(file.source, file.file);
         std::vector<Vec3> points;
         try
         {

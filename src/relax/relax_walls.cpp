@@ -2,9 +2,9 @@
 
 #include "core/parallel.h"
 #include "fit/wall_section.h"
-#include "shapes/mesh_query.h"
-#include "shapes/point_grid.h"
-#include "shapes/round_surface.h"
+#include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
+#include "meshes/round_surface.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "fppg/relax_walls.h"
 
-#include "casedef/figures.h"
 #include "helpers/drawing.h"
+#include "shapes/figures.h"
 
 #include <gtest/gtest.h>
 
