@@ -95,8 +95,9 @@ void autofill(Painting& painting, const Brush& brush, const MeshFileOp& op, cons
     FillFilter filter;
     filter.names[static_cast<std::size_t>(MkKind::Void)] = true;
     const Canvas& canvas = painting.canvas;
-    const std::vector<Spans> filled = flood(canvas.field(), seed, fillable(painting, filter),
-                                            limits.box, limits.mask_used(), canvas.threads());
+    const std::vector<Spans> filled =
+        flood(canvas.field(), seed, fillable_mks(filter, painting.def.mk_bound_first), limits.box,
+              limits.mask_used(), canvas.threads());
     compare_with_inside(painting, brush, moved, filled);
     painting.canvas.paint(brush, filled);
 }

@@ -90,7 +90,7 @@ void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans, c
     const std::size_t before = slab.size();
     const Spans zone = walls_.paint_over(x, spans, mk.mk, brush.keeps_walls);
     fppg::paint(slab, spans, mk.mk);
-    if (!zone.empty()) fppg::paint(slab, zone, mk.mk | wall_zone_bit);
+    if (!zone.empty()) fppg::paint(slab, zone, mk.mk, true);
     const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
     if (runs > run_limit_ && runs < UINT64_MAX / 2)
         throw CaseError(

@@ -52,7 +52,6 @@ public:
 
     /// A body-fitted body on top of all that was drawn.
     void add_wall(FittedDraw&& draw) { walls_.add(std::move(draw)); }
-    bool has_walls() const { return walls_.has_walls(); }
 
     /// Forgets all that was drawn.
     void reset();

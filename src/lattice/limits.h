@@ -30,7 +30,4 @@ SpanSet mask_of(const Painting& painting, const Brush& brush, const FigureOp& fi
 Limits limits_of(const Painting& painting, const Brush& brush,
                  const std::optional<BoxLimits>& region);
 
-/// Which mks a fill may enter; nodes in the zone of a wall count as those of its mk.
-std::vector<char> fillable(const Painting& painting, const FillFilter& filter);
-
 } // namespace fppg

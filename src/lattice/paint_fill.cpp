@@ -56,7 +56,7 @@ std::string why_nothing_is_filled(const Painting& painting, const Node& seed, co
         return "is on a node where nothing is drawn, which <modefill> does not name; add void "
                "there";
     const CaseDef& def = painting.def;
-    const int mk = run->mk & ~wall_zone_bit;
+    const int mk = run->mk;
     const bool is_bound = mk >= def.mk_bound_first;
     return fmt::format(
         "lies in {} {}, which <modefill> does not name; expected a place in the "
@@ -119,21 +119,15 @@ Limits limits_of(const Painting& painting, const Brush& brush,
     return limits;
 }
 
-std::vector<char> fillable(const Painting& painting, const FillFilter& filter)
-{
-    std::vector<char> mks = fillable_mks(filter, painting.def.mk_bound_first);
-    if (painting.canvas.has_walls()) count_wall_zones(mks);
-    return mks;
-}
-
 void paint(Painting& painting, const Brush& brush, const FillOp& op)
 {
     const Limits limits = limits_of(painting, brush, op.region);
     check_columns(painting, brush, limits.box);
     const Canvas& canvas = painting.canvas;
     const Node seed = snap(op.seed, painting.grid());
-    const std::vector<Spans> nodes = flood(canvas.field(), seed, fillable(painting, op.filter),
-                                           limits.box, limits.mask_used(), canvas.threads());
+    const std::vector<Spans> nodes =
+        flood(canvas.field(), seed, fillable_mks(op.filter, painting.def.mk_bound_first),
+              limits.box, limits.mask_used(), canvas.threads());
     if (brush.state->draw_points && node_count(nodes) == 0)
         painting.report.warnings.push_back(
             fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) {}",

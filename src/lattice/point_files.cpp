@@ -56,7 +56,7 @@ const Run* run_at(const RunField& field, const Node& n)
 bool is_taken(const RunField& field, const Node& n)
 {
     const Run* r = run_at(field, n);
-    return r != nullptr && !(field.walls.has_zones() && (r->mk & wall_zone_bit) != 0);
+    return r != nullptr && !r->is_covered;
 }
 
 /// How near a point must be to a node that is water, dp.
@@ -139,7 +139,7 @@ void mark_water(const std::vector<Vec3>& points, std::uint16_t mk, const Vec3& g
             if (!of_slab[k].empty()) near.push_back(&of_slab[k]);
         if (near.empty()) continue;
         paint(field.slabs[x], water_of(static_cast<std::uint32_t>(x), near, points, gravity, field),
-              static_cast<std::uint16_t>(mk | wall_zone_bit));
+              mk, true);
     }
     field.walls.has_point_water = true;
 }

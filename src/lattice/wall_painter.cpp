@@ -33,7 +33,7 @@ Spans zone_of(const std::vector<Run>& runs)
 {
     Spans out;
     for (const Run& r : runs)
-        if ((r.mk & wall_zone_bit) != 0) out.push_back({r.y, r.z_begin, r.z_end});
+        if (r.is_covered) out.push_back({r.y, r.z_begin, r.z_end});
     sort_and_join(out);
     return out;
 }
@@ -64,12 +64,11 @@ void WallPainter::add(FittedDraw&& draw)
         [&](std::size_t x)
         {
             paint(field_->slabs[x], draw.volume[x], mk);
-            paint(field_->slabs[x], draw.zone[x], static_cast<std::uint16_t>(mk | wall_zone_bit));
+            paint(field_->slabs[x], draw.zone[x], mk, true);
             for (const NodeShare& share : draw.shares)
             {
                 paint(field_->slabs[x], intersect(draw.volume[x], share.nodes[x]), share.mk);
-                paint(field_->slabs[x], intersect(draw.zone[x], share.nodes[x]),
-                      static_cast<std::uint16_t>(share.mk | wall_zone_bit));
+                paint(field_->slabs[x], intersect(draw.zone[x], share.nodes[x]), share.mk, true);
             }
         });
     walls.bodies.push_back(std::move(draw.body));

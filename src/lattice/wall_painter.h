@@ -25,7 +25,7 @@ public:
 
     /// Before the spans of slab x are painted with `mk` (0: void). A redraw gives walls another mk
     /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
-    /// same time. Returns the spans that must be painted with `mk` and the bit of the zone.
+    /// same time. Returns the spans that must be painted with `mk` as covered.
     Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls);
 
     /// Forgets everything.

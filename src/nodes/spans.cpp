@@ -26,7 +26,7 @@ void append_joined(Spans& out, const Span& s)
 void append_run(std::vector<Run>& out, const Run& r)
 {
     if (!out.empty() && out.back().y == r.y && out.back().z_end == r.z_begin &&
-        out.back().mk == r.mk)
+        out.back().mk == r.mk && out.back().is_covered == r.is_covered)
         out.back().z_end = r.z_end;
     else
         out.push_back(r);
@@ -156,7 +156,7 @@ Spans complement(const Spans& spans, const NodeBox& box)
     return out;
 }
 
-void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk)
+void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk, bool is_covered)
 {
     if (spans.empty()) return;
     // Only the rows that the spans touch are rebuilt; everything around them stays in place.
@@ -177,18 +177,18 @@ void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk)
     {
         while (r != last && (r->y < s.y || (r->y == s.y && r->z_end <= s.z_begin)))
         {
-            append_run(rebuilt, {r->y, from, r->z_end, r->mk});
+            append_run(rebuilt, {r->y, from, r->z_end, r->mk, r->is_covered});
             next_run();
         }
         if (r != last && r->y == s.y && from < s.z_begin)
-            append_run(rebuilt, {r->y, from, s.z_begin, r->mk});
-        if (mk != 0) append_run(rebuilt, {s.y, s.z_begin, s.z_end, mk});
+            append_run(rebuilt, {r->y, from, s.z_begin, r->mk, r->is_covered});
+        if (mk != 0) append_run(rebuilt, {s.y, s.z_begin, s.z_end, mk, is_covered});
         while (r != last && r->y == s.y && r->z_end <= s.z_end) next_run();
         if (r != last && r->y == s.y && from < s.z_end) from = s.z_end;
     }
     while (r != last)
     {
-        append_run(rebuilt, {r->y, from, r->z_end, r->mk});
+        append_run(rebuilt, {r->y, from, r->z_end, r->mk, r->is_covered});
         next_run();
     }
     const auto old_count = static_cast<std::size_t>(last - first);
@@ -198,11 +198,6 @@ void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk)
     else
         runs.erase(first + static_cast<std::ptrdiff_t>(rebuilt.size()), last);
     std::copy(rebuilt.begin(), rebuilt.end(), runs.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-void count_wall_zones(std::vector<char>& wanted)
-{
-    for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk) wanted[mk | wall_zone_bit] = wanted[mk];
 }
 
 Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted)

@@ -39,10 +39,9 @@ Spans clip_to_box(const Spans& spans, const NodeBox& box);
 Spans complement(const Spans& spans, const NodeBox& box);
 
 /// Gives the nodes of `spans` the value `mk` (0 erases) in the runs of one slab.
-void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk);
-/// Nodes in the zone of a wall count as those of its mk: `wanted`, per mk, has 65536 entries.
-void count_wall_zones(std::vector<char>& wanted);
-/// The nodes whose mk is wanted. `wanted` has 65536 entries; entry 0 is not looked at.
+void paint(std::vector<Run>& runs, const Spans& spans, std::uint16_t mk, bool is_covered = false);
+/// The nodes whose mk is wanted, covered ones too. `wanted` has 65536 entries; entry 0 is not
+/// looked at.
 Spans select(const std::vector<Run>& runs, const std::vector<char>& wanted);
 /// All nodes that carry an mk.
 Spans occupied(const std::vector<Run>& runs);

@@ -71,7 +71,7 @@ std::map<int, std::size_t> count(const RunField& field)
     std::map<int, std::size_t> out;
     for (const auto& slab : field.slabs)
         for (const Run& r : slab)
-            if ((r.mk & wall_zone_bit) == 0) out[r.mk] += r.z_end - r.z_begin;
+            if (!r.is_covered) out[r.mk] += r.z_end - r.z_begin;
     return out;
 }
 

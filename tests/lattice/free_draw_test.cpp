@@ -35,7 +35,7 @@ std::uint64_t node_particles(const RunField& field)
     std::uint64_t n = 0;
     for (const auto& slab : field.slabs)
         for (const Run& run : slab)
-            if ((run.mk & wall_zone_bit) == 0) n += run.z_end - run.z_begin;
+            if (!run.is_covered) n += run.z_end - run.z_begin;
     return n;
 }
 
