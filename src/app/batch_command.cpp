@@ -58,28 +58,27 @@ struct BatchCall
 /// The arguments behind "--" are for the runs; false when only the help was asked for.
 bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Runs many cases side by side, and again with other values of variables. Options behind "
         "-- are handed to every run, such as -- -save:all -fit.",
         "fppg batch");
     app.add_option("SOURCE", call.source,
                    "a folder, searched for *_Def.xml, or a file that lists them, or one definition")
-        ->required();
-    app.add_option("--out", call.out, "folder of results")->capture_default_str();
+        .required();
+    app.add_option("--out", call.out, "folder of results").shows_default();
     app.add_option("--set", call.sets,
                    "NAME=VALUE,VALUE: one run for every value of a variable; Dp is the particle "
                    "distance; may be repeated, for all combinations")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .may_be_repeated();
     app.add_option("--jobs", call.jobs, "runs side by side (default: processors / threads)")
-        ->check(CLI::Range(1, 4096));
+        .range(1, 4096);
     app.add_option("--threads", call.threads, "of each run (default: processors / jobs, or 1)")
-        ->check(CLI::Range(1, 4096));
+        .range(1, 4096);
     app.add_option(
            "--memory", call.memory_gb,
            "GB that runs side by side may need by their estimates (default: 80 % of what is "
            "free)")
-        ->check(CLI::PositiveNumber);
+        .positive();
     app.add_flag("--resume", call.resumes,
                  "leave out runs that are done and whose inputs have not changed");
     auto* dry_run = app.add_flag(
@@ -89,20 +88,20 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
     app.add_flag("--no-pictures", call.no_pictures, "do not draw the particles");
     app.add_flag("--quiet", call.quiet, "say nothing but errors");
     app.add_flag("--log-json", call.log_json, "a JSON object a line instead of text");
-    auto* slurm = app.add_flag("--slurm", call.slurm,
-                               "run nothing, write scripts for a Slurm job array into --out");
-    app.add_flag("--submit", call.submit, "hand them in with sbatch")->needs(slurm);
+    const auto slurm = app.add_flag("--slurm", call.slurm,
+                                    "run nothing, write scripts for a Slurm job array into --out");
+    app.add_flag("--submit", call.submit, "hand them in with sbatch").needs(slurm);
     app.add_option("--plan", call.plan, "parallel: run nothing, print a command a run")
-        ->check(CLI::IsMember({"parallel"}))
-        ->excludes(slurm);
+        .one_of({"parallel"})
+        .excludes(slurm);
     app.add_option("--task", call.task,
                    "do run N of the plan in the folder SOURCE, which --slurm or --plan wrote")
-        ->check(CLI::PositiveNumber);
+        .positive();
     app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE");
     for (const char* other : {"--resume", "--slurm", "--plan", "--task", "--summary"})
         dry_run->excludes(app.get_option(other));
     call.of_runs = take_run_options(arguments);
-    return read_subcommand_line(app, arguments);
+    return app.read(arguments);
 }
 
 /// Refuses options of runs that a run would refuse, before anything begins.

@@ -108,7 +108,7 @@ void upgrade(const std::string& name, const UpgradeCall& call)
 
 int run_upgrade(const std::vector<std::string>& arguments)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Tells what changes when a case definition is written in the forms of DualSPHysics v5.4, a "
         "line for each change, and writes it with -o or --in-place. Particles, normals and what "
         "v5.4's solver does stay the same; comments and all else in the file stay too. Notes name "
@@ -116,13 +116,13 @@ int run_upgrade(const std::vector<std::string>& arguments)
         "fppg upgrade");
     UpgradeCall call;
     app.add_option("DEFINITION", call.definitions, "case definitions, .xml may be left out")
-        ->required();
-    auto* output =
+        .required();
+    const auto output =
         app.add_option("-o,--output", call.output, "a new file for the upgraded definition");
     app.add_flag("--in-place", call.in_place,
                  "write the definition itself; the one of before is kept as .bak, or .bak2, ...")
-        ->excludes(output);
-    if (!read_subcommand_line(app, arguments)) return 0;
+        .excludes(output);
+    if (!app.read(arguments)) return 0;
     if (!call.output.empty() && call.definitions.size() > 1)
         throw UsageError("-o is for one definition; --in-place takes several");
     if (!call.output.empty() && fs::exists(fs::symlink_status(call.output)))

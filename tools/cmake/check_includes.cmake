@@ -43,13 +43,14 @@ set(app_may_see upgrade leak batch report compare render walls lattice fit boole
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
-set(wrapped_libraries tinyxml2 embree png zlib CLI)
+set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
 # The case definition, and mesh files whose numbers are too many to pass through a tree.
 set(tinyxml2_may_be_seen_by casedef meshes)
 set(zlib_may_be_seen_by meshes)
 set(embree_may_be_seen_by meshes render)
 set(png_may_be_seen_by render)
 set(CLI_may_be_seen_by app)
+set(nlohmann_may_be_seen_by core)
 
 set(faults)
 
