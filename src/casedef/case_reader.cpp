@@ -3,6 +3,7 @@
 
 #include "casedef/attributes.h"
 #include "casedef/draw_block.h"
+#include "casedef/expression.h"
 #include "casedef/fit_block.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
@@ -74,7 +75,7 @@ public:
         evaluate_execution();
 
         if (const Element* e = casedef.find_child("initials"))
-            def_.initials = read_initials(*e, def_, read_);
+            def_.initials = read_initials(*e, def_, read_, def_.warnings);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
         read_properties(casedef.find_child("properties"), read_, def_);
         if (const Element* e = casedef.find_child("motion"))
@@ -272,13 +273,27 @@ private:
         }
     }
 
+    void predefine(const std::string& name, VariableValue value, bool is_exported = false)
+    {
+        try
+        {
+            variables_.predefine(name, std::move(value), is_exported);
+        }
+        catch (const ExpressionError& error)
+        {
+            // Only a variable of <predefinition> can be in its way.
+            const Element* geometry = def_.casedef.find_child("geometry");
+            read_.fail(*geometry->find_child("predefinition"), error.what());
+        }
+    }
+
     void set_early_variables()
     {
-        variables_.predefine("Gravity_x", def_.constants.gravity.x);
-        variables_.predefine("Gravity_y", def_.constants.gravity.y);
-        variables_.predefine("Gravity_z", def_.constants.gravity.z);
-        variables_.predefine("Rhop0", def_.constants.rhop0);
-        variables_.predefine("VResId", static_cast<double>(options_.zone), true);
+        predefine("Gravity_x", def_.constants.gravity.x);
+        predefine("Gravity_y", def_.constants.gravity.y);
+        predefine("Gravity_z", def_.constants.gravity.z);
+        predefine("Rhop0", def_.constants.rhop0);
+        predefine("VResId", static_cast<double>(options_.zone), true);
     }
 
     void run_predefinition(const Element& e)
@@ -311,7 +326,7 @@ private:
         if (!(grid.dp > 0) || !std::isfinite(grid.dp))
             read_.fail(e, fmt::format("dp is {:g}, expected a particle distance above 0", grid.dp));
         // GenCase knows it in the attributes of the children.
-        variables_.predefine("Dp", zone_dp());
+        predefine("Dp", zone_dp());
         const Vec3 low = read_.child_vec3(e, "pointmin");
         const Vec3 high = read_.child_vec3(e, "pointmax");
         grid.is_2d = low.y == high.y;
@@ -416,18 +431,18 @@ private:
     void set_case_variables()
     {
         const LatticeGrid& grid = def_.grid;
-        variables_.predefine("PosMin_x", def_.case_pos_min.x);
-        variables_.predefine("PosMin_y", def_.case_pos_min.y);
-        variables_.predefine("PosMin_z", def_.case_pos_min.z);
-        variables_.predefine("PosMax_x", def_.case_pos_max.x);
-        variables_.predefine("PosMax_y", def_.case_pos_max.y);
-        variables_.predefine("PosMax_z", def_.case_pos_max.z);
-        variables_.predefine("CaseName", def_.case_name);
-        variables_.predefine("Data2D", grid.is_2d ? 1.0 : 0.0);
-        variables_.predefine("Data2DPosy", grid.is_2d ? grid.origin.y : 0.0);
-        variables_.predefine("H", def_.h);
-        variables_.predefine("MassBound", def_.mass_bound);
-        variables_.predefine("MassFluid", def_.mass_fluid);
+        predefine("PosMin_x", def_.case_pos_min.x);
+        predefine("PosMin_y", def_.case_pos_min.y);
+        predefine("PosMin_z", def_.case_pos_min.z);
+        predefine("PosMax_x", def_.case_pos_max.x);
+        predefine("PosMax_y", def_.case_pos_max.y);
+        predefine("PosMax_z", def_.case_pos_max.z);
+        predefine("CaseName", def_.case_name);
+        predefine("Data2D", grid.is_2d ? 1.0 : 0.0);
+        predefine("Data2DPosy", grid.is_2d ? grid.origin.y : 0.0);
+        predefine("H", def_.h);
+        predefine("MassBound", def_.mass_bound);
+        predefine("MassFluid", def_.mass_fluid);
     }
 
     /// The value of an attribute of the floating, or of its child of that name.

@@ -26,37 +26,107 @@ std::string trimmed(const std::string& text)
     return {first, last};
 }
 
-/// Replaces what stands before the declaration by blanks, line ends kept so that lines still count.
-void blank_before_declaration(std::string& text)
+/// Brings a text into what tinyxml2 reads where the XML parser of GenCase v5.4.354 takes more:
+/// values of attributes without quotes get some, instructions (`<? ?>`, the declaration too, which
+/// may have comments before it) become blanks, and so does all that stands behind the end of the
+/// root. Line ends stay, so that lines still count.
+class LenientText
 {
-    std::size_t start = 0;
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) start = 3;
-    std::size_t pos = start;
-    while (pos < text.size())
+public:
+    explicit LenientText(const std::string& text) : text_(text) {}
+
+    std::string run()
     {
-        if (std::strchr(" \t\r\n", text[pos]) != nullptr && text[pos] != 0)
-            ++pos;
-        else if (text.compare(pos, 4, "<!--") == 0)
+        while (at_ < text_.size() && !(has_root_ && depth_ == 0))
         {
-            const std::size_t end = text.find("-->", pos + 4);
-            if (end == std::string::npos) return;
-            pos = end + 3;
+            if (is_at("<!--"))
+                copy_past("-->");
+            else if (is_at("<![CDATA["))
+                copy_past("]]>");
+            else if (is_at("<?"))
+                drop_to(end_of("?>"));
+            else if (text_[at_] == '<')
+                copy_tag();
+            else
+                out_ += text_[at_++];
         }
-        else
-            break;
+        drop_to(text_.size());
+        return std::move(out_);
     }
-    if (text.compare(pos, 5, "<?xml") != 0) pos = start;
-    for (std::size_t i = 0; i < pos; ++i)
-        if (text[i] != '\n') text[i] = ' ';
-    if (text.compare(pos, 5, "<?xml") == 0)
+
+private:
+    bool is_at(std::string_view mark) const { return text_.compare(at_, mark.size(), mark) == 0; }
+    static bool is_blank(char c) { return c == ' ' || (c >= 9 && c <= 13); }
+
+    std::size_t end_of(std::string_view mark) const
     {
-        // The declaration itself says nothing that is used here, and it must be the first node.
-        const std::size_t end = text.find("?>", pos);
-        if (end != std::string::npos)
-            for (std::size_t i = pos; i < end + 2; ++i)
-                if (text[i] != '\n') text[i] = ' ';
+        const std::size_t found = text_.find(mark, at_);
+        return found == std::string::npos ? text_.size() : found + mark.size();
     }
-}
+    void copy_past(std::string_view mark)
+    {
+        const std::size_t end = end_of(mark);
+        out_.append(text_, at_, end - at_);
+        at_ = end;
+    }
+    void drop_to(std::size_t end)
+    {
+        for (; at_ < end; ++at_) out_ += text_[at_] == '\n' ? '\n' : ' ';
+    }
+
+    void copy_tag()
+    {
+        const bool is_end = is_at("</");
+        const bool is_element = !is_at("<!");
+        bool is_value = false; // behind a '='
+        char last = 0;
+        while (at_ < text_.size())
+        {
+            const char c = text_[at_];
+            if (c == '"' || c == '\'')
+            {
+                const std::size_t end = std::min(text_.find(c, at_ + 1), text_.size() - 1);
+                out_.append(text_, at_, end - at_ + 1);
+                at_ = end + 1;
+                is_value = false;
+            }
+            else if (is_value && !is_blank(c) && c != '>' && c != '/')
+                quote_value();
+            else
+            {
+                out_ += c;
+                ++at_;
+                if (c == '>') break;
+                if (!is_blank(c)) is_value = c == '=';
+                last = c;
+                continue;
+            }
+            is_value = false;
+            last = 0;
+        }
+        if (!is_element) return;
+        has_root_ = true;
+        if (is_end)
+            --depth_;
+        else if (last != '/')
+            ++depth_;
+    }
+
+    void quote_value()
+    {
+        out_ += '"';
+        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' &&
+               text_[at_] != '>')
+            out_ += text_[at_++];
+        out_ += '"';
+    }
+
+    const std::string& text_;
+    std::string out_;
+    std::size_t at_ = 0;
+    int depth_ = 0;
+    bool has_root_ = false;
+};
 
 Element convert(const tinyxml2::XMLElement& source, const std::string& file, int depth)
 {
@@ -91,7 +161,7 @@ Element convert(const tinyxml2::XMLElement& source, const std::string& file, int
 
 Element parse_xml(std::string text, const std::string& name)
 {
-    blank_before_declaration(text);
+    text = LenientText(text).run();
     tinyxml2::XMLDocument document;
     const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
