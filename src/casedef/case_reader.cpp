@@ -232,6 +232,14 @@ private:
                        fmt::format("{:g} is invalid, expected more than 0", c.gamma));
     }
 
+    /// For what GenCase passes over without a word.
+    void warn_unknown(const Element& e, const char* parent, const char* expected)
+    {
+        def_.warnings.push_back(
+            fmt::format("{}:{}: <{}>: is not known in <{}> and has no effect, expected {}",
+                        def_.file, e.line, e.name, parent, expected));
+    }
+
     void read_mk_config(const Element& e)
     {
         def_.mkbound_count = read_.integer(e, "boundcount", 0, 65520, false);
@@ -247,8 +255,10 @@ private:
             if (o.kind != Element::Kind::Tag || o.name.starts_with('_')) continue;
             const bool is_bound = o.name == "mkorientbound";
             if (!is_bound && o.name != "mkorientfluid")
-                read_.fail(o,
-                           "is not known in <mkconfig>, expected mkorientbound or mkorientfluid");
+            {
+                warn_unknown(o, "mkconfig", "mkorientbound or mkorientfluid");
+                continue;
+            }
             MkOrient orient;
             orient.mk =
                 static_cast<std::uint16_t>(read_.integer(o, "mk", 0, 60000, false) +
@@ -302,10 +312,11 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c))
                 continue;
-            if (c.name != "newvarcte" && c.name != "newvarstrcte" && c.name != "newvar" &&
-                c.name != "newvarstr")
-                read_.fail(c,
-                           "is not known in <predefinition>, expected newvarcte or newvarstrcte");
+            static const std::set<std::string> known{"newvarcte", "newvarstrcte", "newvar",
+                                                     "newvarstr", "setvar",       "setvarstr"};
+            if (!known.contains(c.name))
+                read_.fail(c, "is not known in <predefinition>, expected newvarcte, newvarstrcte, "
+                              "newvar, newvarstr, setvar or setvarstr");
             commands_.run(c, def_.list_log);
         }
     }
@@ -460,11 +471,7 @@ private:
             if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
             if (e.name != "floating")
             {
-                // GenCase passes over it without a word.
-                def_.warnings.push_back(fmt::format(
-                    "{}:{}: <{}>: is not known in <floatings> and has no effect, expected "
-                    "floating",
-                    def_.file, e.line, e.name));
+                warn_unknown(e, "floatings", "floating");
                 continue;
             }
             FloatingDef f;
@@ -500,10 +507,12 @@ private:
             static const std::set<std::string> own{"massbody",   "rhopbody", "relativeweight",
                                                    "masspart",   "center",   "inertia",
                                                    "inertiafull"};
+            std::set<std::string> seen;
             for (const Element& c : e.children)
             {
-                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
-                    continue;
+                if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+                if (!seen.insert(c.name).second) read_.fail(c, "is there twice, expected one");
+                if (own.contains(c.name)) continue;
                 if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
                 f.extra.push_back(evaluated_element(c, read_));
             }

@@ -112,6 +112,7 @@ struct ChildrenOf
 /// Found by giving each command 17 other elements in GenCase v5.0 and some in v5.4, and each of its
 /// own elements twice in 18 of them.
 constexpr auto children = std::to_array<ChildrenOf>({
+    {"cellsout", ""},
     {"clipbox", "angles boxfaces endpoint point size"},
     {"clipplane", "point point1 point2 point3 vector"},
     {"drawbeach", "point+"},
@@ -120,6 +121,12 @@ constexpr auto children = std::to_array<ChildrenOf>({
     {"drawellipsoid", "point+"},
     {"drawextrude", "extrude layers point+"},
     {"drawfigure", "points triangles"},
+    {"drawfilecsv", "clipdomain drawcenter drawmove drawrotate drawscale"},
+    {"drawfileply", "clipdomain depth drawcenter drawmove drawrotate drawscale layers"},
+    {"drawfilestl", "clipdomain depth drawcenter drawmove drawrotate drawscale layers"},
+    {"drawfilevtk", "clipdomain depth drawcenter drawmove drawrotate drawscale layers polyselec"},
+    {"drawfilevtm",
+     "clipdomain depth drawcenter drawmove drawrotate drawscale onlysurfaces+ polyselec"},
     {"drawline", "point+"},
     {"drawlines", "point+"},
     {"drawpoints", "point+"},

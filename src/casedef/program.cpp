@@ -55,7 +55,10 @@ void ProgramRunner::run(const Element& commands)
                                 def_.file, e.line));
         }
         else
-            read_.fail(e, "is not known in <commands>, expected list or mainlist");
+            def_.warnings.push_back(
+                fmt::format("{}:{}: <{}>: is not known in <commands> and has no effect, as with "
+                            "GenCase; expected list or mainlist.",
+                            def_.file, e.line, e.name));
     }
     if (main == nullptr) read_.fail(commands, "the element <mainlist> is missing in it");
     def_.list_log.push_back("> MAIN");
