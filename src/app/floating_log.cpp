@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fppg
 {
@@ -16,7 +17,12 @@ namespace
 
 std::string text_of(const FloatingBody& body)
 {
-    const auto& i = body.inertia;
+    // Rounding off the diagonal is not shown.
+    std::array<Vec3, 3> i = body.inertia;
+    const double least = 1e-12 * (std::fabs(i[0].x) + std::fabs(i[1].y) + std::fabs(i[2].z));
+    for (Vec3& row : i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::fabs(row[axis]) < least) row[axis] = 0;
     return fmt::format(
         "mass {:.9g} kg, centre ({:.9g}, {:.9g}, {:.9g}) m, inertia xx yy zz "
         "({:.9g}, {:.9g}, {:.9g}) xy xz yz ({:.9g}, {:.9g}, {:.9g}) kg*m^2",
@@ -85,8 +91,7 @@ void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
         true_body.inertia =
             f->inertia ? *f->inertia
                        : inertia_about(inertia, true_body.mass_body, center - true_body.center);
-        if (f->distribute_mass)
-            true_body.mass_part = true_body.mass_body / static_cast<double>(block.count);
+        if (f->distribute_mass) true_body.mass_part *= true_body.mass_body / body.mass_body;
         log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
                              text_of(true_body), is_wanted ? " (taken)" : ""));
         if (is_wanted) body = true_body;

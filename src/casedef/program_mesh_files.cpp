@@ -166,8 +166,9 @@ void ProgramRunner::draw_mesh_file(const Element& e)
     // Without numbers it has no effect.
     if (const Element* layers = e.find_child("layers");
         layers != nullptr && !read_.text_or(*layers, "vdp", "").empty())
-        read_.fail(*layers, "layers of a mesh file are not supported (GenCase has them in 2D with "
-                            "setfrdrawmode only)");
+        read_.fail(*layers,
+                   "layers of a mesh file are not supported (GenCase has them in 2D with "
+                   "setfrdrawmode only)");
     if (const Element* clip = e.find_child("clipdomain"))
         op.clip_resize = read_.number_or(*clip, "resize", 0);
     if (const Element* select = e.find_child("polyselec"))
@@ -397,6 +398,11 @@ void ProgramRunner::draw_bathymetry(const Element& e)
     if (const Element* c = grid.find_child("finalmove")) bathymetry.final_move = read_.vec3(*c);
     op.reading.bathymetry = bathymetry;
     op.transform = matrix_;
+    // An attribute `file` in the place of `value` asks for nothing.
+    if (const Element* c = e.find_child("savepoints"))
+        op.saves_points = read_.flag_or(*c, "value", false);
+    if (const Element* c = e.find_child("savegrid"))
+        op.saves_grid = read_.flag_or(*c, "value", false);
     add(e, std::move(op));
 }
 

@@ -1,5 +1,6 @@
 #include "casedef/xml_document.h"
 
+#include "casedef/lenient_xml.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -18,115 +19,79 @@ namespace
 
 constexpr int max_depth = 200;
 
-std::string trimmed(const std::string& text)
+/// Blanks at both ends dropped, runs of others one blank each.
+std::string condensed(const std::string& text)
 {
-    const auto is_blank = [](unsigned char c) { return c == ' ' || (c >= 9 && c <= 13); };
-    auto first = std::find_if_not(text.begin(), text.end(), is_blank);
-    auto last = std::find_if_not(text.rbegin(), std::make_reverse_iterator(first), is_blank).base();
-    return {first, last};
+    std::string out;
+    for (const char c : text)
+    {
+        if (!is_xml_blank(c))
+            out += c;
+        else if (!out.empty() && out.back() != ' ')
+            out += ' ';
+    }
+    if (!out.empty() && out.back() == ' ') out.pop_back();
+    return out;
 }
 
-/// Brings a text into what tinyxml2 reads where the XML parser of GenCase v5.4.354 takes more:
-/// values of attributes without quotes get some, instructions (`<? ?>`, the declaration too, which
-/// may have comments before it) become blanks, and so does all that stands behind the end of the
-/// root. Line ends stay, so that lines still count.
-class LenientText
+/// The bytes of a UTF-8 character at `at`, or 0.
+std::size_t utf8_length(const std::string& text, std::size_t at)
 {
-public:
-    explicit LenientText(const std::string& text) : text_(text) {}
+    const auto lead = static_cast<unsigned char>(text[at]);
+    const std::size_t length = lead < 0x80                    ? 1
+                               : lead >= 0xC2 && lead < 0xE0  ? 2
+                               : lead >= 0xE0 && lead < 0xF0  ? 3
+                               : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                              : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if (at + i >= text.size() || (static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80)
+            return 0;
+    return length;
+}
 
-    std::string run()
+/// Text that is not UTF-8 is taken as Latin-1: what is written is UTF-8, whatever was read.
+std::string as_utf8(std::string text)
+{
+    std::size_t at = 0;
+    while (at < text.size())
     {
-        while (at_ < text_.size() && !(has_root_ && depth_ == 0))
+        const std::size_t length = utf8_length(text, at);
+        if (length == 0) break;
+        at += length;
+    }
+    if (at == text.size()) return text;
+    std::string out;
+    for (const char c : text)
+    {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x80) out += static_cast<char>(0xC0 | byte >> 6);
+        out += byte < 0x80 ? c : static_cast<char>(0x80 | (byte & 0x3F));
+    }
+    return out;
+}
+
+Element convert(const tinyxml2::XMLElement& source, const std::string& file, int depth);
+
+void convert_children(const tinyxml2::XMLNode& source, const std::string& file, int depth,
+                      Element& out)
+{
+    for (const auto* node = source.FirstChild(); node != nullptr; node = node->NextSibling())
+    {
+        if (const auto* tag = node->ToElement())
+            out.children.push_back(convert(*tag, file, depth));
+        else if (const auto* text = node->ToText())
+            (out.children.empty() ? out.text : out.children.back().tail) +=
+                text->CData() ? text->Value() : condensed(text->Value());
+        else if (const auto* comment = node->ToComment())
         {
-            if (is_at("<!--"))
-                copy_past("-->");
-            else if (is_at("<![CDATA["))
-                copy_past("]]>");
-            else if (is_at("<?"))
-                drop_to(end_of("?>"));
-            else if (text_[at_] == '<')
-                copy_tag();
-            else
-                out_ += text_[at_++];
+            Element c;
+            c.kind = Element::Kind::Comment;
+            c.text = comment->Value();
+            c.line = comment->GetLineNum();
+            out.children.push_back(std::move(c));
         }
-        drop_to(text_.size());
-        return std::move(out_);
     }
-
-private:
-    bool is_at(std::string_view mark) const { return text_.compare(at_, mark.size(), mark) == 0; }
-    static bool is_blank(char c) { return c == ' ' || (c >= 9 && c <= 13); }
-
-    std::size_t end_of(std::string_view mark) const
-    {
-        const std::size_t found = text_.find(mark, at_);
-        return found == std::string::npos ? text_.size() : found + mark.size();
-    }
-    void copy_past(std::string_view mark)
-    {
-        const std::size_t end = end_of(mark);
-        out_.append(text_, at_, end - at_);
-        at_ = end;
-    }
-    void drop_to(std::size_t end)
-    {
-        for (; at_ < end; ++at_) out_ += text_[at_] == '\n' ? '\n' : ' ';
-    }
-
-    void copy_tag()
-    {
-        const bool is_end = is_at("</");
-        const bool is_element = !is_at("<!");
-        bool is_value = false; // behind a '='
-        char last = 0;
-        while (at_ < text_.size())
-        {
-            const char c = text_[at_];
-            if (c == '"' || c == '\'')
-            {
-                const std::size_t end = std::min(text_.find(c, at_ + 1), text_.size() - 1);
-                out_.append(text_, at_, end - at_ + 1);
-                at_ = end + 1;
-                is_value = false;
-            }
-            else if (is_value && !is_blank(c) && c != '>' && c != '/')
-                quote_value();
-            else
-            {
-                out_ += c;
-                ++at_;
-                if (c == '>') break;
-                if (!is_blank(c)) is_value = c == '=';
-                last = c;
-                continue;
-            }
-            is_value = false;
-            last = 0;
-        }
-        if (!is_element) return;
-        has_root_ = true;
-        if (is_end)
-            --depth_;
-        else if (last != '/')
-            ++depth_;
-    }
-
-    void quote_value()
-    {
-        out_ += '"';
-        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' &&
-               text_[at_] != '>')
-            out_ += text_[at_++];
-        out_ += '"';
-    }
-
-    const std::string& text_;
-    std::string out_;
-    std::size_t at_ = 0;
-    int depth_ = 0;
-    bool has_root_ = false;
-};
+}
 
 Element convert(const tinyxml2::XMLElement& source, const std::string& file, int depth)
 {
@@ -138,30 +103,15 @@ Element convert(const tinyxml2::XMLElement& source, const std::string& file, int
     out.line = source.GetLineNum();
     for (const auto* a = source.FirstAttribute(); a != nullptr; a = a->Next())
         out.attributes.push_back({a->Name(), a->Value()});
-    for (const auto* node = source.FirstChild(); node != nullptr; node = node->NextSibling())
-    {
-        if (const auto* tag = node->ToElement())
-            out.children.push_back(convert(*tag, file, depth + 1));
-        else if (const auto* text = node->ToText())
-            out.text += text->Value();
-        else if (const auto* comment = node->ToComment())
-        {
-            Element c;
-            c.kind = Element::Kind::Comment;
-            c.text = comment->Value();
-            c.line = comment->GetLineNum();
-            out.children.push_back(std::move(c));
-        }
-    }
-    out.text = trimmed(out.text);
+    convert_children(source, file, depth + 1, out);
     return out;
 }
 
 } // namespace
 
-Element parse_xml(std::string text, const std::string& name)
+Element parse_document(std::string text, const std::string& name)
 {
-    text = LenientText(text).run();
+    text = strict_xml(as_utf8(std::move(text)));
     tinyxml2::XMLDocument document;
     const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
@@ -173,10 +123,12 @@ Element parse_xml(std::string text, const std::string& name)
                                     tinyxml2::XMLDocument::ErrorIDToName(error)));
     if (document.RootElement() == nullptr)
         throw CaseError(name, 0, "there is no element, expected the root <case>");
-    return convert(*document.RootElement(), name, 0);
+    Element out;
+    convert_children(document, name, 0, out);
+    return out;
 }
 
-Element read_xml(const std::string& path)
+Element read_document(const std::string& path)
 {
     std::ifstream in(path, std::ios::binary);
     if (!in) throw IoError(fmt::format("{}: cannot open the file: {}", path, std::strerror(errno)));
@@ -184,7 +136,23 @@ Element read_xml(const std::string& path)
     text << in.rdbuf();
     if (in.bad() || (text.fail() && in.peek() != EOF))
         throw IoError(fmt::format("{}: cannot read the file: {}", path, std::strerror(errno)));
-    return parse_xml(std::move(text).str(), path);
+    return parse_document(std::move(text).str(), path);
+}
+
+const Element& root_of(const Element& document)
+{
+    return *std::find_if(document.children.begin(), document.children.end(),
+                         [](const Element& e) { return e.kind == Element::Kind::Tag; });
+}
+
+Element read_xml(const std::string& path)
+{
+    return root_of(read_document(path));
+}
+
+Element parse_xml(std::string text, const std::string& name)
+{
+    return root_of(parse_document(std::move(text), name));
 }
 
 } // namespace fppg

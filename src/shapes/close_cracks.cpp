@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "shapes/drop_degenerate.h"
 #include "shapes/edge_map.h"
+#include "shapes/mesh_facets.h"
 #include "shapes/weld_corners.h"
 
 namespace fppg
@@ -20,7 +22,44 @@ std::size_t count_open(const SurfaceMesh& mesh)
     return count;
 }
 
+/// Joins corners within a distance, drops facets that lose their area, and takes the outcome over
+/// if at most `open_left` edges are open then. Returns whether it did.
+bool join_within(double distance, const std::vector<char>& may_move, std::size_t open_left,
+                 int threads, SurfaceMesh& mesh, MeshReport& report)
+{
+    SurfaceMesh joined;
+    joined.vertices = mesh.vertices;
+    joined.facets = mesh.facets;
+    weld_near(distance, may_move, joined);
+    MeshReport dropped;
+    drop_degenerate(joined, dropped);
+    if (joined.facets.empty()) return false;
+    build_edges(joined, threads);
+    if (count_open(joined) > open_left) return false;
+    report.joined_corners += mesh.vertices.size() - joined.vertices.size();
+    report.degenerate_facets += dropped.degenerate_facets;
+    report.joined_within = std::max(report.joined_within, distance);
+    mesh = std::move(joined);
+    return true;
+}
+
 } // namespace
+
+void join_rounded_corners(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    std::vector<char> is_end(mesh.vertices.size(), 0);
+    std::size_t open = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        if (!is_open(mesh, e)) continue;
+        ++open;
+        for (const std::uint32_t v : mesh.edges[e]) is_end[v] = 1;
+    }
+    if (open == 0) return;
+    double size = 0;
+    for (const Vec3& p : mesh.vertices) size = std::max(size, largest_coordinate(p));
+    join_within(float_step * size, is_end, open - 1, threads, mesh, report);
+}
 
 void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report)
 {
@@ -35,20 +74,7 @@ void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report)
     {
         const double distance = share * std::max({size.x, size.y, size.z});
         if (!(distance < 0.1 * sides / static_cast<double>(mesh.edges.size()))) return;
-        SurfaceMesh joined;
-        joined.vertices = mesh.vertices;
-        joined.facets = mesh.facets;
-        weld_near(distance, joined);
-        MeshReport dropped;
-        drop_degenerate(joined, dropped);
-        if (joined.facets.empty()) return;
-        build_edges(joined, threads);
-        if (10 * count_open(joined) > open) continue;
-        report.joined_corners = mesh.vertices.size() - joined.vertices.size();
-        report.degenerate_facets += dropped.degenerate_facets;
-        report.joined_within = distance;
-        mesh = std::move(joined);
-        return;
+        if (join_within(distance, {}, open / 10, threads, mesh, report)) return;
     }
 }
 

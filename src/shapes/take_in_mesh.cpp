@@ -35,13 +35,17 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
 
     SurfaceMesh mesh;
     weld_equal(soup, threads, mesh);
-    if (options.weld_distance > 0) weld_near(options.weld_distance, mesh);
+    if (options.weld_distance > 0) weld_near(options.weld_distance, {}, mesh);
     drop_degenerate(mesh, report);
     if (mesh.facets.empty())
         throw GeometryError(
             fmt::format("no facet is left of {}: all lack area", report.facets_read));
     build_edges(mesh, threads);
-    if (options.weld_distance == 0) close_cracks(mesh, threads, report);
+    if (options.weld_distance == 0)
+    {
+        join_rounded_corners(mesh, threads, report);
+        close_cracks(mesh, threads, report);
+    }
     drop_copies(mesh, threads, report);
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);

@@ -57,7 +57,7 @@ void weld_equal(const TriangleSoup& soup, int threads, SurfaceMesh& mesh)
     for (std::size_t i = 0; i < n; ++i) mesh.facets[i / 3][i % 3] = index[i];
 }
 
-void weld_near(double distance, SurfaceMesh& mesh)
+void weld_near(double distance, const std::vector<char>& may_move, SurfaceMesh& mesh)
 {
     const auto cell_of = [&](const Vec3& p, int axis)
     { return static_cast<std::int64_t>(std::floor(std::clamp(p[axis] / distance, -9e18, 9e18))); };
@@ -73,6 +73,12 @@ void weld_near(double distance, SurfaceMesh& mesh)
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     {
         const Vec3& p = mesh.vertices[v];
+        if (!may_move.empty() && may_move[v] == 0)
+        {
+            index[v] = static_cast<std::uint32_t>(kept.size());
+            kept.push_back(p);
+            continue;
+        }
         const std::int64_t i = cell_of(p, 0), j = cell_of(p, 1), k = cell_of(p, 2);
         std::uint32_t best = no_index;
         double best_distance = distance;
