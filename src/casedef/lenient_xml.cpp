@@ -1,6 +1,7 @@
 #include "casedef/lenient_xml.h"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -14,15 +15,13 @@ class LenientText
 public:
     explicit LenientText(const std::string& text) : text_(text) {}
 
-    std::string run()
+    StrictXml run()
     {
         if (is_at("\xEF\xBB\xBF")) drop_to(3);
         while (at_ < text_.size())
         {
             if (is_at("<!--"))
                 copy_past("-->");
-            else if (has_root_ && depth_ == 0)
-                drop_to(at_ + 1);
             else if (is_at("<![CDATA["))
                 copy_past("]]>");
             else if (is_at("<?"))
@@ -32,7 +31,8 @@ public:
             else
                 out_ += text_[at_++];
         }
-        return std::move(out_);
+        const std::size_t end = end_of_root_.value_or(out_.size());
+        return {std::move(out_), end};
     }
 
 private:
@@ -85,11 +85,11 @@ private:
             last = 0;
         }
         if (!is_element) return;
-        has_root_ = true;
         if (is_end)
             --depth_;
         else if (last != '/')
             ++depth_;
+        if (depth_ == 0 && !end_of_root_) end_of_root_ = out_.size();
     }
 
     void quote_value()
@@ -105,12 +105,12 @@ private:
     std::string out_;
     std::size_t at_ = 0;
     int depth_ = 0;
-    bool has_root_ = false;
+    std::optional<std::size_t> end_of_root_;
 };
 
 } // namespace
 
-std::string strict_xml(const std::string& text)
+StrictXml strict_xml(const std::string& text)
 {
     return LenientText(text).run();
 }

@@ -111,9 +111,12 @@ Element convert(const tinyxml2::XMLElement& source, const std::string& file, int
 
 Element parse_document(std::string text, const std::string& name)
 {
-    text = strict_xml(as_utf8(std::move(text)));
+    const StrictXml strict = strict_xml(as_utf8(std::move(text)));
     tinyxml2::XMLDocument document;
-    const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
+    tinyxml2::XMLError error = document.Parse(strict.text.data(), strict.text.size());
+    // What follows the root may be anything.
+    if (error != tinyxml2::XML_SUCCESS && error != tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
+        error = document.Parse(strict.text.data(), strict.end_of_root);
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
         throw CaseError(name, 0,
                         "the file is empty, expected an XML document with the root <case>");
