@@ -677,9 +677,9 @@ TEST(Texts, BehindADollarHaveTheirVariablesReplaced)
     text.predefinition = R"(<predefinition><newvarstrcte vtx="u" /></predefinition>)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.ops.size(), 3U);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).file, "x2");
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).format, ShapeFormat::Vtu);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[2].what).file, "x[n]");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).file, "x2");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).format, ShapeFormat::Vtu);
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[2].what)).file, "x[n]");
     EXPECT_NE(std::find(def.list_log.begin(), def.list_log.end(), "abc2"), def.list_log.end());
 }
 

@@ -1,4 +1,5 @@
 #include "fppg/case_def.h"
+#include "fppg/scene.h"
 
 #include "helpers/dense_grid.h"
 #include "shapes/figures.h"

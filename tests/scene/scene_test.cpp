@@ -80,9 +80,9 @@ struct Written
     std::string path = folder / "Case_Def.xml";
 };
 
-const std::string reset = full_bound + box(0, 1, 1) + "<resetdraw />" + full_bound + box(0.2, 0.5, 0.5);
-const std::string parts =
-    full_bound + box(0, 1, 1, "a") + box(0.2, 0.5, 1, "b");
+const std::string reset =
+    full_bound + box(0, 1, 1) + "<resetdraw />" + full_bound + box(0.2, 0.5, 0.5);
+const std::string parts = full_bound + box(0, 1, 1, "a") + box(0.2, 0.5, 1, "b");
 const std::string difference =
     R"(<fppg><bodyfitted mkbound="0" /><boolean op="difference"><part ref="a" /><part ref="b" /></boolean></fppg>)";
 
