@@ -54,8 +54,9 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
 
 } // namespace
 
-void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
+void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log)
 {
+    const CaseDef& def = *scene.def;
     if (particles.floatings.empty()) return;
     const ExactFloatings& exact = def.exact_floatings;
     log.line("Floating bodies:");
@@ -67,7 +68,7 @@ void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
         const bool is_wanted =
             exact.all || std::find(exact.mk.begin(), exact.mk.end(), block.mk) != exact.mk.end();
         std::string why_not;
-        const std::optional<ExactBody> shape = exact_body(def, block.mk, why_not);
+        const std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
         if (!shape || f == nullptr)
         {
             log.line(fmt::format("    there is no single closed shape of it: {}", why_not));

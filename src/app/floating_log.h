@@ -1,8 +1,8 @@
 #pragma once
 
 #include "app/run_log.h"
-#include "fppg/case_def.h"
 #include "fppg/particles.h"
+#include "fppg/scene.h"
 
 namespace fppg
 {
@@ -14,6 +14,6 @@ namespace fppg
 /// for what `<floating>` itself gives.
 ///
 /// throws  CaseError where exact ones are asked for and no single closed shape draws the body
-void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log);
+void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log);
 
 } // namespace fppg

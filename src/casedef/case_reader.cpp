@@ -16,6 +16,7 @@
 #include "casedef/variable_commands.h"
 #include "casedef/vres.h"
 #include "casedef/xml_document.h"
+#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +46,7 @@ public:
     {
         def_.document = read_document(def_.file);
         const Element& root = root_of(def_.document);
+        def_.meshes = options_.meshes ? options_.meshes : std::make_shared<MeshLibrary>(def_.file);
         if (root.name != "case")
             throw CaseError(def_.file, root.line,
                             fmt::format("<{}>: the root must be <case>, as in a GenCase definition",

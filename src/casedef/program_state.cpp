@@ -1,9 +1,9 @@
 // Commands that change the state: mk, modes, constants, transforms, clips.
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
 #include "casedef/program.h"
 #include "casedef/transforms.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 

@@ -73,7 +73,7 @@ void expect_near(const Vec3& found, const Vec3& expected)
 Vec3 moved(const std::string& transforms)
 {
     const CaseDef def = run(transforms + R"(<drawpoint x="1" y="2" z="3" />)");
-    return std::get<PointsOp>(def.ops.back().what).points[0];
+    return shape_as<PointsOp>(def.ops.back())->points[0];
 }
 
 // -- mistakes
@@ -380,7 +380,7 @@ TEST(ReadCase, SkipsCommandsThatAnIfSwitchesOff)
     const CaseDef def = run(R"(<newvar a="2" /><drawpoint if="#a>3" x="0" y="0" z="0" />
 <drawpoint if="#a==2" x="1" y="0" z="0" /><drawbeach if="#0" />)");
     ASSERT_EQ(def.ops.size(), 1u);
-    EXPECT_EQ(std::get<PointsOp>(def.ops[0].what).points[0].x, 1);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops[0])->points[0].x, 1);
 }
 
 TEST(ReadCase, RefusesWhatIsNoCommand)
@@ -392,7 +392,7 @@ TEST(ReadCase, RefusesWhatIsNoCommand)
 
 const MeshFileOp& mesh_op(const CaseDef& def, std::size_t i)
 {
-    return std::get<MeshFileOp>(def.ops.at(i).what);
+    return *shape_as<MeshFileOp>(def.ops.at(i));
 }
 
 TEST(ReadCase, ReadsWhichShapesOfAVtkFileAreDrawn)
@@ -430,10 +430,10 @@ TEST(ReadCase, MeansEmptyNodesWithARedrawboxWithoutMk)
 {
     const std::string box = R"(<point x="0" y="0" z="0" /><size x="1" y="1" z="1" />)";
     const CaseDef def = run("<redrawbox>" + box + "</redrawbox><redraw />");
-    const auto& op = std::get<RedrawOp>(def.ops.at(0).what);
+    const auto& op = std::get<RedrawOp>(std::get<Edit>(def.ops.at(0).what));
     ASSERT_EQ(op.filters.size(), 1u);
     EXPECT_EQ(op.filters[0].kind, MkKind::Void);
-    EXPECT_TRUE(std::get<RedrawOp>(def.ops.at(1).what).filters.empty());
+    EXPECT_TRUE(std::get<RedrawOp>(std::get<Edit>(def.ops.at(1).what)).filters.empty());
 }
 
 /// A case beside a VTM file of three parts.
@@ -521,7 +521,7 @@ TEST(State, ComesBackFromItsStackWithoutTheClips)
         EXPECT_EQ(op.state->mk.mk_type, 1);
         EXPECT_EQ(op.state->mode, DrawMode::Wire);
         EXPECT_EQ(op.state->clips.size(), 1u);
-        expect_near(std::get<PointsOp>(op.what).points[0], {1, 0, 0});
+        expect_near(shape_as<PointsOp>(op)->points[0], {1, 0, 0});
     }
 }
 
@@ -602,7 +602,7 @@ TEST(State, IsForgottenByResetdraw)
     EXPECT_EQ(state.mk.kind, MkKind::Void);
     EXPECT_EQ(state.mode, DrawMode::Solid);
     EXPECT_TRUE(state.clips.empty());
-    expect_near(std::get<PointsOp>(def.ops.at(1).what).points[0], {0, 0, 0});
+    expect_near(shape_as<PointsOp>(def.ops.at(1))->points[0], {0, 0, 0});
 }
 
 TEST(State, CountsMksOnWithSetmknext)
@@ -630,7 +630,7 @@ TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
     {
         const CaseDef def = run("<drawprism mask=\"" + mask + "\">" + points);
         std::string out;
-        for (const FigureFace& face : std::get<FigureOp>(def.ops.at(0).what).faces)
+        for (const FigureFace& face : shape_as<FigureOp>(def.ops.at(0))->faces)
             out += face.is_visible ? '1' : '0';
         return out;
     };
@@ -677,9 +677,9 @@ TEST(Texts, BehindADollarHaveTheirVariablesReplaced)
     text.predefinition = R"(<predefinition><newvarstrcte vtx="u" /></predefinition>)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.ops.size(), 3U);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).file, "x2");
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).format, ShapeFormat::Vtu);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[2].what).file, "x[n]");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).file, "x2");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).format, ShapeFormat::Vtu);
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[2].what)).file, "x[n]");
     EXPECT_NE(std::find(def.list_log.begin(), def.list_log.end(), "abc2"), def.list_log.end());
 }
 
@@ -864,7 +864,7 @@ TEST(Expressions, StandInAnyNumber)
 {
     const CaseDef def = run(
         R"(<newvar a="1/4" /><drawsphere radius="#a*Dp"><point x="#a" y="#-a" z="#PosMax_x" /></drawsphere>)");
-    const auto& sphere = std::get<SphereOp>(def.ops.at(0).what);
+    const auto& sphere = *shape_as<SphereOp>(def.ops.at(0));
     EXPECT_DOUBLE_EQ(sphere.radius, 0.025);
     expect_near(sphere.center, {0.25, -0.25, 1.5});
 }
@@ -877,7 +877,7 @@ TEST(Evars, ReplaceTheValuesOfTheDefinitionAndShowInItsCopy)
     CaseOptions options;
     options.evars = {{"Width", "0.5"}};
     const CaseDef def = read(text, options);
-    EXPECT_EQ(std::get<PointsOp>(def.ops.at(0).what).points[0].x, 0.5);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops.at(0))->points[0].x, 0.5);
     const Element* geometry = def.casedef.find_child("geometry");
     ASSERT_NE(geometry, nullptr);
     EXPECT_EQ(
@@ -900,7 +900,7 @@ TEST(Runlist, RunsAListAsOftenAsItSays)
         R"(<newvar k="0" /><runlist name="Dots" times="3" /><runlist name="Dots" times="0" />)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.ops.size(), 3u);
-    EXPECT_EQ(std::get<PointsOp>(def.ops[2].what).points[0].x, 2);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops[2])->points[0].x, 2);
 }
 
 TEST(Runlist, StopsAtSomeNumberOfCallsEvenOfAnEmptyList)
