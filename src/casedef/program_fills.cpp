@@ -1,6 +1,6 @@
 // Commands that fill and redraw.
-#include "shapes/figures.h"
 #include "casedef/program.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 
