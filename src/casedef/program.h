@@ -158,6 +158,8 @@ private:
     /// mk, mk_back, pattern
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
         saved_mks_;
+    /// Whether a warning named an mk that GenCase v5.4 refuses.
+    bool is_large_mk_known_ = false;
     std::vector<DrawConstants> saved_constants_;
     int depth_ = 0;
     std::size_t commands_run_ = 0;
