@@ -37,6 +37,20 @@ struct ShapeMesh
     double radius = 0;
 };
 
+/// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
+/// cut off counts as if it were there. SI units; in 2D areas are lengths times dp.
+struct FitFigures
+{
+    double area = 0; ///< of its surface; of a plate with one sheet of particles, of that sheet
+    double wall_particles = 0;
+    /// Of the shape, as far as its draw fills it or its walls leave no room inside; 0: it is hollow
+    /// or open.
+    double volume = 0;
+    double sheet_volume = 0; ///< of facets that bound no volume, as if dp thick
+    double node_volume = 0;  ///< that the nodes inside stand for
+    double wall_volume = 0;  ///< that the wall's particles stand for, as far as they are inside
+};
+
 /// One drawn object whose particles stand on its true surface.
 struct FittedBody
 {
@@ -55,6 +69,20 @@ struct FittedBody
     Features features;
     double clearance_inside = 0;  ///< metres; lattice nodes nearer than this are left out
     double clearance_outside = 0; ///< the same on the other side
+    /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: of a solid so much that they
+    /// and the nodes make up its volume, of a surface 1.
+    double share = 1;
+    FitFigures figures;
+
+    /// Settles the share by the figures.
+    ///
+    /// dp  metres
+    void settle_share(double dp)
+    {
+        if (!(figures.volume > 0 && figures.wall_particles > 0)) return;
+        const double of_wall = figures.volume + figures.sheet_volume - figures.node_volume;
+        share = of_wall > 0 ? of_wall / (figures.wall_particles * dp * dp * dp) : 0;
+    }
 };
 
 /// Particles of the fitted walls, one entry each in all arrays, in the order of bodies and of

@@ -259,12 +259,13 @@ private:
     {
         if (field_.walls.bodies.empty()) return;
         log_fitted_walls(field_, log_);
-        if (!relaxes(def_, field_)) return;
+        if (!relaxes(def_, field_)) return debug_figures(field_);
         stage("Relax",
               [this]
               {
                   RelaxOutcome done = run_relaxation(def_, field_, output_, threads_, log_);
                   relax_history_ = std::move(done.history);
+                  debug_figures(field_);
                   for (std::string& w : done.warnings) warn(std::move(w));
               });
     }

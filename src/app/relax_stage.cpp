@@ -58,6 +58,16 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
 
 } // namespace
 
+void debug_figures(const RunField& field)
+{
+    const double dp = field.grid.dp;
+    for (const FittedBody& b : field.walls.bodies)
+    {
+        const FitFigures& f = b.figures;
+        fprintf(stderr, "FIG %s %d mk %d solid %d n %.0f area/dp2 %.1f (%+.1f%%) V/dp3 %.1f nodes %.1f wall %.1f (%+.1f%%) share %.3f thick %.2f\n", b.name.c_str(), b.line, b.mk, b.is_solid, f.wall_particles, f.area/dp/dp, 100*(f.wall_particles*dp*dp/f.area-1), f.volume/dp/dp/dp, f.node_volume/dp/dp/dp, f.wall_volume/dp/dp/dp, f.volume>0?100*((f.node_volume+f.wall_volume)/f.volume-1):0, b.share, 2*f.volume/f.area/dp);
+    }
+}
+
 void log_fitted_walls(const RunField& field, RunLog& log)
 {
     const FittedWalls& walls = field.walls;

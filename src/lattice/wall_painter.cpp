@@ -188,6 +188,23 @@ SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
     return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
 }
 
+/// A closed surface that holds no node is as good as solid: its particles stand for all of it.
+void take_figures(const WallZone& zone, std::size_t wall_particles, std::size_t both_sheets,
+                  double dp, FittedBody& body)
+{
+    const double dp3 = dp * dp * dp;
+    const auto n = static_cast<double>(wall_particles);
+    FitFigures& figures = body.figures;
+    figures.area = both_sheets > 0 ? zone.area * n / static_cast<double>(both_sheets) : zone.area;
+    figures.wall_particles = n;
+    if (!zone.has_inside || (!body.is_solid && zone.nodes > 0)) return;
+    figures.volume = zone.body_volume;
+    figures.sheet_volume = zone.sheet_area * dp;
+    figures.node_volume = static_cast<double>(zone.nodes) * dp3;
+    figures.wall_volume = n * zone.wall_share_inside * dp3;
+    body.settle_share(dp);
+}
+
 } // namespace
 
 FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid)
@@ -221,6 +238,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.warnings = body.report.warnings;
     SurfaceParticles surface = grid.is_2d ? section_of(body, settings, grid)
                                           : surface_of(body, settings, grid, threads, out.cut);
+    const std::size_t both_sheets = surface.positions.size() + out.cut.size();
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,
@@ -239,6 +257,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
+    take_figures(zone, surface.positions.size(), both_sheets, grid.dp, body);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
     for (const ClipPlane& clip : clips)

@@ -10,7 +10,7 @@ namespace
 
 using Moments = std::array<std::array<double, 3>, 3>;
 
-/// Sums over particles off the lattice, in steps of dp from the node `from`.
+/// Sums over particles off the lattice, each by its share, in steps of dp from the node `from`.
 class FreeSums
 {
 public:
@@ -21,24 +21,27 @@ public:
     {
     }
 
-    void add(const Vec3& position)
+    void add(const Vec3& position, double share)
     {
         Vec3 p = (position - grid_.origin) / grid_.dp - from_;
         if (grid_.is_2d) p.y = 0;
         places_.push_back(p);
-        sum_ = sum_ + p;
+        shares_.push_back(share);
+        sum_ = sum_ + p * share;
+        count_ += share;
     }
     bool is_empty() const { return places_.empty(); }
     const Vec3& sum() const { return sum_; }
+    double count() const { return count_; }
     Moments moments(const Vec3& about) const
     {
         Moments out{};
-        for (const Vec3& p : places_)
+        for (std::size_t k = 0; k < places_.size(); ++k)
         {
-            const Vec3 d = p - about;
+            const Vec3 d = places_[k] - about;
             for (std::size_t i = 0; i < 3; ++i)
                 for (std::size_t j = i; j < 3; ++j)
-                    out[i][j] += d[static_cast<int>(i)] * d[static_cast<int>(j)];
+                    out[i][j] += shares_[k] * d[static_cast<int>(i)] * d[static_cast<int>(j)];
         }
         return out;
     }
@@ -47,7 +50,9 @@ private:
     const LatticeGrid& grid_;
     Vec3 from_;
     Vec3 sum_;
+    double count_ = 0;
     std::vector<Vec3> places_;
+    std::vector<double> shares_;
 };
 
 } // namespace
@@ -57,7 +62,6 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
 {
     const ParticleBlock& block = particles.blocks[block_index];
     const LatticeGrid& grid = particles.grid;
-    const auto n = static_cast<double>(block.count);
 
     // Sums over the nodes, indices taken from the first node so that they stay small.
     using Whole = __int128;
@@ -74,7 +78,11 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
         if (run.is_free())
         {
             for (std::uint32_t i = 0; i < run.count; ++i)
-                free.add(particles.free.positions[run.free_begin() + i]);
+            {
+                const std::size_t at = run.free_begin() + i;
+                const std::vector<float>& shares = particles.free.shares;
+                free.add(particles.free.positions[at], shares.empty() ? 1 : double{shares[at]});
+            }
             continue;
         }
         nodes += run.count;
@@ -101,9 +109,12 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
 
     FloatingBody body;
     body.block = block_index;
+    const auto n_nodes = static_cast<double>(nodes);
+    const double n = n_nodes + free.count(); // of whole particles
     const double volume = grid.is_2d ? grid.dp * grid.dp : grid.dp * grid.dp * grid.dp;
     body.mass_body = def.mass_body ? *def.mass_body : def.rhop_body.value_or(0) * n * volume;
-    body.mass_part = def.distribute_mass ? body.mass_body / n : def.mass_part.value_or(mass_bound);
+    body.mass_part = def.distribute_mass ? body.mass_body / static_cast<double>(block.count)
+                                         : def.mass_part.value_or(mass_bound);
     Vec3 mean; // of the indices, from `from`
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -128,7 +139,6 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& particle
     // Second moments about the mean, in steps: those of the nodes about their own mean are
     // n * product - sum * sum in whole numbers. Then about the centre, in metres.
     const Moments of_free = free.moments(mean);
-    const auto n_nodes = static_cast<double>(nodes);
     Moments moment{};
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = i; j < 3; ++j)

@@ -315,6 +315,7 @@ private:
                 return is_free;
             };
         std::vector<char> held = std::move(particles.held);
+        const std::vector<double> before = count_by_body(particles);
         const RelaxSurfaceReport done =
             relax_surface(walls.bodies, particles, held, options, threads_);
         particles.held = std::move(held);
@@ -327,6 +328,7 @@ private:
                                  particles.facets[i]);
             },
             1024);
+        take_new_counts(before, count_by_body(particles));
         surface_iterations_done_ += done.after.iteration;
         RelaxedPart part;
         part.what = "surface";
@@ -338,6 +340,26 @@ private:
         part.mean = done.after.spacing_mean;
         part.deviation = done.after.spacing_deviation;
         report_.parts.push_back(part);
+    }
+
+    std::vector<double> count_by_body(const WallParticles& particles) const
+    {
+        std::vector<double> counts(field_.walls.bodies.size(), 0);
+        for (const std::uint32_t body : particles.bodies) ++counts[body];
+        return counts;
+    }
+
+    /// What a cut left of a body is taken for all of it.
+    void take_new_counts(const std::vector<double>& before, const std::vector<double>& after)
+    {
+        for (std::size_t b = 0; b < before.size(); ++b)
+        {
+            if (before[b] == 0) continue;
+            FittedBody& body = field_.walls.bodies[b];
+            body.figures.wall_particles *= after[b] / before[b];
+            body.figures.wall_volume *= after[b] / before[b];
+            body.settle_share(field_.grid.dp);
+        }
     }
 
     void relax_volumes()
@@ -551,6 +573,9 @@ private:
         };
         const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
         keep_moved(region, all, movers, positions, done.sources);
+        if (region.is_solid)
+            take_new_nodes(region, static_cast<double>(positions.size()) -
+                                       static_cast<double>(movers.size()));
 
         RelaxedPart part;
         part.what = region.what;
@@ -561,6 +586,21 @@ private:
         part.mean = done.shepard_mean;
         part.deviation = done.shepard_std;
         report_.parts.push_back(part);
+    }
+
+    /// The bodies of a region share what its particles became more, by their volume.
+    void take_new_nodes(const Region& region, double more)
+    {
+        const double dp = field_.grid.dp;
+        double volume = 0;
+        for (const FittedBody& body : field_.walls.bodies)
+            if (region.band[body.mk] > 0) volume += body.figures.node_volume;
+        for (FittedBody& body : field_.walls.bodies)
+        {
+            if (!(region.band[body.mk] > 0 && volume > 0)) continue;
+            body.figures.node_volume += more * dp * dp * dp * body.figures.node_volume / volume;
+            body.settle_share(dp);
+        }
     }
 
     /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
