@@ -41,7 +41,10 @@ struct ShapeMesh
 /// cut off counts as if it were there. SI units; in 2D areas are lengths times dp.
 struct FitFigures
 {
-    double area = 0; ///< of its surface; of a plate with one sheet of particles, of that sheet
+    /// Of its surface, and of a strip of half a dp beyond open rims, where particles stand on the
+    /// rim.
+    double area = 0;
+    double second_sheet = 0; ///< area that is not in `area`: the side of a plate without particles
     double wall_particles = 0;
     /// Of the shape, as far as its draw fills it or its walls leave no room inside; 0: it is hollow
     /// or open.
@@ -158,10 +161,13 @@ struct FittedWalls
     std::vector<FittedBody> bodies;
     WallParticles particles;
     VolumeParticles volume;
-    /// Where particles of a body were cut, by a later draw, a clip, the domain or as a second
-    /// sheet, and their bodies: no particle may be put there again.
+    /// Where particles of a body were cut, by a later draw, a clip or the domain, and their bodies:
+    /// no particle may be put there again.
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
+    /// Particles of the second sheets of plates, which were taken out: none may be put on their
+    /// side of the plate again.
+    WallParticles second_sheets;
 
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
     std::vector<std::uint16_t> free_mks;

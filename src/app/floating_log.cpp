@@ -8,11 +8,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fppg
 {
 namespace
 {
+
+/// Of the mass of a body to that of its shape, beyond which it is told.
+constexpr double largest_deviation = 0.02;
+
+/// Whether a block has particles of a fitted wall.
+bool is_fitted(const CaseParticles& particles, const ParticleBlock& block)
+{
+    return std::any_of(block.runs.begin(), block.runs.end(),
+                       [&](const ParticleRun& run)
+                       {
+                           if (!run.is_free()) return false;
+                           const auto first = particles.free.kinds.begin() +
+                                              static_cast<std::ptrdiff_t>(run.free_begin());
+                           return std::any_of(first, first + run.count,
+                                              [](FitKind kind) { return kind != FitKind::Volume; });
+                       });
+}
 
 std::string text_of(const FloatingBody& body)
 {
@@ -48,9 +66,10 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
 
 } // namespace
 
-void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
+std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
 {
-    if (particles.floatings.empty()) return;
+    std::vector<std::string> warnings;
+    if (particles.floatings.empty()) return warnings;
     const ExactFloatings& exact = def.exact_floatings;
     log.line("Floating bodies:");
     for (FloatingBody& body : particles.floatings)
@@ -89,9 +108,20 @@ void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
             true_body.mass_part = true_body.mass_body / static_cast<double>(block.count);
         log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
                              text_of(true_body), is_wanted ? " (taken)" : ""));
-        if (is_wanted) body = true_body;
+        if (is_wanted)
+            body = true_body;
+        else if (f->rhop_body && is_fitted(particles, block) &&
+                 std::abs(body.mass_body / true_body.mass_body - 1) > largest_deviation)
+            warnings.push_back(fmt::format(
+                "{}: floating mkbound {}: at {:g} kg/m^3 its particles have {:.4g} kg, its {} of "
+                "{:.4g} m^3 would have {:.4g} kg ({:+.3g} %): it is drawn hollow, or cut by the "
+                "domain or later draws; <fppg><floatings exact=\"true\"> takes the shape's mass, "
+                "centre and inertia.",
+                def.file, block.mk_type, *f->rhop_body, body.mass_body, shape->shape, shape->volume,
+                true_body.mass_body, 100 * (body.mass_body / true_body.mass_body - 1)));
     }
     log.line();
+    return warnings;
 }
 
 } // namespace fppg

@@ -4,6 +4,9 @@
 #include "fppg/case_def.h"
 #include "fppg/particles.h"
 
+#include <string>
+#include <vector>
+
 namespace fppg
 {
 
@@ -13,7 +16,11 @@ namespace fppg
 /// `<fppg><floatings exact="true">` asks for it the exact ones take the place of the others, but
 /// for what `<floating>` itself gives.
 ///
-/// throws  CaseError where exact ones are asked for and no single closed shape draws the body
-void settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log);
+/// returns  warnings: bodies with fitted walls whose mass by their density is more than 2 % off
+/// that
+///          of their shape, as they are hollow or cut
+/// throws   CaseError where exact ones are asked for and no single closed shape draws the body
+std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& particles,
+                                          RunLog& log);
 
 } // namespace fppg

@@ -58,16 +58,6 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
 
 } // namespace
 
-void debug_figures(const RunField& field)
-{
-    const double dp = field.grid.dp;
-    for (const FittedBody& b : field.walls.bodies)
-    {
-        const FitFigures& f = b.figures;
-        fprintf(stderr, "FIG %s %d mk %d solid %d n %.0f area/dp2 %.1f (%+.1f%%) V/dp3 %.1f nodes %.1f wall %.1f (%+.1f%%) share %.3f thick %.2f\n", b.name.c_str(), b.line, b.mk, b.is_solid, f.wall_particles, f.area/dp/dp, 100*(f.wall_particles*dp*dp/f.area-1), f.volume/dp/dp/dp, f.node_volume/dp/dp/dp, f.wall_volume/dp/dp/dp, f.volume>0?100*((f.node_volume+f.wall_volume)/f.volume-1):0, b.share, 2*f.volume/f.area/dp);
-    }
-}
-
 void log_fitted_walls(const RunField& field, RunLog& log)
 {
     const FittedWalls& walls = field.walls;
@@ -82,11 +72,11 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
                              body.name, body.line, body.mk, counts[b][0], counts[b][1],
                              counts[b][2]));
-        if (body.is_solid && body.report.volume > 0)
+        if (body.is_solid && body.figures.volume > 0)
             log.line(fmt::format(
                 "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",
-                body.report.volume, body.report.area, body.clearance_inside / dp,
-                body.clearance_outside / dp));
+                body.figures.volume, body.figures.area + body.figures.second_sheet,
+                body.clearance_inside / dp, body.clearance_outside / dp));
     }
     log.line();
 }

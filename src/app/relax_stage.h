@@ -12,7 +12,6 @@ namespace fppg
 class RunLog;
 
 /// Says of every fitted body how many particles stand on it, and the clearances of solids.
-void debug_figures(const RunField& field);
 void log_fitted_walls(const RunField& field, RunLog& log);
 
 struct RelaxOutcome

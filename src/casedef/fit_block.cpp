@@ -129,7 +129,8 @@ private:
             s.clearance_dp = number_or(
                 e, "clearance", 0, [](double v) { return v >= 0.5 && v <= 1; },
                 "auto or 0.5 to 1 (times dp)");
-        s.one_sheet = !is_first_of(e, "plates", "both", "one");
+        if (e.find_attribute("plates") != nullptr && !is_word(e, "plates", "auto"))
+            s.one_sheet_dp = is_first_of(e, "plates", "both", "one") ? 0 : 1;
         bool has_relax = false;
         for (const Element& c : e.children)
         {

@@ -78,6 +78,9 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
     const std::vector<SpanSet> shares = share_out(nodes, sets, tree, threads);
     std::map<std::uint16_t, NodeShare> by_mk;
     out.volume.assign(grid.n[0], {});
+    if (std::any_of(parts.begin(), parts.end(),
+                    [](const BooleanWallPart& p) { return !p.is_solid; }))
+        out.body.figures.volume = 0; // part of it is hollow
     for (std::size_t p = 0; p < parts.size(); ++p)
     {
         if (shares[p].slabs.empty()) continue;

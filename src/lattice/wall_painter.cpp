@@ -161,19 +161,16 @@ bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
 }
 
 SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid, int threads, std::vector<Vec3>& cut)
+                            const LatticeGrid& grid, int threads)
 {
     FitOptions options;
     options.dp = grid.dp;
     options.lattice_origin = grid.origin;
     options.density = settings.density;
-    SurfaceParticles particles = fit_surface(
+    return fit_surface(
         body.mesh, body.features,
         place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
         threads);
-    if (settings.one_sheet)
-        cut = keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
-    return particles;
 }
 
 /// In 2D the wall is where the surface meets the plane of the particles.
@@ -188,14 +185,35 @@ SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
     return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
 }
 
+/// Of open edges, metres; in 2D of those that meet the plane of the particles, dp each.
+double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
+{
+    double length = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        if (mesh.edge_facets[e][1] != no_index) continue;
+        const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+        const Vec3& b = mesh.vertices[mesh.edges[e][1]];
+        if (!grid.is_2d)
+            length += norm(b - a);
+        else if ((a.y < grid.origin.y) != (b.y < grid.origin.y))
+            length += grid.dp;
+    }
+    return length;
+}
+
 /// A closed surface that holds no node is as good as solid: its particles stand for all of it.
 void take_figures(const WallZone& zone, std::size_t wall_particles, std::size_t both_sheets,
-                  double dp, FittedBody& body)
+                  const LatticeGrid& grid, FittedBody& body)
 {
+    const double dp = grid.dp;
     const double dp3 = dp * dp * dp;
     const auto n = static_cast<double>(wall_particles);
     FitFigures& figures = body.figures;
-    figures.area = both_sheets > 0 ? zone.area * n / static_cast<double>(both_sheets) : zone.area;
+    figures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
+    if (both_sheets > wall_particles)
+        figures.second_sheet = figures.area * (1 - n / static_cast<double>(both_sheets));
+    figures.area -= figures.second_sheet;
     figures.wall_particles = n;
     if (!zone.has_inside || (!body.is_solid && zone.nodes > 0)) return;
     figures.volume = zone.body_volume;
@@ -236,9 +254,12 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.body = std::move(given);
     FittedBody& body = out.body;
     out.warnings = body.report.warnings;
-    SurfaceParticles surface = grid.is_2d ? section_of(body, settings, grid)
-                                          : surface_of(body, settings, grid, threads, out.cut);
-    const std::size_t both_sheets = surface.positions.size() + out.cut.size();
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
+    const std::size_t both_sheets = surface.positions.size();
+    if (settings.one_sheet_dp > 0)
+        out.second_sheet = keep_one_sheet(body.mesh, body.features,
+                                          {grid.dp, settings.one_sheet_dp}, surface, threads);
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,
@@ -257,7 +278,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
-    take_figures(zone, surface.positions.size(), both_sheets, grid.dp, body);
+    take_figures(zone, surface.positions.size(), both_sheets, grid, body);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
     for (const ClipPlane& clip : clips)
@@ -361,6 +382,16 @@ void WallPainter::add(FittedDraw&& draw)
         walls.particles.append(draw.particles);
     walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
     walls.cut_bodies.resize(walls.cut.size(), body);
+    const SurfaceParticles& second = draw.second_sheet;
+    for (std::size_t i = 0; i < second.positions.size(); ++i)
+    {
+        walls.second_sheets.positions.push_back(second.positions[i]);
+        walls.second_sheets.kinds.push_back(second.kinds[i]);
+        walls.second_sheets.bodies.push_back(body);
+        walls.second_sheets.facets.push_back(second.facets[i]);
+        walls.second_sheets.mk.push_back(mk);
+        walls.second_sheets.held.push_back(0);
+    }
     is_cut_.resize(walls.particles.size(), 0);
     anchor(first, draw.zone);
 }

@@ -305,13 +305,24 @@ private:
         { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
         PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
         for (const Vec3& p : walls.cut) cut.add(p);
-        if (!walls.cut.empty())
-            options.may_insert = [&](std::size_t body, const Vec3& p)
+        const WallParticles& second = walls.second_sheets;
+        PointGrid second_sheets(reach_of_cuts_dp * dp, second.size());
+        for (const Vec3& p : second.positions) second_sheets.add(p);
+        if (!walls.cut.empty() || second.size() > 0)
+            options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
             {
                 bool is_free = true;
                 cut.for_each_near(p, 1.5 * dp,
                                   [&](std::uint32_t c, double)
                                   { is_free = is_free && walls.cut_bodies[c] != body; });
+                second_sheets.for_each_near(
+                    p, 1.5 * dp,
+                    [&](std::uint32_t c, double)
+                    {
+                        const SurfaceMesh& mesh = walls.bodies[second.bodies[c]].mesh;
+                        is_free = is_free && (second.bodies[c] != body ||
+                                              dot(mesh.normals[second.facets[c]], normal) <= 0);
+                    });
                 return is_free;
             };
         std::vector<char> held = std::move(particles.held);
@@ -574,8 +585,8 @@ private:
         const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
         keep_moved(region, all, movers, positions, done.sources);
         if (region.is_solid)
-            take_new_nodes(region, static_cast<double>(positions.size()) -
-                                       static_cast<double>(movers.size()));
+            take_new_nodes(
+                region, static_cast<double>(positions.size()) - static_cast<double>(movers.size()));
 
         RelaxedPart part;
         part.what = region.what;

@@ -86,7 +86,8 @@ TEST(FitBlock, FitsEveryBoundaryWithTheDefaultsWhenItSaysNothingElse)
         const FitSettings& s = settings(def, mkbound);
         EXPECT_EQ(s.feature_angle_deg, 30);
         EXPECT_EQ(s.density, FitDensity::Area);
-        EXPECT_FALSE(s.clearance_dp || s.one_sheet || s.relax.iterations);
+        EXPECT_FALSE(s.clearance_dp || s.relax.iterations);
+        EXPECT_EQ(s.one_sheet_dp, 0.5);
         EXPECT_TRUE(s.relax.is_active);
         EXPECT_EQ(s.relax, RelaxSettings{});
     }
@@ -104,7 +105,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
         EXPECT_EQ(s.feature_angle_deg, 45);
         EXPECT_EQ(s.density, FitDensity::Cell);
         EXPECT_EQ(s.clearance_dp, 0.55);
-        EXPECT_TRUE(s.one_sheet);
+        EXPECT_EQ(s.one_sheet_dp, 1);
         EXPECT_EQ(s.relax, (RelaxSettings{true, 40, 0.1, 1.2, 2, 10}));
     }
     EXPECT_FALSE(is_fitted(def, 2));
