@@ -408,8 +408,8 @@ struct FloatingDef
     bool distribute_mass = false; ///< masspart = massbody / n
     std::optional<Vec3> center;
     std::optional<std::array<Vec3, 3>> inertia;
-    std::string property;
-    std::vector<Element> extra; ///< translationDOF and the like, copied into Case.xml
+    std::vector<std::string> properties; ///< names, each once
+    std::vector<Element> extra;          ///< translationDOF and the like, copied into Case.xml
 };
 
 /// How the particles of a fitted wall and those near it are evened out: `<relax>`.
@@ -544,7 +544,7 @@ struct CaseDef
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
-    std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, names
+    std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, one name
     Element properties;             ///< `<properties>` of the definition, or empty name
     Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound
     std::vector<Element> execution; ///< children of `<execution>` before `<particles>`

@@ -81,23 +81,34 @@ void AttributeReader::fail_unsupported(const Element& e, const std::string& what
     fail(e, what.empty() ? "not supported yet" : what + " is not supported yet");
 }
 
-const std::string& AttributeReader::text(const Element& e, std::string_view name) const
+const std::string& AttributeReader::raw_text(const Element& e, std::string_view name) const
 {
     const std::string* value = e.find_attribute(name);
     if (value == nullptr) fail(e, fmt::format("attribute '{}' is missing", name));
     return *value;
 }
 
+std::string AttributeReader::text(const Element& e, std::string_view name) const
+{
+    const std::string& value = raw_text(e, name);
+    return value.starts_with('$') ? interpolated(e, value.substr(1)) : value;
+}
+
 std::string AttributeReader::text_or(const Element& e, std::string_view name,
                                      const std::string& otherwise) const
 {
-    const std::string* value = e.find_attribute(name);
-    return value == nullptr ? otherwise : *value;
+    return e.find_attribute(name) == nullptr ? otherwise : text(e, name);
+}
+
+std::string AttributeReader::evaluated(const Element& e, std::string_view name) const
+{
+    const bool is_number = raw_text(e, name).starts_with('#');
+    return is_number ? fmt::format("{}", number(e, name)) : text(e, name);
 }
 
 double AttributeReader::number(const Element& e, std::string_view name) const
 {
-    const std::string& value = text(e, name);
+    const std::string& value = raw_text(e, name);
     if (trimmed(value).empty()) return 0; // as GenCase v5.4 reads x=""
     try
     {
@@ -127,7 +138,7 @@ std::optional<double> AttributeReader::number_if(const Element& e, std::string_v
 int AttributeReader::integer(const Element& e, std::string_view name, int min, int max,
                              bool may_be_expression) const
 {
-    const std::string value = trimmed(text(e, name));
+    const std::string value = trimmed(raw_text(e, name));
     if (may_be_expression && !value.empty() && value[0] == '#')
     {
         const double v = number(e, name);
@@ -214,7 +225,7 @@ std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
                                                         std::string_view name) const
 {
     std::vector<std::uint16_t> out;
-    const std::string& list = text(e, name);
+    const std::string list = text(e, name);
     if (list.starts_with('#') && list.find_first_of(",-") == std::string::npos)
         return {static_cast<std::uint16_t>(integer(e, name, 0, 65000, true))};
     const auto wrong = [&]

@@ -51,7 +51,10 @@ public:
     /// A command, attribute or value that GenCase knows and this program does not do yet.
     [[noreturn]] void fail_unsupported(const Element& e, const std::string& what = "") const;
 
-    const std::string& text(const Element& e, std::string_view name) const;
+    /// A text. Behind a `$` as its first character it is that without the `$`, each [expression] in
+    /// it replaced; GenCase v5.4.354 so reads names of files, lists and properties, layers, formats
+    /// and lists of mk (22 attributes tried).
+    std::string text(const Element& e, std::string_view name) const;
     std::string text_or(const Element& e, std::string_view name,
                         const std::string& otherwise) const;
 
@@ -93,6 +96,10 @@ public:
     /// number. Of lists with expressions in them GenCase v5.4 leaves numbers out: "#1,2" is 2.
     std::vector<std::uint16_t> number_list(const Element& e, std::string_view name) const;
 
+    /// An attribute that is handed on: the number behind a '#', the text behind a '$', else as it
+    /// stands.
+    std::string evaluated(const Element& e, std::string_view name) const;
+
     /// Replaces [expressions] in a text.
     std::string interpolated(const Element& e, const std::string& text) const;
 
@@ -102,6 +109,9 @@ public:
     const std::string& file() const { return file_; }
 
 private:
+    /// As it stands.
+    const std::string& raw_text(const Element& e, std::string_view name) const;
+
     std::string file_;
     const Variables* variables_;
 };

@@ -9,6 +9,7 @@
 #include "casedef/normals.h"
 #include "casedef/patterns.h"
 #include "casedef/program.h"
+#include "casedef/properties.h"
 #include "casedef/variable_commands.h"
 #include "casedef/vres.h"
 #include "casedef/xml_document.h"
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 namespace fppg
@@ -71,12 +71,12 @@ public:
         ProgramRunner program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
-        evaluate_parameters();
+        evaluate_execution();
 
         if (const Element* e = casedef.find_child("initials"))
             def_.initials = read_initials(*e, def_, read_);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
-        if (const Element* e = casedef.find_child("properties")) read_properties(*e);
+        read_properties(casedef.find_child("properties"), read_, def_);
         if (const Element* e = casedef.find_child("motion"))
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
@@ -138,30 +138,44 @@ private:
                 def_.execution.push_back(e);
     }
 
-    /// GenCase evaluates `#expressions` in the values of `<parameters>`.
-    void evaluate_parameters()
+    /// GenCase evaluates `#expressions`, and texts behind a `$`, in the values of `<parameters>`
+    /// and in all attributes in `<special>`; comments stay as they are here.
+    void evaluate_execution()
     {
         for (Element& e : def_.execution)
         {
-            if (e.name != "parameters") continue;
-            for (Element& parameter : e.children)
-            {
-                if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_'))
-                    continue;
-                if (parameter.name == "parameter")
-                {
-                    read_.text(parameter, "key");
-                    read_.text(parameter, "value");
-                }
-                else if (parameter.name != "simulationdomain")
-                    read_.fail(parameter,
-                               "is not known in <parameters>, expected parameter or "
-                               "simulationdomain");
-                for (Element::Attribute& a : parameter.attributes)
-                    if (a.name == "value" && a.value.starts_with('#'))
-                        a.value = fmt::format("{}", read_.number(parameter, a.name));
-            }
+            if (e.kind == Element::Kind::Comment) continue;
+            if (e.name == "special") evaluate_attributes(e);
+            if (e.name == "parameters") evaluate_parameters(e);
         }
+    }
+
+    void evaluate_parameters(Element& e) const
+    {
+        for (Element& parameter : e.children)
+        {
+            if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_')) continue;
+            if (parameter.name == "parameter")
+            {
+                read_.text(parameter, "key");
+                read_.text(parameter, "value");
+                for (Element::Attribute& a : parameter.attributes)
+                    if (a.name == "key" || a.name == "value")
+                        a.value = read_.evaluated(parameter, a.name);
+            }
+            else if (parameter.name != "simulationdomain")
+                read_.fail(parameter,
+                           "is not known in <parameters>, expected parameter or "
+                           "simulationdomain");
+        }
+    }
+
+    void evaluate_attributes(Element& e) const
+    {
+        for (Element::Attribute& a : e.attributes)
+            if (!a.name.ends_with("comment")) a.value = read_.evaluated(e, a.name);
+        for (Element& c : e.children)
+            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_')) evaluate_attributes(c);
     }
 
     /// A constant that `auto="true"` leaves to its formula.
@@ -437,7 +451,7 @@ private:
             FloatingDef f;
             f.line = e.line;
             f.mkbound = read_.number_list(e, "mkbound");
-            f.property = read_.text_or(e, "property", "");
+            f.properties = property_names(read_.text_or(e, "property", ""));
             f.mass_body = floating_value(e, "massbody");
             const auto rhop = floating_value(e, "rhopbody");
             const auto weight = floating_value(e, "relativeweight");
@@ -497,129 +511,6 @@ private:
         f.inertia = rows;
     }
 
-    /// The file is XML; `path` leads from its root to the element whose properties are taken.
-    void add_property_file(const Element& e)
-    {
-        const std::string name = read_.text(e, "file");
-        const std::string path = read_.text(e, "path");
-        std::string found = name;
-        std::error_code ignored;
-        if (!std::filesystem::exists(found, ignored))
-            found = (std::filesystem::path(def_.file).parent_path() / name).string();
-        if (!std::filesystem::exists(found, ignored))
-            throw IoError(
-                fmt::format("{}:{}: <{} file=\"{}\">: there is no such file, neither in "
-                            "the working directory nor beside the definition",
-                            def_.file, e.line, e.name, name));
-        const Element root = read_xml(found);
-        const Element* at = nullptr;
-        for (std::size_t begin = 0; begin <= path.size();)
-        {
-            const std::size_t end = std::min(path.find('.', begin), path.size());
-            const std::string step = path.substr(begin, end - begin);
-            if (begin == 0)
-                at = step == root.name ? &root : nullptr;
-            else
-                at = at->find_child(step);
-            if (at == nullptr)
-                read_.fail(e, fmt::format("{} has no element {}, expected the path of one with "
-                                          "<property> elements in it",
-                                          found, path));
-            begin = end + 1;
-        }
-        for (const Element& c : at->children)
-            if (c.kind == Element::Kind::Tag && c.name == "property") add_property(c);
-    }
-
-    /// A property given in parts is one; no part may repeat a value.
-    void add_property(const Element& e)
-    {
-        const std::string& name = read_.text(e, "name");
-        for (Element& known : def_.properties.children)
-        {
-            if (known.name != "property" || *known.find_attribute("name") != name) continue;
-            for (const Element::Attribute& a : e.attributes)
-            {
-                if (a.name == "name") continue;
-                if (known.find_attribute(a.name) != nullptr)
-                    read_.fail(e,
-                               fmt::format("the property {} has a value {} already", name, a.name));
-                known.attributes.push_back(a);
-            }
-            known.children.insert(known.children.end(), e.children.begin(), e.children.end());
-            return;
-        }
-        def_.properties.children.push_back(e);
-    }
-
-    void read_properties(const Element& e)
-    {
-        def_.properties = e;
-        def_.properties.children.clear();
-        for (const Element& c : e.children)
-        {
-            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
-            if (c.name == "property")
-                add_property(c);
-            else if (c.name == "propertyfile")
-                add_property_file(c);
-            else if (c.name == "links")
-                def_.properties.children.push_back(c);
-            else
-                read_.fail(c,
-                           "is not known in <properties>, expected links, property or "
-                           "propertyfile");
-            if (c.name != "links") continue;
-            for (const Element& link : c.children)
-            {
-                if (link.kind != Element::Kind::Tag || link.name.starts_with('_')) continue;
-                if (link.name != "link")
-                {
-                    // GenCase passes over it without a word.
-                    def_.warnings.push_back(
-                        fmt::format("{}:{}: <{}>: is not known in <links> and has no effect, "
-                                    "expected link",
-                                    def_.file, link.line, link.name));
-                    continue;
-                }
-                if (link.find_attribute("mkbound") == nullptr &&
-                    link.find_attribute("mkfluid") == nullptr)
-                    read_.fail(link, "attribute 'mkbound' or 'mkfluid' is missing");
-                for (const char* type : {"mkbound", "mkfluid"})
-                {
-                    if (link.find_attribute(type) == nullptr) continue;
-                    const int first = type == std::string_view("mkbound") ? def_.mk_bound_first
-                                                                          : def_.mk_fluid_first;
-                    for (const std::uint16_t mk : read_.number_list(link, type))
-                        def_.property_links.emplace_back(static_cast<std::uint16_t>(mk + first),
-                                                         read_.text(link, "property"));
-                }
-            }
-        }
-        for (const Element& links : def_.properties.children)
-            for (const Element& link : links.children)
-                if (links.name == "links" && link.name == "link") require_properties(link);
-    }
-
-    /// Every name of "A+B" must be that of a property.
-    void require_properties(const Element& link) const
-    {
-        const std::string& names = read_.text(link, "property");
-        for (std::size_t begin = 0; begin <= names.size();)
-        {
-            const std::size_t end = std::min(names.find('+', begin), names.size());
-            const std::string name = names.substr(begin, end - begin);
-            const auto& all = def_.properties.children;
-            if (std::none_of(all.begin(), all.end(),
-                             [&](const Element& p)
-                             { return p.name == "property" && *p.find_attribute("name") == name; }))
-                read_.fail(link, fmt::format("there is no property named \"{}\"; expected a "
-                                             "<property name=\"{}\"> in <properties> or its files",
-                                             name, name));
-            begin = end + 1;
-        }
-    }
-
     /// The files that the solver reads, for the copy beside the result: those of motions, of the
     /// velocities and forces of floatings, of properties, and mesh data as text.
     void note_data_files(const Element& e)
@@ -633,13 +524,12 @@ private:
         for (const Element& c : e.children)
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
-            const std::string* name = c.find_attribute(c.name == "file" ? "name" : "file");
-            const bool is_binary =
-                name != nullptr && c.name == "meshdata" && !name->ends_with(".csv");
-            if (name != nullptr && !name->empty() && !is_binary &&
+            const std::string name = read_.text_or(c, c.name == "file" ? "name" : "file", "");
+            const bool is_binary = c.name == "meshdata" && !name.ends_with(".csv");
+            if (!name.empty() && !is_binary &&
                 std::none_of(def_.data_files.begin(), def_.data_files.end(),
-                             [&](const DataFileUse& use) { return use.name == *name; }))
-                def_.data_files.push_back({*name, c.line});
+                             [&](const DataFileUse& use) { return use.name == name; }))
+                def_.data_files.push_back({name, c.line});
             note_files_in(c);
         }
     }

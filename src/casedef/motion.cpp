@@ -154,9 +154,7 @@ Element evaluated_element(const Element& source, const AttributeReader& read)
     for (const Element::Attribute& a : source.attributes)
     {
         if (a.name == "if") continue;
-        out.attributes.push_back({a.name, a.value.starts_with('#')
-                                              ? fmt::format("{}", read.number(source, a.name))
-                                              : a.value});
+        out.attributes.push_back({a.name, read.evaluated(source, a.name)});
     }
     for (const Element& c : source.children)
         if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read.is_active(c))

@@ -25,6 +25,11 @@ public:
         NormalsDef normals;
         normals.is_active = read_.flag_or(list, "active", true);
         if (!normals.is_active) return normals;
+        if (list.find_child("geometryfile") != nullptr)
+        {
+            normals.geometry = read_old_form(list);
+            return normals;
+        }
         for (const Element* e : active_children(list, read_))
         {
             if (e->name != "norgeometry")
@@ -47,13 +52,47 @@ private:
             read_.fail(e,
                        "attribute 'mkbound' is not possible here: norgeometry is for every "
                        "boundary particle");
+        require_known_attributes(e, {});
+        return read_geometry(e, "v");
+    }
+
+    /// `<normals>` of GenCase v5.0: the children of norgeometry, with their values in `value`
+    /// instead of `v`. A `<geometryfile>` in `<normals>` tells it; nothing else may stand beside.
+    /// svnormals has no effect (GenCase v5.4.354: the same normals as in the new form for 11 of
+    /// these; 12 other elements of v5.0 beside them refused).
+    GeometryNormals read_old_form(const Element& e) const
+    {
+        require_known_children(
+            e, {"geometryfile", "distanceh", "maxsizeh", "svshapes", "svnormals"}, read_);
+        const GeometryNormals geometry = read_geometry(e, "value");
+        std::string form = fmt::format("<norgeometry><geometryfile file=\"{}\" />",
+                                       *read_.child(e, "geometryfile").find_attribute("file"));
+        for (const char* name : {"distanceh", "maxsizeh", "svshapes"})
+            if (const Element* c = e.find_child(name); c && c->find_attribute("value"))
+                form += fmt::format("<{} v=\"{}\" />", name, *c->find_attribute("value"));
+        warnings_.push_back(
+            fmt::format("{}:{}: <normals>: this is the form of GenCase v5.0; in that of v5.4 write "
+                        "<normals>{}</norgeometry></normals>.",
+                        read_.file(), e.line, form));
+        return geometry;
+    }
+
+    GeometryNormals read_geometry(const Element& e, const char* attribute) const
+    {
         GeometryNormals geometry;
         geometry.line = e.line;
         const Element& file = read_.child(e, "geometryfile");
-        geometry.file = read_.interpolated(file, read_.text(file, "file"));
-        geometry.distance_h = value(e, "distanceh", 2);
-        geometry.max_size_h = value(e, "maxsizeh", 0);
-        if (const Element* c = e.find_child("svshapes")) geometry.save_shapes = flag(*c);
+        // Without a '$' the name of the case alone is replaced.
+        geometry.file = read_.text(file, "file");
+        constexpr std::string_view name = "[CaseName]";
+        for (std::size_t at = 0; (at = geometry.file.find(name, at)) != std::string::npos;
+             at += def_.case_name.size())
+            geometry.file.replace(at, name.size(), def_.case_name);
+        geometry.distance_h = value(e, "distanceh", 2, attribute);
+        if (geometry.distance_h == 0)
+            read_.fail(*e.find_child("distanceh"), "is 0, expected a distance above 0");
+        geometry.max_size_h = value(e, "maxsizeh", 0, attribute);
+        geometry.save_shapes = flag(e, "svshapes", false, attribute);
         return geometry;
     }
 
@@ -98,9 +137,10 @@ private:
             read_.fail(e,
                        "is not known in <normals>, expected norgeometry, norset, norplane, "
                        "norsphere, norcylinder or norparts");
+        require_known_attributes(e, {"mkbound"});
         op.only = read_only_pos(e, read_);
         op.max_distance_h = value(e, "maxdisth", 2);
-        if (const Element* c = e.find_child("clear")) op.clear = flag(*c);
+        op.clear = flag(e, "clear", op.clear);
         read_selection(e, op);
         return op;
     }
@@ -125,7 +165,8 @@ private:
         PlaneNormals plane;
         const Element& point = read_.child(e, "point");
         if (!read_.flag_or(point, "auto", false)) plane.point = read_.vec3(point);
-        if (const Element* c = e.find_child("limitdist")) plane.limit_dp = read_.number(*c, "vdp");
+        if (has_value(e, "limitdist", "vdp", fmt::format("{:g}", plane.limit_dp)))
+            plane.limit_dp = read_.number(*e.find_child("limitdist"), "vdp");
         plane.normal = read_.child_vec3(e, "normal");
         return plane;
     }
@@ -137,23 +178,56 @@ private:
         cylinder.center2 = read_.child_vec3(e, "center2");
         cylinder.radius = radius(e);
         cylinder.is_inside = flag(read_.child(e, "inside"));
-        if (const Element* c = e.find_child("limit1")) cylinder.limits[0] = flag(*c);
-        if (const Element* c = e.find_child("limit2")) cylinder.limits[1] = flag(*c);
+        cylinder.limits[0] = flag(e, "limit1", cylinder.limits[0]);
+        cylinder.limits[1] = flag(e, "limit2", cylinder.limits[1]);
         return cylinder;
     }
 
-    /// Attribute v of a child, at least 0.
-    double value(const Element& e, const char* name, double otherwise) const
+    void require_known_attributes(const Element& e, std::vector<std::string_view> own) const
+    {
+        own.insert(own.end(), {"active", "if", "comment"});
+        for (const Element::Attribute& a : e.attributes)
+            if (!a.name.starts_with('_') && std::find(own.begin(), own.end(), a.name) == own.end())
+                read_.fail(e, fmt::format("attribute '{}' is not known, expected {}", a.name,
+                                          fmt::join(own, ", ")));
+    }
+
+    /// Whether a child is there with its attribute; one without it has no effect, and a warning
+    /// says so.
+    bool has_value(const Element& e, const char* name, const char* attribute,
+                   const std::string& otherwise) const
     {
         const Element* c = e.find_child(name);
-        return c == nullptr ? otherwise : positive(*c);
+        if (c == nullptr) return false;
+        if (c->find_attribute(attribute) != nullptr) return true;
+        warnings_.push_back(
+            fmt::format("{}:{}: <{}>: has no attribute {}, so {} is taken, as with "
+                        "GenCase v5.4.",
+                        read_.file(), c->line, name, attribute, otherwise));
+        return false;
     }
-    double radius(const Element& e) const { return positive(read_.child(e, "radius")); }
-    double positive(const Element& e) const
+
+    /// The value of a child, at least 0.
+    double value(const Element& e, const char* name, double otherwise,
+                 const char* attribute = "v") const
     {
-        const double v = read_.number(e, "v");
-        if (!(v >= 0)) read_.fail(e, fmt::format("v=\"{:g}\" is invalid, expected 0 or more", v));
+        return has_value(e, name, attribute, fmt::format("{:g}", otherwise))
+                   ? positive(*e.find_child(name), attribute)
+                   : otherwise;
+    }
+    double radius(const Element& e) const { return positive(read_.child(e, "radius"), "v"); }
+    double positive(const Element& e, const char* attribute) const
+    {
+        const double v = read_.number(e, attribute);
+        if (!(v >= 0))
+            read_.fail(e, fmt::format("{}=\"{:g}\" is invalid, expected 0 or more", attribute, v));
         return v;
+    }
+    bool flag(const Element& e, const char* name, bool otherwise, const char* attribute = "v") const
+    {
+        return has_value(e, name, attribute, otherwise ? "true" : "false")
+                   ? read_.flag_or(*e.find_child(name), attribute, otherwise)
+                   : otherwise;
     }
     bool flag(const Element& e) const
     {

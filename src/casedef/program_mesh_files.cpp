@@ -141,7 +141,7 @@ void ProgramRunner::read_depth(const Element& e, MeshFileOp& op) const
 void ProgramRunner::draw_mesh_file(const Element& e)
 {
     MeshFileOp op;
-    op.file = read_.interpolated(e, read_.text(e, "file"));
+    op.file = read_.text(e, "file");
     const bool is_table = e.name == "drawfilecsv";
     if (e.name == "drawfileply") op.reading.format = MeshFormat::Ply;
     if (e.name == "drawfilevtk" || e.name == "drawfilevtm") op.reading.format = MeshFormat::Vtk;

@@ -106,6 +106,12 @@ bool is_text(const Variable& variable)
     return std::holds_alternative<std::string>(variable.value);
 }
 
+/// A text that begins with '$' is the one behind it.
+std::string_view without_sign(std::string_view text)
+{
+    return text.starts_with('$') ? text.substr(1) : text;
+}
+
 } // namespace
 
 const Variable* Variables::find_entry(std::string_view name) const
@@ -165,7 +171,7 @@ void Variables::define_number(const std::string& name, std::string_view text, bo
 
 void Variables::define_text(const std::string& name, std::string_view text, bool is_constant)
 {
-    define(name, interpolate(text), is_constant);
+    define(name, interpolate(without_sign(text)), is_constant);
 }
 
 Variable& Variables::variable_to_set(const std::string& name)
@@ -194,7 +200,7 @@ void Variables::set_text(const std::string& name, std::string_view text)
     if (!is_text(entry))
         throw ExpressionError(
             0, fmt::format("the variable '{}' is a number; expected a text variable", name));
-    entry.value = interpolate(text);
+    entry.value = interpolate(without_sign(text));
 }
 
 void Variables::erase(std::string_view patterns)

@@ -48,13 +48,14 @@ public:
     /// any letter case. Names of functions are allowed; upper and lower case are different.
     void define_number(const std::string& name, std::string_view text, bool is_constant = false);
 
-    /// newvarstr and newvarstrcte. `text` is interpolated first.
+    /// newvarstr and newvarstrcte. `text` is interpolated first; a '$' as its first character is
+    /// left out.
     void define_text(const std::string& name, std::string_view text, bool is_constant = false);
 
     /// setvar: the variable exists, is a number and no constant.
     void set_number(const std::string& name, std::string_view text);
 
-    /// setvarstr: the variable exists, is a text and no constant. `text` is interpolated first.
+    /// setvarstr: the variable exists, is a text and no constant; `text` as in define_text.
     void set_text(const std::string& name, std::string_view text);
 
     /// delvar vars="v5,Tex*,Size?": `*` is any number of characters, `?` exactly one, blanks do not

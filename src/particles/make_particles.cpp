@@ -435,18 +435,9 @@ private:
     {
         for (ParticleBlock& block : out_.blocks)
         {
-            std::vector<std::string> names;
-            if (block.type == ParticleType::Floating)
-                for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
-                    if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) !=
-                        f->mkbound.end())
-                    {
-                        if (!f->property.empty()) names.push_back(f->property);
-                        break;
-                    }
+            std::set<std::string> names;
             for (const auto& [mk, name] : def_.property_links)
-                if (mk == block.mk && std::find(names.begin(), names.end(), name) == names.end())
-                    names.push_back(name);
+                if (mk == block.mk) names.insert(name);
             block.property = fmt::format("{}", fmt::join(names, "+"));
         }
     }

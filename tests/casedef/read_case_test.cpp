@@ -651,6 +651,94 @@ TEST(ReadCase, TakesWholeNumbersWithZerosBehindAPoint)
     EXPECT_EQ(def.ops[2].state->mk.mk_type, 2);
 }
 
+TEST(Texts, BehindADollarHaveTheirVariablesReplaced)
+{
+    CaseText text;
+    text.lists = R"(<list name="abc"><drawpoint x="0" y="0" z="0" /></list>)";
+    text.mainlist = R"(<newvarstrcte m="abc" /><newvarcte n="2" /><runlist name="$[m]" />
+<shapeout file="$x[n]" format="$vt[vtx]" /><shapeout file="x[n]" /><newvarstr q="$[m][n]" /><printf text="[q]" />)";
+    text.predefinition = R"(<predefinition><newvarstrcte vtx="u" /></predefinition>)";
+    const CaseDef def = read(text);
+    ASSERT_EQ(def.ops.size(), 3U);
+    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).file, "x2");
+    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).format, ShapeFormat::Vtu);
+    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[2].what).file, "x[n]");
+    EXPECT_NE(std::find(def.list_log.begin(), def.list_log.end(), "abc2"), def.list_log.end());
+}
+
+TEST(Special, HasItsExpressionsReplacedForTheSolver)
+{
+    CaseText text;
+    text.mainlist = R"(<newvarcte depth="0.5" /><newvarstrcte m="abc" />)";
+    text.execution =
+        R"(<special><a v="#depth*2" comment="# of a"><b w="$x[m]" x="[m]" /><_c y="#nothing" /></a></special>
+<parameters><parameter key="TimeMax" value="$1[depth]" /></parameters>)";
+    const CaseDef def = read(text);
+    const Element& a = *def.execution.at(0).find_child("a");
+    EXPECT_EQ(*a.find_attribute("v"), "1");
+    EXPECT_EQ(*a.find_attribute("comment"), "# of a");
+    EXPECT_EQ(*a.find_child("b")->find_attribute("w"), "xabc");
+    EXPECT_EQ(*a.find_child("b")->find_attribute("x"), "[m]");
+    EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "#nothing");
+    EXPECT_EQ(*def.execution.at(1).find_child("parameter")->find_attribute("value"), "10.5");
+    text.execution = R"(<special><a v="#nothing" /></special><parameters />)";
+    EXPECT_NE(error_of(text).find("<a>: attribute v=\"#nothing\""), std::string::npos);
+}
+
+// The sums are those that GenCase v5.4.354 writes.
+TEST(Properties, MayBeSummedWithBlanksAndComeSorted)
+{
+    CaseText text;
+    text.mainlist = R"(<newvarstrcte m="steel" />)";
+    text.after_geometry =
+        R"(<properties><links><link mkbound="1" property=" u1 " /><link mkbound="2" property="$ [m] + + u 1 +steel" />
+</links><property name="u1" /><property name="$[m]" /><links><link mkbound="3" property="u1" /></links></properties>
+<floatings><floating mkbound="4-5" rhopbody="500" property="steel" /><floating mkbound="5" rhopbody="500" property="u1 + steel" /></floatings>)";
+    const CaseDef def = read(text);
+    using Link = std::pair<std::uint16_t, std::string>;
+    EXPECT_EQ(
+        def.property_links,
+        (std::vector<Link>{
+            {11, "u1"}, {12, "steel"}, {12, "u1"}, {14, "steel"}, {15, "steel"}, {15, "u1"}}));
+    ASSERT_EQ(def.warnings.size(), 1U);
+    EXPECT_NE(def.warnings[0].find("<links>: is there twice"), std::string::npos);
+    text.after_geometry =
+        R"(<floatings><floating mkbound="4" rhopbody="500" property="steel" /></floatings>)";
+    EXPECT_NE(error_of(text).find("<floating>: there is no property named \"steel\""),
+              std::string::npos);
+}
+
+TEST(Normals, MayHaveTheFormOfGenCase50)
+{
+    CaseText text;
+    text.after_geometry =
+        R"(<normals><distanceh value="#1+2" /><geometryfile file="[CaseName]_hdp_Real.vtk" /><svshapes value="1" /><svnormals value="1" /><maxsizeh v="3" /></normals>)";
+    CaseOptions options;
+    options.case_name = "Tank";
+    const CaseDef def = read(text, options);
+    ASSERT_TRUE(def.normals.geometry);
+    EXPECT_EQ(def.normals.geometry->file, "Tank_hdp_Real.vtk");
+    EXPECT_EQ(def.normals.geometry->distance_h, 3);
+    EXPECT_EQ(def.normals.geometry->max_size_h, 0);
+    EXPECT_TRUE(def.normals.geometry->save_shapes);
+    ASSERT_EQ(def.warnings.size(), 2U);
+    EXPECT_NE(def.warnings[0].find("<maxsizeh>: has no attribute value, so 0 is taken"),
+              std::string::npos);
+    EXPECT_NE(
+        def.warnings[1].find(
+            R"(write <normals><norgeometry><geometryfile file="[CaseName]_hdp_Real.vtk" /><distanceh v="#1+2" /><svshapes v="1" /></norgeometry></normals>)"),
+        std::string::npos)
+        << def.warnings[1];
+    text.after_geometry =
+        R"(<normals><geometryfile file="a.vtk" /><computenormals value="1" /></normals>)";
+    EXPECT_NE(error_of(text).find("<computenormals>: is not known in <normals>"),
+              std::string::npos);
+    text.after_geometry =
+        R"(<normals><norplane mk="0"><point x="0" y="0" z="0" /><normal x="1" y="0" z="0" /></norplane></normals>)";
+    EXPECT_NE(error_of(text).find("<norplane>: attribute 'mk' is not known, expected mkbound"),
+              std::string::npos);
+}
+
 TEST(Transforms, ActInReverseOrderOfWriting)
 {
     expect_near(moved(R"(<move x="10" y="0" z="0" /><scale x="2" y="2" z="2" />)"), {12, 4, 6});
