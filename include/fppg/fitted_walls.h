@@ -5,6 +5,7 @@
 #include "fppg/surface_mesh.h"
 #include "fppg/vec.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,12 +47,13 @@ struct FitFigures
     double area = 0;
     double second_sheet = 0; ///< area that is not in `area`: the side of a plate without particles
     double wall_particles = 0;
-    /// Of the shape, as far as its draw fills it or its walls leave no room inside; 0: it is hollow
-    /// or open.
-    double volume = 0;
+    double volume = 0;       ///< of the shape; 0: it is open
     double sheet_volume = 0; ///< of facets that bound no volume, as if dp thick
     double node_volume = 0;  ///< that the nodes inside stand for
     double wall_volume = 0;  ///< that the wall's particles stand for, as far as they are inside
+    /// How much of the volume has particles, 0 to 1: all of a solid, of a surface what fills give
+    /// it; 1 too where its walls leave no room for nodes.
+    double filled = 0;
 };
 
 /// One drawn object whose particles stand on its true surface.
@@ -72,8 +74,8 @@ struct FittedBody
     Features features;
     double clearance_inside = 0;  ///< metres; lattice nodes nearer than this are left out
     double clearance_outside = 0; ///< the same on the other side
-    /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: of a solid so much that they
-    /// and the nodes make up its volume, of a surface 1.
+    /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: in a filled body so much that
+    /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
     FitFigures figures;
 
@@ -82,9 +84,11 @@ struct FittedBody
     /// dp  metres
     void settle_share(double dp)
     {
-        if (!(figures.volume > 0 && figures.wall_particles > 0)) return;
-        const double of_wall = figures.volume + figures.sheet_volume - figures.node_volume;
-        share = of_wall > 0 ? of_wall / (figures.wall_particles * dp * dp * dp) : 0;
+        if (figures.filled <= 0 || figures.wall_particles <= 0) return;
+        const double of_wall =
+            std::max(0.0, figures.volume + figures.sheet_volume - figures.node_volume);
+        const double of_filled = of_wall / (figures.wall_particles * dp * dp * dp);
+        share = 1 + figures.filled * (of_filled - 1);
     }
 };
 

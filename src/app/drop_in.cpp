@@ -292,7 +292,7 @@ private:
                   std::vector<std::string> warnings;
                   particles_ = make_particles(def_, field_, threads_, constants_, warnings);
                   log_particles(def_, particles_, constants_, log_);
-                  for (std::string& w : settle_floatings(def_, particles_, log_))
+                  for (std::string& w : settle_floatings(def_, field_.walls, particles_, log_))
                       warn(std::move(w));
                   for (std::string& w : warnings) warn(std::move(w));
                   for (std::string& w : check_motion(def_, particles_)) warn_of_slip(std::move(w));

@@ -16,21 +16,104 @@ namespace
 {
 
 /// Of the mass of a body to that of its shape, beyond which it is told.
-constexpr double largest_deviation = 0.02;
+constexpr double largest_deviation = 0.02 + 1e-9;
 
-/// Whether a block has particles of a fitted wall.
-bool is_fitted(const CaseParticles& particles, const ParticleBlock& block)
+/// A shape that may make up a floating body.
+struct Shape
 {
-    return std::any_of(block.runs.begin(), block.runs.end(),
-                       [&](const ParticleRun& run)
-                       {
-                           if (!run.is_free()) return false;
-                           const auto first = particles.free.kinds.begin() +
-                                              static_cast<std::ptrdiff_t>(run.free_begin());
-                           return std::any_of(first, first + run.count,
-                                              [](FitKind kind) { return kind != FitKind::Volume; });
-                       });
-}
+    std::string name;  ///< the command and its line
+    double volume = 0; ///< metres cubed, in 2D metres squared; 0: there is none
+};
+
+/// Compares the masses of fitted floating bodies with those of their shapes.
+class MassCheck
+{
+public:
+    MassCheck(const CaseDef& def, const CaseParticles& particles, const FittedWalls& walls)
+        : def_(def), particles_(particles), walls_(walls)
+    {
+    }
+
+    /// In 2D, the section that a single fitted body makes.
+    Shape section_of(const ParticleBlock& block) const
+    {
+        Shape shape;
+        if (!def_.grid.is_2d) return shape;
+        for (const FittedBody& body : walls_.bodies)
+        {
+            if (body.mk != block.mk) continue;
+            if (!shape.name.empty()) return {};
+            shape = {fmt::format("<{}> of line {}", body.name, body.line),
+                     body.figures.volume / def_.grid.dp};
+        }
+        return shape;
+    }
+
+    void note(const FloatingBody& body, const FloatingDef& f, const Shape& shape)
+    {
+        const ParticleBlock& block = particles_.blocks[body.block];
+        if (!f.rhop_body || f.mass_body || !(shape.volume > 0) || !is_fitted(block)) return;
+        const double expected = *f.rhop_body * shape.volume;
+        const double share = body.mass_body / expected - 1;
+        if (!(std::abs(share) > largest_deviation)) return;
+        const auto found = std::find_if(deviations_.begin(), deviations_.end(),
+                                        [&](const Deviation& d) { return d.name == shape.name; });
+        Deviation& d = found == deviations_.end() ? deviations_.emplace_back() : *found;
+        if (++d.bodies > 1 && std::abs(share) <= std::abs(d.share)) return;
+        d.name = shape.name;
+        d.share = share;
+        d.text = fmt::format(
+            "floating mkbound {}: at {:g} kg/m^3 its particles have {:.4g} kg, its {} of {:.4g} {} "
+            "would have {:.4g} kg ({:+.3g} %)",
+            block.mk_type, *f.rhop_body, body.mass_body, shape.name, shape.volume,
+            def_.grid.is_2d ? "m^2" : "m^3", expected, 100 * share);
+    }
+
+    std::vector<std::string> warnings() const
+    {
+        std::vector<std::string> out;
+        for (const Deviation& d : deviations_)
+        {
+            out.push_back(
+                fmt::format("{}: {}: it is drawn hollow, or cut by the domain or later draws.",
+                            def_.file, d.text));
+            if (!def_.grid.is_2d)
+                out.back() += " <fppg><floatings exact=\"true\"> takes the shape's mass.";
+            if (d.bodies > 1)
+                out.back() += fmt::format(" {} bodies of this line are like this.", d.bodies);
+        }
+        return out;
+    }
+
+private:
+    /// The largest one of a draw.
+    struct Deviation
+    {
+        std::string name;
+        int bodies = 0;
+        double share = 0;
+        std::string text;
+    };
+
+    /// Whether a block has particles of a fitted wall.
+    bool is_fitted(const ParticleBlock& block) const
+    {
+        const auto is_of_wall = [](FitKind kind) { return kind != FitKind::Volume; };
+        return std::any_of(block.runs.begin(), block.runs.end(),
+                           [&](const ParticleRun& run)
+                           {
+                               if (!run.is_free()) return false;
+                               const auto first = particles_.free.kinds.begin() +
+                                                  static_cast<std::ptrdiff_t>(run.free_begin());
+                               return std::any_of(first, first + run.count, is_of_wall);
+                           });
+    }
+
+    const CaseDef& def_;
+    const CaseParticles& particles_;
+    const FittedWalls& walls_;
+    std::vector<Deviation> deviations_;
+};
 
 std::string text_of(const FloatingBody& body)
 {
@@ -71,6 +154,7 @@ std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& par
     std::vector<std::string> warnings;
     if (particles.floatings.empty()) return warnings;
     const ExactFloatings& exact = def.exact_floatings;
+    MassCheck check(def, particles, walls);
     log.line("Floating bodies:");
     for (FloatingBody& body : particles.floatings)
     {
@@ -89,6 +173,7 @@ std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& par
                                 fmt::format("<floatings exact=\"true\">: mkbound {} has no exact "
                                             "mass and inertia: {}; expected one closed shape",
                                             block.mk_type, why_not));
+            if (f != nullptr) check.note(body, *f, check.section_of(block));
             continue;
         }
         FloatingBody true_body = body;
@@ -110,18 +195,11 @@ std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& par
                              text_of(true_body), is_wanted ? " (taken)" : ""));
         if (is_wanted)
             body = true_body;
-        else if (f->rhop_body && is_fitted(particles, block) &&
-                 std::abs(body.mass_body / true_body.mass_body - 1) > largest_deviation)
-            warnings.push_back(fmt::format(
-                "{}: floating mkbound {}: at {:g} kg/m^3 its particles have {:.4g} kg, its {} of "
-                "{:.4g} m^3 would have {:.4g} kg ({:+.3g} %): it is drawn hollow, or cut by the "
-                "domain or later draws; <fppg><floatings exact=\"true\"> takes the shape's mass, "
-                "centre and inertia.",
-                def.file, block.mk_type, *f->rhop_body, body.mass_body, shape->shape, shape->volume,
-                true_body.mass_body, 100 * (body.mass_body / true_body.mass_body - 1)));
+        else
+            check.note(body, *f, {shape->shape, shape->volume});
     }
     log.line();
-    return warnings;
+    return check.warnings();
 }
 
 } // namespace fppg

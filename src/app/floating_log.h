@@ -2,6 +2,7 @@
 
 #include "app/run_log.h"
 #include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 
 #include <string>
@@ -20,7 +21,7 @@ namespace fppg
 /// that
 ///          of their shape, as they are hollow or cut
 /// throws   CaseError where exact ones are asked for and no single closed shape draws the body
-std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& particles,
-                                          RunLog& log);
+std::vector<std::string> settle_floatings(const CaseDef& def, const FittedWalls& walls,
+                                          CaseParticles& particles, RunLog& log);
 
 } // namespace fppg

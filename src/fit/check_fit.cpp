@@ -12,7 +12,10 @@ namespace fppg
 namespace
 {
 
-constexpr double largest_deviation = 0.02;
+/// With room for rounding.
+constexpr double largest_deviation = 0.02 + 1e-9;
+/// Of the nodes in a body that fills gave particles.
+constexpr double nearly_all = 0.98;
 /// A plate of this mean thickness or less has no room for nodes between the particles of its sides.
 constexpr double thin_dp = 2;
 /// Below so many dp^2 the particles of edges and corners are a share of all that counts.
@@ -35,11 +38,12 @@ std::string why_volume(const FitSettings* settings, const FittedBody& body, doub
     const double thickness = 2 * figures.volume / ((figures.area + figures.second_sheet) * dp);
     if (settings != nullptr && settings->clearance_dp)
         return fmt::format("its clearance is given, {:g} dp", *settings->clearance_dp);
+    if (thickness < thin_dp && figures.second_sheet > 0)
+        return fmt::format("it is thin, {:.2g} dp on average, and a sheet is as if dp thick",
+                           thickness);
     if (thickness < thin_dp)
-        return fmt::format("it is thin, {:.2g} dp on average{}", thickness,
-                           figures.second_sheet == 0 && thickness < 1
-                               ? ", and both of its sides have particles (plates=\"one\": one side)"
-                               : "");
+        return fmt::format("it is thin, {:.2g} dp on average, and both of its sides have particles",
+                           thickness);
     if (!body.report.is_watertight) return "its mesh is not closed, and what is inside is a guess";
     return "it is small against dp, or thin in places";
 }
@@ -48,13 +52,13 @@ std::string why_volume(const FitSettings* settings, const FittedBody& body, doub
 Deviation volume_deviation(const FitSettings* settings, const FittedBody& body, double dp)
 {
     const FitFigures& figures = body.figures;
-    if (!(figures.volume > 0)) return {};
+    if (figures.filled < nearly_all) return {};
     const double got = figures.node_volume + figures.wall_volume;
     Deviation out;
     out.share = got / figures.volume - 1;
     out.text = fmt::format(
         "its particles stand for {:.4g} m^3, those on its surface for half of dp^3 each; its "
-        "shape has {:.4g} m^3 ({}): {}. The mass of a floating body is that of the shape.",
+        "shape has {:.4g} m^3 ({}): {}.",
         got, figures.volume, percent(out.share), why_volume(settings, body, dp));
     return out;
 }

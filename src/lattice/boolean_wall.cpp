@@ -80,7 +80,7 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
     out.volume.assign(grid.n[0], {});
     if (std::any_of(parts.begin(), parts.end(),
                     [](const BooleanWallPart& p) { return !p.is_solid; }))
-        out.body.figures.volume = 0; // part of it is hollow
+        out.body.figures.filled = 0; // part of it is hollow
     for (std::size_t p = 0; p < parts.size(); ++p)
     {
         if (shares[p].slabs.empty()) continue;

@@ -433,7 +433,7 @@ private:
     {
         TriangleSoup moved = moved_soup(mesh(op).soup, op.transform);
         if (state().normal_invert) turn_over(moved);
-        draw.body.figures.volume = 0; // only a layer of it is filled
+        if (!op.any_depth) draw.body.figures.filled = 0; // only a layer of it is
         const SlabRegion region = depth_region(moved, op, grid(), threads_);
         parallel_for(draw.volume.size(), threads_,
                      [&](std::size_t x)

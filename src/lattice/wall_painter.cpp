@@ -5,6 +5,7 @@
 #include "fppg/wall_zone.h"
 
 #include "core/parallel.h"
+#include "fit/wall_inside.h"
 #include "lattice/snap.h"
 #include "shapes/mesh_query.h"
 #include "shapes/point_grid.h"
@@ -147,6 +148,13 @@ Spans zone_of(const std::vector<Run>& runs)
     return out;
 }
 
+std::uint64_t count_nodes(const Spans& spans)
+{
+    std::uint64_t count = 0;
+    for (const Span& s : spans) count += s.z_end - s.z_begin;
+    return count;
+}
+
 /// Inside by the sum of signed crossings along each axis, two of three. Used away from the surface.
 bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
 {
@@ -203,23 +211,24 @@ double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
 }
 
 /// A closed surface that holds no node is as good as solid: its particles stand for all of it.
-void take_figures(const WallZone& zone, std::size_t wall_particles, std::size_t both_sheets,
+void take_figures(const WallZone& zone, const WallZoneOptions& options, std::size_t second_sheet,
                   const LatticeGrid& grid, FittedBody& body)
 {
     const double dp = grid.dp;
     const double dp3 = dp * dp * dp;
-    const auto n = static_cast<double>(wall_particles);
+    const auto n = static_cast<double>(options.wall_particles);
     FitFigures& figures = body.figures;
     figures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
-    if (both_sheets > wall_particles)
-        figures.second_sheet = figures.area * (1 - n / static_cast<double>(both_sheets));
+    if (second_sheet > 0)
+        figures.second_sheet = figures.area * (1 - n / (n + static_cast<double>(second_sheet)));
     figures.area -= figures.second_sheet;
     figures.wall_particles = n;
-    if (!zone.has_inside || (!body.is_solid && zone.nodes > 0)) return;
+    if (!zone.has_inside) return;
     figures.volume = zone.body_volume;
     figures.sheet_volume = zone.sheet_area * dp;
     figures.node_volume = static_cast<double>(zone.nodes) * dp3;
-    figures.wall_volume = n * zone.wall_share_inside * dp3;
+    figures.wall_volume = (n * zone.wall_share_inside - options.less_inside) * dp3;
+    figures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
     body.settle_share(dp);
 }
 
@@ -256,7 +265,6 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.warnings = body.report.warnings;
     SurfaceParticles surface =
         grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
-    const std::size_t both_sheets = surface.positions.size();
     if (settings.one_sheet_dp > 0)
         out.second_sheet = keep_one_sheet(body.mesh, body.features,
                                           {grid.dp, settings.one_sheet_dp}, surface, threads);
@@ -271,6 +279,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     zone_options.clearance_dp = settings.clearance_dp;
     zone_options.wall_particles = surface.positions.size();
     zone_options.is_solid = body.is_solid;
+    zone_options.less_inside = less_than_half(body.mesh, body.features, surface, grid.is_2d);
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (body.is_solid && !zone.has_inside && zone.warnings.empty())
@@ -278,7 +287,9 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
-    take_figures(zone, surface.positions.size(), both_sheets, grid, body);
+    take_figures(zone, zone_options, out.second_sheet.positions.size(), grid, body);
+    if (zone.has_inside && !body.figures.is_filled)
+        out.hollow = by_slab(SpanSet{zone.volume}, grid);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
     for (const ClipPlane& clip : clips)
@@ -393,6 +404,7 @@ void WallPainter::add(FittedDraw&& draw)
         walls.second_sheets.held.push_back(0);
     }
     is_cut_.resize(walls.particles.size(), 0);
+    if (!draw.hollow.empty()) hollows_.push_back({body, std::move(draw.hollow)});
     anchor(first, draw.zone);
 }
 
@@ -477,12 +489,45 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
 void WallPainter::reset()
 {
     field_->walls = {};
+    hollows_.clear();
     anchors_.clear();
     is_cut_.clear();
 }
 
+/// How much of a hollow body fills gave the mk of its wall.
+double WallPainter::filled_share(const Hollow& hollow) const
+{
+    const std::uint16_t mk = field_->walls.bodies[hollow.body].mk;
+    std::vector<std::array<std::uint64_t, 2>> counts(field_->slabs.size());
+    parallel_for(counts.size(), threads_,
+                 [&](std::size_t x)
+                 {
+                     if (hollow.nodes[x].empty()) return;
+                     Spans own;
+                     for (const Run& r : field_->slabs[x])
+                         if (r.mk == mk) own.push_back({r.y, r.z_begin, r.z_end});
+                     sort_and_join(own);
+                     counts[x] = {count_nodes(hollow.nodes[x]),
+                                  count_nodes(intersect(hollow.nodes[x], own))};
+                 });
+    std::uint64_t all = 0, filled = 0;
+    for (const auto& [of_slab, own] : counts)
+    {
+        all += of_slab;
+        filled += own;
+    }
+    return all > 0 ? static_cast<double>(filled) / static_cast<double>(all) : 0;
+}
+
 void WallPainter::finish()
 {
+    for (const Hollow& hollow : hollows_)
+    {
+        FittedBody& body = field_->walls.bodies[hollow.body];
+        body.figures.filled = filled_share(hollow);
+        body.settle_share(field_->grid.dp);
+    }
+    hollows_.clear();
     FittedWalls& walls = field_->walls;
     WallParticles& all = walls.particles;
     for (std::size_t i = 0; i < all.size(); ++i)

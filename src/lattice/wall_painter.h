@@ -27,7 +27,8 @@ struct FittedDraw
     std::vector<Vec3> cut;         ///< places of particles that were left out
     SurfaceParticles second_sheet; ///< taken out of a thin plate
     std::vector<Spans> volume;     ///< one entry a slab of the lattice
-    std::vector<Spans> zone; ///< likewise; every particle has a node of it at its cell's corners
+    std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
+    std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
     /// Nodes of `volume` and `zone` with another mk than the body's.
     std::vector<NodeShare> shares;
     std::vector<std::string> warnings; ///< without the place of the draw
@@ -84,11 +85,20 @@ private:
         std::uint32_t particle = 0;
     };
 
+    /// A closed body that its draw did not fill, and the nodes in it.
+    struct Hollow
+    {
+        std::uint32_t body = 0;
+        std::vector<Spans> nodes; ///< one entry a slab of the lattice
+    };
+
+    double filled_share(const Hollow& hollow) const;
     void cut_by(const FittedDraw& draw);
     void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
 
     RunField* field_;
     int threads_;
+    std::vector<Hollow> hollows_;
     std::vector<std::vector<Anchor>> anchors_; ///< per slab, sorted by (y, z, particle)
     std::vector<char> is_cut_;                 ///< per particle of field.walls
 };
