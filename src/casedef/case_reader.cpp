@@ -157,11 +157,11 @@ private:
             if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_')) continue;
             if (parameter.name == "parameter")
             {
-                read_.text(parameter, "key");
-                read_.text(parameter, "value");
-                for (Element::Attribute& a : parameter.attributes)
-                    if (a.name == "key" || a.name == "value")
-                        a.value = read_.evaluated(parameter, a.name);
+                // "#Name" is a parameter that is switched off.
+                const std::string key = read_.text(parameter, "key");
+                const std::string value = read_.evaluated(parameter, "value");
+                parameter.set_attribute("key", key);
+                parameter.set_attribute("value", value);
             }
             else if (parameter.name != "simulationdomain")
                 read_.fail(parameter,
@@ -233,8 +233,12 @@ private:
 
     void read_mk_config(const Element& e)
     {
-        def_.mkbound_count = read_.integer(e, "boundcount", 0, 60000, false);
+        def_.mkbound_count = read_.integer(e, "boundcount", 0, 65520, false);
         def_.mkfluid_count = read_.integer(e, "fluidcount", 0, 5000, false);
+        if (def_.mkbound_count + def_.mkfluid_count > 65530)
+            read_.fail(e, fmt::format("boundcount and fluidcount are {} together, expected at "
+                                      "most 65530",
+                                      def_.mkbound_count + def_.mkfluid_count));
         def_.mk_fluid_first = 1;
         def_.mk_bound_first = static_cast<std::uint16_t>(def_.mkfluid_count + 1);
         for (const Element& o : e.children)

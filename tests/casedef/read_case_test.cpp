@@ -126,6 +126,10 @@ INSTANTIATE_TEST_SUITE_P(
         in_mainlist("Infinite", R"(<drawpoint x="inf" y="0" z="0" />)",
                     "<drawpoint>: attribute x=\"inf\""),
         in_mainlist("UnknownCommand", "<drawteapot />", ":7: <drawteapot>: is not a command"),
+        Mistake{"MoreMksThanThereAre",
+                [](CaseText& text)
+                { text.mkconfig = R"(<mkconfig boundcount="65520" fluidcount="11" />)"; },
+                "<mkconfig>: boundcount and fluidcount are 65531 together, expected at most 65530"},
         in_mainlist("MissingList", R"(<runlist name="Nobody" />)",
                     "<runlist>: there is no list named 'Nobody'"),
         in_mainlist("DivisionByZero", R"(<drawpoint x="#1/0" y="0" z="0" />)",
@@ -672,7 +676,7 @@ TEST(Special, HasItsExpressionsReplacedForTheSolver)
     text.mainlist = R"(<newvarcte depth="0.5" /><newvarstrcte m="abc" />)";
     text.execution =
         R"(<special><a v="#depth*2" comment="# of a"><b w="$x[m]" x="[m]" /><_c y="#nothing" /></a></special>
-<parameters><parameter key="TimeMax" value="$1[depth]" /></parameters>)";
+<parameters><parameter key="TimeMax" value="$1[depth]" /><parameter key="#Off" value="#depth" /></parameters>)";
     const CaseDef def = read(text);
     const Element& a = *def.execution.at(0).find_child("a");
     EXPECT_EQ(*a.find_attribute("v"), "1");
@@ -681,6 +685,9 @@ TEST(Special, HasItsExpressionsReplacedForTheSolver)
     EXPECT_EQ(*a.find_child("b")->find_attribute("x"), "[m]");
     EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "#nothing");
     EXPECT_EQ(*def.execution.at(1).find_child("parameter")->find_attribute("value"), "10.5");
+    const Element& off = def.execution.at(1).children.at(1);
+    EXPECT_EQ(*off.find_attribute("key"), "#Off");
+    EXPECT_EQ(*off.find_attribute("value"), "0.5");
     text.execution = R"(<special><a v="#nothing" /></special><parameters />)";
     EXPECT_NE(error_of(text).find("<a>: attribute v=\"#nothing\""), std::string::npos);
 }
