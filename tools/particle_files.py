@@ -5,9 +5,12 @@ Used by the scripts of this folder and by tests/cases; the program does not need
 
 import os
 import struct
-import xml.etree.ElementTree as ElementTree
+import sys
 
 import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from case_xml import read_xml  # noqa: E402 (found by the path above)
 
 # JBinaryData type codes: numpy type and numbers an element.
 JBD_TYPES = {3: ("<i1", 1), 4: ("<u1", 1), 5: ("<i2", 1), 6: ("<u2", 1), 7: ("<i4", 1),
@@ -95,7 +98,7 @@ def read_bi4(path):
 
 def read_blocks(path):
     """The blocks in a Case.xml: dicts with type, mk, mk_type, begin, count, in id order."""
-    particles = ElementTree.parse(path).getroot().find("execution/particles")
+    particles = read_xml(path).find("case/execution/particles")
     if particles is None:
         raise ValueError(f"{path}: no <particles>; expected the XML written beside a .bi4")
     blocks = []

@@ -1,20 +1,34 @@
 #!/bin/sh
-# Installs what fppg is built and tested with from the Debian 12 packages listed in
-# debian-packages.txt. Does nothing when all are there; needs root, or sudo, only when one is not.
+# Installs the Debian 12 packages that are missing:
+#
+#   setup.sh            what fppg is built with (debian-packages-run.txt)
+#   setup.sh develop    and what it is tested, checked and measured with (debian-packages-develop.txt)
+#
+# Does nothing when all are there; needs root, or sudo, only when one is not.
 set -eu
-list=$(dirname "$0")/debian-packages.txt
+cd "$(dirname "$0")"
+case "${1-run}" in
+run) lists=debian-packages-run.txt ;;
+develop) lists="debian-packages-run.txt debian-packages-develop.txt" ;;
+*)
+    echo "setup.sh: \"$1\" is unknown, expected run (default) or develop" >&2
+    exit 2
+    ;;
+esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "setup.sh: not a Debian system; install what corresponds to:" >&2
-    cat "$list" >&2
+    # shellcheck disable=SC2086
+    cat $lists >&2
     exit 1
 fi
 
 missing=
-while read -r package; do
+# shellcheck disable=SC2086,SC2013
+for package in $(cat $lists); do
     status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
     [ "$status" = installed ] || missing="$missing $package"
-done <"$list"
+done
 [ -n "$missing" ] || exit 0
 
 as_root=

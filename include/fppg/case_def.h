@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/boolean.h"
+#include "fppg/box_picture.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/initials.h"
@@ -87,6 +88,14 @@ struct DrawPattern
     std::vector<char> cells;                      ///< 1 for 'X', 0 for '-'; x fastest, z slowest
 };
 
+/// `setshapemode`: in which forms shapes are kept for `shapeout`, and those of which mks.
+struct ShapeMode
+{
+    bool actual = true;                            ///< as drawn
+    bool snapped = false;                          ///< with vertices on the lattice
+    std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid
+};
+
 /// Everything that a draw inherits from the commands before it.
 struct DrawState
 {
@@ -100,6 +109,7 @@ struct DrawState
     bool off_lattice = false;       ///< setfrdrawmode: particles at their true places
     bool draw_points = true;        ///< setactive drawpoints
     bool draw_shapes = true;        ///< setactive drawshapes
+    ShapeMode shape_mode;           ///< setshapemode
     bool normal_invert = false;     ///< setnormalinvert
     bool mk_next_auto = false;      ///< setmknextauto: every part drawn takes the next mk
     Transform matrix;               ///< the current matrix where off_lattice, else none
@@ -170,7 +180,8 @@ struct SphereOp
 {
     Vec3 center;
     double radius = 0;
-    std::vector<double> layers_dp; ///< shells at radius + layer * dp instead of the sphere
+    std::vector<double> layers_dp;         ///< shells at radius + layer * dp instead of the sphere
+    std::vector<double> shown_layers_dp{}; ///< those of them that shape files show
     /// The boxes around the sphere or its layers as the matrix leaves them. Radii are not scaled,
     /// but nodes lie in the box of the snapped corners and one node around it (GenCase v5.0: 300
     /// spheres of random scales; otherwise it counts where ctesphere is above 1).
@@ -183,6 +194,7 @@ struct CylinderLayer
     Vec3 p0;
     Vec3 p1;
     double radius = 0;
+    bool is_shown = true; ///< in shape files
 };
 
 /// `drawcylinder`; faces: cover at the first point, cover at the second, tube
@@ -217,10 +229,12 @@ struct MeshFileOp
     bool advanced =
         false; ///< nodes by their depth below the surface instead of its shell (rule X3)
     bool reverse = false;
-    bool any_depth = false;   ///< advanced together with autofill and without limits of the depth
-    double depth_min = 0;     ///< metres
-    double depth_max = 0;     ///< metres; may be infinite
-    bool fill_inside = false; ///< fppg:fill="inside": the true inside instead of autofill's flood
+    bool any_depth = false;    ///< advanced together with autofill and without limits of the depth
+    double depth_min = 0;      ///< metres
+    double depth_max = 0;      ///< metres; may be infinite
+    bool fill_inside = false;  ///< fppg:fill="inside": the true inside instead of autofill's flood
+    bool saves_points = false; ///< `<savepoints>` of drawbathymetry: a picture of its grid's nodes
+    bool saves_grid = false;   ///< `<savegrid>`: one of its cells
     /// advanced, on the lattice: the files of the same VTM file and mk that are one mesh with this
     /// one; their own draws have is_drawn_before.
     std::vector<std::string> joined;
@@ -306,7 +320,8 @@ enum class ShapeFormat : std::uint8_t
     Stl,
 };
 
-/// `shapeout`: writes the shapes drawn since the last one.
+/// `shapeout`: writes the shapes kept since the last one in every form that its state names; a form
+/// that it does not name keeps its shapes.
 struct ShapeOutOp
 {
     std::string file; ///< may be empty
@@ -314,9 +329,6 @@ struct ShapeOutOp
     /// savenormal: length in dp of the lines that a second file shows the normals by; 0: none.
     double normal_dp = 0;
     bool reset = true;
-    bool actual = true;                            ///< write them as drawn
-    bool snapped = false;                          ///< write them with vertices on the lattice
-    std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid shapes are written
 };
 
 /// How much of a cavity a fill takes.
@@ -364,6 +376,7 @@ struct DrawOp
     /// Shared by the commands between two state changes.
     std::shared_ptr<const DrawState> state;
     DrawVariant what;
+    std::size_t call = 0; ///< number of the command that was run; its layers and parts share it
 };
 
 /// `<constantsdef>`: what the case fixes and what it leaves to the formulas.
@@ -409,7 +422,7 @@ struct FloatingDef
     std::optional<Vec3> center;
     std::optional<std::array<Vec3, 3>> inertia;
     std::vector<std::string> properties; ///< names, each once
-    std::vector<Element> extra;          ///< translationDOF and the like, copied into Case.xml
+    std::vector<Element> extra;          ///< translationDOF and the like, for Case.xml
 };
 
 /// How the particles of a fitted wall and those near it are evened out: `<relax>`.
@@ -531,12 +544,16 @@ struct CaseDef
     std::uint16_t mk_fluid_first = 1;
     std::vector<MkOrient> mk_orients;
 
-    std::vector<DrawOp> ops;           ///< in order of execution
+    std::vector<DrawOp> ops; ///< in order of execution
+    std::vector<BoxPicture> box_pictures;
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
     std::vector<PointFile> point_files; ///< in the order of the file
+    /// `<fppg><offlattice hydrostatic="true" />`: fluid of `<setfrdrawmode>` has the density of its
+    /// depth, where GenCase v5.4 gives it rhop0.
+    bool hydrostatic_off_lattice = false;
     /// Drawn in place of their parts, where the last of these stands.
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file
@@ -547,8 +564,9 @@ struct CaseDef
     std::vector<std::pair<std::uint16_t, std::string>> property_links; ///< absolute mk, one name
     Element properties;             ///< `<properties>` of the definition, or empty name
     Element motion;                 ///< `<motion>` with numbers evaluated; objreal refs are mkbound
-    std::vector<Element> execution; ///< children of `<execution>` before `<particles>`
+    std::vector<Element> execution; ///< children of `<execution>` that Case.xml takes over
     Element casedef;                ///< `<casedef>` as read, for the copy in Case.xml
+    Element document;               ///< the definition as read: children are the root, comments
 
     std::vector<UserVariable> user_variables; ///< in printing order
     std::string variables_log; ///< "List of available variables: ..." at the end of reading
@@ -598,7 +616,8 @@ const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk);
 ///          it uses a command that is known but not built ("not supported yet"), or if `abort` runs
 CaseDef read_case(const std::string& path, const CaseOptions& options);
 
-/// The definition as a tree, not executed; what -clean prints.
+/// The definition as a tree, not executed; what -clean prints. Its children are the root and what
+/// stands around it.
 ///
 /// throws IoError, CaseError as read_case does for a file that is no XML
 Element read_definition_tree(const std::string& path);

@@ -26,7 +26,8 @@ struct Element
 
     Kind kind = Kind::Tag;
     std::string name;
-    std::string text;                  ///< character data directly inside, blanks trimmed
+    std::string text;                  ///< character data before the first child, blanks condensed
+    std::string tail;                  ///< character data behind it, up to the next element
     int line = 0;                      ///< in the file the tree was read from, from 1
     std::vector<Attribute> attributes; ///< in the order of the file
     std::vector<Element> children;     ///< in the order of the file
@@ -63,8 +64,12 @@ struct Element
 };
 
 /// Prints a tree as GenCase does: four blanks an indent, ` />` at empty elements, attributes in
-/// their order, LF line ends; `depth` is the indent of the element itself. Text and attributes are
-/// escaped so that they read back the same.
+/// their order, LF line ends; `depth` is the indent of the element itself. Text stands right behind
+/// the tag before it. Text and attributes are escaped so that they read back the same.
 std::string print_element(const Element& element, int depth);
+
+/// Prints a whole file: the declaration, then the children of `document`. GenCase writes comments
+/// that stand before the declaration there again, which is no XML.
+std::string print_document(const Element& document);
 
 } // namespace fppg

@@ -116,6 +116,11 @@ std::uint64_t write_shown_cells_vtk(OutputFile& file, const RunField& field,
 /// GenCase v5.4.354 does in `pointsmkout`.
 void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points);
 
+/// Writes points as legacy binary VTK, POINTS double, with their z as SCALARS Height (float): as
+/// VERTICES where the cells have one corner, else as POLYGONS.
+void write_heights_vtk(OutputFile& file, const std::vector<Vec3>& points,
+                       const std::vector<std::vector<std::uint32_t>>& cells);
+
 /// Writes `_FreePt.vtk`: POINTS double, VERTICES, SCALARS Mk and a field Type (unsigned_char, 0
 /// fixed, 1 moving, 2 floating, 3 fluid), with the bytes of GenCase v5.4.354. Mk is unsigned_char,
 /// unsigned_short where one is above 255.

@@ -147,8 +147,8 @@ struct WallParticles
 
 /// Particles off the lattice that belong to no wall, one entry each in all arrays: those near walls
 /// or of `setfrdrawmode`, which stand in for lattice nodes, and those of point files. The nodes
-/// carry the wall_zone_bit on their mk, so that a water column still counts them; where they were
-/// taken out of the field altogether, the column ends below them.
+/// carry the wall_zone_bit on their mk, so that a water column still counts them (of point files
+/// those of fluid); where they were taken out of the field altogether, the column ends below them.
 struct VolumeParticles
 {
     std::vector<Vec3> positions;
@@ -176,8 +176,11 @@ struct FittedWalls
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
     std::vector<std::uint16_t> free_mks;
 
+    /// Nodes of the fluid of point files carry the bit.
+    bool has_point_water = false;
+
     /// Whether nodes may carry the wall_zone_bit.
-    bool has_zones() const { return !bodies.empty() || !free_mks.empty(); }
+    bool has_zones() const { return !bodies.empty() || !free_mks.empty() || has_point_water; }
 };
 
 } // namespace fppg

@@ -112,7 +112,8 @@ RunField plain_nodes(const RunField& field, int threads);
 
 /// Puts the particles of `<points>` files into field.walls.volume, in the order of the files.
 ///
-/// field   with all that was drawn; its nodes stay
+/// field   with all that was drawn; its nodes stay, empty ones where fluid comes get its mk and the
+///         wall_zone_bit, so that water columns count it
 /// throws  IoError, GeometryError for the files; GeometryError that names the point and its line
 /// for
 ///         one outside the domain (between its first and last nodes; in 2D off its plane)

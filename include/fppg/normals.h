@@ -32,7 +32,7 @@ struct SetNormals
 /// `<norplane>`: to a plane, from both sides.
 struct PlaneNormals
 {
-    std::optional<Vec3> point; ///< empty: limit_dp * dp beyond the outermost selected particle
+    std::optional<Vec3> point; ///< empty: limit_dp * dp beyond the outermost selected of each mk
     double limit_dp = 0.5;
     Vec3 normal; ///< of any length
 };
@@ -70,7 +70,7 @@ struct NormalOp
     bool has_mk = false;           ///< false: every boundary particle
     std::vector<std::uint16_t> mk; ///< absolute
     PositionFilter only;
-    double max_distance_h = 2; ///< `maxdisth`
+    double max_distance_h = 2; ///< `maxdisth`; 0: no limit, of norparts no normals
     bool clear = true;         ///< the selected particles lose the normal that they have
     NormalVariant what;
 };

@@ -185,7 +185,8 @@ struct CaseDef;
 /// With fitted walls, nodes whose mk has the wall_zone_bit give no particle; the particles of
 /// field.walls join the block of their mk. In the order of a block all positions are compared as
 /// doubles; at equal ones nodes come first, then the particles of walls, then those of the volume.
-/// A fluid particle off the lattice has the density of its true place below the top of the water
+/// Fluid of `<setfrdrawmode>` has rhop0, as in GenCase, unless def.hydrostatic_off_lattice. Another
+/// fluid particle off the lattice has the density of its true place below the top of the water
 /// column of its nearest node; where that is no water, of the nearest node of water within 4 dp,
 /// and rhop0 where there is none.
 ///

@@ -5,6 +5,7 @@
 #include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "batch/check_case.h"
 #include "batch/folder_lock.h"
 #include "batch/plan.h"
 #include "batch/report.h"
@@ -15,6 +16,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -47,6 +49,7 @@ struct BatchCall
     bool slurm = false;
     bool submit = false;
     bool summary = false;
+    bool dry_run = false;
     bool no_pictures = false;
     bool quiet = false;
     bool log_json = false;
@@ -55,45 +58,50 @@ struct BatchCall
 /// The arguments behind "--" are for the runs; false when only the help was asked for.
 bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Runs many cases side by side, and again with other values of variables. Options behind "
         "-- are handed to every run, such as -- -save:all -fit.",
         "fppg batch");
     app.add_option("SOURCE", call.source,
                    "a folder, searched for *_Def.xml, or a file that lists them, or one definition")
-        ->required();
-    app.add_option("--out", call.out, "folder of results")->capture_default_str();
+        .required();
+    app.add_option("--out", call.out, "folder of results").shows_default();
     app.add_option("--set", call.sets,
                    "NAME=VALUE,VALUE: one run for every value of a variable; Dp is the particle "
                    "distance; may be repeated, for all combinations")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .may_be_repeated();
     app.add_option("--jobs", call.jobs, "runs side by side (default: processors / threads)")
-        ->check(CLI::Range(1, 4096));
+        .range(1, 4096);
     app.add_option("--threads", call.threads, "of each run (default: processors / jobs, or 1)")
-        ->check(CLI::Range(1, 4096));
+        .range(1, 4096);
     app.add_option(
            "--memory", call.memory_gb,
            "GB that runs side by side may need by their estimates (default: 80 % of what is "
            "free)")
-        ->check(CLI::PositiveNumber);
+        .positive();
     app.add_flag("--resume", call.resumes,
                  "leave out runs that are done and whose inputs have not changed");
+    auto* dry_run = app.add_flag(
+        "--dry-run", call.dry_run,
+        "run and write nothing: say which definitions would be refused, and why, as far as reading "
+        "them and looking for their mesh files tells");
     app.add_flag("--no-pictures", call.no_pictures, "do not draw the particles");
     app.add_flag("--quiet", call.quiet, "say nothing but errors");
     app.add_flag("--log-json", call.log_json, "a JSON object a line instead of text");
-    auto* slurm = app.add_flag("--slurm", call.slurm,
-                               "run nothing, write scripts for a Slurm job array into --out");
-    app.add_flag("--submit", call.submit, "hand them in with sbatch")->needs(slurm);
+    const auto slurm = app.add_flag("--slurm", call.slurm,
+                                    "run nothing, write scripts for a Slurm job array into --out");
+    app.add_flag("--submit", call.submit, "hand them in with sbatch").needs(slurm);
     app.add_option("--plan", call.plan, "parallel: run nothing, print a command a run")
-        ->check(CLI::IsMember({"parallel"}))
-        ->excludes(slurm);
+        .one_of({"parallel"})
+        .excludes(slurm);
     app.add_option("--task", call.task,
                    "do run N of the plan in the folder SOURCE, which --slurm or --plan wrote")
-        ->check(CLI::PositiveNumber);
+        .positive();
     app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE");
+    for (const char* other : {"--resume", "--slurm", "--plan", "--task", "--summary"})
+        dry_run->excludes(app.get_option(other));
     call.of_runs = take_run_options(arguments);
-    return read_subcommand_line(app, arguments);
+    return app.read(arguments);
 }
 
 /// Refuses options of runs that a run would refuse, before anything begins.
@@ -122,6 +130,7 @@ public:
         out_ = folder_of(call_.out);
         plan_.runs = list_runs(call_.source, out_, variables, call_.of_runs);
         check_run_options(plan_.runs.front().options);
+        if (call_.dry_run) return check_all();
         plan_.resumes = call_.resumes;
         plan_.has_pictures = !call_.no_pictures;
         const int processors = default_threads();
@@ -171,6 +180,57 @@ private:
                                    ? call_.memory_gb * 1e9
                                    : memory_share * static_cast<double>(available_memory());
         return options;
+    }
+
+    /// 1 if a run would be refused.
+    int check_all() const
+    {
+        const StopSignalsAsk stop;
+        std::size_t refused = 0;
+        for (const BatchRun& run : plan_.runs)
+        {
+            if (stop.is_asked()) throw Interrupted();
+            std::vector<std::string> words{run.definition, run.output};
+            words.insert(words.end(), run.options.begin(), run.options.end());
+            const DropInOptions options = parse_command_line(words);
+            const std::string path = as_named(run.definition + ".xml");
+            const auto refusal = find_refusal(path, case_options(options), options.strict);
+            refused += refusal ? 1 : 0;
+            tell_check(path, run, refusal);
+        }
+        if (!call_.quiet && !call_.log_json)
+            fmt::print("{} {}: {} can be run, {} {} refused\n", plan_.runs.size(),
+                       call_.sets.empty() ? "definitions" : "runs", plan_.runs.size() - refused,
+                       refused, refused == 1 ? "is" : "are");
+        return refused > 0 ? 1 : 0;
+    }
+
+    /// Absolute only where the source was.
+    std::string as_named(const std::string& definition) const
+    {
+        if (fs::path(call_.source).is_absolute()) return definition;
+        return fs::path(definition).lexically_proximate(fs::current_path()).string();
+    }
+
+    void tell_check(const std::string& path, const BatchRun& run,
+                    const std::optional<std::string>& refusal) const
+    {
+        if (call_.log_json)
+        {
+            nlohmann::ordered_json json = {{"event", "checked"},
+                                           {"run", run.name},
+                                           {"definition", path},
+                                           {"refused", refusal.has_value()}};
+            if (refusal) json["error"] = *refusal;
+            fmt::print("{}\n",
+                       json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+            return;
+        }
+        if (!refusal) return;
+        std::string settings;
+        for (const auto& [name, value] : run.settings)
+            settings += fmt::format("{}{}={}", settings.empty() ? " (" : ", ", name, value);
+        fmt::print("{}{}\n", *refusal, settings.empty() ? "" : settings + ")");
     }
 
     int run_all() const

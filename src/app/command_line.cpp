@@ -189,6 +189,16 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
     return options;
 }
 
+CaseOptions case_options(const DropInOptions& run)
+{
+    CaseOptions options;
+    options.fit = run.fit;
+    options.dp = run.dp;
+    options.evars = run.evars;
+    options.case_name = file_name(run.output);
+    return options;
+}
+
 std::string help_text()
 {
     return fmt::format(
@@ -207,6 +217,7 @@ std::string help_text()
         "output\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"
         "  fppg batch FOLDER                    many cases side by side; fppg batch --help\n"
+        "  fppg upgrade DEFINITION              old definitions in the forms of v5.4\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
         "\n"
         "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "

@@ -54,6 +54,9 @@ struct DropInOptions
 /// throws UsageError for what is not known, or has a value that cannot be read
 DropInOptions parse_command_line(const std::vector<std::string>& arguments);
 
+/// What a run gives to read_case().
+CaseOptions case_options(const DropInOptions& run);
+
 /// The text of --help.
 std::string help_text();
 

@@ -45,53 +45,47 @@ struct CompareCall
 /// Reads the arguments; false when only the help was asked for.
 bool read_arguments(std::vector<std::string> arguments, CompareCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Says what differs between two results of one case, the largest differences first. A "
         "result is named without extension (Case.bi4 and Case.xml, or Case_All.vtk), or as one "
         "file .bi4 or .vtk. Exit code: 0 equal, 1 different, 2 not comparable.",
         "fppg compare");
-    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     CompareOptions& options = call.options;
-    app.add_option("A", call.a, "a result")->required();
-    app.add_option("B", call.b, "another one")->required();
+    app.add_option("A", call.a, "a result").required();
+    app.add_option("B", call.b, "another one").required();
     app.add_option("--json", call.json, "all numbers, as JSON");
     app.add_option("--html", call.html, "a page with pictures and histograms, in one file");
     app.add_option("--stl", options.geometry,
                    "mesh (STL, PLY, VTK) in the place of the particles: how far they are from it; "
                    "may be repeated")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .may_be_repeated();
     app.add_option("--definition", call.definition,
                    "Case_Def whose boundaries are that mesh, where the case draws them; read with "
                    "the options behind --, such as -- -dp:0.01");
     app.add_option("--tolerance", options.same_place_dp, "two places are one within this, dp")
-        ->check(CLI::Range(0.0, 0.5))
-        ->capture_default_str();
+        .range(0.0, 0.5)
+        .shows_default();
     app.add_option("--tolerance-density", options.density, "relative")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app.add_option("--tolerance-velocity", options.velocity, "m/s")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app.add_option("--tolerance-normal", options.normal_dp, "dp")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+        .not_negative()
+        .shows_default();
+    app.add_option("--tolerance-velocity", options.velocity, "m/s").not_negative().shows_default();
+    app.add_option("--tolerance-normal", options.normal_dp, "dp").not_negative().shows_default();
     app.add_option("--tolerance-constants", options.constants, "relative, of numbers in Case.xml")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+        .not_negative()
+        .shows_default();
     app.add_option("--examples", options.examples, "particles named of each kind of difference")
-        ->check(CLI::Range(0, 100000))
-        ->capture_default_str();
+        .range(0, 100000)
+        .shows_default();
     app.add_option("--memory", call.memory_mib, "MiB for particles; files of any size are compared")
-        ->check(CLI::Range(1.0, 1e9))
-        ->capture_default_str();
+        .range(1.0, 1e9)
+        .shows_default();
     app.add_flag("--quiet", call.is_quiet, "print nothing: the exit code tells");
     app.add_option("--threads", options.threads,
                    "default 0: what the machine or its scheduler allows")
-        ->check(CLI::Range(0, 4096));
+        .range(0, 4096);
     options.threads = 0;
     call.of_run = take_run_options(arguments);
-    if (!read_subcommand_line(app, arguments)) return false;
+    if (!app.read(arguments)) return false;
     if (options.threads == 0) options.threads = default_threads();
     options.particles_at_once = std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(call.memory_mib * (1 << 20)) / bytes_a_particle);

@@ -10,6 +10,7 @@
 #include "fppg/relax_walls.h"
 #include "fppg/version.h"
 
+#include "app/debug_pictures.h"
 #include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -185,14 +186,10 @@ private:
         stage("LoadXMLInit",
               [&]
               {
-                  CaseOptions case_options;
-                  case_options.fit = options_.fit;
-                  case_options.dp = options_.dp;
-                  case_options.evars = options_.evars;
-                  case_options.case_name = fs::path(options_.output).filename().string();
-                  case_options.vres = vres;
-                  case_options.zone = zone;
-                  def_ = read_case(options_.input + ".xml", case_options);
+                  CaseOptions of_zone = case_options(options_);
+                  of_zone.vres = vres;
+                  of_zone.zone = zone;
+                  def_ = read_case(options_.input + ".xml", of_zone);
                   output_ =
                       def_.vres.is_active() ? zone_name(options_.output, zone) : options_.output;
                   if (def_.vres.is_active())
@@ -315,6 +312,8 @@ private:
                   copy_meshes();
                   save_shapes(vtk_out);
                   save_node_files();
+                  for (const DebugPicture& picture : debug_pictures(def_, threads_))
+                      write(picture.name, "", picture.write);
                   make_normals();
                   if (options_.save_cells)
                       write("_MkCells.vtk", "",
@@ -467,7 +466,12 @@ private:
             std::vector<int> mk_fluid;
             for (const ShapePolygons& s : shape_file.shapes)
             {
-                if (s.mk <= 0) continue;
+                if (s.mk <= 0)
+                {
+                    // GenCase lists void as 0 unless it comes before all others.
+                    if (!mk.empty()) mk.push_back(0);
+                    continue;
+                }
                 mk.push_back(s.mk);
                 (s.mk >= def_.mk_bound_first ? mk_bound : mk_fluid)
                     .push_back(s.mk - (s.mk >= def_.mk_bound_first ? def_.mk_bound_first
@@ -616,9 +620,9 @@ void print_info()
 
 int write_clean_copy(const DropInOptions& options)
 {
-    const Element root = read_definition_tree(options.input + ".xml");
+    const Element document = read_definition_tree(options.input + ".xml");
     OutputFile file(options.output + ".xml");
-    file.append("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n" + print_element(root, 0));
+    file.append(print_document(document));
     file.commit();
     fmt::print("{}\n{}.xml\nFinished execution (code=0).\n", full_name(), options.output);
     return 0;

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-
 #include <optional>
 
 namespace fppg
@@ -41,11 +39,9 @@ int run_estimate(const std::vector<std::string>& arguments)
             "expected the name of one case definition; fppg estimate --help shows "
             "the form");
     if (run.input.ends_with(".xml")) run.input.resize(run.input.size() - 4);
+    run.output = run.input;
     EstimateOptions options;
-    options.case_options.fit = run.fit;
-    options.case_options.dp = run.dp;
-    options.case_options.evars = run.evars;
-    options.case_options.case_name = std::filesystem::path(run.input).filename().string();
+    options.case_options = case_options(run);
     options.threads = run.threads > 0 ? run.threads : default_threads();
     options.saves_bi4 = run.save_bi4;
     options.saves_all = run.save_all;

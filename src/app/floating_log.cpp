@@ -117,7 +117,12 @@ private:
 
 std::string text_of(const FloatingBody& body)
 {
-    const auto& i = body.inertia;
+    // Rounding off the diagonal is not shown.
+    std::array<Vec3, 3> i = body.inertia;
+    const double least = 1e-12 * (std::fabs(i[0].x) + std::fabs(i[1].y) + std::fabs(i[2].z));
+    for (Vec3& row : i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::fabs(row[axis]) < least) row[axis] = 0;
     return fmt::format(
         "mass {:.9g} kg, centre ({:.9g}, {:.9g}, {:.9g}) m, inertia xx yy zz "
         "({:.9g}, {:.9g}, {:.9g}) xy xz yz ({:.9g}, {:.9g}, {:.9g}) kg*m^2",
@@ -149,7 +154,8 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
 
 } // namespace
 
-std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& particles, RunLog& log)
+std::vector<std::string> settle_floatings(const CaseDef& def, const FittedWalls& walls,
+                                          CaseParticles& particles, RunLog& log)
 {
     std::vector<std::string> warnings;
     if (particles.floatings.empty()) return warnings;
@@ -189,8 +195,7 @@ std::vector<std::string> settle_floatings(const CaseDef& def, CaseParticles& par
         true_body.inertia =
             f->inertia ? *f->inertia
                        : inertia_about(inertia, true_body.mass_body, center - true_body.center);
-        if (f->distribute_mass)
-            true_body.mass_part = true_body.mass_body / static_cast<double>(block.count);
+        if (f->distribute_mass) true_body.mass_part *= true_body.mass_body / body.mass_body;
         log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
                              text_of(true_body), is_wanted ? " (taken)" : ""));
         if (is_wanted)

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
 #include "fppg/features.h"
@@ -170,7 +170,7 @@ std::string place(const Vec3& p)
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
 }
 
-nlohmann::ordered_json as_json(const Vec3& p)
+Json as_json(const Vec3& p)
 {
     return {p.x, p.y, p.z};
 }
@@ -301,7 +301,7 @@ std::string to_text(const Inspection& found)
 std::string to_json(const Inspection& found)
 {
     const MeshReport& report = found.report;
-    nlohmann::ordered_json json;
+    Json json;
     json["file"] = found.options.path;
     json["format"] = found.format;
     json["points"] = found.points;
@@ -312,7 +312,7 @@ std::string to_json(const Inspection& found)
     json["shells"] = report.shells;
     json["is_watertight"] = report.is_watertight;
     json["open_edges"] = report.open_edges;
-    json["first_open_edges"] = nlohmann::ordered_json::array();
+    json["first_open_edges"] = Json::array();
     for (const auto& [a, b] : found.open_edges)
         json["first_open_edges"].push_back({as_json(a), as_json(b)});
     json["non_manifold_edges"] = report.non_manifold_edges;
@@ -346,7 +346,7 @@ std::string to_json(const Inspection& found)
     }
     json["warnings"] = found.file_warnings;
     for (const std::string& warning : report.warnings) json["warnings"].push_back(warning);
-    return json.dump(2) + "\n";
+    return json.text(2) + "\n";
 }
 
 } // namespace fppg

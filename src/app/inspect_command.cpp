@@ -15,23 +15,22 @@ namespace fppg
 
 int run_inspect(const std::vector<std::string>& arguments)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Says what a mesh file holds, what is wrong with it, and how many particles it needs",
         "fppg inspect");
     InspectOptions inspect;
     bool as_json = false;
     app.add_option("mesh", inspect.path, "STL, PLY, VTK (.vtk, .vtp, .vtu) or CSV file (heights)")
-        ->required();
-    app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file")
-        ->check(CLI::PositiveNumber);
+        .required();
+    app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file").positive();
     app.add_option("--angle", inspect.angle_deg, "feature angle, degrees")
-        ->check(CLI::Range(0.0, 179.999))
-        ->capture_default_str();
+        .range(0.0, 179.999)
+        .shows_default();
     app.add_option("--weld", inspect.weld_distance,
                    "weld vertices nearer than this, in the unit of the file");
     app.add_option("--threads", inspect.threads, "threads (0: what the machine allows)");
     app.add_flag("--json", as_json, "print JSON");
-    if (!read_subcommand_line(app, arguments)) return 0;
+    if (!app.read(arguments)) return 0;
     if (inspect.threads <= 0) inspect.threads = default_threads();
     std::optional<StageBar> bar(std::in_place, "inspect");
     const Inspection inspection = inspect_mesh(inspect);

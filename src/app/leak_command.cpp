@@ -47,20 +47,18 @@ std::vector<std::pair<std::string, std::string>> read_evars(const std::string& t
 /// Reads the arguments; false when only the help was asked for.
 bool read_arguments(const std::vector<std::string>& arguments, LeakCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Counts fluid particles inside solids and outside a closed housing in the output of "
         "DualSPHysics, by the true shapes of the case; shapes that move are put where their "
         "particles are. Exit code: 0 there are none at any time, 1 there are.",
         "fppg leak");
-    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     std::string evars;
     app.add_option("CASE", call.case_name,
                    "the case that the solver was given, without extension: Case.xml and Case.bi4")
-        ->required();
+        .required();
     app.add_option("PARTS", call.parts, "outputs Part_XXXX.bi4, or the folder that holds them")
-        ->required()
-        ->expected(1, -1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .required()
+        .expected(1, -1);
     app.add_option("--json", call.json, "all numbers, as JSON");
     app.add_option("--plot", call.plot, "a plot over time, .svg");
     app.add_option("--definition", call.options.definition,
@@ -68,13 +66,13 @@ bool read_arguments(const std::vector<std::string>& arguments, LeakCall& call)
     app.add_option("--evars", evars, "as -evars: of the generation, A=1:B=2");
     app.add_option("--tolerance", call.options.tolerance_dp,
                    "inside is what is deeper than this, dp")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+        .not_negative()
+        .shows_default();
     app.add_option("--threads", call.options.threads,
                    "default 0: what the machine or its scheduler allows")
-        ->check(CLI::Range(0, 4096));
+        .range(0, 4096);
     call.options.threads = 0;
-    if (!read_subcommand_line(app, arguments)) return false;
+    if (!app.read(arguments)) return false;
     call.options.evars = read_evars(evars);
     if (!call.plot.empty() && !call.plot.ends_with(".svg"))
         throw UsageError(

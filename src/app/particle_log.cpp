@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fppg
@@ -74,6 +75,11 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
                          c.speed_system ? "fixed" : "automatic"));
     log.line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
                          c.speed_sound ? "fixed" : "automatic"));
+    const std::vector<ParticleType>& free = particles.free_points.types;
+    if (std::find(free.begin(), free.end(), ParticleType::Fluid) != free.end())
+        log.line(def.hydrostatic_off_lattice
+                     ? "Density of fluid of <setfrdrawmode>: hydrostatic (<offlattice>)"
+                     : "Density of fluid of <setfrdrawmode>: rhop0, as GenCase gives it");
     log.line();
     const double hdp = def.h / def.grid.dp;
     log.line(

@@ -95,12 +95,11 @@ void read_mks(const std::string& text, RenderOptions& options)
 /// Reads the arguments; false when only the help was asked for.
 bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Draws the particles of a case as spheres; two cases side by side with one "
         "camera. A case is named without extension (Case.bi4 and Case.xml, or "
         "Case_All.vtk), or as one file .bi4 or .vtk.",
         "fppg render");
-    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     std::string size;
     std::string view;
     std::string center;
@@ -108,8 +107,8 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     std::string colour = "mk";
     std::vector<std::string> cuts;
     RenderOptions& options = call.options;
-    app.add_option("CASE", call.cases, "one case or two")->required()->expected(1, 2);
-    app.add_option("-o,--output", call.output, "the picture, .png")->required();
+    app.add_option("CASE", call.cases, "one case or two").required().expected(1, 2);
+    app.add_option("-o,--output", call.output, "the picture, .png").required();
     app.add_option("--view", view,
                    "iso (default), front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in "
                    "degrees; a case in the plane of x and z is seen from the front by default");
@@ -117,8 +116,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
                    "mk (default) or kind (corner, edge, surface, volume)");
     app.add_option("--mk", mks, "only these, such as 1,11-13");
     app.add_option("--cut", cuts, "keeps what is on one side: y>0.3 or z<1; may be repeated")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .may_be_repeated();
     app.add_option("--zoom", options.zoom, "magnification (default 1)");
     app.add_option("--center", center, "X,Y,Z in the middle of the picture");
     app.add_option("--size", size, "in pixels (default 1600x1200)");
@@ -127,7 +125,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_flag("--palette", call.has_palette, "256 colours, for a smaller file");
     app.add_option("--threads", call.threads,
                    "default 0: what the machine or its scheduler allows");
-    if (!read_subcommand_line(app, arguments)) return false;
+    if (!app.read(arguments)) return false;
     if (!size.empty()) read_size(size, options);
     if (!center.empty()) read_center(center, options);
     if (!mks.empty()) read_mks(mks, options);

@@ -49,33 +49,31 @@ struct ReportCall
 /// The arguments behind "--" are those of the run; false when only the help was asked for.
 bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Makes a page of results in one file: pictures side by side, counts, histograms of "
         "spacing and of the distance to the surface, times, warnings, and particles in space that "
         "can be turned. A result is named without extension (Case.bi4 and Case.xml, or "
         "Case_All.vtk), or as one file .bi4 or .vtk.",
         "fppg report");
-    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-    app.add_option("RESULT", call.results, "one or more")->required()->expected(1, 1000);
-    app.add_option("-o,--output", call.output, "the page")->capture_default_str();
+    app.add_option("RESULT", call.results, "one or more").required().expected(1, 1000);
+    app.add_option("-o,--output", call.output, "the page").shows_default();
     app.add_option("--stl", call.geometry,
                    "mesh (STL, PLY, VTK) in the place of the particles: how far they are from it; "
                    "may be repeated")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        .may_be_repeated();
     app.add_option("--definition", call.definition,
                    "Case_Def whose boundaries are that mesh, read with the options behind --, such "
                    "as -- -dp:0.01");
     app.add_option("--particles", call.particles, "in space, of each result, at most")
-        ->check(CLI::Range(1000, 5000000))
-        ->capture_default_str();
+        .range(1000, 5000000)
+        .shows_default();
     app.add_option("--picture", call.picture, "of one result: its picture as a file too, .png");
     app.add_option("--data", call.data, "of one result: what the page would hold, instead of it");
     app.add_flag("--quiet", call.is_quiet, "print nothing but errors");
     app.add_option("--threads", call.threads, "default 0: what the machine or its scheduler allows")
-        ->check(CLI::Range(0, 4096));
+        .range(0, 4096);
     call.of_run = take_run_options(arguments);
-    if (!read_subcommand_line(app, arguments)) return false;
+    if (!app.read(arguments)) return false;
     if (call.results.size() > 1 && !(call.data.empty() && call.picture.empty()))
         throw UsageError("--data and --picture are of one result");
     if (call.threads == 0) call.threads = default_threads();

@@ -1,9 +1,9 @@
 #include "app/run_log.h"
 
 #include "app/stage_bar.h"
+#include "core/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 
@@ -13,12 +13,10 @@ namespace fppg
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
 void print_json(const Json& json)
 {
     StageBar::clear();
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json.text());
     std::fflush(stdout);
 }
 

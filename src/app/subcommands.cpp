@@ -8,6 +8,7 @@
 #include "app/render_command.h"
 #include "app/report_command.h"
 #include "app/templates_command.h"
+#include "app/upgrade_command.h"
 
 namespace fppg
 {
@@ -24,7 +25,7 @@ struct Entry
 constexpr Entry entries[] = {
     {"batch", run_batch_command}, {"compare", run_compare},     {"estimate", run_estimate},
     {"inspect", run_inspect},     {"leak", run_leak},           {"render", run_render},
-    {"report", run_report},       {"templates", run_templates},
+    {"report", run_report},       {"templates", run_templates}, {"upgrade", run_upgrade},
 };
 
 } // namespace

@@ -73,15 +73,15 @@ void write_templates(const std::string& folder, bool overwrite)
 
 int run_templates(const std::vector<std::string>& arguments)
 {
-    CLI::App app(
+    SubcommandLine app(
         "Writes case templates, one a feature, the files that they read and a schema that checks "
         "cases",
         "fppg templates");
     std::string folder;
     bool overwrite = false;
-    app.add_option("folder", folder, "where to, made where it is missing")->required();
+    app.add_option("folder", folder, "where to, made where it is missing").required();
     app.add_flag("--overwrite", overwrite, "replace files that exist and differ");
-    if (!read_subcommand_line(app, arguments)) return 0;
+    if (!app.read(arguments)) return 0;
     write_templates(folder, overwrite);
     return 0;
 }

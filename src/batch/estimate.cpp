@@ -7,10 +7,10 @@
 
 #include "batch/rates.h"
 #include "casedef/mesh_path.h"
+#include "core/json.h"
 #include "lattice/shape_mesh.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -341,33 +341,33 @@ std::string to_text(const Estimate& e)
 
 std::string to_json(const Estimate& e)
 {
-    nlohmann::ordered_json blocks = nlohmann::ordered_json::array();
+    Json blocks = Json::array();
     for (const EstimatedBlock& block : e.blocks)
         blocks.push_back({{"mk", block.mk},
                           {"type", name_of(block.type)},
                           {"count", block.count},
                           {"exact", block.is_exact}});
-    const nlohmann::ordered_json json = {{"definition", e.definition},
-                                         {"dp", e.dp},
-                                         {"nodes", e.nodes},
-                                         {"exact", e.is_exact},
-                                         {"particles", e.np},
-                                         {"fixed", e.n_fixed},
-                                         {"moving", e.n_moving},
-                                         {"floating", e.n_floating},
-                                         {"fluid", e.n_fluid},
-                                         {"blocks", blocks},
-                                         {"wall_area", e.wall_area},
-                                         {"line_length", e.line_length},
-                                         {"wall_particles", e.n_wall},
-                                         {"line_particles", e.n_line},
-                                         {"triangles", e.triangles},
-                                         {"memory_bytes", e.memory_bytes},
-                                         {"output_bytes", e.output_bytes},
-                                         {"seconds", e.seconds},
-                                         {"files", e.files},
-                                         {"warnings", e.warnings}};
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    const Json json = {{"definition", e.definition},
+                       {"dp", e.dp},
+                       {"nodes", e.nodes},
+                       {"exact", e.is_exact},
+                       {"particles", e.np},
+                       {"fixed", e.n_fixed},
+                       {"moving", e.n_moving},
+                       {"floating", e.n_floating},
+                       {"fluid", e.n_fluid},
+                       {"blocks", blocks},
+                       {"wall_area", e.wall_area},
+                       {"line_length", e.line_length},
+                       {"wall_particles", e.n_wall},
+                       {"line_particles", e.n_line},
+                       {"triangles", e.triangles},
+                       {"memory_bytes", e.memory_bytes},
+                       {"output_bytes", e.output_bytes},
+                       {"seconds", e.seconds},
+                       {"files", e.files},
+                       {"warnings", e.warnings}};
+    return json.text(2) + "\n";
 }
 
 } // namespace fppg

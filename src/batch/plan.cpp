@@ -5,9 +5,9 @@
 #include "fppg/version.h"
 
 #include "batch/child_process.h"
+#include "core/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -21,8 +21,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 /// Estimates may be off by a factor of two, and a task also draws a picture.
 constexpr double memory_factor = 2;
 constexpr double least_task_bytes = 256e6;
@@ -69,7 +67,7 @@ void write_plan(const std::string& folder, const Plan& plan)
                        {"pictures", plan.has_pictures},
                        {"runs", runs}};
     OutputFile file((fs::path(folder) / "plan.json").string());
-    file.append(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.append(json.text(1) + "\n");
     file.commit();
 }
 
@@ -88,7 +86,7 @@ Plan read_plan(const std::string& folder)
         json.at("threads").get_to(plan.threads);
         json.at("resume").get_to(plan.resumes);
         json.at("pictures").get_to(plan.has_pictures);
-        for (const Json& run : json.at("runs"))
+        for (const Json& run : json.at("runs").items())
         {
             BatchRun& out = plan.runs.emplace_back();
             run.at("run").get_to(out.name);
@@ -99,7 +97,7 @@ Plan read_plan(const std::string& folder)
         }
         return plan;
     }
-    catch (const nlohmann::json::exception& error)
+    catch (const JsonError& error)
     {
         throw IoError(fmt::format("{}: is no plan of a batch: {}", path.string(), error.what()));
     }

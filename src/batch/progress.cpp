@@ -1,7 +1,8 @@
 #include "batch/progress.h"
 
+#include "core/json.h"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 
@@ -21,9 +22,9 @@ std::string clock_text(double seconds)
     return fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
-void print_json(const nlohmann::ordered_json& json)
+void print_json(const Json& json)
 {
-    fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json.text());
     std::fflush(stdout);
 }
 

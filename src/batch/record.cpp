@@ -6,9 +6,9 @@
 
 #include "batch/child_process.h"
 #include "batch/content_hash.h"
+#include "core/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,8 +23,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<const char*, 5> state_names{"waiting", "done", "failed", "refused", "stopped"};
 
 /// What follows `label`, a number with commas.
@@ -91,17 +89,16 @@ void write_record(const BatchRun& run, const RunRecord& record)
                        {"warnings", record.warnings},
                        {"error", record.error}};
     OutputFile file(record_path(run));
-    file.append(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.append(json.text(1) + "\n");
     file.commit();
 }
 
 RunRecord read_record(const BatchRun& run)
 {
     std::ifstream in(record_path(run));
-    const Json json = Json::parse(in, nullptr, false);
-    if (!json.is_object()) return {};
     try
     {
+        const Json json = Json::parse(in);
         RunRecord record;
         const auto state =
             std::find(state_names.begin(), state_names.end(), json.at("state").get<std::string>());
@@ -109,10 +106,12 @@ RunRecord read_record(const BatchRun& run)
         record.state = static_cast<RunState>(state - state_names.begin());
         json.at("program").get_to(record.program);
         json.at("options").get_to(record.options);
-        for (const Json& input : json.at("inputs"))
-            record.inputs.emplace_back(input.at("path"), input.at("hash"));
-        for (const Json& output : json.at("outputs"))
-            record.outputs.emplace_back(output.at("name"), output.at("bytes"));
+        for (const Json& input : json.at("inputs").items())
+            record.inputs.emplace_back(input.at("path").get<std::string>(),
+                                       input.at("hash").get<std::string>());
+        for (const Json& output : json.at("outputs").items())
+            record.outputs.emplace_back(output.at("name").get<std::string>(),
+                                        output.at("bytes").get<std::uint64_t>());
         json.at("picture").get_to(record.picture);
         json.at("particles").get_to(record.np);
         json.at("fixed").get_to(record.n_fixed);
@@ -128,7 +127,7 @@ RunRecord read_record(const BatchRun& run)
         json.at("error").get_to(record.error);
         return record;
     }
-    catch (const nlohmann::json::exception&)
+    catch (const JsonError&)
     {
         return {};
     }

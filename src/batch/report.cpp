@@ -3,11 +3,11 @@
 #include "fppg/files.h"
 #include "fppg/version.h"
 
+#include "core/json.h"
 #include "report/html.h"
 #include "report/result_look.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -20,8 +20,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 void write_text(const fs::path& path, const std::string& text)
 {
     OutputFile file(path.string());
@@ -95,7 +93,7 @@ std::string to_json(const std::vector<BatchRun>& runs, const std::vector<RunReco
                        {"failed", counts.failed},
                        {"open", counts.open},
                        {"runs", list}};
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.text(1) + "\n";
 }
 
 std::string read_whole(const fs::path& path)

@@ -4,10 +4,10 @@
 
 #include "batch/child_process.h"
 #include "batch/content_hash.h"
+#include "core/json.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -41,6 +41,24 @@ std::string read_whole(const std::string& path)
 {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// Takes what `fppg estimate --json` printed; the run goes on without it where it is no JSON.
+void read_estimate(const std::string& printed, RunRecord& record)
+{
+    try
+    {
+        const Json json = Json::parse(printed);
+        json.at("particles").get_to(record.np);
+        json.at("memory_bytes").get_to(record.estimated_memory_bytes);
+        json.at("seconds").get_to(record.estimated_seconds);
+        for (const Json& file : json.at("files").items())
+            record.inputs.emplace_back(file.get<std::string>(), "");
+    }
+    catch (const JsonError&)
+    {
+        return;
+    }
 }
 
 enum class Step
@@ -289,14 +307,9 @@ private:
         const std::string text = read_whole(job.estimate_file());
         fs::remove(job.estimate_file());
         job.step = Step::Run;
-        const auto json = nlohmann::json::parse(text, nullptr, false);
-        if (child.exit_code() == 0 && json.is_object())
+        if (child.exit_code() == 0)
         {
-            job.record.np = json.at("particles").get<std::uint64_t>();
-            job.record.estimated_memory_bytes = json.at("memory_bytes").get<double>();
-            job.record.estimated_seconds = json.at("seconds").get<double>();
-            for (const auto& file : json.at("files"))
-                job.record.inputs.emplace_back(file.get<std::string>(), "");
+            read_estimate(text, job.record);
             progress_.estimated(*job.run, job.record);
         }
         if (only_estimates_)

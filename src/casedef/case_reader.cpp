@@ -3,7 +3,9 @@
 
 #include "casedef/attributes.h"
 #include "casedef/draw_block.h"
+#include "casedef/execution.h"
 #include "casedef/fit_block.h"
+#include "casedef/floatings.h"
 #include "casedef/initials.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
@@ -40,7 +42,8 @@ public:
 
     CaseDef run()
     {
-        const Element root = read_xml(def_.file);
+        def_.document = read_document(def_.file);
+        const Element& root = root_of(def_.document);
         if (root.name != "case")
             throw CaseError(def_.file, root.line,
                             fmt::format("<{}>: the root must be <case>, as in a GenCase definition",
@@ -48,7 +51,7 @@ public:
         const Element& casedef = read_.child(root, "casedef");
         check_version(casedef);
         def_.casedef = casedef;
-        read_execution(root);
+        def_.execution = read_execution(root, read_);
         read_constants(read_.child(casedef, "constantsdef"));
         read_mk_config(read_.child(casedef, "mkconfig"));
         const Element& geometry = read_.child(casedef, "geometry");
@@ -71,16 +74,18 @@ public:
         ProgramRunner program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
-        evaluate_execution();
+        evaluate_execution(def_.execution, read_);
 
         if (const Element* e = casedef.find_child("initials"))
             def_.initials = read_initials(*e, def_, read_);
-        if (const Element* e = casedef.find_child("floatings")) read_floatings(*e);
+        if (const Element* e = casedef.find_child("floatings")) read_floatings(*e, read_, def_);
         read_properties(casedef.find_child("properties"), read_, def_);
         if (const Element* e = casedef.find_child("motion"))
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
+        for (const char* section : {"floatings", "properties", "motion"})
+            if (const Element* e = casedef.find_child(section)) warn_of_conditions(*e, section);
         note_data_files(casedef);
         read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
@@ -117,65 +122,6 @@ private:
                            "the case asks for version {} of GenCase or later, this program follows "
                            "v{}.{}.{}",
                            *wanted, language_version[0], language_version[1], language_version[2]));
-    }
-
-    void read_execution(const Element& root)
-    {
-        const Element* execution = root.find_child("execution");
-        if (execution == nullptr || execution->find_child("parameters") == nullptr)
-            read_.fail(root, "the element <execution><parameters> is missing in it");
-        // Sections that this program writes itself are left out, so that a generated Case.xml is a
-        // valid definition again.
-        const std::set<std::string> own{"particles", "constants", "uservars", "motion", "vtkout"};
-        int blocks = 0;
-        for (const Element& e : execution->children)
-            if (e.kind == Element::Kind::Tag && e.name == "parameters" && ++blocks > 2)
-                // GenCase joins the second with the first and leaves the others, which
-                // DualSPHysics does not read.
-                read_.fail(e, "there are more than two of it in <execution>, expected one");
-        for (const Element& e : execution->children)
-            if (e.kind == Element::Kind::Comment || !own.contains(e.name))
-                def_.execution.push_back(e);
-    }
-
-    /// GenCase evaluates `#expressions`, and texts behind a `$`, in the values of `<parameters>`
-    /// and in all attributes in `<special>`; comments stay as they are here.
-    void evaluate_execution()
-    {
-        for (Element& e : def_.execution)
-        {
-            if (e.kind == Element::Kind::Comment) continue;
-            if (e.name == "special") evaluate_attributes(e);
-            if (e.name == "parameters") evaluate_parameters(e);
-        }
-    }
-
-    void evaluate_parameters(Element& e) const
-    {
-        for (Element& parameter : e.children)
-        {
-            if (parameter.kind != Element::Kind::Tag || parameter.name.starts_with('_')) continue;
-            if (parameter.name == "parameter")
-            {
-                // "#Name" is a parameter that is switched off.
-                const std::string key = read_.text(parameter, "key");
-                const std::string value = read_.evaluated(parameter, "value");
-                parameter.set_attribute("key", key);
-                parameter.set_attribute("value", value);
-            }
-            else if (parameter.name != "simulationdomain")
-                read_.fail(parameter,
-                           "is not known in <parameters>, expected parameter or "
-                           "simulationdomain");
-        }
-    }
-
-    void evaluate_attributes(Element& e) const
-    {
-        for (Element::Attribute& a : e.attributes)
-            if (!a.name.ends_with("comment")) a.value = read_.evaluated(e, a.name);
-        for (Element& c : e.children)
-            if (c.kind == Element::Kind::Tag && !c.name.starts_with('_')) evaluate_attributes(c);
     }
 
     /// A constant that `auto="true"` leaves to its formula.
@@ -430,91 +376,6 @@ private:
         variables_.predefine("MassFluid", def_.mass_fluid);
     }
 
-    /// The value of an attribute of the floating, or of its child of that name.
-    std::optional<double> floating_value(const Element& e, const char* name) const
-    {
-        if (const auto v = read_.number_if(e, name)) return v;
-        const Element* c = e.find_child(name);
-        return c != nullptr ? std::optional(read_.number(*c, "value")) : std::nullopt;
-    }
-
-    void read_floatings(const Element& list)
-    {
-        for (const Element& e : list.children)
-        {
-            if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
-            if (e.name != "floating")
-            {
-                // GenCase passes over it without a word.
-                def_.warnings.push_back(fmt::format(
-                    "{}:{}: <{}>: is not known in <floatings> and has no effect, expected "
-                    "floating",
-                    def_.file, e.line, e.name));
-                continue;
-            }
-            FloatingDef f;
-            f.line = e.line;
-            f.mkbound = read_.number_list(e, "mkbound");
-            f.properties = property_names(read_.text_or(e, "property", ""));
-            f.mass_body = floating_value(e, "massbody");
-            const auto rhop = floating_value(e, "rhopbody");
-            const auto weight = floating_value(e, "relativeweight");
-            if (rhop && *rhop != 0) f.rhop_body = rhop;
-            if (weight && *weight != 0)
-            {
-                if (f.rhop_body)
-                    read_.fail(
-                        e, "only one value must be defined, massbody, relativeweight or rhopbody");
-                f.rhop_body = *weight * def_.constants.rhop0;
-            }
-            if (f.mass_body && f.rhop_body)
-                read_.fail(e,
-                           "only one value must be defined, massbody, relativeweight or rhopbody");
-            if (!f.mass_body && !f.rhop_body)
-                read_.fail(e, "one value must be defined, massbody, relativeweight or rhopbody");
-            if (const Element* part = e.find_child("masspart"))
-            {
-                f.distribute_mass = read_.text(*part, "value") == "distributed_bodymass";
-                if (!f.distribute_mass) f.mass_part = read_.number(*part, "value");
-            }
-            if (const Element* center = e.find_child("center")) f.center = read_.vec3(*center);
-            read_inertia(e, f);
-            static const std::set<std::string> copied{
-                "translationDOF", "rotationDOF", "linearvelini", "angularvelini",
-                "linearvel",      "angularvel",  "linearforce",  "angularforce"};
-            static const std::set<std::string> own{"massbody",   "rhopbody", "relativeweight",
-                                                   "masspart",   "center",   "inertia",
-                                                   "inertiafull"};
-            for (const Element& c : e.children)
-            {
-                if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || own.contains(c.name))
-                    continue;
-                if (!copied.contains(c.name)) read_.fail(c, "is not known in <floating>");
-                f.extra.push_back(evaluated_element(c, read_));
-            }
-            def_.floatings.push_back(std::move(f));
-        }
-    }
-
-    void read_inertia(const Element& e, FloatingDef& f) const
-    {
-        if (const Element* i = e.find_child("inertia"))
-        {
-            const Vec3 d = read_.vec3(*i);
-            f.inertia = {Vec3{d.x, 0, 0}, Vec3{0, d.y, 0}, Vec3{0, 0, d.z}};
-        }
-        const Element* full = e.find_child("inertiafull");
-        if (full == nullptr) return;
-        std::array<Vec3, 3> rows;
-        for (const Element& v : full->children)
-            for (int row = 0; row < 3; ++row)
-                for (int column = 0; column < 3; ++column)
-                    if (const auto value =
-                            read_.number_if(v, fmt::format("v{}{}", row + 1, column + 1)))
-                        rows[static_cast<std::size_t>(row)][column] = *value;
-        f.inertia = rows;
-    }
-
     /// The files that the solver reads, for the copy beside the result: those of motions, of the
     /// velocities and forces of floatings, of properties, and mesh data as text.
     void note_data_files(const Element& e)
@@ -535,6 +396,21 @@ private:
                              [&](const DataFileUse& use) { return use.name == name; }))
                 def_.data_files.push_back({name, c.line});
             note_files_in(c);
+        }
+    }
+
+    /// In these sections GenCase passes over `if` without a word.
+    void warn_of_conditions(const Element& e, const char* section)
+    {
+        for (const Element& c : e.children)
+        {
+            if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
+            if (c.find_attribute("if") != nullptr)
+                def_.warnings.push_back(
+                    fmt::format("{}:{}: <{}>: attribute if has no effect in <{}>, expected _{} for "
+                                "an element that does not count",
+                                def_.file, c.line, c.name, section, c.name));
+            warn_of_conditions(c, section);
         }
     }
 
@@ -570,7 +446,7 @@ CaseDef read_case(const std::string& path, const CaseOptions& options)
 
 Element read_definition_tree(const std::string& path)
 {
-    return read_xml(path);
+    return read_document(path);
 }
 
 } // namespace fppg

@@ -27,6 +27,11 @@ public:
             if (is_remark(e)) continue;
             if (e.name == "fill") read_fill(e);
             if (e.name == "points") read_points(e);
+            if (e.name == "offlattice")
+            {
+                require_known(e, {"hydrostatic"}, {});
+                def_.hydrostatic_off_lattice = read_.flag_or(e, "hydrostatic", true);
+            }
         }
     }
 

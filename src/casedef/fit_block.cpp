@@ -40,8 +40,9 @@ public:
 
     void read_block(const Element& block) const
     {
-        require_known(block, {},
-                      {"bodyfitted", "boolean", "fluidband", "fill", "floatings", "points"});
+        require_known(
+            block, {},
+            {"bodyfitted", "boolean", "fluidband", "fill", "floatings", "offlattice", "points"});
         for (const Element& e : block.children)
         {
             if (is_remark(e)) continue;
@@ -421,7 +422,8 @@ void refuse_high_mks(const CaseDef& def, const AttributeReader& read)
         at.name = op.source.command;
         at.line = op.source.line;
         read.fail(at, fmt::format("mkbound {} is mk {} and cannot stand in a case with body-fitted "
-                                  "walls or <setfrdrawmode>, expected a number below {}",
+                                  "walls, <setfrdrawmode> or fluid of <points>, expected a number "
+                                  "below {}",
                                   op.state->mk.mk_type, op.state->mk.mk,
                                   wall_zone_bit - def.mk_bound_first));
     }
@@ -498,7 +500,10 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     const bool is_off_lattice =
         std::any_of(def.ops.begin(), def.ops.end(),
                     [](const DrawOp& op) { return op.state && op.state->off_lattice; });
-    if (!def.fit.is_empty() || is_off_lattice) refuse_high_mks(def, read);
+    const bool has_point_water =
+        std::any_of(def.point_files.begin(), def.point_files.end(),
+                    [](const PointFile& file) { return file.mk.kind == MkKind::Fluid; });
+    if (!def.fit.is_empty() || is_off_lattice || has_point_water) refuse_high_mks(def, read);
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

@@ -57,7 +57,7 @@ bool is_null(const Element& movement)
     return movement.name == "mvnull";
 }
 
-void check_movement(const Element& e, const Movement& movement, const AttributeReader& read)
+void check_movement(Element& e, const Movement& movement, const AttributeReader& read)
 {
     for (const auto& [child, attributes] : movement.needs)
     {
@@ -79,6 +79,9 @@ void check_movement(const Element& e, const Movement& movement, const AttributeR
         read.fail(e, fmt::format("attribute anglesunits=\"{}\" is invalid, expected degrees or "
                                  "radians",
                                  units));
+    for (const char* name : {"movecenter", "intrinsic"})
+        if (Element* flag = e.find_child(name); flag != nullptr && flag->find_attribute("value"))
+            flag->set_attribute("value", read.flag_or(*flag, "value", false) ? "true" : "false");
 }
 
 constexpr int largest = 1'000'000'000;
@@ -121,6 +124,7 @@ void check(Element& e, const AttributeReader& read, std::set<int>& references)
                                             [&](const Movement& m) { return m.name == c.name; });
             if (found == movements().end()) read.fail(c, "is not known in <motion>");
             const int id = take_number(c, "id", -largest, largest, read);
+            if (id == 0) read.fail(c, "id=\"0\" is invalid, expected 1 or more");
             if (is_null(c))
                 std::erase_if(c.attributes,
                               [](const Element::Attribute& a) { return a.name != "id"; });
@@ -131,15 +135,12 @@ void check(Element& e, const AttributeReader& read, std::set<int>& references)
             check_movement(c, *found, read);
         }
     }
-    const bool is_moved = std::any_of(e.children.begin(), e.children.end(),
-                                      [](const Element& c) { return c.name == "begin"; });
-    if (!is_moved) return; // its movements are never looked at
     for (Element& c : e.children)
     {
         const char* name = c.name == "begin" ? "mov" : "next";
         if (c.name == "objreal" || c.name == "obj" || c.find_attribute(name) == nullptr) continue;
         const int id = take_number(c, name, -largest, largest, read);
-        if (!ids.contains(id) && (c.name == "begin" || id > 0))
+        if (!ids.contains(id) && (c.name == "begin" || id != 0))
             read.fail(c, fmt::format("{}=\"{}\" names no movement of this object", name, id));
     }
 }
@@ -152,12 +153,9 @@ Element evaluated_element(const Element& source, const AttributeReader& read)
     out.name = source.name;
     out.line = source.line;
     for (const Element::Attribute& a : source.attributes)
-    {
-        if (a.name == "if") continue;
         out.attributes.push_back({a.name, read.evaluated(source, a.name)});
-    }
     for (const Element& c : source.children)
-        if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && read.is_active(c))
+        if (c.kind == Element::Kind::Tag && !c.name.starts_with('_'))
             out.children.push_back(evaluated_element(c, read));
     return out;
 }

@@ -142,7 +142,8 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
     const std::string* name = e.find_attribute("fppg:name");
     def_.ops.push_back({{e.line, e.name, name != nullptr ? read_.interpolated(e, *name) : ""},
                         shared_state_,
-                        std::move(what)});
+                        std::move(what),
+                        commands_run_});
 }
 
 std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp& op) const
@@ -292,9 +293,6 @@ void ProgramRunner::shape_out(const Element& e)
                                   read_.text(e, "format")));
     op.normal_dp = read_.number_or(e, "savenormal", 0);
     op.reset = read_.plain_flag_or(e, "reset", true);
-    op.actual = shape_forms_[0];
-    op.snapped = shape_forms_[1];
-    op.kinds = shape_kinds_;
     add(e, std::move(op));
 }
 

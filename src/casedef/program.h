@@ -87,16 +87,30 @@ private:
                                          std::size_t at_most) const;
     FigureOp figure_of(const Element& e) const;
     BoxRegion box_of(const Element& e) const;
+    BoxRegion limit_box_of(const Element& e, bool with_limits) const;
+    /// The same under the current matrix.
     BoxLimits limits_of(const Element& e, bool with_limits) const;
     /// throws CaseError where it is missing
     bool flag_of(const Element& e, std::string_view name) const;
-    std::vector<double> layers_of(const Element& e) const;
+    /// Keeps the box of a fill or redraw for its picture. What resetdraw has forgotten stays until
+    /// the command comes again.
+    void keep_picture(const Element& e, bool with_limits, std::optional<Vec3> seed);
+    /// One number of `layers vdp`.
+    struct Layer
+    {
+        double dp = 0;
+        bool is_shown = true; ///< in shape files: with a star, or all where none has one
+    };
+    /// The outermost first.
+    std::vector<Layer> layers_of(const Element& e) const;
+    /// A figure that stands for a layer.
+    void add_layer(const Element& e, FigureOp figure, bool is_shown);
     /// throws CaseError where it is not above 0
     double radius_of(const Element& e) const;
     /// The box around a cube that the matrix has moved.
     Box3 moved_cube(const Vec3& center, double radius) const;
     /// throws CaseError for a layer without a radius
-    void check_layers(const Element& e, double radius, const std::vector<double>& layers) const;
+    void check_layers(const Element& e, double radius, const std::vector<Layer>& layers) const;
     std::vector<int> mask_of(const Element& e) const;
     FillFilter fill_filter(const Element& e, const std::string& words) const;
     std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute,
@@ -142,10 +156,9 @@ private:
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
         saved_mks_;
     std::vector<DrawConstants> saved_constants_;
-    std::array<bool, 2> shape_forms_{true, false};        ///< actual, dp
-    std::array<bool, 3> shape_kinds_{false, true, false}; ///< void, bound, fluid
     int depth_ = 0;
     std::size_t commands_run_ = 0;
+    std::size_t pictures_forgotten_ = 0; ///< so many pictures are older than the last resetdraw
 };
 
 } // namespace fppg

@@ -1,4 +1,4 @@
-// Commands that draw, fill and redraw.
+// Commands that draw.
 #include "fppg/error.h"
 
 #include "casedef/figures.h"
@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace fppg
@@ -19,6 +18,20 @@ void ProgramRunner::add_figure(const Element& e, FigureOp figure)
 {
     transform_figure(figure, matrix_);
     add(e, std::move(figure));
+}
+
+void ProgramRunner::add_layer(const Element& e, FigureOp figure, bool is_shown)
+{
+    const bool draw_shapes = state_.draw_shapes;
+    const auto set = [&](bool value)
+    {
+        if (state_.draw_shapes == value) return;
+        state_.draw_shapes = value;
+        shared_state_.reset();
+    };
+    set(draw_shapes && is_shown);
+    add_figure(e, std::move(figure));
+    set(draw_shapes);
 }
 
 std::vector<Vec3> ProgramRunner::points_of(const Element& e, std::size_t at_least,
@@ -57,43 +70,15 @@ FigureOp ProgramRunner::figure_of(const Element& e) const
     return figure;
 }
 
-BoxRegion ProgramRunner::box_of(const Element& e) const
-{
-    BoxRegion box;
-    box.corner0 = read_.child_vec3(e, "point");
-    if (const Element* end = e.find_child("endpoint"))
-        box.corner1 = read_.vec3(*end);
-    else
-        box.corner1 = box.corner0 + read_.child_vec3(e, "size");
-    return box;
-}
-
-/// The box of a fill or redraw under the current matrix. Only its strict interior counts: to take
-/// in its limits (setboxlimitmode full), it grows by dp before the matrix applies.
-BoxLimits ProgramRunner::limits_of(const Element& e, bool with_limits) const
-{
-    BoxRegion box = box_of(e);
-    if (with_limits)
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            const double low = std::min(box.corner0[axis], box.corner1[axis]);
-            const double high = std::max(box.corner0[axis], box.corner1[axis]);
-            box.corner0[axis] = low - def_.grid.dp;
-            box.corner1[axis] = high + def_.grid.dp;
-        }
-    if (!keeps_boxes(matrix_)) return turned_box(box.corner0, box.corner1, matrix_);
-    return BoxRegion{matrix_(box.corner0), matrix_(box.corner1)};
-}
-
 bool ProgramRunner::flag_of(const Element& e, std::string_view name) const
 {
     read_.text(e, name);
     return read_.flag_or(e, name, false);
 }
 
-std::vector<double> ProgramRunner::layers_of(const Element& e) const
+std::vector<ProgramRunner::Layer> ProgramRunner::layers_of(const Element& e) const
 {
-    std::vector<double> out;
+    std::vector<Layer> out;
     const Element* layers = e.find_child("layers");
     if (layers == nullptr) return out;
     const std::string list = read_.text_or(*layers, "vdp", "");
@@ -102,7 +87,9 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
     {
         const std::size_t end = std::min(list.find(',', begin), list.size());
         std::string part = list.substr(begin, end - begin);
-        // A star behind the number changes no node (semantics-2, section 23).
+        // A star changes no node. With one or more, shapeout shows the layers that have one and no
+        // others (8 boxes, spheres, cylinders and extrusions of v5.4).
+        const bool is_starred = part.find('*') != std::string::npos;
         std::erase_if(part, [](char c) { return c == ' ' || c == '\t' || c == '*'; });
         begin = end + 1;
         if (part.empty()) continue;
@@ -113,12 +100,15 @@ std::vector<double> ProgramRunner::layers_of(const Element& e) const
             read_.fail(
                 *layers,
                 fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
-        out.push_back(value);
+        out.push_back({value, is_starred});
     }
+    if (std::none_of(out.begin(), out.end(), [](const Layer& l) { return l.is_shown; }))
+        for (Layer& layer : out) layer.is_shown = true;
     // GenCase draws the outermost layer first: it is the first part under setmknextauto (30 boxes
     // of v5.0, 7 extrusions of v5.4), and of free particles nearer than 0.75 dp those of inner
     // layers stay (5 spheres, cylinders and extrusions of v5.4).
-    std::sort(out.begin(), out.end(), std::greater<>());
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Layer& a, const Layer& b) { return a.dp > b.dp; });
     return out;
 }
 
@@ -139,13 +129,13 @@ Box3 ProgramRunner::moved_cube(const Vec3& center, double radius) const
 }
 
 void ProgramRunner::check_layers(const Element& e, double radius,
-                                 const std::vector<double>& layers) const
+                                 const std::vector<Layer>& layers) const
 {
-    for (const double layer : layers)
-        if (!(radius + layer * def_.grid.dp > 0))
+    for (const Layer& layer : layers)
+        if (!(radius + layer.dp * def_.grid.dp > 0))
             read_.fail(*e.find_child("layers"),
-                       fmt::format("layer {:g} leaves a radius of {:g}, expected above 0", layer,
-                                   radius + layer * def_.grid.dp));
+                       fmt::format("layer {:g} leaves a radius of {:g}, expected above 0", layer.dp,
+                                   radius + layer.dp * def_.grid.dp));
 }
 
 std::vector<int> ProgramRunner::mask_of(const Element& e) const
@@ -203,7 +193,7 @@ void ProgramRunner::draw_box(const Element& e)
     const Vec3 corner = read_.child_vec3(e, "point");
     const Element* end = e.find_child("endpoint");
     const Vec3 size = end != nullptr ? read_.vec3(*end) - corner : read_.child_vec3(e, "size");
-    std::vector<double> layers = layers_of(e);
+    std::vector<Layer> layers = layers_of(e);
     // GenCase leaves one mk out after every box but one with layers and one that is a block of free
     // particles (30 boxes of v5.0).
     const bool leaves_one_out =
@@ -211,8 +201,12 @@ void ProgramRunner::draw_box(const Element& e)
     // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in
     // face mode the others leave no shell).
     if (is_solid && !layers.empty()) layers.erase(layers.begin() + 1, layers.end());
-    for (FigureOp& figure : make_box(corner, size, sides, is_solid, layers, def_.grid.dp))
-        add_figure(e, std::move(figure));
+    std::vector<double> layers_dp;
+    for (const Layer& layer : layers) layers_dp.push_back(layer.dp);
+    std::vector<FigureOp> figures =
+        make_box(corner, size, sides, is_solid, layers_dp, def_.grid.dp);
+    for (std::size_t i = 0; i < figures.size(); ++i)
+        add_layer(e, std::move(figures[i]), layers.empty() || layers[i].is_shown);
     if (state_.mk_next_auto && leaves_one_out) take_next_mk(e);
 }
 
@@ -330,12 +324,14 @@ bool ProgramRunner::run_draw(const Element& e)
     {
         const Vec3 extrude = read_.child_vec3(e, "extrude");
         const bool is_closed = flag_of(e, "closed");
-        const std::vector<double> layers = layers_of(e);
+        const std::vector<Layer> layers = layers_of(e);
         const std::vector<Vec3> points = points_of(e, 2, many);
-        for (const double layer : layers)
-            add_figure(e, make_extrusion(
-                              shifted_polyline(points, extrude, is_closed, layer * def_.grid.dp),
-                              extrude, is_closed));
+        for (const Layer& layer : layers)
+            add_layer(e,
+                      make_extrusion(
+                          shifted_polyline(points, extrude, is_closed, layer.dp * def_.grid.dp),
+                          extrude, is_closed),
+                      layer.is_shown);
         if (layers.empty()) add_figure(e, make_extrusion(points, extrude, is_closed));
     }
     else if (name == "drawsphere")
@@ -356,11 +352,15 @@ bool ProgramRunner::run_draw(const Element& e)
         else
         {
             // Free spheres without a radius are a point.
-            const std::vector<double> layers = layers_of(e);
+            const std::vector<Layer> layers = layers_of(e);
             if (!state_.off_lattice) check_layers(e, radius, layers);
-            SphereOp op{matrix_(center), radius, layers};
-            for (const double layer : layers)
-                op.limits.push_back(moved_cube(center, radius + layer * def_.grid.dp));
+            SphereOp op{matrix_(center), radius, {}, {}};
+            for (const Layer& layer : layers)
+            {
+                op.layers_dp.push_back(layer.dp);
+                if (layer.is_shown) op.shown_layers_dp.push_back(layer.dp);
+                op.limits.push_back(moved_cube(center, radius + layer.dp * def_.grid.dp));
+            }
             if (layers.empty()) op.limits.push_back(moved_cube(center, radius));
             add(e, std::move(op));
         }
@@ -372,7 +372,7 @@ bool ProgramRunner::run_draw(const Element& e)
                 e, "draw mode wire is not possible for a cylinder, expected face, solid or full");
         const std::vector<Vec3> points = points_of(e, 2, 2);
         const double radius = radius_of(e);
-        const std::vector<double> layers = layers_of(e);
+        const std::vector<Layer> layers = layers_of(e);
         CylinderOp op{matrix_(points[0]), matrix_(points[1]), radius, {true, true, true}, {}};
         for (const int face : mask_of(e))
             if (face >= 1 && face <= 3) op.is_visible[static_cast<std::size_t>(face - 1)] = false;
@@ -383,12 +383,12 @@ bool ProgramRunner::run_draw(const Element& e)
         // its tube a cylinder keeps its radius in every layer (30 in GenCase v5.4).
         const double length = norm(points[1] - points[0]);
         const Vec3 u = length > 0 ? (points[1] - points[0]) / length : Vec3{};
-        for (const double layer : layers)
+        for (const Layer& layer : layers)
         {
-            const double shift = layer * def_.grid.dp;
+            const double shift = layer.dp * def_.grid.dp;
             op.layers.push_back({op.is_visible[0] ? matrix_(points[0] - u * shift) : op.p0,
                                  op.is_visible[1] ? matrix_(points[1] + u * shift) : op.p1,
-                                 op.is_visible[2] ? radius + shift : radius});
+                                 op.is_visible[2] ? radius + shift : radius, layer.is_shown});
         }
         add(e, std::move(op));
     }
@@ -404,132 +404,6 @@ bool ProgramRunner::run_draw(const Element& e)
         draw_bathymetry(e);
     else if (name.starts_with("drawfile"))
         draw_mesh_file(e);
-    else
-        return false;
-    return true;
-}
-
-FillFilter ProgramRunner::fill_filter(const Element& e, const std::string& words) const
-{
-    FillFilter filter;
-    const unsigned bits = read_.word_bits(e, words, "modefill",
-                                          {{"void", 1}, {"fluid", 2}, {"bound", 4}, {"border", 8}});
-    filter.names[static_cast<std::size_t>(MkKind::Void)] = (bits & 1) != 0;
-    filter.names[static_cast<std::size_t>(MkKind::Fluid)] = (bits & 2) != 0;
-    filter.names[static_cast<std::size_t>(MkKind::Bound)] = (bits & 4) != 0;
-    filter.border = (bits & 8) != 0;
-    filter.mkbound = absolute_mk(e, "mkbound", MkKind::Bound);
-    filter.mkfluid = absolute_mk(e, "mkfluid", MkKind::Fluid);
-    if (filter.names[static_cast<std::size_t>(MkKind::Bound)])
-        check_mk(e, "mkbound", MkKind::Bound);
-    if (filter.names[static_cast<std::size_t>(MkKind::Fluid)])
-        check_mk(e, "mkfluid", MkKind::Fluid);
-    return filter;
-}
-
-void ProgramRunner::check_mk(const Element& e, const char* attribute, MkKind kind) const
-{
-    const bool is_bound = kind == MkKind::Bound;
-    const int count = is_bound ? def_.mkbound_count : def_.mkfluid_count;
-    if (e.find_attribute(attribute) == nullptr) return;
-    const int number = read_.integer(e, attribute, 0, 65000, false);
-    if (number >= count)
-        read_.fail(e, fmt::format("{}=\"{}\" is invalid, expected 0 to {} (<mkconfig {}=\"{}\">)",
-                                  attribute, number, count - 1,
-                                  is_bound ? "boundcount" : "fluidcount", count));
-}
-
-std::optional<std::uint16_t> ProgramRunner::absolute_mk(const Element& e, const char* attribute,
-                                                        MkKind kind) const
-{
-    if (e.find_attribute(attribute) == nullptr) return std::nullopt;
-    const int first = kind == MkKind::Bound ? def_.mk_bound_first : def_.mk_fluid_first;
-    return static_cast<std::uint16_t>(read_.integer(e, attribute, 0, 65000 - first, false) + first);
-}
-
-MkFilter ProgramRunner::near_filter(const Element& e, const char* type, const char* mk) const
-{
-    std::string word = read_.text(e, type);
-    for (char& c : word) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    MkFilter filter;
-    if (word == "void")
-        filter.kind = MkKind::Void;
-    else if (word == "bound")
-        filter.kind = MkKind::Bound;
-    else if (word == "fluid")
-        filter.kind = MkKind::Fluid;
-    else
-        read_.fail(e, fmt::format("attribute {}=\"{}\" is invalid, expected void, fluid or bound",
-                                  type, word));
-    if (filter.kind == MkKind::Void) return filter;
-    check_mk(e, mk, filter.kind);
-    filter.mk = absolute_mk(e, mk, filter.kind);
-    return filter;
-}
-
-bool ProgramRunner::run_fill_or_redraw(const Element& e)
-{
-    const std::string& name = e.name;
-    if (name == "fillpoint" || name == "fillvoidpoint" || name == "fillbox" ||
-        name == "fillfigure" || name == "fillprism")
-    {
-        FillOp op;
-        op.seed = matrix_(read_.vec3(e));
-        op.filter =
-            fill_filter(e, name == "fillvoidpoint" ? "void" : read_.child(e, "modefill").text);
-        if (name == "fillbox")
-            std::visit([&](auto&& limits) { op.region = std::move(limits); },
-                       limits_of(e, state_.box_limit_full));
-        if (name == "fillfigure")
-        {
-            FigureOp figure = figure_of(e);
-            figure.solid = SolidKind::Faces;
-            transform_figure(figure, matrix_);
-            op.region = std::move(figure);
-        }
-        if (name == "fillprism") op.region = prism_limits(transformed_points(e, 6, 100'000'000));
-        add(e, std::move(op));
-    }
-    else if (name == "redraw" || name == "redrawbox")
-    {
-        RedrawOp op;
-        // With both attributes mkbound alone counts. A mkfluid beyond those of <mkconfig> is the
-        // number of a boundary: with six of them mkfluid="6" recolours mkbound 0 (GenCase
-        // v5.4.354, which refuses such a number in fills and redrawnear).
-        const auto mkbound = absolute_mk(e, "mkbound", MkKind::Bound);
-        const auto mk = mkbound ? mkbound : absolute_mk(e, "mkfluid", MkKind::Fluid);
-        if (mk)
-            op.filters.push_back({*mk >= def_.mk_bound_first ? MkKind::Bound : MkKind::Fluid, mk});
-        if (name == "redrawbox")
-        {
-            // Without an mk it is for void nodes alone (seen with GenCase v5.4).
-            if (op.filters.empty()) op.filters.push_back({MkKind::Void, std::nullopt});
-            op.region = limits_of(e, false);
-        }
-        add(e, std::move(op));
-    }
-    else if (name == "redrawnear" || name == "redrawnearbox")
-    {
-        RedrawNearOp op;
-        op.target = near_filter(e, "targettp", "targetmk");
-        op.border = near_filter(e, "bordertp", "bordermk");
-        if (e.find_attribute("times") != nullptr)
-            op.times = read_.integer(e, "times", 0, 1'000'000, true);
-        if (const Element* filter = e.find_child("dirfilter"))
-        {
-            const unsigned bits = read_.word_bits(e, filter->text, "direction",
-                                                  {{"all", 63},
-                                                   {"top", 1},
-                                                   {"bottom", 2},
-                                                   {"right", 4},
-                                                   {"left", 8},
-                                                   {"back", 16},
-                                                   {"front", 32}});
-            for (std::size_t d = 0; d < 6; ++d) op.directions[d] = (bits >> d & 1) != 0;
-        }
-        if (name == "redrawnearbox") op.region = limits_of(e, state_.box_limit_full);
-        add(e, op);
-    }
     else
         return false;
     return true;

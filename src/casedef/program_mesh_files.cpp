@@ -392,6 +392,11 @@ void ProgramRunner::draw_bathymetry(const Element& e)
     if (const Element* c = grid.find_child("finalmove")) bathymetry.final_move = read_.vec3(*c);
     op.reading.bathymetry = bathymetry;
     op.transform = matrix_;
+    // An attribute `file` in the place of `value` asks for nothing.
+    if (const Element* c = e.find_child("savepoints"))
+        op.saves_points = read_.flag_or(*c, "value", false);
+    if (const Element* c = e.find_child("savegrid"))
+        op.saves_grid = read_.flag_or(*c, "value", false);
     add(e, std::move(op));
 }
 

@@ -191,6 +191,7 @@ bool ProgramRunner::run_state_command(const Element& e)
     else if (name == "resetdraw")
     {
         add(e, ResetOp{});
+        pictures_forgotten_ = def_.box_pictures.size();
         line_begin_ = def_.case_pos_min;
         auto pattern = std::move(state_.pattern);
         state_ = {};
@@ -214,8 +215,8 @@ bool ProgramRunner::run_state_command(const Element& e)
                                                {"void", 4},
                                                {"bound", 8},
                                                {"fluid", 16}});
-        shape_forms_ = {(bits & 1) != 0, (bits & 2) != 0};
-        shape_kinds_ = {(bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0};
+        state_.shape_mode = {
+            (bits & 1) != 0, (bits & 2) != 0, {(bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0}};
     }
     else
         return false;

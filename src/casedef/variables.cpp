@@ -239,7 +239,26 @@ void Variables::choose_exported(std::string_view patterns)
         if (needs_variable && !find_entry(entry))
             throw ExpressionError(0, fmt::format("the variable '{}' is not defined", entry));
     }
-    export_entries_.insert(export_entries_.end(), entries.begin(), entries.end());
+    if (entries.empty()) return;
+    if (!exported_names_)
+    {
+        exported_names_.emplace();
+        if (entries.front().starts_with('-')) entries.insert(entries.begin(), "all");
+    }
+    for (std::string_view entry : entries)
+    {
+        const bool takes_out = entry.starts_with('-');
+        if (takes_out) entry.remove_prefix(1);
+        const bool is_all = to_lower(entry) == "all";
+        for (const Variable& variable : variables_)
+        {
+            if (!is_all && !matches(entry, variable.name)) continue;
+            if (takes_out)
+                exported_names_->erase(variable.name);
+            else
+                exported_names_->insert(variable.name);
+        }
+    }
 }
 
 std::vector<Variable> Variables::exported() const
@@ -247,13 +266,7 @@ std::vector<Variable> Variables::exported() const
     std::vector<Variable> chosen;
     for (const Variable& variable : variables_)
     {
-        bool is_chosen = export_entries_.empty() || export_entries_.front().starts_with('-');
-        for (std::string_view entry : export_entries_)
-        {
-            const bool takes_out = entry.starts_with('-');
-            if (takes_out) entry.remove_prefix(1);
-            if (to_lower(entry) == "all" || matches(entry, variable.name)) is_chosen = !takes_out;
-        }
+        const bool is_chosen = !exported_names_ || exported_names_->contains(variable.name);
         if (is_chosen && variable.is_exported) chosen.push_back(variable);
     }
     std::sort(chosen.begin(), chosen.end(),

@@ -2,6 +2,8 @@
 
 #include "casedef/expression.h"
 
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,10 +73,11 @@ public:
 
     /// exportvar vars="-all,Dp,PosMax*": chooses what exported() gives.
     ///
-    /// The entries of all exportvar commands form one list, applied in order: `-` takes out, `all`
-    /// (any letter case) is every variable. It starts from all variables when there is no entry or
-    /// the first one takes out, else from none. A name without `*` and `?` that is to be exported
-    /// must exist when the command is executed.
+    /// The entries are applied in order, to the variables that exist now: `-` takes out, `all` (any
+    /// letter case) is every variable. The first exportvar starts from all variables where its
+    /// first entry takes out, else from none, the next ones from what is chosen; one without
+    /// entries does nothing (28 cases in GenCase v5.4.354). A name without `*` and `?` that is to
+    /// be exported must exist.
     void choose_exported(std::string_view patterns);
 
     /// The content of <uservars>: values of now, texts first, then numbers, each sorted by name
@@ -110,7 +113,7 @@ private:
 
     std::vector<Variable> variables_;
     std::vector<std::vector<Variable>> saved_;
-    std::vector<std::string> export_entries_;
+    std::optional<std::set<std::string>> exported_names_; ///< empty without exportvar: all
     mutable RandomStream random_; ///< rand changes it, which is no change of a variable
 };
 

@@ -1,5 +1,6 @@
 #include "casedef/vres.h"
 
+#include "casedef/execution.h"
 #include "casedef/transforms.h"
 
 #include <fmt/format.h>
@@ -128,7 +129,7 @@ private:
         if (const Element* extra = e.find_child("extra")) zone.extra = copied(*extra);
     }
 
-    /// Elements and attributes without those of an underscore.
+    /// Elements and attributes without those of an underscore, comments and texts.
     static std::vector<Element> copied(const Element& e)
     {
         std::vector<Element> out;
@@ -136,6 +137,8 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
             Element copy = c;
+            copy.text.clear();
+            copy.tail.clear();
             std::erase_if(copy.attributes,
                           [](const Element::Attribute& a) { return a.name.starts_with('_'); });
             copy.children = copied(c);
@@ -155,35 +158,9 @@ private:
                 const Element* c = e.find_child(limit);
                 const std::string text =
                     c != nullptr ? read_.text_or(*c, axis, "default") : "default";
-                zone.simulation_domain.push_back(
-                    limit_text(c != nullptr ? *c : e, text, limit == std::string_view("posmin")));
+                zone.simulation_domain.push_back(domain_limit(read_, c != nullptr ? *c : e, text,
+                                                              limit == std::string_view("posmin")));
             }
-    }
-
-    /// A number, default, default - number or default - number%; with + at the upper limit.
-    std::string limit_text(const Element& e, const std::string& text, bool is_min) const
-    {
-        std::string bare;
-        for (const char c : text)
-            if (c != ' ') bare += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
-        std::string_view rest = bare;
-        const bool is_default = rest.starts_with("default");
-        if (is_default) rest.remove_prefix(7);
-        if (is_default && rest.empty()) return "default";
-        const char sign = is_min ? '-' : '+';
-        const bool has_sign = !rest.empty() && rest.front() == sign;
-        if (is_default && has_sign) rest.remove_prefix(1);
-        const bool is_percent = is_default && rest.ends_with('%');
-        if (is_percent) rest.remove_suffix(1);
-        double value = 0;
-        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-        if ((is_default && !has_sign) || error != std::errc() || end != rest.data() + rest.size() ||
-            !std::isfinite(value))
-            read_.fail(e, fmt::format("\"{}\" is invalid, expected a number, default, default {} "
-                                      "NUMBER or default {} NUMBER%",
-                                      text, sign, sign));
-        if (!is_default) return fmt::format("{}", value);
-        return fmt::format("default {} {}{}", sign, value, is_percent ? "%" : "");
     }
 
     void read_boxes(const Element& e, std::size_t parent)

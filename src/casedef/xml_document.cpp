@@ -18,43 +18,107 @@ namespace
 
 constexpr int max_depth = 200;
 
-std::string trimmed(const std::string& text)
+bool is_blank(char c)
 {
-    const auto is_blank = [](unsigned char c) { return c == ' ' || (c >= 9 && c <= 13); };
-    auto first = std::find_if_not(text.begin(), text.end(), is_blank);
-    auto last = std::find_if_not(text.rbegin(), std::make_reverse_iterator(first), is_blank).base();
-    return {first, last};
+    return c == ' ' || (c >= 9 && c <= 13);
 }
 
-/// Replaces what stands before the declaration by blanks, line ends kept so that lines still count.
-void blank_before_declaration(std::string& text)
+/// Blanks at both ends dropped, runs of others one blank each.
+std::string condensed(const std::string& text)
 {
-    std::size_t start = 0;
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) start = 3;
-    std::size_t pos = start;
-    while (pos < text.size())
+    std::string out;
+    for (const char c : text)
     {
-        if (std::strchr(" \t\r\n", text[pos]) != nullptr && text[pos] != 0)
-            ++pos;
-        else if (text.compare(pos, 4, "<!--") == 0)
+        if (!is_blank(c))
+            out += c;
+        else if (!out.empty() && out.back() != ' ')
+            out += ' ';
+    }
+    if (!out.empty() && out.back() == ' ') out.pop_back();
+    return out;
+}
+
+/// The bytes of a UTF-8 character at `at`, or 0.
+std::size_t utf8_length(const std::string& text, std::size_t at)
+{
+    const auto lead = static_cast<unsigned char>(text[at]);
+    const std::size_t length = lead < 0x80                    ? 1
+                               : lead >= 0xC2 && lead < 0xE0  ? 2
+                               : lead >= 0xE0 && lead < 0xF0  ? 3
+                               : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                              : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if (at + i >= text.size() || (static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80)
+            return 0;
+    return length;
+}
+
+/// Text that is not UTF-8 is taken as Latin-1: what is written is UTF-8, whatever was read.
+std::string as_utf8(std::string text)
+{
+    std::size_t at = 0;
+    while (at < text.size())
+    {
+        const std::size_t length = utf8_length(text, at);
+        if (length == 0) break;
+        at += length;
+    }
+    if (at == text.size()) return text;
+    std::string out;
+    for (const char c : text)
+    {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x80) out += static_cast<char>(0xC0 | byte >> 6);
+        out += byte < 0x80 ? c : static_cast<char>(0x80 | (byte & 0x3F));
+    }
+    return out;
+}
+
+/// Replaces byte order mark and declaration by blanks: nothing that they say is used, and comments
+/// may stand before the declaration only here.
+void blank_declaration(std::string& text)
+{
+    std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    std::fill_n(text.begin(), at, ' ');
+    while (at < text.size())
+    {
+        if (is_blank(text[at]))
+            ++at;
+        else if (text.compare(at, 4, "<!--") == 0)
         {
-            const std::size_t end = text.find("-->", pos + 4);
+            const std::size_t end = text.find("-->", at + 4);
             if (end == std::string::npos) return;
-            pos = end + 3;
+            at = end + 3;
         }
         else
             break;
     }
-    if (text.compare(pos, 5, "<?xml") != 0) pos = start;
-    for (std::size_t i = 0; i < pos; ++i)
+    const std::size_t end = text.find("?>", at);
+    if (text.compare(at, 5, "<?xml") != 0 || end == std::string::npos) return;
+    for (std::size_t i = at; i < end + 2; ++i)
         if (text[i] != '\n') text[i] = ' ';
-    if (text.compare(pos, 5, "<?xml") == 0)
+}
+
+Element convert(const tinyxml2::XMLElement& source, const std::string& file, int depth);
+
+void convert_children(const tinyxml2::XMLNode& source, const std::string& file, int depth,
+                      Element& out)
+{
+    for (const auto* node = source.FirstChild(); node != nullptr; node = node->NextSibling())
     {
-        // The declaration itself says nothing that is used here, and it must be the first node.
-        const std::size_t end = text.find("?>", pos);
-        if (end != std::string::npos)
-            for (std::size_t i = pos; i < end + 2; ++i)
-                if (text[i] != '\n') text[i] = ' ';
+        if (const auto* tag = node->ToElement())
+            out.children.push_back(convert(*tag, file, depth));
+        else if (const auto* text = node->ToText())
+            (out.children.empty() ? out.text : out.children.back().tail) +=
+                text->CData() ? text->Value() : condensed(text->Value());
+        else if (const auto* comment = node->ToComment())
+        {
+            Element c;
+            c.kind = Element::Kind::Comment;
+            c.text = comment->Value();
+            c.line = comment->GetLineNum();
+            out.children.push_back(std::move(c));
+        }
     }
 }
 
@@ -68,30 +132,16 @@ Element convert(const tinyxml2::XMLElement& source, const std::string& file, int
     out.line = source.GetLineNum();
     for (const auto* a = source.FirstAttribute(); a != nullptr; a = a->Next())
         out.attributes.push_back({a->Name(), a->Value()});
-    for (const auto* node = source.FirstChild(); node != nullptr; node = node->NextSibling())
-    {
-        if (const auto* tag = node->ToElement())
-            out.children.push_back(convert(*tag, file, depth + 1));
-        else if (const auto* text = node->ToText())
-            out.text += text->Value();
-        else if (const auto* comment = node->ToComment())
-        {
-            Element c;
-            c.kind = Element::Kind::Comment;
-            c.text = comment->Value();
-            c.line = comment->GetLineNum();
-            out.children.push_back(std::move(c));
-        }
-    }
-    out.text = trimmed(out.text);
+    convert_children(source, file, depth + 1, out);
     return out;
 }
 
 } // namespace
 
-Element parse_xml(std::string text, const std::string& name)
+Element parse_document(std::string text, const std::string& name)
 {
-    blank_before_declaration(text);
+    text = as_utf8(std::move(text));
+    blank_declaration(text);
     tinyxml2::XMLDocument document;
     const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
@@ -103,10 +153,12 @@ Element parse_xml(std::string text, const std::string& name)
                                     tinyxml2::XMLDocument::ErrorIDToName(error)));
     if (document.RootElement() == nullptr)
         throw CaseError(name, 0, "there is no element, expected the root <case>");
-    return convert(*document.RootElement(), name, 0);
+    Element out;
+    convert_children(document, name, 0, out);
+    return out;
 }
 
-Element read_xml(const std::string& path)
+Element read_document(const std::string& path)
 {
     std::ifstream in(path, std::ios::binary);
     if (!in) throw IoError(fmt::format("{}: cannot open the file: {}", path, std::strerror(errno)));
@@ -114,7 +166,23 @@ Element read_xml(const std::string& path)
     text << in.rdbuf();
     if (in.bad() || (text.fail() && in.peek() != EOF))
         throw IoError(fmt::format("{}: cannot read the file: {}", path, std::strerror(errno)));
-    return parse_xml(std::move(text).str(), path);
+    return parse_document(std::move(text).str(), path);
+}
+
+const Element& root_of(const Element& document)
+{
+    return *std::find_if(document.children.begin(), document.children.end(),
+                         [](const Element& e) { return e.kind == Element::Kind::Tag; });
+}
+
+Element read_xml(const std::string& path)
+{
+    return root_of(read_document(path));
+}
+
+Element parse_xml(std::string text, const std::string& name)
+{
+    return root_of(parse_document(std::move(text), name));
 }
 
 } // namespace fppg

@@ -1,16 +1,13 @@
 #include "fppg/compare.h"
 
 #include "compare/report_words.h"
-
-#include <nlohmann/json.hpp>
+#include "core/json.h"
 
 namespace fppg
 {
 
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 Json as_json(const Vec3& p)
 {
@@ -123,7 +120,7 @@ std::string to_json(const Comparison& comparison)
     }
     json["notes"] = comparison.notes;
     // Names of files need not be UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.text(2) + "\n";
 }
 
 } // namespace fppg

@@ -1,10 +1,10 @@
 #include "files/case_motion.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
+#include <string_view>
 
 namespace fppg
 {
@@ -50,28 +50,89 @@ std::set<int> reached_movements(const Element& object)
     return reached;
 }
 
-/// Places of the children of a movement; velocities stand before accelerations only in mvrectace.
-int place_of(const std::string& movement, const std::string& child)
+/// An attribute that GenCase keeps; `otherwise` is what it writes where there is none.
+struct KeptAttribute
 {
-    static const std::map<std::string, int, std::less<>> places{
-        {"file", 0},   {"freq", 0},       {"vel", 0},       {"ampl", 1},   {"ace", 1},
-        {"phase", 2},  {"velini", 2},     {"ref", 3},       {"axisp1", 4}, {"axisp2", 5},
-        {"center", 6}, {"movecenter", 7}, {"intrinsic", 8}, {"axes", 9}};
-    if (movement == "mvrectace" && child == "velini") return 0;
-    const auto found = places.find(child);
-    return found == places.end() ? 10 : found->second;
-}
+    const char* name;
+    const char* otherwise = nullptr;
+};
 
-std::string units_of(const Element& movement, const Element& value, const std::string& angles)
+struct KeptChild
 {
-    const bool is_angle = value.find_attribute("ang") != nullptr;
-    const std::string length = is_angle ? angles : "m";
-    if (value.name == "vel" || value.name == "velini") return length + "/s";
-    if (value.name == "ace") return length + "/s^2";
-    if (value.name == "freq") return "1/s";
-    if (value.name == "ampl") return movement.name == "mvrectsinu" ? "metres (m)" : angles;
-    if (value.name == "phase") return angles;
-    return "";
+    const char* name;
+    std::vector<KeptAttribute> attributes;
+    const char* units = ""; ///< ANGLES stands for those of the movement
+};
+
+/// What GenCase keeps of a movement, in its order.
+const std::vector<KeptChild>& children_of(const std::string& movement)
+{
+    using Children = std::vector<KeptChild>;
+    using Attributes = std::vector<KeptAttribute>;
+    const Attributes xyz{{"x"}, {"y"}, {"z"}};
+    const Attributes ang{{"ang"}};
+    const Attributes v{{"v"}};
+    const KeptChild first{"axisp1", xyz};
+    const KeptChild second{"axisp2", xyz};
+    const KeptChild ref{"ref", xyz};
+    const KeptChild center{"center", xyz};
+    const KeptChild turn{"vel", ang, "ANGLES/s"};
+    const KeptChild turn_ace{"ace", ang, "ANGLES/s^2"};
+    const KeptChild turn_ini{"velini", ang, "ANGLES/s"};
+    const KeptChild intrinsic{"intrinsic", {{"value", "false"}}};
+    const KeptChild axes{"axes", {{"value", "XYZ"}}};
+    const auto sinus = [](const Attributes& values, const char* length)
+    {
+        return Children{
+            {"freq", values, "1/s"}, {"ampl", values, length}, {"phase", values, "ANGLES"}};
+    };
+    const auto with = [](Children children, const Children& more)
+    {
+        children.insert(children.end(), more.begin(), more.end());
+        return children;
+    };
+    static const std::map<std::string, Children> all{
+        {"mvrect", {{"vel", xyz, "m/s"}}},
+        {"mvrectace", {{"velini", xyz, "m/s"}, {"ace", xyz, "m/s^2"}}},
+        {"mvrot", {turn, first, second}},
+        {"mvrotace", {turn_ace, turn_ini, first, second}},
+        {"mvcir", {turn, ref, first, second}},
+        {"mvcirace", {turn_ace, turn_ini, ref, first, second}},
+        {"mvrectsinu", sinus(xyz, "metres (m)")},
+        {"mvrotsinu", with(sinus(v, "ANGLES"), {first, second})},
+        {"mvcirsinu", with(sinus(v, "ANGLES"), {ref, first, second})},
+        {"mvrectfile",
+         {{"file", {{"name"}, {"fields"}, {"fieldtime"}, {"fieldx"}, {"fieldy"}, {"fieldz"}}}}},
+        {"mvrotfile", {{"file", {{"name"}}}, first, second}},
+        {"mvrotadvfile",
+         {{"file",
+           {{"name"},
+            {"fields", "4"},
+            {"fieldtime", "0"},
+            {"fieldang1", "1"},
+            {"fieldang2", "2"},
+            {"fieldang3", "3"}}},
+          center,
+          intrinsic,
+          axes}},
+        {"mvpathfile",
+         {{"file",
+           {{"name"},
+            {"fields", "7"},
+            {"fieldtime", "0"},
+            {"fieldx", "1"},
+            {"fieldy", "2"},
+            {"fieldz", "3"},
+            {"fieldang1", "4"},
+            {"fieldang2", "5"},
+            {"fieldang3", "6"}}},
+          center,
+          {"movecenter", {{"value", "true"}}},
+          intrinsic,
+          axes}}};
+    static const Children none;
+    const auto found = all.find(movement);
+    return found == all.end() ? none : found->second;
 }
 
 bool has_angles(const std::string& movement)
@@ -80,45 +141,56 @@ bool has_angles(const std::string& movement)
            movement == "mvrectsinu" || movement == "mvpathfile";
 }
 
-void without_comment(Element& element)
+/// Nothing where the definition has none and there is nothing to write in its place.
+std::optional<Element> case_child(const KeptChild& kept, const Element* given,
+                                  const std::string& angles)
 {
-    std::erase_if(element.attributes, [](const Element::Attribute& a)
-                  { return a.name == "comment" || a.name == "units_comment"; });
-}
-
-/// The attributes that every movement has come first.
-void order_attributes(Element& movement)
-{
-    static const std::array<std::string, 4> first{"id", "duration", "next", "anglesunits"};
-    const auto place = [](const Element::Attribute& a)
-    { return std::find(first.begin(), first.end(), a.name) - first.begin(); };
-    std::stable_sort(movement.attributes.begin(), movement.attributes.end(),
-                     [&](const Element::Attribute& a, const Element::Attribute& b)
-                     { return place(a) < place(b); });
+    Element out;
+    out.name = kept.name;
+    for (const KeptAttribute& a : kept.attributes)
+    {
+        const std::string* value = given != nullptr ? given->find_attribute(a.name) : nullptr;
+        const bool is_field = std::string_view(a.name).starts_with("field");
+        const bool is_left_out = value == nullptr || (is_field && value->starts_with('-'));
+        if (!is_left_out)
+            out.set_attribute(a.name, *value);
+        else if (a.otherwise != nullptr)
+            out.set_attribute(a.name, a.otherwise);
+    }
+    if (given == nullptr && out.attributes.empty()) return std::nullopt;
+    std::string units = kept.units;
+    if (units.starts_with("ANGLES")) units.replace(0, 6, angles);
+    if (!units.empty()) out.set_attribute("units_comment", units);
+    return out;
 }
 
 Element case_movement(const Element& movement)
 {
-    Element out = movement;
-    without_comment(out);
-    if (out.name == "mvpredef" || out.name == "mvfile") out.name = "mvrectfile";
-    if (!has_angles(out.name))
-        std::erase_if(out.attributes,
-                      [](const Element::Attribute& a) { return a.name == "anglesunits"; });
-    else if (!out.find_attribute("anglesunits"))
-        out.set_attribute("anglesunits", "degrees");
-    order_attributes(out);
-    const std::string* angles = out.find_attribute("anglesunits");
-    std::erase_if(out.children, [](const Element& c) { return c.kind == Element::Kind::Comment; });
-    for (Element& child : out.children)
-    {
-        without_comment(child);
-        const std::string units = units_of(out, child, angles ? *angles : "degrees");
-        if (!units.empty()) child.set_attribute("units_comment", units);
-    }
-    std::stable_sort(out.children.begin(), out.children.end(),
-                     [&](const Element& a, const Element& b)
-                     { return place_of(out.name, a.name) < place_of(out.name, b.name); });
+    Element out;
+    out.name =
+        movement.name == "mvpredef" || movement.name == "mvfile" ? "mvrectfile" : movement.name;
+    for (const char* name : {"id", "duration", "next"})
+        if (const std::string* value = movement.find_attribute(name);
+            value != nullptr && (name != std::string_view("next") || *value != "0"))
+            out.set_attribute(name, *value);
+    const std::string* given = movement.find_attribute("anglesunits");
+    const std::string angles = given != nullptr ? *given : "degrees";
+    if (has_angles(out.name)) out.set_attribute("anglesunits", angles);
+    for (const KeptChild& kept : children_of(out.name))
+        if (auto child = case_child(kept, movement.find_child(kept.name), angles))
+            out.children.push_back(std::move(*child));
+    return out;
+}
+
+/// A `<begin>`; an end below 0 is none.
+Element case_begin(const Element& begin)
+{
+    Element out;
+    out.name = begin.name;
+    for (const char* name : {"mov", "start", "finish"})
+        if (const std::string* value = begin.find_attribute(name);
+            value != nullptr && (name != std::string_view("finish") || !value->starts_with('-')))
+            out.set_attribute(name, *value);
     return out;
 }
 
@@ -132,23 +204,21 @@ void add_object(const Element& object, const RefOfMkbound& refs, std::vector<Ele
     if (ref != refs.end()) copy.set_attribute("ref", std::to_string(ref->second));
     bool moves_particles = ref != refs.end();
     const std::set<int> reached = reached_movements(object);
+    std::vector<Element> movements;
+    std::vector<Element> objects;
     for (const Element& child : object.children)
     {
         if (child.kind == Element::Kind::Comment) continue;
         if (is_object(child))
-        {
-            const std::size_t before = copy.children.size();
-            add_object(child, refs, copy.children);
-            moves_particles = moves_particles || copy.children.size() > before;
-        }
+            add_object(child, refs, objects);
         else if (child.name == "begin")
-        {
-            copy.children.push_back(child);
-            without_comment(copy.children.back());
-        }
+            copy.children.push_back(case_begin(child));
         else if (reached.contains(number_of(child, "id", 0)))
-            copy.children.push_back(case_movement(child));
+            movements.push_back(case_movement(child));
     }
+    moves_particles = moves_particles || !objects.empty();
+    for (std::vector<Element>* part : {&movements, &objects})
+        for (Element& e : *part) copy.children.push_back(std::move(e));
     if (moves_particles) out.push_back(std::move(copy));
 }
 

@@ -12,9 +12,12 @@ namespace fppg
 ///   is dropped, and an `<obj>` in which nothing is left. Where a dropped objreal holds others that
 ///   move, it stays as `<obj>`, because they move with it.
 /// - Movements that no `<begin>` reaches, itself or by `next`, are dropped; so are comments.
-/// - `anglesunits` is written where a movement has angles (default degrees), the children of a
-///   movement stand in a fixed order, with units_comment. mvpredef and mvfile become
-///   mvrectfile; anglesunits stands where angles are, and of mvnull the id alone.
+/// - `<begin>` come first, then movements, then objects; each keeps the attributes and the first of
+///   the children that it needs, in a fixed order, with units_comment. `next="0"`, a `finish` and a
+///   field below 0 are left out; mvrotadvfile and mvpathfile get their defaults written.
+/// - `anglesunits` is written where a movement has angles (default degrees). mvpredef and mvfile
+///   become mvrectfile; of mvnull the id alone stays.
+/// (90 movements.)
 ///
 /// motion  `<motion>` of the definition with numbers evaluated; an empty name: none
 Element case_motion(const Element& motion, const std::vector<ParticleBlock>& blocks);

@@ -1,14 +1,17 @@
 // Case.xml, as GenCase v5.4.354 writes it (seen on its own output):
 //
-//   <case app date>
-//     <casedef>      as read; only the layout is normalised
+//   <case app date>     comments and what else stands around the two blocks as read
+//     <casedef>         as read; only the layout is normalised
 //     <execution>
-//       ...          what the definition had (special, parameters): a repeated parameter takes the
-//                    place of the first one with the value of the last, deprecated keys are marked
-//                    in their comment, simulationdomain is completed and has fixed comments
-//       <particles>  _summary, then a line a block in id order, floating ones with mass, center,
-//                    inertia (short form where the off-diagonal entries are zero) and their
-//                    restrictions and velocities, then the properties that are in use
+//       ...             what the definition had (special, comments, unknown blocks)
+//       <parameters>    key, value, comment and units_comment of each, without anything between
+//                       them: a repeated parameter takes the place of the first one with the values
+//                       of the last, deprecated keys are marked in their comment; simulationdomain
+//                       comes last, complete and with fixed comments. A second block stays where it
+//                       is, before the content of the first
+//       <particles>     _summary, then a line a block in id order, floating ones with mass, center,
+//                       inertia (short form where the off-diagonal entries are zero) and their
+//                       restrictions and velocities, then the properties that are in use
 //       <constants>  <vres> (of a zone)  <uservars>  <motion> (case_motion.h)  <vtkout>
 //
 // Numbers are the shortest text that reads back exactly, where GenCase keeps six to eleven digits:
@@ -84,16 +87,21 @@ bool is_deprecated(const std::string& key)
            name.starts_with("domainparticles");
 }
 
-void mark_deprecated(Element& parameter)
+/// Of a parameter what GenCase keeps, in its order.
+Element case_parameter(const Element& given)
 {
-    const std::string* key = parameter.find_attribute("key");
-    if (!key || !is_deprecated(*key)) return;
-    const std::string mark = "**DEPRECATED** ";
-    const std::string* comment = parameter.find_attribute("comment");
-    if (!comment)
-        parameter.set_attribute("comment", mark);
-    else if (!comment->starts_with(mark))
-        parameter.set_attribute("comment", mark + *comment);
+    const auto text = [&](const char* name)
+    {
+        const std::string* value = given.find_attribute(name);
+        return value ? *value : std::string();
+    };
+    Element out = tag("parameter", {{"key", text("key")}, {"value", text("value")}});
+    const std::string mark = is_deprecated(text("key")) ? "**DEPRECATED** " : "";
+    std::string comment = text("comment");
+    if (!comment.starts_with(mark)) comment = mark + comment;
+    if (!comment.empty()) out.set_attribute("comment", comment);
+    if (!text("units_comment").empty()) out.set_attribute("units_comment", text("units_comment"));
+    return out;
 }
 
 Element complete_limit(const Element& domain, const std::string& name)
@@ -130,26 +138,16 @@ Element case_parameters(const Element& given)
 {
     Element out = tag("parameters");
     std::map<std::string, std::size_t> place_of_key;
-    bool has_domain = false;
     for (const Element& child : given.children)
     {
         const std::string* key = child.find_attribute("key");
-        if (child.kind == Element::Kind::Tag && child.name == "parameter" && key)
-        {
-            const auto [place, is_new] = place_of_key.emplace(*key, out.children.size());
-            if (is_new) out.children.emplace_back();
-            out.children[place->second] = child;
-            mark_deprecated(out.children[place->second]);
-        }
-        else if (child.kind == Element::Kind::Tag && child.name == "simulationdomain")
-        {
-            out.children.push_back(complete_domain(child));
-            has_domain = true;
-        }
-        else
-            out.children.push_back(child);
+        if (child.name != "parameter" || !key) continue;
+        const auto [place, is_new] = place_of_key.emplace(*key, out.children.size());
+        if (is_new) out.children.emplace_back();
+        out.children[place->second] = case_parameter(child);
     }
-    if (!has_domain) out.children.push_back(complete_domain({}));
+    const Element* domain = given.find_child("simulationdomain");
+    out.children.push_back(complete_domain(domain ? *domain : Element{}));
     return out;
 }
 
@@ -211,14 +209,6 @@ Element inertia_tag(const std::array<Vec3, 3>& rows)
     return out;
 }
 
-bool restricts_motion(const Element& degrees_of_freedom)
-{
-    return std::any_of(
-        degrees_of_freedom.attributes.begin(), degrees_of_freedom.attributes.end(),
-        [](const Element::Attribute& a)
-        { return a.name.size() == 1 && a.value.find_first_not_of("0.") == a.value.npos; });
-}
-
 /// The remaining children of a floating block in their fixed order.
 void add_floating_extras(const std::vector<Element>& extras, Element& out)
 {
@@ -230,22 +220,14 @@ void add_floating_extras(const std::vector<Element>& extras, Element& out)
         for (const Element& extra : extras)
         {
             if (extra.name != name) continue;
-            Element copy = extra;
-            std::erase_if(copy.attributes, [](const Element::Attribute& a)
-                          { return a.name == "comment" || a.name == "units_comment"; });
-            std::erase_if(copy.children,
-                          [](const Element& c) { return c.kind == Element::Kind::Comment; });
+            out.children.push_back(extra);
             if (!units.empty())
-                copy.set_attribute("units_comment", units);
+                out.children.back().set_attribute("units_comment", units);
             else
-            {
-                if (!restricts_motion(copy)) continue;
-                copy.set_attribute(
+                out.children.back().set_attribute(
                     "comment", fmt::format("Use 0 to restrict Degrees Of Freedom for {} "
                                            "(default=(1,1,1))",
                                            name == "translationDOF" ? "translation" : "rotation"));
-            }
-            out.children.push_back(std::move(copy));
         }
 }
 
@@ -299,6 +281,20 @@ std::set<std::string> split_names(const std::string& joined)
     return names;
 }
 
+/// Of a property what GenCase keeps: its attributes, and those of its children.
+Element values_of(const Element& property)
+{
+    Element out = tag(property.name);
+    out.attributes = property.attributes;
+    for (const Element& given : property.children)
+    {
+        if (given.kind != Element::Kind::Tag || given.name.starts_with('_')) continue;
+        out.children.push_back(tag(given.name));
+        out.children.back().attributes = given.attributes;
+    }
+    return out;
+}
+
 /// The properties that blocks have, or an empty name if none has one.
 Element properties_in_use(const CaseDef& def, const CaseParticles& particles)
 {
@@ -328,7 +324,7 @@ Element properties_in_use(const CaseDef& def, const CaseParticles& particles)
         const std::string* name = property.find_attribute("name");
         if (property.kind == Element::Kind::Tag && property.name == "property" && name &&
             used.contains(*name))
-            out.children.push_back(property);
+            out.children.push_back(values_of(property));
     }
     return out;
 }
@@ -424,40 +420,72 @@ bool uses_own_prefix(const Element& e)
            std::any_of(e.children.begin(), e.children.end(), uses_own_prefix);
 }
 
+Element& case_of(Element& document)
+{
+    return *std::find_if(document.children.begin(), document.children.end(),
+                         [](const Element& e) { return e.kind == Element::Kind::Tag; });
+}
+
+/// The child of that name, made where there is none.
+Element& content_of(Element& root, const char* name)
+{
+    if (root.find_child(name) == nullptr) root.children.push_back(tag(name));
+    return *root.find_child(name);
+}
+
+/// What `<execution>` has before the blocks that a program adds.
+std::vector<Element> taken_over(const CaseDef& def)
+{
+    std::vector<Element> out;
+    std::optional<Element> parameters;
+    Element* second = nullptr;
+    out.reserve(def.execution.size() + 1);
+    for (const Element& child : def.execution)
+    {
+        const bool is_block = child.kind == Element::Kind::Tag && child.name == "parameters";
+        if (is_block && !parameters)
+        {
+            parameters = case_parameters(child);
+            continue;
+        }
+        out.push_back(child);
+        if (is_block) second = &out.back();
+    }
+    if (!parameters) return out;
+    if (def.vres.is_active())
+        if (const auto domain = zone_domain_tag(def)) set_domain(*parameters, *domain);
+    if (second != nullptr)
+        second->children.insert(second->children.end(), parameters->children.begin(),
+                                parameters->children.end());
+    else
+        out.push_back(std::move(*parameters));
+    return out;
+}
+
 } // namespace
 
 void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& particles,
                     const CaseConstants& constants, const std::vector<VtkOutEntry>& vtk_out,
                     const FileOrigin& origin)
 {
-    Element root = tag("case", {{"app", origin.app_name}, {"date", origin.date}});
+    Element document = def.document;
+    if (document.children.empty()) document.children.push_back(tag("case"));
+    Element& root = case_of(document);
+    root.set_attribute("app", origin.app_name);
+    root.set_attribute("date", origin.date);
     // Readers that know of namespaces refuse a prefix that nobody declares.
-    if (uses_own_prefix(def.casedef)) root.attributes.push_back({"xmlns:fppg", "urn:fppg"});
-    root.children.push_back(def.casedef);
-    Element execution = tag("execution");
-    // As with GenCase v5.4 the content of a second block stands before that of the first, whose
-    // values so win in DualSPHysics.
-    for (const Element& child : def.execution)
-    {
-        if (child.kind != Element::Kind::Tag || child.name != "parameters")
-            execution.children.push_back(child);
-        else if (Element* first = execution.find_child("parameters"))
-            first->children.insert(first->children.begin(), child.children.begin(),
-                                   child.children.end());
-        else
-            execution.children.push_back(case_parameters(child));
-    }
-    if (def.vres.is_active())
-        if (const auto domain = zone_domain_tag(def))
-            set_domain(*execution.find_child("parameters"), *domain);
+    if (uses_own_prefix(def.casedef)) root.set_attribute("xmlns:fppg", "urn:fppg");
+    content_of(root, "casedef") = def.casedef;
+    Element& execution = content_of(root, "execution");
+    execution.children = taken_over(def);
     execution.children.push_back(particles_tag(def, particles));
     execution.children.push_back(constants_tag(constants));
     if (def.vres.is_active()) execution.children.push_back(vres_tag(def));
-    execution.children.push_back(user_variables_tag(def.user_variables));
+    if (!def.user_variables.empty())
+        execution.children.push_back(user_variables_tag(def.user_variables));
     execution.children.push_back(case_motion(def.motion, particles.blocks));
     execution.children.push_back(vtk_out_tag(def, vtk_out));
-    root.children.push_back(std::move(execution));
-    file.append("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n" + print_element(root, 0));
+    file.append(print_document(document));
 }
 
 } // namespace fppg

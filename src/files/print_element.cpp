@@ -46,15 +46,16 @@ std::string escape(const std::string& raw, bool is_attribute)
     return escaped;
 }
 
-void print(const Element& element, int depth, std::string& out)
+void print(const Element& element, int depth, std::string& out);
+
+/// What stands between the indent of an element and its tail.
+void print_bare(const Element& element, int depth, std::string& out)
 {
-    const std::string indent(static_cast<std::size_t>(4 * depth), ' ');
-    out += indent;
     if (element.kind == Element::Kind::Comment)
     {
         out += "<!--";
         out += element.text;
-        out += "-->\n";
+        out += "-->";
         return;
     }
     out += '<';
@@ -69,7 +70,7 @@ void print(const Element& element, int depth, std::string& out)
     }
     if (element.children.empty() && element.text.empty())
     {
-        out += " />\n";
+        out += " />";
         return;
     }
     out += '>';
@@ -78,11 +79,19 @@ void print(const Element& element, int depth, std::string& out)
     {
         out += "\n";
         for (const Element& child : element.children) print(child, depth + 1, out);
-        out += indent;
+        out.append(static_cast<std::size_t>(4 * depth), ' ');
     }
     out += "</";
     out += element.name;
-    out += ">\n";
+    out += '>';
+}
+
+void print(const Element& element, int depth, std::string& out)
+{
+    out.append(static_cast<std::size_t>(4 * depth), ' ');
+    print_bare(element, depth, out);
+    out += escape(element.tail, false);
+    out += '\n';
 }
 
 } // namespace
@@ -91,6 +100,13 @@ std::string print_element(const Element& element, int depth)
 {
     std::string out;
     print(element, depth, out);
+    return out;
+}
+
+std::string print_document(const Element& document)
+{
+    std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n";
+    for (const Element& child : document.children) print(child, 0, out);
     return out;
 }
 

@@ -1,5 +1,6 @@
 // Shape files in the formats other than legacy VTK, and files of points.
 
+#include "files/corner_numbers.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
@@ -50,34 +51,27 @@ std::uint8_t cell_type(std::size_t corners)
 Cells cells_of(const std::vector<ShapePolygons>& shapes)
 {
     Cells out;
-    for (const ShapePolygons& shape : shapes)
-    {
-        for (const Vec3& v : shape.vertices)
-            for (int axis = 0; axis < 3; ++axis) append(out.points, static_cast<float>(v[axis]));
-        out.n_points += shape.vertices.size();
-    }
-    constexpr std::array<std::size_t, 4> sizes{1, 2, 3, std::numeric_limits<std::size_t>::max()};
+    const CornerNumbers corners = number_corners(shapes);
+    out.n_points = corners.places.size();
+    for (const std::array<float, 3>& place : corners.places)
+        for (const float coordinate : place) append(out.points, coordinate);
     for (std::size_t kind = 0; kind < 3; ++kind)
     {
         Cells::Part& part = out.parts[kind];
-        std::int32_t first = 0;
-        for (const ShapePolygons& shape : shapes)
-        {
-            for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+        for (std::size_t s = 0; s < shapes.size(); ++s)
+            for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
             {
-                const std::size_t n = polygon.size();
-                if (n < sizes[kind] || (kind < 2 && n > sizes[kind])) continue;
-                for (const std::uint32_t v : polygon)
-                    append(part.connectivity, first + static_cast<std::int32_t>(v));
+                const std::size_t n = cell.size();
+                if (cell_kind(n) != kind) continue;
+                for (const std::uint32_t v : cell)
+                    append(part.connectivity, static_cast<std::int32_t>(corners.numbers[s][v]));
                 part.end += static_cast<std::int32_t>(n);
                 append(part.offsets, part.end);
                 part.types += static_cast<char>(cell_type(n));
                 ++part.cells;
-                append(out.mk, static_cast<std::int32_t>(shape.mk));
-                append(out.object_id, static_cast<std::int32_t>(shape.object_id));
+                append(out.mk, static_cast<std::int32_t>(shapes[s].mk));
+                append(out.object_id, static_cast<std::int32_t>(shapes[s].object_id));
             }
-            first += static_cast<std::int32_t>(shape.vertices.size());
-        }
     }
     return out;
 }
@@ -99,23 +93,30 @@ private:
     std::string data_;
 };
 
-std::string array_line(const char* indent, const char* type, const char* name, std::uint64_t place)
+std::string array_line(const char* type, const char* name, std::uint64_t place)
 {
-    return fmt::format("{}<DataArray type=\"{}\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                       indent, type, name, place);
+    return fmt::format(
+        "        <DataArray type=\"{}\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
+        name, place);
 }
 
 /// What both formats begin with, up to the points.
 std::string shared_part(const Cells& cells, Appended& appended)
 {
-    return fmt::format(
-        "      <PointData>\n      </PointData>\n      <CellData Scalars=\"Mk\">\n"
-        "{}{}      </CellData>\n      <Points>\n"
-        "        <DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" "
-        "format=\"appended\" offset=\"{}\"/>\n      </Points>\n",
-        array_line("        ", "Int32", "Mk", appended.add(cells.mk)),
-        array_line("        ", "Int32", "ObjId", appended.add(cells.object_id)),
-        appended.add(cells.points));
+    const auto array = [](const std::string& attributes, std::uint64_t place)
+    {
+        return fmt::format(
+            "        <DataArray {} format=\"appended\" offset=\"{}\">\n"
+            "        </DataArray>\n",
+            attributes, place);
+    };
+    std::string out = "      <PointData>\n      </PointData>\n      <CellData Scalars=\"Mk\">\n";
+    out += array("type=\"Int32\" Name=\"Mk\"", appended.add(cells.mk));
+    out += array("type=\"Int32\" Name=\"ObjId\"", appended.add(cells.object_id));
+    out += "      </CellData>\n      <Points>\n";
+    out += array("type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\"",
+                 appended.add(cells.points));
+    return out + "      </Points>\n";
 }
 
 void write_file(OutputFile& file, const char* type, const std::string& piece,
@@ -143,11 +144,10 @@ void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes
     piece += shared_part(cells, appended);
     const auto add = [&](const char* name, const Cells::Part& part)
     {
-        const std::uint64_t connectivity = appended.add(part.connectivity);
-        piece += fmt::format("      <{}>\n{}{}      </{}>\n", name,
-                             array_line("        ", "Int32", "connectivity", connectivity),
-                             array_line("        ", "Int32", "offsets", appended.add(part.offsets)),
-                             name);
+        piece += fmt::format("      <{}>\n", name);
+        piece += array_line("Int32", "connectivity", appended.add(part.connectivity));
+        piece += array_line("Int32", "offsets", appended.add(part.offsets));
+        piece += fmt::format("      </{}>\n", name);
     };
     add("Verts", cells.parts[0]);
     add("Lines", cells.parts[1]);
@@ -178,9 +178,9 @@ void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes
                                     cells.n_points, all.cells);
     piece += shared_part(cells, appended);
     piece += "      <Cells>\n";
-    piece += array_line("        ", "Int32", "connectivity", appended.add(all.connectivity));
-    piece += array_line("        ", "Int32", "offsets", appended.add(all.offsets));
-    piece += array_line("        ", "UInt8", "types", appended.add(all.types));
+    piece += array_line("Int32", "connectivity", appended.add(all.connectivity));
+    piece += array_line("Int32", "offsets", appended.add(all.offsets));
+    piece += array_line("UInt8", "types", appended.add(all.types));
     piece += "      </Cells>\n";
     write_file(file, "UnstructuredGrid", piece, appended);
 }

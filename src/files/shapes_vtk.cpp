@@ -1,8 +1,8 @@
+#include "files/corner_numbers.h"
 #include "files/vtk.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
-#include <cassert>
 
 namespace fppg
 {
@@ -20,29 +20,22 @@ struct CellPart
     std::string object_id;
 };
 
-CellPart collect_cells(const std::vector<ShapePolygons>& shapes, std::size_t min_size,
-                       std::size_t max_size)
+CellPart collect_cells(const std::vector<ShapePolygons>& shapes, const CornerNumbers& corners,
+                       std::size_t kind)
 {
     CellPart part;
-    std::uint32_t first_vertex = 0;
-    for (const ShapePolygons& shape : shapes)
-    {
-        for (const std::vector<std::uint32_t>& polygon : shape.polygons)
+    for (std::size_t s = 0; s < shapes.size(); ++s)
+        for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
         {
-            if (polygon.size() < min_size || polygon.size() > max_size) continue;
-            append_big_endian(part.connectivity, static_cast<std::uint32_t>(polygon.size()));
-            for (const std::uint32_t vertex : polygon)
-            {
-                assert(vertex < shape.vertices.size());
-                append_big_endian(part.connectivity, first_vertex + vertex);
-            }
-            append_big_endian(part.mk, static_cast<std::uint32_t>(shape.mk));
-            append_big_endian(part.object_id, shape.object_id);
-            part.numbers += polygon.size() + 1;
+            if (cell_kind(cell.size()) != kind) continue;
+            append_big_endian(part.connectivity, static_cast<std::uint32_t>(cell.size()));
+            for (const std::uint32_t v : cell)
+                append_big_endian(part.connectivity, corners.numbers[s][v]);
+            append_big_endian(part.mk, static_cast<std::uint32_t>(shapes[s].mk));
+            append_big_endian(part.object_id, shapes[s].object_id);
+            part.numbers += cell.size() + 1;
             ++part.cells;
         }
-        first_vertex += static_cast<std::uint32_t>(shape.vertices.size());
-    }
     return part;
 }
 
@@ -50,16 +43,11 @@ CellPart collect_cells(const std::vector<ShapePolygons>& shapes, std::size_t min
 
 void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes)
 {
+    const CornerNumbers corners = number_corners(shapes);
     std::string points;
-    std::uint64_t vertices = 0;
-    for (const ShapePolygons& shape : shapes)
-    {
-        for (const Vec3& v : shape.vertices)
-            for (int axis = 0; axis < 3; ++axis)
-                append_big_endian(points, static_cast<float>(v[axis]));
-        vertices += shape.vertices.size();
-    }
-    file.append(fmt::format("{}POINTS {} float\n", vtk_head, vertices));
+    for (const std::array<float, 3>& place : corners.places)
+        for (const float coordinate : place) append_big_endian(points, coordinate);
+    file.append(fmt::format("{}POINTS {} float\n", vtk_head, corners.places.size()));
     file.append(points);
     file.append("\n");
 
@@ -77,14 +65,42 @@ void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes
         object_id += part.object_id;
         cells += part.cells;
     };
-    write_part("VERTICES", collect_cells(shapes, 1, 1));
-    write_part("LINES", collect_cells(shapes, 2, 2));
-    write_part("POLYGONS", collect_cells(shapes, 3, SIZE_MAX));
+    write_part("VERTICES", collect_cells(shapes, corners, 0));
+    write_part("LINES", collect_cells(shapes, corners, 1));
+    write_part("POLYGONS", collect_cells(shapes, corners, 2));
 
     file.append(fmt::format("CELL_DATA {}\nSCALARS Mk int\nLOOKUP_TABLE default\n", cells));
     file.append(mk);
     file.append(fmt::format("\nFIELD FieldData 1\nObjId 1 {} int\n", cells));
     file.append(object_id);
+    file.append("\n");
+}
+
+void write_heights_vtk(OutputFile& file, const std::vector<Vec3>& points,
+                       const std::vector<std::vector<std::uint32_t>>& cells)
+{
+    std::string places;
+    std::string heights;
+    for (const Vec3& p : points)
+    {
+        for (int axis = 0; axis < 3; ++axis) append_big_endian(places, p[axis]);
+        append_big_endian(heights, static_cast<float>(p.z));
+    }
+    std::string connectivity;
+    for (const std::vector<std::uint32_t>& cell : cells)
+    {
+        append_big_endian(connectivity, static_cast<std::uint32_t>(cell.size()));
+        for (const std::uint32_t corner : cell) append_big_endian(connectivity, corner);
+    }
+    const bool are_points = !cells.empty() && cells[0].size() == 1;
+    file.append(fmt::format("{}POINTS {} double\n", vtk_head, points.size()));
+    file.append(places);
+    file.append(fmt::format("\n{} {} {}\n", are_points ? "VERTICES" : "POLYGONS", cells.size(),
+                            connectivity.size() / sizeof(std::uint32_t)));
+    file.append(connectivity);
+    file.append(fmt::format("\nPOINT_DATA {}\nSCALARS Height float\nLOOKUP_TABLE default\n",
+                            points.size()));
+    file.append(heights);
     file.append("\n");
 }
 

@@ -38,19 +38,110 @@ bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
     return true;
 }
 
-/// Whether a particle stands on a node.
-bool is_taken(const RunField& field, const Node& n)
+/// The run that a node is in; null: nothing is there.
+const Run* run_at(const RunField& field, const Node& n)
 {
-    if (!is_inside(n, field.grid)) return false;
+    if (!is_inside(n, field.grid)) return nullptr;
     const std::vector<Run>& slab = field.slabs[static_cast<std::size_t>(n.x)];
     const auto after =
         std::upper_bound(slab.begin(), slab.end(), std::pair(n.y, n.z),
                          [](const std::pair<std::int64_t, std::int64_t>& at, const Run& r)
                          { return std::tuple(at.first, at.second) < std::tuple(r.y, r.z_begin); });
-    if (after == slab.begin()) return false;
+    if (after == slab.begin()) return nullptr;
     const Run& r = *std::prev(after);
-    const bool is_zone = field.walls.has_zones() && (r.mk & wall_zone_bit) != 0;
-    return r.y == n.y && n.z < r.z_end && !is_zone;
+    return r.y == n.y && n.z < r.z_end ? &r : nullptr;
+}
+
+/// Whether a particle stands on a node.
+bool is_taken(const RunField& field, const Node& n)
+{
+    const Run* r = run_at(field, n);
+    return r != nullptr && !(field.walls.has_zones() && (r->mk & wall_zone_bit) != 0);
+}
+
+/// How near a point must be to a node that is water, dp.
+constexpr double water_reach = 1.5;
+
+/// A node near points, and on which of its sides they stand.
+struct WaterNode
+{
+    std::uint32_t y = 0;
+    std::uint32_t z = 0;
+    unsigned sides = 0; ///< a bit an axis and direction; points up to dp/2 beyond count for both
+
+    bool operator<(const WaterNode& o) const { return std::tie(y, z) < std::tie(o.y, o.z); }
+};
+
+/// Along the axes of gravity; across it all count.
+unsigned sides_of(const Vec3& from_node, const Vec3& gravity, double dp)
+{
+    unsigned sides = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (gravity[axis] == 0) sides |= 3U << (2 * axis);
+        if (from_node[axis] >= -dp / 2) sides |= 1U << (2 * axis);
+        if (from_node[axis] <= dp / 2) sides |= 2U << (2 * axis);
+    }
+    return sides;
+}
+
+/// The empty nodes of a slab that have points above and below. `near` holds the indices of all
+/// points whose nearest node is at most two slabs away.
+Spans water_of(std::uint32_t x, const std::vector<const std::vector<std::uint32_t>*>& near,
+               const std::vector<Vec3>& points, const Vec3& gravity, const RunField& field)
+{
+    constexpr unsigned all_sides = 63;
+    const LatticeGrid& grid = field.grid;
+    std::vector<WaterNode> nodes;
+    for (const std::vector<std::uint32_t>* bucket : near)
+        for (const std::uint32_t i : *bucket)
+        {
+            const Node nearest = snap(points[i], grid);
+            for (std::int64_t y = nearest.y - 2; y <= nearest.y + 2; ++y)
+                for (std::int64_t z = nearest.z - 2; z <= nearest.z + 2; ++z)
+                {
+                    const Node n{x, y, z};
+                    const Vec3 away = points[i] - position(n, grid);
+                    if (norm(away) > water_reach * grid.dp || !is_inside(n, grid)) continue;
+                    nodes.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
+                                     sides_of(away, gravity, grid.dp)});
+                }
+        }
+    std::sort(nodes.begin(), nodes.end());
+    Spans spans;
+    for (auto n = nodes.begin(); n != nodes.end();)
+    {
+        const auto first = n;
+        unsigned sides = 0;
+        for (; n != nodes.end() && n->y == first->y && n->z == first->z; ++n) sides |= n->sides;
+        if (sides == all_sides && run_at(field, {x, first->y, first->z}) == nullptr)
+            spans.push_back({first->y, first->z, first->z + 1});
+    }
+    sort_and_join(spans);
+    return spans;
+}
+
+/// Gives the fluid of points nodes, so that water columns count it as they count that of
+/// `setfrdrawmode`: the nearest node of each point, and those between points less than 1.5 dp away,
+/// so that uneven points leave no gaps. Nodes that carry an mk stay.
+void mark_water(const std::vector<Vec3>& points, std::uint16_t mk, const Vec3& gravity,
+                RunField& field)
+{
+    const std::size_t slabs = field.slabs.size();
+    std::vector<std::vector<std::uint32_t>> of_slab(slabs);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        of_slab[static_cast<std::size_t>(snap(points[i], field.grid).x)].push_back(
+            static_cast<std::uint32_t>(i));
+    for (std::size_t x = 0; x < slabs; ++x)
+    {
+        std::vector<const std::vector<std::uint32_t>*> near;
+        for (std::size_t k = x < 2 ? 0 : x - 2; k <= std::min(x + 2, slabs - 1); ++k)
+            if (!of_slab[k].empty()) near.push_back(&of_slab[k]);
+        if (near.empty()) continue;
+        paint(field.slabs[x], water_of(static_cast<std::uint32_t>(x), near, points, gravity, field),
+              static_cast<std::uint16_t>(mk | wall_zone_bit));
+    }
+    field.walls.has_point_water = true;
 }
 
 /// Warnings of points that stand on one another or on nodes: the solver stops on them.
@@ -120,6 +211,8 @@ void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report)
         volume.mk.insert(volume.mk.end(), points.size(), file.mk.mk);
         volume.distances.insert(volume.distances.end(), points.size(), distance_of_nodes);
         check_places(at, points, field, report);
+        if (file.mk.kind == MkKind::Fluid)
+            mark_water(points, file.mk.mk, def.constants.gravity, field);
         report.log.push_back(
             fmt::format("{}: {} particles of mk {}", at, points.size(), file.mk.mk));
     }

@@ -283,12 +283,12 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (body.is_solid && !zone.has_inside && zone.warnings.empty())
-        out.warnings.push_back(
+        out.warnings.emplace_back(
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
     take_figures(zone, zone_options, out.second_sheet.positions.size(), grid, body);
-    if (zone.has_inside && !body.figures.is_filled)
+    if (zone.has_inside && body.figures.filled == 0)
         out.hollow = by_slab(SpanSet{zone.volume}, grid);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);

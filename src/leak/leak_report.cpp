@@ -1,12 +1,12 @@
 #include "leak/leak.h"
 
+#include "core/json.h"
 #include "core/text_table.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 namespace fppg
 {
@@ -80,21 +80,20 @@ std::string to_text(const LeakReport& report)
 
 std::string to_json(const LeakReport& report)
 {
-    using nlohmann::ordered_json;
-    ordered_json root;
+    Json root;
     root["case"] = report.case_name;
     root["dp"] = report.dp;
     root["fluid"] = report.fluid;
     root["has_housing"] = report.has_housing;
     root["is_tight"] = report.is_tight();
-    root["bodies"] = ordered_json::array();
+    root["bodies"] = Json::array();
     for (const LeakBody& body : report.bodies)
         root["bodies"].push_back(
             {{"name", body.name}, {"mk", body.mk}, {"type", type_name(body.type)}});
-    root["outputs"] = ordered_json::array();
+    root["outputs"] = Json::array();
     for (const LeakInstant& at : report.instants)
     {
-        ordered_json out;
+        Json out;
         out["file"] = at.file;
         out["time"] = at.time;
         out["step"] = at.step;
@@ -105,12 +104,12 @@ std::string to_json(const LeakReport& report)
         out["inside"] = at.inside;
         out["deeper_than_half_dp"] = at.deep;
         out["deepest_dp"] = at.deepest_dp;
-        out["outside"] = at.outside ? ordered_json(*at.outside) : ordered_json(nullptr);
+        out["outside"] = at.outside ? Json(*at.outside) : Json(nullptr);
         out["in_body"] = at.in_body;
         root["outputs"].push_back(std::move(out));
     }
     root["notes"] = report.notes;
-    return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+    return root.text(1) + "\n";
 }
 
 std::string to_svg(const LeakReport& report)

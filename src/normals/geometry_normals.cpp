@@ -3,11 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace fppg
 {
 namespace
 {
+
+/// Joined vectors are no longer than this, in D.
+constexpr double longest = 1.5;
 
 std::vector<Box3> boxes_of(const std::vector<NormalFacet>& facets)
 {
@@ -100,11 +105,11 @@ GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
 {
     Answer answer;
     thread_local std::vector<Facing> facing;
+    thread_local std::vector<Aside> aside;
     facing.clear();
-    double least = reach_;
-    double best = std::numeric_limits<double>::infinity();
-    std::uint32_t best_facet = UINT32_MAX;
-    Vec3 best_vector;
+    aside.clear();
+    double least = std::numeric_limits<double>::infinity();
+    double least_aside = std::numeric_limits<double>::infinity();
     const Vec3 room{reach_, reach_, reach_};
     tree_.for_each_overlap({particle - room, particle + room},
                            [&](std::uint32_t index)
@@ -113,15 +118,13 @@ GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
                                const double d = dot(facet.corners[0] - particle, facet.unit);
                                if (!(d > 0 && d <= reach_)) return;
                                const Vec3 foot = particle + d * facet.unit;
-                               if (is_inside(facet, foot))
+                               double e = 0;
+                               Vec3 nearest = foot;
+                               if (!is_inside(facet, foot))
                                {
-                                   ++answer.candidates;
-                                   facing.push_back({index, d});
-                                   least = std::min(least, d);
-                                   return;
+                                   nearest = nearest_on_outline(facet, foot);
+                                   e = norm(nearest - foot);
                                }
-                               const Vec3 nearest = nearest_on_outline(facet, foot);
-                               const double e = norm(nearest - foot);
                                if (!(e <= reach_)) return;
                                ++answer.candidates;
                                if (e <= tolerance_)
@@ -131,21 +134,13 @@ GeometryQuery::Answer GeometryQuery::at(const Vec3& particle) const
                                    return;
                                }
                                const Vec3 vector = nearest - particle;
-                               const double length = norm(vector);
-                               if (length < best || (length == best && index < best_facet))
-                               {
-                                   best = length;
-                                   best_facet = index;
-                                   best_vector = vector;
-                               }
+                               aside.push_back({index, vector, norm(vector)});
+                               least_aside = std::min(least_aside, aside.back().length);
                            });
-    if (facing.empty())
-    {
-        answer.normal = best_vector;
-        return answer;
-    }
-    std::erase_if(facing, [&](const Facing& f) { return f.distance > least + tolerance_; });
-    answer.normal = join(facing);
+    if (!facing.empty())
+        answer.normal = join(facing, least);
+    else if (!aside.empty())
+        answer.normal = nearest_of(aside, least_aside);
     return answer;
 }
 
@@ -178,38 +173,102 @@ int GeometryQuery::side_at(const Vec3& p, const Vec3& n, double within) const
     return sum > 1e-6 ? 1 : sum < -1e-6 ? -1 : 0;
 }
 
-Vec3 GeometryQuery::join(std::vector<Facing>& facing) const
+bool GeometryQuery::is_same_direction(std::uint32_t facet, std::uint32_t other) const
+{
+    const Vec3 off = facets_[facet].unit - facets_[other].unit;
+    return std::fabs(off.x) <= tolerance_ && std::fabs(off.y) <= tolerance_ &&
+           std::fabs(off.z) <= tolerance_;
+}
+
+Vec3 GeometryQuery::join(std::vector<Facing>& facing, double least) const
 {
     std::sort(facing.begin(), facing.end(),
               [](const Facing& a, const Facing& b) { return a.facet < b.facet; });
     const auto unit = [this](const Facing& f) -> const Vec3& { return facets_[f.facet].unit; };
-    constexpr double same_direction = 1e-5;
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < facing.size(); ++i)
-    {
-        bool is_new = true;
-        for (std::size_t k = 0; k < kept && is_new; ++k)
-        {
-            const Vec3 off = unit(facing[i]) - unit(facing[k]);
-            is_new = !(std::fabs(off.x) <= same_direction && std::fabs(off.y) <= same_direction &&
-                       std::fabs(off.z) <= same_direction);
-        }
-        if (is_new) facing[kept++] = facing[i];
-    }
+    for (const Facing& f : facing)
+        if (std::none_of(facing.begin(), facing.begin() + static_cast<std::ptrdiff_t>(kept),
+                         [&](const Facing& k) { return is_same_direction(f.facet, k.facet); }))
+            facing[kept++] = f;
+    facing.resize(kept);
+    std::erase_if(facing, [&](const Facing& f) { return f.distance > least + tolerance_; });
+    if (facing.empty()) return {};
     const Vec3 first = facing[0].distance * unit(facing[0]);
-    if (kept == 1) return first;
+    if (facing.size() == 1) return first;
     Vec3 sum;
-    for (std::size_t i = 0; i < kept; ++i) sum = sum + facing[i].distance * unit(facing[i]);
+    for (const Facing& f : facing) sum = sum + f.distance * unit(f);
     const double length = norm(sum);
     if (length == 0) return {};
     const Vec3 w = sum / length;
     double reach = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < kept; ++i)
+    for (const Facing& f : facing)
     {
-        const double along = dot(w, unit(facing[i]));
-        if (along > 0) reach = std::min(reach, facing[i].distance / along);
+        const double along = dot(w, unit(f));
+        if (along > 0) reach = std::min(reach, f.distance / along);
     }
-    return reach > 1.5 * reach_ ? first : reach * w;
+    return reach > longest * reach_ ? first : reach * w;
+}
+
+Vec3 GeometryQuery::nearest_of(std::vector<Aside>& aside, double least) const
+{
+    std::sort(aside.begin(), aside.end(),
+              [](const Aside& a, const Aside& b) { return a.facet < b.facet; });
+    // Far longer ones are in no group with the shortest, but give their place in the file.
+    std::vector<std::pair<std::uint32_t, Aside>> placed;
+    for (const Aside& candidate : aside)
+    {
+        if (candidate.length > least + 4 * tolerance_) continue;
+        const auto first = std::find_if(aside.begin(), aside.end(),
+                                        [&](const Aside& a)
+                                        { return is_same_direction(a.facet, candidate.facet); });
+        placed.emplace_back(first->facet, candidate);
+    }
+    std::stable_sort(
+        placed.begin(), placed.end(),
+        [](const auto& a, const auto& b)
+        { return std::pair(a.first, a.second.length) < std::pair(b.first, b.second.length); });
+    std::vector<Aside> shortest;
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        if (i == 0 || placed[i].first != placed[i - 1].first) shortest.push_back(placed[i].second);
+    if (const auto crossing = crossing_of_three(shortest)) return *crossing;
+    return std::min_element(shortest.begin(), shortest.end(),
+                            [](const Aside& a, const Aside& b) { return a.length < b.length; })
+        ->vector;
+}
+
+std::optional<Vec3> GeometryQuery::crossing_of_three(const std::vector<Aside>& aside) const
+{
+    double length = std::numeric_limits<double>::infinity();
+    std::size_t count = 0;
+    for (const Aside& a : aside)
+    {
+        if (std::fabs(a.length - length) <= tolerance_)
+            ++count;
+        else if (a.length < length)
+        {
+            length = a.length;
+            count = 1;
+        }
+    }
+    if (count != 3) return std::nullopt;
+    std::array<Vec3, 3> unit;
+    std::array<double, 3> distance{};
+    std::size_t k = 0;
+    for (const Aside& a : aside)
+    {
+        if (k == 3 || std::fabs(a.length - length) > tolerance_) continue;
+        unit[k] = facets_[a.facet].unit;
+        distance[k] = dot(a.vector, unit[k]);
+        ++k;
+    }
+    const Vec3 across = cross(unit[1], unit[2]);
+    const double volume = dot(unit[0], across);
+    const Vec3 point = (distance[0] * across + distance[1] * cross(unit[2], unit[0]) +
+                        distance[2] * cross(unit[0], unit[1])) /
+                       volume;
+    // Not a number where the planes are parallel.
+    if (!(norm(point) <= longest * reach_)) return std::nullopt;
+    return point;
 }
 
 } // namespace fppg

@@ -54,9 +54,10 @@ Vec3 to_sphere(const Vec3& p, const SphereNormals& sphere, double reach)
 
 /// norcylinder. Inside: the shorter of the ways to the side and to the nearer cover (if its limit
 /// is on), their sum where they differ by less than 0.01 h, zero where the shorter one exceeds the
-/// reach. Outside: to the nearest point of the cylinder, whatever the limits; the reach counts
-/// beside the side and above the covers, not beyond the rims. (GenCase v5.4.354: 3,178 of 3,180
-/// particles of four oblique cylinders; 0.01 h lies between 0.0097 and 0.0110 h.)
+/// reach. Outside: to the nearest point of the cylinder, whatever the limits; beyond the rims the
+/// reach counts for the shorter of the ways across and along. (GenCase v5.4.354: 3,178 of 3,180
+/// particles inside four oblique cylinders, 0.01 h lies between 0.0097 and 0.0110 h; 487 of 487
+/// around each of 12 cylinders with reaches from 0.2 h to 2.5 h.)
 Vec3 to_cylinder(const Vec3& p, const CylinderNormals& cylinder, double reach, double h)
 {
     const Vec3 axis = cylinder.center2 - cylinder.center1;
@@ -84,7 +85,10 @@ Vec3 to_cylinder(const Vec3& p, const CylinderNormals& cylinder, double reach, d
     }
     const double axial = t < 0 ? -t : t > height ? height - t : 0;
     const double radial = q > cylinder.radius ? cylinder.radius - q : 0;
-    if (axial != 0 && radial != 0) return axial * unit + (radial / q) * from_axis;
+    if (axial != 0 && radial != 0)
+        return std::min(std::fabs(axial), std::fabs(radial)) <= reach
+                   ? axial * unit + (radial / q) * from_axis
+                   : Vec3{};
     if (std::fabs(axial + radial) > reach) return {};
     return radial != 0 ? (radial / q) * from_axis : axial * unit;
 }
@@ -290,7 +294,9 @@ private:
 
     void execute(const NormalOp& op)
     {
-        const double reach = op.max_distance_h * def_.h;
+        // 0: no limit, but for norparts, which then gives none (GenCase v5.4.354).
+        const double reach = op.max_distance_h > 0 ? op.max_distance_h * def_.h
+                                                   : std::numeric_limits<double>::infinity();
         if (const auto* set_op = std::get_if<SetNormals>(&op.what))
         {
             const Float3 value = as_float(set_op->normal);
@@ -300,17 +306,32 @@ private:
         {
             const double length = norm(plane->normal);
             const Vec3 unit = length > 0 ? plane->normal / length : Vec3{};
-            const double offset = plane->point
-                                      ? dot(*plane->point, unit)
-                                      : outermost(op, unit) + plane->limit_dp * def_.grid.dp;
-            set(op, [&](const Vec3& p) { return to_plane(p, unit, offset, reach); });
+            if (plane->point)
+            {
+                const double offset = dot(*plane->point, unit);
+                set(op, [&](const Vec3& p) { return to_plane(p, unit, offset, reach); });
+            }
+            else
+                behind_outermost(op, unit, plane->limit_dp * def_.grid.dp, reach);
         }
         else if (const auto* sphere = std::get_if<SphereNormals>(&op.what))
             set(op, [&](const Vec3& p) { return to_sphere(p, *sphere, reach); });
         else if (const auto* cylinder = std::get_if<CylinderNormals>(&op.what))
             set(op, [&](const Vec3& p) { return to_cylinder(p, *cylinder, reach, def_.h); });
         else
-            from_parts(op, reach);
+            from_parts(op, op.max_distance_h * def_.h);
+    }
+
+    /// A plane for each mk by itself, `limit` beyond the outermost of its selected particles.
+    void behind_outermost(const NormalOp& op, const Vec3& unit, double limit, double reach)
+    {
+        for (const std::uint16_t mk : op.mk)
+        {
+            NormalOp one = op;
+            one.mk = {mk};
+            const double offset = outermost(one, unit) + limit;
+            set(one, [&](const Vec3& p) { return to_plane(p, unit, offset, reach); });
+        }
     }
 
     /// The largest p . unit of the selected particles.

@@ -392,13 +392,14 @@ public:
         }
     }
 
-    /// Calls body(particle) for those of the fluid.
+    /// Calls body(particle, block) for those of the fluid.
     template <typename Body>
     void for_each_of_fluid(const Body& body) const
     {
         for (std::size_t b = 0; b < blocks_.size(); ++b)
             if (blocks_[b].type == ParticleType::Fluid)
-                for (std::uint64_t i = free_begin_[b]; i < free_begin_[b + 1]; ++i) body(i);
+                for (std::uint64_t i = free_begin_[b]; i < free_begin_[b + 1]; ++i)
+                    body(i, blocks_[b]);
     }
 
 private:
@@ -492,7 +493,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
     {
         const double of_nodes = s_max;
         free.for_each_of_fluid(
-            [&](std::uint64_t i)
+            [&](std::uint64_t i, const ParticleBlock&)
             {
                 const Vec3& p = particles.free.positions[i];
                 s_max = std::max(s_max, height(p.x, p.y, p.z));
@@ -541,16 +542,38 @@ void compute_densities(const CaseDef& def, const RunField& field,
     };
     std::fill(particles.free.rhop.begin(), particles.free.rhop.end(), static_cast<float>(c.rhop0));
     if (particles.n_fluid == 0) return;
+    // GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.
+    const std::vector<std::uint16_t> none;
+    const std::vector<std::uint16_t>& plain_mks =
+        def.hydrostatic_off_lattice ? none : field.walls.free_mks;
+    const auto is_plain = [&](const ParticleBlock& block)
+    { return std::binary_search(plain_mks.begin(), plain_mks.end(), block.mk); };
     const auto set_free = [&]
     {
         if (is_uniform) return;
         free.for_each_of_fluid(
-            [&](std::uint64_t i)
+            [&](std::uint64_t i, const ParticleBlock& block)
             {
+                if (is_plain(block)) return;
                 const Vec3& p = particles.free.positions[i];
                 particles.free.rhop[i] =
                     rhop(by_height ? s_max - height(p.x, p.y, p.z) : free.depth(i));
             });
+    };
+
+    // Their runs stand behind all depths, where the density is rhop0.
+    const auto add_plain_runs = [&]
+    {
+        const auto behind = static_cast<std::uint32_t>(particles.rhop_of_depth.size());
+        std::uint32_t longest = 0;
+        for (ParticleBlock& block : particles.blocks)
+            if (block.type == ParticleType::Fluid && is_plain(block))
+                for (ParticleRun& run : block.runs)
+                {
+                    run.depth = behind;
+                    longest = std::max(longest, run.count);
+                }
+        particles.rhop_of_depth.resize(std::size_t{behind} + longest, static_cast<float>(c.rhop0));
     };
 
     BlockCursor cursor(particles);
@@ -585,6 +608,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
             const double step = s * dp * c.gravity.z;
             particles.rhop_of_depth[s] = rhop(is_uniform ? 0 : std::sqrt(step * step) / g + excess);
         }
+        if (!is_uniform) add_plain_runs();
         set_free();
         return;
     }
@@ -610,7 +634,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
     {
         if (!is_particle(field.slabs[x][i])) return;
         const std::size_t b = block_of_mk[field.slabs[x][i].mk];
-        if (particles.blocks[b].type == ParticleType::Fluid)
+        if (particles.blocks[b].type == ParticleType::Fluid && !is_plain(particles.blocks[b]))
             particles.rhop[run_begin[b][run_of[x][i]] + k] = rhop(d);
     };
     if (!by_height)

@@ -16,8 +16,9 @@ namespace fppg
 /// - hswl automatic = max of d over fluid and floating particles, over fluid only for rhopgradient
 /// 3
 /// - rhop = rhop0 (1 + rhop0 |gravity| d / b)^(1 / gamma), as float; rhop0 for rhopgradient 1, and
-/// where
-///   b or gravity is zero (GenCase writes NaN there)
+///   where b or gravity is zero (GenCase writes NaN there)
+/// - all fluid of an mk that has particles of `<setfrdrawmode>` has rhop0, on nodes too, unless
+///   def.hydrostatic_off_lattice (33 cases, 2D too, with all gradients and oblique gravity)
 ///
 /// A node with the wall_zone_bit counts in its column as the mk without the bit but has no depth of
 /// its own. A particle off the lattice has the number of steps of its nearest node, less its real

@@ -93,8 +93,9 @@ private:
 
     void add_pair(const Vec3& position, float density)
     {
-        add(position - shift_, density);
-        add(position + shift_, density);
+        const Vec3 first = position - shift_;
+        add(first, density);
+        add(first + 2 * shift_, density);
     }
 
     void add(std::uint64_t from, bool doubles, float density)

@@ -58,6 +58,7 @@ public:
         orient_blocks();
         merge_free();
         list_free_points();
+        if (def_.constants.lattice_bound != 1) keep_single();
         if (double_particles(def_, out_)) set_limits();
         set_initials(def_, constants, out_);
         make_floatings();
@@ -388,47 +389,35 @@ private:
         block.runs = std::move(nodes);
     }
 
+    /// The particles as they are before `<lattice>` makes two of each: floating bodies are theirs.
+    void keep_single()
+    {
+        single_.grid = out_.grid;
+        single_.free.positions = out_.free.positions;
+        single_.blocks.resize(out_.blocks.size());
+        for (std::size_t b = 0; b < out_.blocks.size(); ++b)
+            if (out_.blocks[b].type == ParticleType::Floating) single_.blocks[b] = out_.blocks[b];
+    }
+
     void make_floatings()
     {
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
         {
             if (out_.blocks[b].type != ParticleType::Floating) continue;
-            // A later entry for the same mkbound wins.
-            for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
-                if (std::find(f->mkbound.begin(), f->mkbound.end(), out_.blocks[b].mk_type) !=
-                    f->mkbound.end())
-                {
-                    out_.floatings.push_back(moved_body(*f, b));
-                    break;
-                }
+            if (const FloatingDef* f = floating_of(out_.blocks[b]))
+                out_.floatings.push_back(floating_body(*f, single_.blocks.empty() ? out_ : single_,
+                                                       b, out_.blocks[b].initials,
+                                                       def_.constants.rhop0));
         }
     }
 
-    /// The body of a block at its place after `<initials>`: as the body at its first place about
-    /// the point that the move brings to the given centre, then moved. What the definition gives
-    /// itself stays.
-    FloatingBody moved_body(FloatingDef f, std::size_t b) const
+    /// The definition of a floating block; a later one for the same mkbound wins.
+    const FloatingDef* floating_of(const ParticleBlock& block) const
     {
-        const Transform map = motion_of(out_.blocks[b]);
-        if (map.is_identity()) return floating_body(f, out_, b, def_.mass_bound);
-        const std::optional<Vec3> center = f.center;
-        const Vec3 back = center ? *center - map.offset : Vec3{};
-        if (center)
-            f.center = Vec3{} + back.x * map.linear[0] + back.y * map.linear[1] +
-                       back.z * map.linear[2]; // the transposed rotation is its inverse
-        FloatingBody body = floating_body(f, out_, b, def_.mass_bound);
-        body.center = center ? *center : map(body.center);
-        if (f.inertia) return body;
-        const std::array<Vec3, 3> still = body.inertia;
-        for (int i = 0; i < 3; ++i)
-        {
-            const Vec3& row = map.linear[static_cast<std::size_t>(i)];
-            const Vec3 left = row.x * still[0] + row.y * still[1] + row.z * still[2];
-            for (int j = 0; j < 3; ++j)
-                body.inertia[static_cast<std::size_t>(i)][j] =
-                    dot(left, map.linear[static_cast<std::size_t>(j)]);
-        }
-        return body;
+        for (auto f = def_.floatings.rbegin(); f != def_.floatings.rend(); ++f)
+            if (std::find(f->mkbound.begin(), f->mkbound.end(), block.mk_type) != f->mkbound.end())
+                return &*f;
+        return nullptr;
     }
 
     void set_properties()
@@ -470,6 +459,7 @@ private:
         free_begin_;                    ///< per block its first one in out_.free, then their number
     std::vector<PositionOrder> orders_; ///< of every block, where some are off the lattice
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
+    CaseParticles single_; ///< floating blocks before `<lattice>` doubles them; or empty
     CaseParticles out_;
 };
 

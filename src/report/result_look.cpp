@@ -1,10 +1,10 @@
 #include "report/result_look.h"
 
+#include "core/json.h"
 #include "report/html.h"
 #include "report/scene.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,8 +14,6 @@ namespace fppg
 
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 bool shows_two(const std::vector<ResultLook>& looks)
 {
@@ -27,17 +25,23 @@ bool shows_two(const std::vector<ResultLook>& looks)
 std::string to_json(const ResultLook& look)
 {
     const Json json = {{"set", look.set}, {"details", look.details}};
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.text() + "\n";
 }
 
 ResultLook read_look(const std::string& json)
 {
-    ResultLook look;
-    const Json read = Json::parse(json, nullptr, false);
-    if (!read.is_object()) return look;
-    look.set = read.value("set", "");
-    look.details = read.value("details", "");
-    return look;
+    try
+    {
+        const Json read = Json::parse(json);
+        ResultLook look;
+        read.at("set").get_to(look.set);
+        read.at("details").get_to(look.details);
+        return look;
+    }
+    catch (const JsonError&)
+    {
+        return {};
+    }
 }
 
 std::string pictures_html(const std::vector<ResultLook>& looks)

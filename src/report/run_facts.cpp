@@ -39,7 +39,7 @@ std::optional<RunFacts> facts_of_result(const std::string& path)
 {
     std::string stem = path;
     for (const std::string_view ending : {".bi4", ".xml", ".vtk", "_All"})
-        if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
+        if (stem.ends_with(ending)) stem.erase(stem.size() - ending.size());
     std::ifstream in(stem + ".out", std::ios::binary);
     if (!in) return std::nullopt;
     return read_run_facts(std::string((std::istreambuf_iterator<char>(in)), {}));

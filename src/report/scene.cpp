@@ -1,9 +1,9 @@
 #include "report/scene.h"
 
+#include "core/json.h"
 #include "report/html.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +14,10 @@ namespace fppg
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
 std::string text_of(const Json& json)
 {
     // "</script>" inside a name would end the element.
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json.text();
     for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
         text.replace(at, 2, "<\\/");
     return text;

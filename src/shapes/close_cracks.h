@@ -5,9 +5,9 @@
 namespace fppg
 {
 
-/// Joins the ends of open edges that stand nearer to one another than the rounding of float32 leaves
-/// certain (of the mesh's largest coordinate), where this leaves fewer edges open: programs write
-/// one corner as 0 and as -1e-17. Keeps the edge map.
+/// Joins the ends of open edges that stand nearer to one another than the rounding of float32
+/// leaves certain (of the mesh's largest coordinate), where this leaves fewer edges open: programs
+/// write one corner as 0 and as -1e-17. Keeps the edge map.
 void join_rounded_corners(SurfaceMesh& mesh, int threads, MeshReport& report);
 
 /// Joins the corners of a mesh whose facets do not meet: where a quarter of all edges are open, and

@@ -2,6 +2,7 @@
 #include "fppg/shapes.h"
 
 #include "core/float32.h"
+#include "shapes/cut_at_plane.h"
 #include "shapes/mesh_builder.h"
 
 #include <algorithm>
@@ -12,9 +13,6 @@ namespace fppg
 {
 namespace
 {
-
-/// Of a crossing and the corner kept before it, the crossing goes if they are no farther apart.
-constexpr double merge_distance = 1e-4;
 
 struct Side
 {
@@ -29,30 +27,6 @@ struct Side
         return a + (b - a) * ((limit - a[axis]) / (b[axis] - a[axis]));
     }
 };
-
-void cut_at(const Side& side, const std::vector<Vec3>& polygon, std::vector<Vec3>& kept)
-{
-    kept.clear();
-    const auto add_crossing = [&](const Vec3& a, const Vec3& b)
-    {
-        const Vec3 p = side.crossing(a, b);
-        if (kept.empty() || norm(p - kept.back()) > merge_distance) kept.push_back(p);
-    };
-    const std::size_t n = polygon.size();
-    for (std::size_t i = 0; i < n; ++i)
-    {
-        const Vec3& p = polygon[i];
-        if (side.holds(p))
-        {
-            kept.push_back(p);
-            continue;
-        }
-        const Vec3& before = polygon[(i + n - 1) % n];
-        const Vec3& after = polygon[(i + 1) % n];
-        if (side.holds(before)) add_crossing(before, p);
-        if (side.holds(after)) add_crossing(p, after);
-    }
-}
 
 /// The way back. Without one, where a scale of 0 flattens, all goes to the origin.
 Transform inverse(const Transform& t)
@@ -154,7 +128,10 @@ MeshFile clip_to_box(const MeshFile& mesh, const Transform& place, const Box3& b
         for (const bool is_upper : {false, true})
             for (int axis = 0; axis < 3; ++axis)
             {
-                cut_at({axis, is_upper, is_upper ? box.max[axis] : box.min[axis]}, polygon, kept);
+                const Side side{axis, is_upper, is_upper ? box.max[axis] : box.min[axis]};
+                cut_at_plane(
+                    polygon, [&](const Vec3& p) { return side.holds(p); },
+                    [&](const Vec3& p, const Vec3& q) { return side.crossing(p, q); }, kept);
                 polygon.swap(kept);
             }
         kept.clear();

@@ -52,6 +52,13 @@ MeshFormat mesh_format_of(const std::string& path)
     return MeshFormat::Stl;
 }
 
+IndexedMesh read_bathymetry_file(const std::string& path, const BathymetryGrid& grid, int threads)
+{
+    const FileMap file(path);
+    if (file.bytes().empty()) throw GeometryError(path + ": is empty");
+    return read_bathymetry(file.bytes(), path, grid, threads);
+}
+
 MeshFile read_mesh_file(const std::string& path, const MeshReading& reading, int threads)
 {
     if (reading.format == MeshFormat::Stl) return read_stl(path, threads);

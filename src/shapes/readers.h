@@ -57,6 +57,11 @@ std::vector<Vec3> read_points(std::string_view bytes, const std::string& path);
 IndexedMesh read_bathymetry(std::string_view bytes, const std::string& path,
                             const BathymetryGrid& grid, int threads);
 
+/// The same of a file.
+///
+/// throws IoError too
+IndexedMesh read_bathymetry_file(const std::string& path, const BathymetryGrid& grid, int threads);
+
 /// Adds a cell of an unstructured grid by its VTK type number.
 ///
 /// returns false if cells of that type are no points, lines or surfaces

@@ -45,23 +45,24 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, int threads)
             const Vec3& p = mesh.vertices[ends[i]];
             Box3 at;
             at.add(p);
-            tree.for_each_overlap(
-                at,
-                [&](std::uint32_t k)
-                {
-                    const auto [from, to] = mesh.edges[open[k]];
-                    const Facet& own = mesh.facets[mesh.edge_facets[open[k]][0]];
-                    if (std::find(own.begin(), own.end(), ends[i]) != own.end()) return;
-                    const Vec3 along = mesh.vertices[to] - mesh.vertices[from];
-                    const Vec3 away = p - mesh.vertices[from];
-                    const double share = dot(away, along) / dot(along, along);
-                    // At an end it is no junction: a piece between them would have no area.
-                    const double least = room[k] / norm(along);
-                    if (!(share > least && share < 1 - least) ||
-                        norm(away - share * along) > room[k])
-                        return;
-                    found[i].push_back({open[k], ends[i], share});
-                });
+            tree.for_each_overlap(at,
+                                  [&](std::uint32_t k)
+                                  {
+                                      const auto [from, to] = mesh.edges[open[k]];
+                                      const Facet& own = mesh.facets[mesh.edge_facets[open[k]][0]];
+                                      if (std::find(own.begin(), own.end(), ends[i]) != own.end())
+                                          return;
+                                      const Vec3 along = mesh.vertices[to] - mesh.vertices[from];
+                                      const Vec3 away = p - mesh.vertices[from];
+                                      const double share = dot(away, along) / dot(along, along);
+                                      // At an end it is no junction: a piece between them would
+                                      // have no area.
+                                      const double least = room[k] / norm(along);
+                                      if (!(share > least && share < 1 - least) ||
+                                          norm(away - share * along) > room[k])
+                                          return;
+                                      found[i].push_back({open[k], ends[i], share});
+                                  });
         },
         1024);
     std::vector<Junction> all;

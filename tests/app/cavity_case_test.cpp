@@ -3,6 +3,7 @@
 
 #include "fppg/read_particles.h"
 
+#include "helpers/bi4_array.h"
 #include "helpers/case_text.h"
 #include "helpers/run_program.h"
 
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <numbers>
+#include <random>
 #include <tuple>
 
 namespace
@@ -22,6 +24,7 @@ namespace
 
 using fppg::ParticleCloud;
 using fppg::Vec3;
+using fppg::test::bi4_array;
 using fppg::test::box_command;
 using fppg::test::CaseText;
 using fppg::test::Process;
@@ -46,6 +49,12 @@ RunResult run_case(const TemporaryFolder& folder, const CaseText& text, const Ar
     words.insert(words.end(), more.begin(), more.end());
     return Process(FPPG_PROGRAM, words, folder.path().string(), {{"SOURCE_DATE_EPOCH", "86400"}})
         .wait();
+}
+
+/// In the order of read_particles().
+std::vector<float> densities_of(const TemporaryFolder& folder)
+{
+    return bi4_array<float>(read_text(folder / "out/Case.bi4"), "Rhop");
 }
 
 std::vector<Vec3> positions_of(const TemporaryFolder& folder, std::uint16_t mk)
@@ -368,6 +377,131 @@ TEST(PointsOfACase, StandBesideBodyFittedWallsAndDoNotMove)
         folder, closed_box(R"(<fluidband /><points file="p.csv" mkfluid="1" />)"), {"-fit"});
     ASSERT_EQ(result.code, 0) << result.output;
     expect_sorted(positions_of(folder, fluid_mk + 1), some_points, 0);
+}
+
+/// A block of points 0.1 apart, 20 high, off the nodes by `offset`; each moved by up to `noise`.
+std::vector<Vec3> water_points(double offset, double noise)
+{
+    std::vector<Vec3> out;
+    std::mt19937 dice(3);
+    const auto any = [&] { return noise * (static_cast<double>(dice()) / 2147483648.0 - 1); };
+    for (int x = 0; x < 6; ++x)
+        for (int y = 0; y < 6; ++y)
+            for (int z = 0; z < 20; ++z)
+                out.push_back(
+                    {offset + 0.1 * x + any(), offset + 0.1 * y + any(), offset + 0.1 * z + any()});
+    return out;
+}
+
+/// Depth below the highest fluid that the density of every fluid particle says, dp, less its real
+/// one; and the depth that the case printed, metres.
+struct DepthsOfPoints
+{
+    double largest_error = 0;
+    double printed = 0;
+};
+
+DepthsOfPoints depths_of(const std::vector<Vec3>& points, const std::string& gradient,
+                         const std::string& gravity = R"(<gravity x="0" y="0" z="-9.81" />)")
+{
+    const TemporaryFolder folder;
+    write_text(folder / "p.csv", csv_of(points));
+    CaseText text;
+    text.gravity = gravity;
+    text.rhopgradient = "<rhopgradient value=\"" + gradient + "\" />";
+    text.pointmax = R"(<pointmax x="1.5" y="1.5" z="3" />)";
+    text.mainlist = R"(<setmkbound mk="0" /><drawpoint x="-0.4" y="-0.4" z="-0.4" />)";
+    text.after_geometry = R"(<fppg><points file="p.csv" mkfluid="0" /></fppg>)";
+    const RunResult result = run_case(folder, text);
+    EXPECT_EQ(result.code, 0) << result.output;
+    DepthsOfPoints out;
+    out.printed = std::stod(result.output.substr(result.output.find("Maximum depth: ") + 15));
+    const ParticleCloud cloud = fppg::read_particles(folder / "out/Case", false, 1);
+    const std::vector<float> rhop = densities_of(folder);
+    double top = 0;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        if (cloud.mk[i] == fluid_mk) top = std::max(top, cloud.positions[i].z);
+    const double b = 400 * 9.81 * out.printed * 1000 / 7;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        if (cloud.mk[i] != fluid_mk) continue;
+        const double depth = (std::pow(rhop[i] / 1000, 7) - 1) * b / (1000 * 9.81);
+        out.largest_error =
+            std::max(out.largest_error, std::abs(depth - (top - cloud.positions[i].z)) / 0.1);
+    }
+    return out;
+}
+
+TEST(PointsOfACase, HaveTheDensityOfTheirDepthAndGiveTheDepthOfWater)
+{
+    const DepthsOfPoints on_nodes = depths_of(water_points(0, 0), "2");
+    EXPECT_NEAR(on_nodes.printed, 1.9, 1e-6);
+    EXPECT_LT(on_nodes.largest_error, 0.01);
+    const DepthsOfPoints between = depths_of(water_points(0.034, 0), "2");
+    EXPECT_NEAR(between.printed, 1.9, 1e-6);
+    EXPECT_LT(between.largest_error, 0.5);
+    const DepthsOfPoints highest = depths_of(water_points(0.034, 0), "3");
+    EXPECT_NEAR(highest.printed, 1.9, 1e-6);
+    EXPECT_LT(highest.largest_error, 0.01);
+}
+
+TEST(PointsOfACase, LeaveNoGapsInTheWaterWhereTheyAreUneven)
+{
+    const DepthsOfPoints uneven = depths_of(water_points(0.034, 0.04), "2");
+    EXPECT_NEAR(uneven.printed, 1.9, 0.11);
+    EXPECT_LT(uneven.largest_error, 1.5);
+}
+
+TEST(PointsOfACase, StartAtRhop0WithGradientOne)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "p.csv", csv_of(water_points(0.034, 0)));
+    CaseText text = closed_box(R"(<points file="p.csv" mkfluid="0" />)");
+    text.pointmax = R"(<pointmax x="1.5" y="1.5" z="3" />)";
+    text.rhopgradient = R"(<rhopgradient value="1" />)";
+    ASSERT_EQ(run_case(folder, text).code, 0);
+    for (const float rhop : densities_of(folder)) EXPECT_EQ(rhop, 1000.0F);
+    EXPECT_FALSE(says(read_text(folder / "out/Case.xml"), R"(<b value="0")"));
+}
+
+TEST(PointsOfACase, StandOnTheWaterOfTheLattice)
+{
+    // The lattice is water up to z = 0.5; the points follow from 0.6 up to 2.5.
+    std::vector<Vec3> points = water_points(0, 0);
+    for (Vec3& p : points) p = p + Vec3{0, 0, 0.6};
+    const TemporaryFolder folder;
+    write_text(folder / "p.csv", csv_of(points));
+    CaseText text;
+    text.pointmax = R"(<pointmax x="1.5" y="1.5" z="3" />)";
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkfluid mk="1" />)" +
+                    box_command(R"(x="0" y="0" z="0")", R"(x="0.5" y="0.5" z="0.5")");
+    text.after_geometry = R"(<fppg><points file="p.csv" mkfluid="0" /></fppg>)";
+    const RunResult result = run_case(folder, text);
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(says(result.output, "Maximum depth: 2.5 (automatic)")) << result.output;
+}
+
+TEST(FluidOffTheLattice, HasRhop0AsInGenCaseUnlessAskedOtherwise)
+{
+    CaseText text;
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setfrdrawmode auto="true" /><setmkfluid mk="0" />)" +
+        box_command(R"(x="0" y="0" z="0.013")", R"(x="0.4" y="0.4" z="1")");
+    const TemporaryFolder folder;
+    const RunResult usual = run_case(folder, text);
+    ASSERT_EQ(usual.code, 0) << usual.output;
+    EXPECT_TRUE(says(usual.output, "Density of fluid of <setfrdrawmode>: rhop0, as GenCase"))
+        << usual.output;
+    for (const float rhop : densities_of(folder)) EXPECT_EQ(rhop, 1000.0F);
+    text.after_geometry = R"(<fppg><offlattice hydrostatic="true" /></fppg>)";
+    const RunResult asked = run_case(folder, text);
+    ASSERT_EQ(asked.code, 0) << asked.output;
+    EXPECT_TRUE(says(asked.output, "Density of fluid of <setfrdrawmode>: hydrostatic"))
+        << asked.output;
+    const std::vector<float> rhop = densities_of(folder);
+    const auto [low, high] = std::minmax_element(rhop.begin(), rhop.end());
+    EXPECT_NEAR(*low, 1000, 0.1);
+    EXPECT_GT(*high, 1002.4);
 }
 
 TEST(PointsOfACase, OutsideTheDomainAreRefusedByNumberAndPlace)

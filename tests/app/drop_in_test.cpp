@@ -1,5 +1,6 @@
 // The program as its callers start it; FPPG_PROGRAM is its path.
 
+#include "helpers/bi4_array.h"
 #include "helpers/case_text.h"
 #include "helpers/run_fppg.h"
 
@@ -12,7 +13,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
@@ -618,23 +618,6 @@ TEST(FppgNormals, NameTheShapeFilesThatThereAreWhenTheirsIsMissing)
                          "this case writes Case_wall_Actual.vtk"))
         << result.output;
     EXPECT_FALSE(fs::exists(folder / "out/Case.bi4"));
-}
-
-/// The numbers of an array of Case.bi4; none without that array.
-template <typename T>
-std::vector<T> bi4_array(const std::string& bytes, const std::string& name)
-{
-    const std::string head =
-        "\nARRAY" + std::string(1, static_cast<char>(name.size())) + std::string(3, '\0') + name;
-    const std::size_t found = bytes.find(head);
-    if (found == std::string::npos) return {};
-    // Behind the name: hide, type, count, size of the data, data.
-    const char* const fields = bytes.data() + found + head.size();
-    std::uint32_t size = 0;
-    std::memcpy(&size, fields + 12, sizeof size);
-    std::vector<T> numbers(size / sizeof(T));
-    std::memcpy(numbers.data(), fields + 16, size);
-    return numbers;
 }
 
 /// Whether a coordinate is one of the lattice that goes through the origin.

@@ -297,7 +297,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Mistake{"UnknownElement", "<fppg><bodyfit /></fppg>",
                 "<bodyfit>: is not known in <fppg>, expected bodyfitted, boolean, fluidband, fill, "
-                "floatings, points"},
+                "floatings, offlattice, points"},
+        Mistake{"UnknownInOfflattice", R"(<fppg><offlattice hydrostatics="1" /></fppg>)",
+                "<offlattice>: attribute hydrostatics=\"1\" is not known, expected hydrostatic"},
         Mistake{
             "UnknownAttribute", R"(<fppg><bodyfitted angle="30" /></fppg>)",
             "<bodyfitted>: attribute angle=\"30\" is not known, expected mkbound, featureangle,"},
@@ -366,11 +368,12 @@ TEST(FitBlock, RefusesNumbersWhoseTopBitIsTaken)
     text.after_geometry.clear();
     text.mainlist += R"(<setmkbound mk="32758" /><drawpoint x="0" y="0" z="0" />)";
     EXPECT_EQ(error_of(text), "no error");
-    EXPECT_THAT(
-        error_of(text, FitChoice::On),
-        HasSubstr(
-            "Case_Def.xml:7: <drawpoint>: mkbound 32758 is mk 32768 and cannot stand "
-            "in a case with body-fitted walls or <setfrdrawmode>, expected a number below 32758"));
+    EXPECT_THAT(error_of(text, FitChoice::On),
+                HasSubstr("Case_Def.xml:7: <drawpoint>: mkbound 32758 is mk 32768 and cannot stand "
+                          "in a case with body-fitted walls, <setfrdrawmode> or fluid of <points>, "
+                          "expected a number below 32758"));
+    text.after_geometry = R"(<fppg><points file="p.csv" mkfluid="0" /></fppg>)";
+    EXPECT_THAT(error_of(text), HasSubstr("<drawpoint>: mkbound 32758 is mk 32768"));
 }
 
 } // namespace

@@ -294,24 +294,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "<casedef>: the element <mkconfig> is missing in it"},
         Mistake{"MissingParameters", [](CaseText& text) { text.execution = ""; },
                 "<case>: the element <execution><parameters> is missing in it"},
-        Mistake{"FloatingWithoutMass",
-                [](CaseText& text)
-                { text.after_geometry = R"(<floatings><floating mkbound="0" /></floatings>)"; },
-                "<floating>: one value must be defined, massbody, relativeweight or rhopbody"},
-        Mistake{
-            "FloatingWithTwoMasses",
-            [](CaseText& text)
-            {
-                text.after_geometry =
-                    R"(<floatings><floating mkbound="0" massbody="1" rhopbody="2" /></floatings>)";
-            },
-            "<floating>: only one value must be defined"},
-        Mistake{"BadFloatingList",
-                [](CaseText& text) {
-                    text.after_geometry =
-                        R"(<floatings><floating mkbound="2-1" rhopbody="2" /></floatings>)";
-                },
-                "<floating>: attribute mkbound=\"2-1\" is not a list of whole numbers"},
         Mistake{"UnknownMotion",
                 [](CaseText& text) {
                     text.after_geometry =
@@ -635,8 +617,8 @@ TEST(State, KnowsTheOldNameOfActualShapesAndSumsOfShapeModes)
     {
         const CaseDef def =
             run("<setshapemode>" + words + R"(</setshapemode><shapeout file="a" />)");
-        const auto& op = std::get<ShapeOutOp>(def.ops.back().what);
-        return std::tuple(op.actual, op.snapped, op.kinds);
+        const ShapeMode& mode = def.ops.back().state->shape_mode;
+        return std::tuple(mode.actual, mode.snapped, mode.kinds);
     };
     using Kinds = std::array<bool, 3>; // void, bound, fluid
     EXPECT_EQ(shown("real | bound"), std::tuple(true, false, Kinds{false, true, false}));
@@ -675,15 +657,16 @@ TEST(Special, HasItsExpressionsReplacedForTheSolver)
     CaseText text;
     text.mainlist = R"(<newvarcte depth="0.5" /><newvarstrcte m="abc" />)";
     text.execution =
-        R"(<special><a v="#depth*2" comment="# of a"><b w="$x[m]" x="[m]" /><_c y="#nothing" /></a></special>
+        R"(<special><a v="#depth*2" comment="#depth"><b w="$x[m]" x="[m]" /><_c y="# depth " /></a></special>
 <parameters><parameter key="TimeMax" value="$1[depth]" /><parameter key="#Off" value="#depth" /></parameters>)";
     const CaseDef def = read(text);
     const Element& a = *def.execution.at(0).find_child("a");
     EXPECT_EQ(*a.find_attribute("v"), "1");
-    EXPECT_EQ(*a.find_attribute("comment"), "# of a");
     EXPECT_EQ(*a.find_child("b")->find_attribute("w"), "xabc");
     EXPECT_EQ(*a.find_child("b")->find_attribute("x"), "[m]");
-    EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "#nothing");
+    // Comments and elements that do not count too.
+    EXPECT_EQ(*a.find_attribute("comment"), "0.5");
+    EXPECT_EQ(*a.find_child("_c")->find_attribute("y"), "0.5");
     EXPECT_EQ(*def.execution.at(1).find_child("parameter")->find_attribute("value"), "10.5");
     const Element& off = def.execution.at(1).children.at(1);
     EXPECT_EQ(*off.find_attribute("key"), "#Off");

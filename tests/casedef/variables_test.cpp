@@ -218,6 +218,24 @@ TEST(ExportVar, GivesTextsFirstAndSortedNamesAndOnlyOwnVariables)
     EXPECT_EQ(chosen({"all,-Dp,-VResId"}), "Ts A AB ABC B K b");
 }
 
+TEST(ExportVar, ChoosesFromTheVariablesThatExist)
+{
+    for (const char* patterns : {"-all,A,K", "-B", "all", "*"})
+    {
+        Variables vars = sample();
+        vars.choose_exported(patterns);
+        const std::string before = exported_names(vars);
+        vars.define_number("A9", "1", false);
+        EXPECT_EQ(exported_names(vars), before) << patterns;
+        vars.choose_exported("A9");
+        EXPECT_NE(exported_names(vars), before) << patterns;
+    }
+    Variables vars = sample();
+    vars.choose_exported("");
+    vars.define_number("A9", "1", false);
+    EXPECT_EQ(exported_names(vars), "Ts A A9 AB ABC B K VResId b");
+}
+
 TEST(ExportVar, GivesTheValuesOfTheEnd)
 {
     Variables vars = sample();

@@ -38,6 +38,35 @@ TEST(ParseXml, SkipsAByteOrderMarkAlsoBeforeAComment)
     EXPECT_EQ(parse_xml("\xEF\xBB\xBF<case/>", "a.xml").name, "case");
 }
 
+TEST(ParseDocument, KeepsWhatStandsAroundTheRoot)
+{
+    const Element document = parse_document(
+        "<!-- a --><?xml version=\"1.0\"?><!-- b --><case/>tail<!-- c --><other/>", "a.xml");
+    ASSERT_EQ(document.children.size(), 5u);
+    EXPECT_EQ(document.children[0].text, " a ");
+    EXPECT_EQ(document.children[1].text, " b ");
+    EXPECT_EQ(root_of(document).name, "case");
+    EXPECT_EQ(document.children[4].name, "other");
+}
+
+TEST(ParseXml, KeepsTextsInTheirPlaceAndCondensesBlanks)
+{
+    const Element root = parse_xml(
+        "<case>  one \n two <a/> three<!-- c -->\tfour  <b/>  <![CDATA[ a  b ]]></case>", "a.xml");
+    EXPECT_EQ(root.text, "one two");
+    ASSERT_EQ(root.children.size(), 3u);
+    EXPECT_EQ(root.children[0].tail, "three");
+    EXPECT_EQ(root.children[1].tail, "four");
+    EXPECT_EQ(root.children[2].tail, " a  b ");
+}
+
+TEST(ParseXml, TakesTextThatIsNotUtf8AsLatin1)
+{
+    EXPECT_EQ(parse_xml("<case a=\"\xE9\"/>", "a.xml").attributes[0].value, "\xC3\xA9");
+    EXPECT_EQ(parse_xml("<case a=\"\xC3\xA9\"/>", "a.xml").attributes[0].value, "\xC3\xA9");
+    EXPECT_EQ(parse_xml("<case a=\"\xC3\xA9 \xE9\"/>", "a.xml").attributes[0].value.size(), 7u);
+}
+
 TEST(ParseXml, CountsLinesWithBothKindsOfLineEnds)
 {
     const Element crlf =

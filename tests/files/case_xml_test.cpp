@@ -201,7 +201,6 @@ TEST(WriteCaseXml, WritesWhatRestrictsAFloatingBody)
     FloatingDef floating;
     floating.mkbound = {4, 5};
     floating.extra = {parse("<linearvelini x=\"1\" y=\"0\" z=\"0\"/>"),
-                      parse("<rotationDOF x=\"1\" y=\"1\" z=\"1\"/>"),
                       parse("<translationDOF x=\"0\" y=\"1\" z=\"1\"/>")};
     small.def.floatings = {floating};
     const Element execution = small.execution();

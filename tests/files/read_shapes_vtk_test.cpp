@@ -32,8 +32,8 @@ TEST(ReadShapesVtk, ReadsBackWhatIsWritten)
     const auto found = read_shapes_vtk(folder / "shape.vtk");
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].polygons,
-              (std::vector<std::vector<std::uint32_t>>{{0, 1, 2}, {3, 4, 5, 6}}));
-    EXPECT_EQ(found[0].vertices[2].z, static_cast<double>(0.1f));
+              (std::vector<std::vector<std::uint32_t>>{{0, 2, 1}, {3, 4, 5, 6}}));
+    EXPECT_EQ(found[0].vertices[1].z, static_cast<double>(0.1f));
     EXPECT_EQ(found[0].vertices[6].z, 2);
 }
 

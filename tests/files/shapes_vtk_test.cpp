@@ -15,20 +15,20 @@ VtkFile vtk_of(const std::vector<ShapePolygons>& shapes)
 const ShapePolygons triangle_and_line{
     4, 10, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}}, {{0, 1, 2}, {0, 2}}};
 
-TEST(WriteShapesVtk, CountsVerticesOverAllObjects)
+/// As in the files of GenCase v5.4: those of lines before those of faces.
+TEST(WriteShapesVtk, NumbersEachPlaceOnceInOrderOfUse)
 {
     const VtkFile file = vtk_of({triangle_and_line, triangle_and_line});
-    EXPECT_EQ(file.points.size(), 18U);
-    EXPECT_EQ(file.points[8], 0.1f);
-    EXPECT_EQ(file.cells.at("POLYGONS"), (std::vector<int>{3, 0, 1, 2, 3, 3, 4, 5}));
-    EXPECT_EQ(file.cells.at("LINES"), (std::vector<int>{2, 0, 2, 2, 3, 5}));
+    EXPECT_EQ(file.points, (std::vector<float>{0, 0, 0, 1, 1, 0.1f, 1, 0, 0}));
+    EXPECT_EQ(file.cells.at("POLYGONS"), (std::vector<int>{3, 0, 2, 1, 3, 0, 2, 1}));
+    EXPECT_EQ(file.cells.at("LINES"), (std::vector<int>{2, 0, 1, 2, 0, 1}));
 }
 
 TEST(WriteShapesVtk, OrdersCellValuesAsPointsLinesFaces)
 {
     const ShapePolygons point{7, -1, {{0, 0, 0}}, {{0}}};
     const VtkFile file = vtk_of({triangle_and_line, point});
-    EXPECT_EQ(file.cells.at("VERTICES"), (std::vector<int>{1, 3}));
+    EXPECT_EQ(file.cells.at("VERTICES"), (std::vector<int>{1, 0}));
     EXPECT_EQ(file.arrays.at("Mk"), (std::vector<double>{-1, 10, 10}));
     EXPECT_EQ(file.arrays.at("ObjId"), (std::vector<double>{7, 4, 4}));
 }

@@ -126,6 +126,8 @@ def is_near(found, expected, relative, absolute=0.0):
         a = np.diag(a)  # GenCase writes a tensor whose other entries are zero as x, y, z
     if a.shape != b.shape:
         return False
+    if b.shape == (3, 3) and not np.array_equal(a == 0, b == 0):
+        return False  # they decide in which form GenCase writes it
     return bool(np.all(np.abs(a - b) <= absolute + relative * (np.abs(b).max() if b.size else 0)))
 
 

@@ -367,14 +367,14 @@ TEST(NormalsOfAPlane, LeadToItFromBothSides)
     expect_vector(made.at(0.8, 0.1, 0.2), {0, 0, 0});
 }
 
-TEST(NormalsOfAPlane, FindItBeyondTheOutermostParticle)
+TEST(NormalsOfAPlane, FindItBeyondTheOutermostParticleOfEachMk)
 {
     const Made made =
         make(blocks(R"(<norplane mkbound="0,1"><point auto="true" />)"
                     R"(<limitdist vdp="1.2" /><normal x="1" y="0" z="0" /></norplane>)"));
     expect_vector(made.at(1.3, 0.1, 0.2), {1.2, 0, 0});
     expect_vector(made.at(1.2, 0.1, 0.2), {2.2, 0, 0});
-    expect_vector(made.at(0.5, 0.1, 0.2), {0, 0, 0});
+    expect_vector(made.at(0.5, 0.1, 0.2), {1.2, 0, 0});
 }
 
 TEST(NormalsOfAPlane, KeepEarlierOnesOnlyWhenAskedTo)

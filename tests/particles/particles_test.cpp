@@ -357,7 +357,7 @@ TEST(MakeParticles, MeasuresInertiaFromTheGivenCentre)
 {
     CaseText text = small_case();
     text.after_geometry =
-        R"(<floatings><floating mkbound="2" massbody="7"><center x="1" y="2" z="3" /></floating></floatings>)";
+        R"(<floatings><floating mkbound="2"><massbody value="7" /><center x="1" y="2" z="3" /></floating></floatings>)";
     const Made made = make(text, any_nodes(4));
     const FloatingBody& body = made.particles.floatings.at(0);
     EXPECT_EQ(body.mass_body, 7);

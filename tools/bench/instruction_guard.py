@@ -63,7 +63,7 @@ def skip(why):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--fppg", required=True, help="the program, built by the release preset")
+    parser.add_argument("--fppg", required=True, help="the program, built by the preset release or test")
     parser.add_argument("--compiler", default="", help="its compiler and version, for the record")
     parser.add_argument("--renew", action="store_true", help="write the record")
     options = parser.parse_args()

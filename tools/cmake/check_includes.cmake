@@ -26,17 +26,20 @@ set(compare_may_see report files casedef particles shapes core)
 set(batch_may_see report lattice files casedef shapes particles core)
 # What the solver made of a case, against the true shapes of its draws.
 set(leak_may_see lattice files casedef shapes particles core)
-set(app_may_see leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
+# The text of a definition, in newer forms.
+set(upgrade_may_see core)
+set(app_may_see upgrade leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
-set(wrapped_libraries tinyxml2 embree png zlib CLI)
+set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
 # The case definition, and mesh files whose numbers are too many to pass through a tree.
 set(tinyxml2_may_be_seen_by casedef shapes)
 set(zlib_may_be_seen_by shapes)
 set(embree_may_be_seen_by shapes render)
 set(png_may_be_seen_by render)
 set(CLI_may_be_seen_by app)
+set(nlohmann_may_be_seen_by core)
 
 set(faults)
 

@@ -6,13 +6,14 @@ import shutil
 import signal
 import subprocess
 import sys
-import xml.etree.ElementTree as ElementTree
+import time
 from dataclasses import dataclass, field
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from particle_files import read_bi4, read_blocks  # noqa: E402 (found by the path above)
+from case_xml import read_xml  # noqa: E402 (found by the path above)
+from particle_files import read_bi4, read_blocks  # noqa: E402
 
 NAME = "Case"
 # What in Case.bi4 says who wrote it, not what.
@@ -23,8 +24,17 @@ NO_ANSWER = ("hangs", "crashes")
 
 
 @dataclass
+class Run:
+    """How a run of a program ended. status: accepts, refuses, crashes or hangs; code: None where it hangs."""
+    status: str
+    message: str = ""
+    code: int = None
+    seconds: float = 0
+
+
+@dataclass
 class Outcome:
-    """What a program made of a case. status: accepts, refuses, crashes or hangs."""
+    """What a program made of a case. status: as of a Run; fields: Vel, Rhop and BoundNor by id, where they are."""
     status: str
     message: str = ""
     types: list = field(default_factory=list)
@@ -32,6 +42,7 @@ class Outcome:
     positions: np.ndarray = None
     values: dict = field(default_factory=dict)
     constants: dict = field(default_factory=dict)
+    fields: dict = field(default_factory=dict)
 
 
 @dataclass
@@ -54,6 +65,18 @@ def write_case(case, folder):
             file.write(case.files[name])
 
 
+def program_path(name):
+    path = os.path.abspath(name) if os.sep in name else shutil.which(name)
+    if not path or not os.access(path, os.X_OK):
+        sys.exit(f"{name}: expected a program that can be run")
+    return path
+
+
+def default_fppg():
+    built = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "release", "fppg")
+    return built if os.path.exists(built) else "fppg"
+
+
 def message_of(text):
     """The line that says why a program refused: `*** Error:` of fppg, `Text:` of GenCase. Empty without one."""
     for line in text.splitlines():
@@ -62,17 +85,16 @@ def message_of(text):
     return ""
 
 
-def run_program(program, folder, out, timeout):
-    """Runs `program` on the case in `folder`, which is its working folder; results go to `folder`/`out`."""
-    target = os.path.join(folder, out)
+def start_program(program, folder, words, target, timeout):
+    """Runs `program` with `words` in `folder`; what it says goes to the file said.txt in `target`, which is emptied."""
     shutil.rmtree(target, ignore_errors=True)
     os.makedirs(target)
+    begin = time.monotonic()
     # Into a file: what a program leaves behind (Wine's server, a debugger after a crash) would hold a pipe open.
     with open(os.path.join(target, "said.txt"), "w+b") as said:
         try:
-            run = subprocess.Popen([program, NAME + "_Def", f"{out}/{NAME}", "-save:bi"], cwd=folder,
-                                   stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
-                                   start_new_session=True)
+            run = subprocess.Popen([program, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=said,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
         except OSError as error:
             sys.exit(f"{program}: {error.strerror}")
         try:
@@ -80,15 +102,25 @@ def run_program(program, folder, out, timeout):
         except subprocess.TimeoutExpired:
             os.killpg(run.pid, signal.SIGKILL)
             run.wait()
-            return Outcome("hangs", f"no end within {timeout} s")
+            return Run("hangs", f"no end within {timeout:g} s", None, time.monotonic() - begin)
+        seconds = time.monotonic() - begin
         said.seek(0)
         text = said.read().decode("utf-8", "replace")
+    if run.returncode == 0:
+        return Run("accepts", "", 0, seconds)
+    # GenCase refuses with 1, fppg with 2 to 4; anything else is no message of theirs.
+    message = message_of(text)
+    status = "refuses" if run.returncode in (1, 2, 3, 4) and message else "crashes"
+    return Run(status, message or f"exit code {run.returncode}", run.returncode, seconds)
+
+
+def run_program(program, folder, out, timeout):
+    """Runs `program` on the case in `folder`, which is its working folder; results go to `folder`/`out`."""
+    target = os.path.join(folder, out)
+    run = start_program(program, folder, [NAME + "_Def", f"{out}/{NAME}", "-save:bi"], target, timeout)
+    if run.status != "accepts":
+        return Outcome(run.status, run.message)
     base = os.path.join(target, NAME)
-    if run.returncode != 0:
-        # GenCase refuses with 1, fppg with 2 to 4; anything else is no message of theirs.
-        message = message_of(text)
-        status = "refuses" if run.returncode in (1, 2, 3, 4) and message else "crashes"
-        return Outcome(status, message or f"exit code {run.returncode}")
     if not os.path.exists(base + ".bi4"):
         return Outcome("crashes", "exit code 0 and no particle file")
     return read_outcome(base)
@@ -103,11 +135,14 @@ def read_outcome(base):
         types += [block["type"]] * block["count"]
         mks += [block["mk"]] * block["count"]
     constants = {}
-    for row in ElementTree.parse(base + ".xml").getroot().find("execution/constants"):
+    for row in read_xml(base + ".xml").find("case/execution/constants"):
         constants.update({f"{row.tag}.{k}": float(v) for k, v in row.attrib.items()
                           if re.fullmatch(r"[-+0-9.eE]+", v)})
     kept = {k: v for k, v in values.items() if k not in UNCOMPARED and not isinstance(v, str)}
-    return Outcome("accepts", "", types, np.array(mks), positions[order], kept, constants)
+    # Boundary particles alone have normals; their ids come first.
+    fields = {k: arrays[k][order[order < len(arrays[k])] if k == "BoundNor" else order]
+              for k in ("Vel", "Rhop", "BoundNor") if k in arrays}
+    return Outcome("accepts", "", types, np.array(mks), positions[order], kept, constants, fields)
 
 
 def places(outcome, dp):
@@ -137,10 +172,15 @@ def compare(ours, theirs, dp):
         key = " ".join(re.findall("[a-z]{3,}", re.sub(r"^.*xml:[0-9]+:|^Text:", "", words).lower()))[:60]
         return Difference(f"fppg {ours.status}, GenCase {theirs.status}: {key}",
                           [f"fppg {ours.status} {ours.message}", f"GenCase {theirs.status} {theirs.message}"])
+    return compare_particles(ours, theirs, dp) or compare_constants(ours, theirs)
+
+
+def compare_particles(ours, theirs, dp):
+    """The difference of the particles of two results: type, mk, place and order of ids; or None."""
     if len(ours.mks) == len(theirs.mks) and ours.types == theirs.types and np.array_equal(ours.mks, theirs.mks):
         far = np.abs(ours.positions - theirs.positions).max(axis=1, initial=0) > 1e-6 * dp
         if not far.any():
-            return compare_constants(ours, theirs)
+            return None
     found, wanted = places(ours, dp), places(theirs, dp)
     extra, missing = sorted(set(found) - set(wanted)), sorted(set(wanted) - set(found))
     if not extra and not missing and len(found) == len(wanted):

@@ -22,7 +22,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from case_grammar import COMMANDS, random_case, used_commands  # noqa: E402 (found by the path above)
 from case_reducer import reduce_case  # noqa: E402
-from case_runs import NO_ANSWER, compare, run_program, summary, write_case  # noqa: E402
+from case_runs import (  # noqa: E402
+    NO_ANSWER, compare, default_fppg, program_path, run_program, summary, write_case)
 from rounding_ties import is_rounding_tie  # noqa: E402
 
 
@@ -66,18 +67,6 @@ class Comparison:
 
         small, runs = reduce_case(case, still_differs, most_runs)
         return small, runs, self.run(small, name)
-
-
-def program_path(name):
-    path = os.path.abspath(name) if os.sep in name else shutil.which(name)
-    if not path or not os.access(path, os.X_OK):
-        sys.exit(f"{name}: expected a program that can be run")
-    return path
-
-
-def default_fppg():
-    built = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "release", "fppg")
-    return built if os.path.exists(built) else "fppg"
 
 
 def keep(folder, label, case, small, runs, outcomes, difference):

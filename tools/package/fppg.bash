@@ -8,7 +8,7 @@ _fppg()
         1:*) ;;
         *:batch)
             options="--out --set --jobs --threads --memory --resume --no-pictures --quiet --log-json --slurm --submit
-                --plan --task --summary --help" ;;
+                --plan --task --summary --dry-run --help" ;;
         *:compare)
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
@@ -20,12 +20,13 @@ _fppg()
                 --threads --help" ;;
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
+        *:upgrade) options="--output --in-place --help" endings="xml" ;;
         *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -save3vtk: -createdirs: -debug:
                 -quiet -log-json -clean" ;;
     esac
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then
-        COMPREPLY=($(compgen -W "batch compare estimate inspect leak render report templates" -- "$word"))
+        COMPREPLY=($(compgen -W "batch compare estimate inspect leak render report templates upgrade" -- "$word"))
     elif [[ $COMP_CWORD -eq 1 ]]; then
         COMPREPLY=($(compgen -W "-h --help -ver --version -info -templates" -- "$word"))
     elif [[ $word == -* ]]; then

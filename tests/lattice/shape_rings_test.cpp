@@ -1,4 +1,4 @@
-#include "lattice/cylinder_rings.h"
+#include "lattice/shape_rings.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace
 {
 
 /// What GenCase v5.4.354 wrote into the shapeout of golden case nor_cyl_oblique: float32, all bits.
-TEST(CylinderRings, AreGenCasesToTheLastBit)
+TEST(ShapeRings, AreGenCasesToTheLastBit)
 {
     const auto [near, far] = cylinder_rings({0.3, 0.1, 0.2}, {0.6, 0.7, 0.6}, 0.26, 24);
     ASSERT_EQ(near.size(), 24U);
@@ -31,7 +31,7 @@ TEST(CylinderRings, AreGenCasesToTheLastBit)
     expect(far[23], 0.373565584F, 0.730493009F, 0.724086523F);
 }
 
-TEST(CylinderRings, LieAcrossTheAxisAtTheRadius)
+TEST(ShapeRings, LieAcrossTheAxisAtTheRadius)
 {
     for (const Vec3& axis :
          {Vec3{1, 0, 0}, Vec3{0, -2, 0}, Vec3{0, 0, 3}, Vec3{0, 1, -1}, Vec3{0.3, -0.2, 0.7}})

@@ -24,4 +24,16 @@ namespace fppg
 std::array<std::vector<Vec3>, 2> cylinder_rings(const Vec3& a, const Vec3& b, double radius,
                                                 int sides);
 
+/// The corners of a sphere drawn as polygons, in the same bits (19 spheres, all 554 corners of each
+/// equal), from the lowest to the highest: `sides` + 1 rings, the first and the last of one corner,
+/// the pole, all others of `sides`.
+/// - the poles lie below and above the centre in sums of float32
+/// - the first corners of the rings are the lower pole, turned by 180 / sides degrees about x, ring
+///   by ring; so they lie on the side of -y
+/// - every other corner is the one before, turned by 360 / sides degrees clockwise about z
+///
+/// radius  metres
+/// sides   2 or more
+std::vector<std::vector<Vec3>> sphere_rings(const Vec3& center, double radius, int sides);
+
 } // namespace fppg

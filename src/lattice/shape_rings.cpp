@@ -1,4 +1,4 @@
-#include "lattice/cylinder_rings.h"
+#include "lattice/shape_rings.h"
 
 #include <cmath>
 #include <cstddef>
@@ -107,6 +107,30 @@ std::array<std::vector<Vec3>, 2> cylinder_rings(const Vec3& a, const Vec3& b, do
         out[1].push_back(as_double(sum(corner, axis)));
         corner = product(turn, corner);
     }
+    return out;
+}
+
+std::vector<std::vector<Vec3>> sphere_rings(const Vec3& center, double radius, int sides)
+{
+    const Float3 middle = as_float(center);
+    const auto up = static_cast<float>(radius);
+    const Float3 low = sum(middle, {0, 0, -up});
+    const Matrix rise = turn_about(middle, {1, 0, 0}, 180.0 / sides);
+    const Matrix around = turn_about(middle, {0, 0, 1}, 360.0 / sides);
+    std::vector<std::vector<Vec3>> out{{as_double(low)}};
+    Float3 first = low;
+    for (int ring = 1; ring < sides; ++ring)
+    {
+        first = product(rise, first);
+        std::vector<Vec3>& corners = out.emplace_back();
+        Float3 corner = first;
+        for (int i = 0; i < sides; ++i)
+        {
+            corners.push_back(as_double(corner));
+            corner = product(around, corner);
+        }
+    }
+    out.push_back({as_double(sum(middle, {0, 0, up}))});
     return out;
 }
 

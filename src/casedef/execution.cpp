@@ -1,0 +1,119 @@
+#include "casedef/execution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+namespace fppg
+{
+namespace
+{
+
+void evaluate_all(Element& e, const AttributeReader& read)
+{
+    for (Element::Attribute& a : e.attributes) a.value = read.evaluated(e, a.name);
+    for (Element& child : e.children)
+        if (child.kind == Element::Kind::Tag) evaluate_all(child, read);
+}
+
+void complete_domain(Element& domain, const AttributeReader& read)
+{
+    for (const bool is_min : {true, false})
+        if (Element* limit = domain.find_child(is_min ? "posmin" : "posmax"))
+            for (Element::Attribute& a : limit->attributes)
+                if (a.name == "x" || a.name == "y" || a.name == "z")
+                    a.value = domain_limit(read, *limit, a.value, is_min);
+}
+
+void evaluate_parameters(Element& parameters, const AttributeReader& read)
+{
+    bool has_domain = false;
+    for (Element& e : parameters.children)
+    {
+        if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
+        if (e.name == "parameter")
+        {
+            // "#Name" is a parameter that is switched off.
+            const std::string key = read.text(e, "key");
+            const std::string value = read.evaluated(e, "value");
+            e.set_attribute("key", key);
+            e.set_attribute("value", value);
+        }
+        else if (e.name == "simulationdomain" && !has_domain)
+        {
+            complete_domain(e, read);
+            has_domain = true;
+        }
+        else
+            read.fail(e, has_domain && e.name == "simulationdomain"
+                             ? "there are two of it in <parameters>, expected one"
+                             : "is not known in <parameters>, expected parameter or "
+                               "simulationdomain");
+    }
+}
+
+Element* first_of(std::vector<Element>& elements, std::string_view name)
+{
+    const auto found = std::find_if(elements.begin(), elements.end(),
+                                    [&](const Element& e)
+                                    { return e.kind == Element::Kind::Tag && e.name == name; });
+    return found == elements.end() ? nullptr : &*found;
+}
+
+} // namespace
+
+std::vector<Element> read_execution(const Element& root, const AttributeReader& read)
+{
+    const Element* execution = root.find_child("execution");
+    if (execution == nullptr || execution->find_child("parameters") == nullptr)
+        read.fail(root, "the element <execution><parameters> is missing in it");
+    static const std::set<std::string> own{"particles", "constants", "vres",
+                                           "uservars",  "motion",    "vtkout"};
+    std::vector<Element> out;
+    int blocks = 0;
+    for (const Element& e : execution->children)
+    {
+        const bool is_tag = e.kind == Element::Kind::Tag;
+        if (is_tag && e.name == "parameters" && ++blocks > 2)
+            read.fail(e, "there are more than two of it in <execution>, expected one");
+        if (!is_tag || !own.contains(e.name)) out.push_back(e);
+    }
+    return out;
+}
+
+void evaluate_execution(std::vector<Element>& execution, const AttributeReader& read)
+{
+    evaluate_parameters(*first_of(execution, "parameters"), read);
+    if (Element* special = first_of(execution, "special")) evaluate_all(*special, read);
+}
+
+std::string domain_limit(const AttributeReader& read, const Element& e, const std::string& text,
+                         bool is_min)
+{
+    std::string bare;
+    for (const char c : text)
+        if (c != ' ') bare += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
+    std::string_view rest = bare;
+    const bool is_default = rest.starts_with("default");
+    if (is_default) rest.remove_prefix(7);
+    if (rest.empty()) return bare;
+    const char sign = is_min ? '-' : '+';
+    const bool has_sign = rest.front() == sign;
+    if (is_default ? has_sign : rest.front() == '+') rest.remove_prefix(1);
+    const bool is_percent = is_default && rest.ends_with('%');
+    if (is_percent) rest.remove_suffix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if ((is_default && !has_sign) || error != std::errc() || end != rest.data() + rest.size() ||
+        !std::isfinite(value))
+        read.fail(e, fmt::format("\"{}\" is invalid, expected a number, default, default {} "
+                                 "NUMBER or default {} NUMBER%",
+                                 text, sign, sign));
+    if (!is_default) return bare;
+    return fmt::format("default {} {}{}", sign, value, is_percent ? "%" : "");
+}
+
+} // namespace fppg

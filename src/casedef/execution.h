@@ -1,0 +1,32 @@
+#pragma once
+
+#include "casedef/attributes.h"
+
+namespace fppg
+{
+
+/// What Case.xml takes over from `<execution>`: its children without those that this program writes
+/// itself, so that a generated Case.xml is a valid definition again.
+///
+/// throws CaseError without `<parameters>`, or with more than two of them: GenCase v5.4 joins the
+///        second with the first and leaves the others, which DualSPHysics does not read
+std::vector<Element> read_execution(const Element& root, const AttributeReader& read);
+
+/// Puts values in the place of `#expression` and `$text with [expressions]`, in the values of the
+/// first `<parameters>` and in all attributes of the first `<special>`, comments and disabled
+/// elements too, nowhere else; completes the limits of `<simulationdomain>`. With the values that
+/// variables have now: GenCase v5.4 does so at its end (60 experiments).
+///
+/// throws CaseError for what GenCase refuses there: other elements in `<parameters>`, a second
+///        `<simulationdomain>`, wrong limits and expressions
+void evaluate_execution(std::vector<Element>& execution, const AttributeReader& read);
+
+/// A limit of a simulation domain as GenCase v5.4 writes it: a number as it stands, `default`,
+/// `default - NUMBER` or `default - NUMBER%`, with + at the upper limit; blanks and capitals do not
+/// matter (50 texts).
+///
+/// throws CaseError for other texts
+std::string domain_limit(const AttributeReader& read, const Element& e, const std::string& text,
+                         bool is_min);
+
+} // namespace fppg
