@@ -79,27 +79,30 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
            "GB that runs side by side may need by their estimates (default: 80 % of what is "
            "free)")
         .positive();
-    app.add_flag("--resume", call.resumes,
-                 "leave out runs that are done and whose inputs have not changed");
-    auto* dry_run = app.add_flag(
+    auto dry_run = app.add_flag(
         "--dry-run", call.dry_run,
         "run and write nothing: say which definitions would be refused, and why, as far as reading "
         "them and looking for their mesh files tells");
+    app.add_flag("--resume", call.resumes,
+                 "leave out runs that are done and whose inputs have not changed")
+        .excludes(dry_run);
     app.add_flag("--no-pictures", call.no_pictures, "do not draw the particles");
     app.add_flag("--quiet", call.quiet, "say nothing but errors");
     app.add_flag("--log-json", call.log_json, "a JSON object a line instead of text");
-    const auto slurm = app.add_flag("--slurm", call.slurm,
-                                    "run nothing, write scripts for a Slurm job array into --out");
+    auto slurm = app.add_flag("--slurm", call.slurm,
+                              "run nothing, write scripts for a Slurm job array into --out");
+    slurm.excludes(dry_run);
     app.add_flag("--submit", call.submit, "hand them in with sbatch").needs(slurm);
     app.add_option("--plan", call.plan, "parallel: run nothing, print a command a run")
         .one_of({"parallel"})
-        .excludes(slurm);
+        .excludes(slurm)
+        .excludes(dry_run);
     app.add_option("--task", call.task,
                    "do run N of the plan in the folder SOURCE, which --slurm or --plan wrote")
-        .positive();
-    app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE");
-    for (const char* other : {"--resume", "--slurm", "--plan", "--task", "--summary"})
-        dry_run->excludes(app.get_option(other));
+        .positive()
+        .excludes(dry_run);
+    app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE")
+        .excludes(dry_run);
     call.of_runs = take_run_options(arguments);
     return app.read(arguments);
 }

@@ -4,6 +4,7 @@
 #include "casedef/attributes.h"
 #include "casedef/draw_block.h"
 #include "casedef/execution.h"
+#include "casedef/expression.h"
 #include "casedef/fit_block.h"
 #include "casedef/floatings.h"
 #include "casedef/initials.h"
@@ -77,7 +78,7 @@ public:
         evaluate_execution(def_.execution, read_);
 
         if (const Element* e = casedef.find_child("initials"))
-            def_.initials = read_initials(*e, def_, read_);
+            def_.initials = read_initials(*e, def_, read_, def_.warnings);
         if (const Element* e = casedef.find_child("floatings")) read_floatings(*e, read_, def_);
         read_properties(casedef.find_child("properties"), read_, def_);
         if (const Element* e = casedef.find_child("motion"))
@@ -177,6 +178,14 @@ private:
                        fmt::format("{:g} is invalid, expected more than 0", c.gamma));
     }
 
+    /// For what GenCase passes over without a word.
+    void warn_unknown(const Element& e, const char* parent, const char* expected)
+    {
+        def_.warnings.push_back(
+            fmt::format("{}:{}: <{}>: is not known in <{}> and has no effect, expected {}",
+                        def_.file, e.line, e.name, parent, expected));
+    }
+
     void read_mk_config(const Element& e)
     {
         def_.mkbound_count = read_.integer(e, "boundcount", 0, 65520, false);
@@ -192,8 +201,10 @@ private:
             if (o.kind != Element::Kind::Tag || o.name.starts_with('_')) continue;
             const bool is_bound = o.name == "mkorientbound";
             if (!is_bound && o.name != "mkorientfluid")
-                read_.fail(o,
-                           "is not known in <mkconfig>, expected mkorientbound or mkorientfluid");
+            {
+                warn_unknown(o, "mkconfig", "mkorientbound or mkorientfluid");
+                continue;
+            }
             MkOrient orient;
             orient.mk =
                 static_cast<std::uint16_t>(read_.integer(o, "mk", 0, 60000, false) +
@@ -218,13 +229,27 @@ private:
         }
     }
 
+    void predefine(const std::string& name, VariableValue value, bool is_exported = false)
+    {
+        try
+        {
+            variables_.predefine(name, std::move(value), is_exported);
+        }
+        catch (const ExpressionError& error)
+        {
+            // Only a variable of <predefinition> can be in its way.
+            const Element* geometry = def_.casedef.find_child("geometry");
+            read_.fail(*geometry->find_child("predefinition"), error.what());
+        }
+    }
+
     void set_early_variables()
     {
-        variables_.predefine("Gravity_x", def_.constants.gravity.x);
-        variables_.predefine("Gravity_y", def_.constants.gravity.y);
-        variables_.predefine("Gravity_z", def_.constants.gravity.z);
-        variables_.predefine("Rhop0", def_.constants.rhop0);
-        variables_.predefine("VResId", static_cast<double>(options_.zone), true);
+        predefine("Gravity_x", def_.constants.gravity.x);
+        predefine("Gravity_y", def_.constants.gravity.y);
+        predefine("Gravity_z", def_.constants.gravity.z);
+        predefine("Rhop0", def_.constants.rhop0);
+        predefine("VResId", static_cast<double>(options_.zone), true);
     }
 
     void run_predefinition(const Element& e)
@@ -233,10 +258,12 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c))
                 continue;
-            if (c.name != "newvarcte" && c.name != "newvarstrcte" && c.name != "newvar" &&
-                c.name != "newvarstr")
+            static const std::set<std::string> known{"newvarcte", "newvarstrcte", "newvar",
+                                                     "newvarstr", "setvar",       "setvarstr"};
+            if (!known.contains(c.name))
                 read_.fail(c,
-                           "is not known in <predefinition>, expected newvarcte or newvarstrcte");
+                           "is not known in <predefinition>, expected newvarcte, newvarstrcte, "
+                           "newvar, newvarstr, setvar or setvarstr");
             commands_.run(c, def_.list_log);
         }
     }
@@ -257,7 +284,7 @@ private:
         if (!(grid.dp > 0) || !std::isfinite(grid.dp))
             read_.fail(e, fmt::format("dp is {:g}, expected a particle distance above 0", grid.dp));
         // GenCase knows it in the attributes of the children.
-        variables_.predefine("Dp", zone_dp());
+        predefine("Dp", zone_dp());
         const Vec3 low = read_.child_vec3(e, "pointmin");
         const Vec3 high = read_.child_vec3(e, "pointmax");
         grid.is_2d = low.y == high.y;
@@ -362,18 +389,18 @@ private:
     void set_case_variables()
     {
         const LatticeGrid& grid = def_.grid;
-        variables_.predefine("PosMin_x", def_.case_pos_min.x);
-        variables_.predefine("PosMin_y", def_.case_pos_min.y);
-        variables_.predefine("PosMin_z", def_.case_pos_min.z);
-        variables_.predefine("PosMax_x", def_.case_pos_max.x);
-        variables_.predefine("PosMax_y", def_.case_pos_max.y);
-        variables_.predefine("PosMax_z", def_.case_pos_max.z);
-        variables_.predefine("CaseName", def_.case_name);
-        variables_.predefine("Data2D", grid.is_2d ? 1.0 : 0.0);
-        variables_.predefine("Data2DPosy", grid.is_2d ? grid.origin.y : 0.0);
-        variables_.predefine("H", def_.h);
-        variables_.predefine("MassBound", def_.mass_bound);
-        variables_.predefine("MassFluid", def_.mass_fluid);
+        predefine("PosMin_x", def_.case_pos_min.x);
+        predefine("PosMin_y", def_.case_pos_min.y);
+        predefine("PosMin_z", def_.case_pos_min.z);
+        predefine("PosMax_x", def_.case_pos_max.x);
+        predefine("PosMax_y", def_.case_pos_max.y);
+        predefine("PosMax_z", def_.case_pos_max.z);
+        predefine("CaseName", def_.case_name);
+        predefine("Data2D", grid.is_2d ? 1.0 : 0.0);
+        predefine("Data2DPosy", grid.is_2d ? grid.origin.y : 0.0);
+        predefine("H", def_.h);
+        predefine("MassBound", def_.mass_bound);
+        predefine("MassFluid", def_.mass_fluid);
     }
 
     /// The files that the solver reads, for the copy beside the result: those of motions, of the

@@ -19,7 +19,11 @@ namespace
 class InitialsReader
 {
 public:
-    InitialsReader(const CaseDef& def, const AttributeReader& read) : def_(def), read_(read) {}
+    InitialsReader(const CaseDef& def, const AttributeReader& read,
+                   std::vector<std::string>& warnings)
+        : def_(def), read_(read), warnings_(warnings)
+    {
+    }
 
     InitialOp read(const Element& e) const
     {
@@ -68,7 +72,13 @@ private:
         const int number = read_.integer(e, is_bound ? "mkbound" : "mkfluid", 0, 65000, true);
         const int first = is_bound ? def_.mk_bound_first : def_.mk_fluid_first;
         // Numbers beyond those of <mkconfig> name nothing; 0 is the mk of no particle.
-        const bool exists = number < (is_bound ? def_.mkbound_count : def_.mkfluid_count);
+        const int count = is_bound ? def_.mkbound_count : def_.mkfluid_count;
+        const bool exists = number < count;
+        if (!exists)
+            warnings_.push_back(fmt::format(
+                "{}:{}: <{}>: there is no mk{} {}, so it has no effect; <mkconfig> has 0 to {}. "
+                "GenCase takes a mkfluid beyond them for a boundary.",
+                read_.file(), e.line, e.name, is_bound ? "bound" : "fluid", number, count - 1));
         return exists ? static_cast<std::uint16_t>(number + first) : std::uint16_t{0};
     }
 
@@ -285,6 +295,7 @@ private:
 
     const CaseDef& def_;
     const AttributeReader& read_;
+    std::vector<std::string>& warnings_;
 };
 
 } // namespace
@@ -327,9 +338,10 @@ PositionFilter read_only_pos(const Element& e, const AttributeReader& read)
 }
 
 std::vector<InitialOp> read_initials(const Element& list, const CaseDef& def,
-                                     const AttributeReader& read)
+                                     const AttributeReader& read,
+                                     std::vector<std::string>& warnings)
 {
-    const InitialsReader reader(def, read);
+    const InitialsReader reader(def, read, warnings);
     std::vector<InitialOp> out;
     for (const Element* e : active_children(list, read)) out.push_back(reader.read(*e));
     return out;

@@ -23,10 +23,12 @@ PositionFilter read_only_pos(const Element& e, const AttributeReader& read);
 
 /// Reads `<initials>`.
 ///
-/// throws  CaseError as GenCase v5.4.354 does: no mk, or both; mkbound where only fluid can have
-///         values; unknown children; a file of mesh data that is wrong. moverandom is
-///         not supported. IoError for a file of mesh data that is not there
+/// warnings  appended for each mk that <mkconfig> does not have
+/// throws    CaseError as GenCase v5.4.354 does: no mk, or both; mkbound where only fluid can have
+///           values; unknown children; a file of mesh data that is wrong. IoError for a file of
+///           mesh data that is not there
 std::vector<InitialOp> read_initials(const Element& list, const CaseDef& def,
-                                     const AttributeReader& read);
+                                     const AttributeReader& read,
+                                     std::vector<std::string>& warnings);
 
 } // namespace fppg

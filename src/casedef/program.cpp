@@ -39,11 +39,26 @@ void ProgramRunner::run(const Element& commands)
     {
         if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
         if (e.name == "list")
-            lists_[read_.text(e, "name")] = &e;
+        {
+            const std::string name = read_.text(e, "name");
+            if (!lists_.emplace(name, &e).second)
+                read_.fail(e, fmt::format("there is a list named '{}' already", name));
+        }
         else if (e.name == "mainlist")
-            main = &e;
+        {
+            if (main == nullptr)
+                main = &e;
+            else
+                def_.warnings.push_back(
+                    fmt::format("{}:{}: <mainlist>: is there twice, the second one is not run, as "
+                                "with GenCase.",
+                                def_.file, e.line));
+        }
         else
-            read_.fail(e, "is not known in <commands>, expected list or mainlist");
+            def_.warnings.push_back(
+                fmt::format("{}:{}: <{}>: is not known in <commands> and has no effect, as with "
+                            "GenCase; expected list or mainlist.",
+                            def_.file, e.line, e.name));
     }
     if (main == nullptr) read_.fail(commands, "the element <mainlist> is missing in it");
     def_.list_log.push_back("> MAIN");
@@ -74,14 +89,26 @@ void ProgramRunner::run_command(const Element& e)
         read_.fail(e, "is not a command, see the templates for what can stand in a list");
     if (!read_.is_active(e)) return;
     count_command(e);
-    for (const Element& child : e.children)
-        if (child.kind == Element::Kind::Tag && !child.name.starts_with('_') &&
-            !child.name.starts_with("fppg:") && !may_have_child(e.name, child.name))
-            read_.fail(child, fmt::format("<{}> has no such element", e.name));
+    check_children(e);
     if (!run_state_command(e) && !run_transform(e) && !run_clip(e) &&
         !variables_.run(e, def_.list_log) && !run_flow_command(e) && !run_draw(e) &&
         !run_fill_or_redraw(e))
         read_.fail_unsupported(e);
+}
+
+void ProgramRunner::check_children(const Element& e) const
+{
+    std::map<std::string_view, std::size_t> found;
+    for (const Element& child : e.children)
+    {
+        if (child.kind != Element::Kind::Tag || child.name.starts_with('_') ||
+            child.name.starts_with("fppg:"))
+            continue;
+        const std::size_t allowed = allowed_children(e.name, child.name);
+        if (allowed == 0) read_.fail(child, fmt::format("<{}> has no such element", e.name));
+        if (++found[child.name] > allowed)
+            read_.fail(child, fmt::format("<{}> has it already, expected one", e.name));
+    }
 }
 
 bool ProgramRunner::run_flow_command(const Element& e)

@@ -46,6 +46,8 @@ private:
     void run_list(const Element& list, const std::string& name);
     void run_command(const Element& e);
     void count_command(const Element& e);
+    /// throws CaseError for an element that the command does not have, or has once only
+    void check_children(const Element& e) const;
     bool run_state_command(const Element& e);
     bool run_transform(const Element& e);
     bool run_clip(const Element& e);

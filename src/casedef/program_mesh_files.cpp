@@ -163,6 +163,12 @@ void ProgramRunner::draw_mesh_file(const Element& e)
             op.fill_inside = true;
         }
     }
+    // Without numbers it has no effect.
+    if (const Element* layers = e.find_child("layers");
+        layers != nullptr && !read_.text_or(*layers, "vdp", "").empty())
+        read_.fail(*layers,
+                   "layers of a mesh file are not supported (GenCase has them in 2D with "
+                   "setfrdrawmode only)");
     if (const Element* clip = e.find_child("clipdomain"))
         op.clip_resize = read_.number_or(*clip, "resize", 0);
     if (const Element* select = e.find_child("polyselec"))

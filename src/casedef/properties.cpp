@@ -57,7 +57,9 @@ public:
         for (std::size_t i = 0; i < def_.floatings.size(); ++i)
         {
             const FloatingDef& f = def_.floatings[i];
-            const Element place{.name = "floating", .line = f.line};
+            Element place;
+            place.name = "floating";
+            place.line = f.line;
             for (const std::string& name : f.properties) require_property(place, name);
             for (const std::uint16_t mk : f.mkbound)
             {

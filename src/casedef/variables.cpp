@@ -139,7 +139,10 @@ bool Variables::is_variable_attribute(std::string_view attribute)
 
 void Variables::predefine(const std::string& name, VariableValue value, bool is_exported)
 {
-    define(name, std::move(value), true);
+    if (Variable* old = find_entry(name); old != nullptr && old->value.index() == value.index())
+        *old = {name, std::move(value), true, is_exported};
+    else
+        define(name, std::move(value), true);
     find_entry(name)->is_exported = is_exported;
 }
 

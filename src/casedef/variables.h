@@ -40,7 +40,9 @@ public:
     static bool is_variable_attribute(std::string_view attribute);
 
     /// Adds a variable that the program provides (Dp, PosMin_x, CaseName ...): a constant, and kept
-    /// out of <uservars> unless is_exported (VResId is the one that is exported).
+    /// out of <uservars> unless is_exported (VResId is the one that is exported). It takes the
+    /// place of a variable of that name, which must be of the same kind (`<predefinition>` may have
+    /// one: 17 cases in GenCase v5.4.354).
     void predefine(const std::string& name, VariableValue value, bool is_exported = false);
 
     /// newvar and newvarcte. `text` is an expression, with or without a leading `#`.

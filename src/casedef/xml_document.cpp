@@ -1,5 +1,6 @@
 #include "casedef/xml_document.h"
 
+#include "casedef/lenient_xml.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -18,18 +19,13 @@ namespace
 
 constexpr int max_depth = 200;
 
-bool is_blank(char c)
-{
-    return c == ' ' || (c >= 9 && c <= 13);
-}
-
 /// Blanks at both ends dropped, runs of others one blank each.
 std::string condensed(const std::string& text)
 {
     std::string out;
     for (const char c : text)
     {
-        if (!is_blank(c))
+        if (!is_xml_blank(c))
             out += c;
         else if (!out.empty() && out.back() != ' ')
             out += ' ';
@@ -74,31 +70,6 @@ std::string as_utf8(std::string text)
     return out;
 }
 
-/// Replaces byte order mark and declaration by blanks: nothing that they say is used, and comments
-/// may stand before the declaration only here.
-void blank_declaration(std::string& text)
-{
-    std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-    std::fill_n(text.begin(), at, ' ');
-    while (at < text.size())
-    {
-        if (is_blank(text[at]))
-            ++at;
-        else if (text.compare(at, 4, "<!--") == 0)
-        {
-            const std::size_t end = text.find("-->", at + 4);
-            if (end == std::string::npos) return;
-            at = end + 3;
-        }
-        else
-            break;
-    }
-    const std::size_t end = text.find("?>", at);
-    if (text.compare(at, 5, "<?xml") != 0 || end == std::string::npos) return;
-    for (std::size_t i = at; i < end + 2; ++i)
-        if (text[i] != '\n') text[i] = ' ';
-}
-
 Element convert(const tinyxml2::XMLElement& source, const std::string& file, int depth);
 
 void convert_children(const tinyxml2::XMLNode& source, const std::string& file, int depth,
@@ -140,10 +111,12 @@ Element convert(const tinyxml2::XMLElement& source, const std::string& file, int
 
 Element parse_document(std::string text, const std::string& name)
 {
-    text = as_utf8(std::move(text));
-    blank_declaration(text);
+    const StrictXml strict = strict_xml(as_utf8(std::move(text)));
     tinyxml2::XMLDocument document;
-    const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
+    tinyxml2::XMLError error = document.Parse(strict.text.data(), strict.text.size());
+    // What follows the root may be anything.
+    if (error != tinyxml2::XML_SUCCESS && error != tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
+        error = document.Parse(strict.text.data(), strict.end_of_root);
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
         throw CaseError(name, 0,
                         "the file is empty, expected an XML document with the root <case>");

@@ -18,9 +18,9 @@ struct ChunkedLoop
     void (*run)(void* body, std::size_t begin, std::size_t end) = nullptr;
 };
 
-/// Runs all chunks of a loop on the calling thread and up to `threads` - 1 helpers, which are kept
-/// for the next loop. Returns when all chunks are done. A loop inside a loop, and one that another
-/// thread starts at the same time, runs on its caller alone.
+/// Runs all chunks of a loop on a team of up to `threads` threads of OpenMP, which keeps them for
+/// the next loop. Returns when all chunks are done. A loop inside a loop runs on its caller alone.
+/// OMP_NUM_THREADS, OMP_PROC_BIND and OMP_WAIT_POLICY count.
 void run_chunks(const ChunkedLoop& loop, int threads);
 
 /// Calls body(i) for i in [0, n), spread over `threads` threads in chunks of `chunk`, handed out as

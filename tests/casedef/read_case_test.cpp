@@ -225,6 +225,13 @@ INSTANTIATE_TEST_SUITE_P(
             "UnknownChild",
             R"(<drawellipsoid radius="1"><point x="0" y="0" z="0" /><layers vdp="1" /></drawellipsoid>)",
             "<layers>: <drawellipsoid> has no such element"),
+        in_mainlist(
+            "TwoSizes",
+            R"(<drawbox><boxfill>all</boxfill><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /><size x="1" y="1" z="1" /></drawbox>)",
+            "<size>: <drawbox> has it already, expected one"),
+        in_mainlist("ChildOfMeshFile",
+                    R"(<drawfilestl file="a.stl"><point x="0" y="0" z="0" /></drawfilestl>)",
+                    "<point>: <drawfilestl> has no such element"),
         in_mainlist("UnknownActivity", R"(<setactive drawlines="0" />)",
                     "<setactive>: attribute 'drawlines' is not known"),
         in_mainlist(
@@ -268,8 +275,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "<definition>: the element <pointmax> is missing in it"},
         Mistake{"TooManyNodes", [](CaseText& text) { text.dp = "1e-10"; },
                 "<definition>: the domain has"},
-        Mistake{"UnknownInCommands", [](CaseText& text) { text.lists = "<drawpoint />"; },
-                "<drawpoint>: is not known in <commands>, expected list or mainlist"},
+        Mistake{"TwoListsOfOneName",
+                [](CaseText& text) { text.lists = R"(<list name="A" /><list name="A" />)"; },
+                "<list>: there is a list named 'A' already"},
+        Mistake{"UserVariableOfAnotherKind",
+                [](CaseText& text) {
+                    text.predefinition = R"(<predefinition><newvarstrcte H="a" /></predefinition>)";
+                },
+                "<predefinition>: "},
         Mistake{"ListWithoutName", [](CaseText& text) { text.lists = "<list />"; },
                 "<list>: attribute 'name' is missing"},
         Mistake{"MissingGravity", [](CaseText& text) { text.gravity = ""; },
@@ -301,6 +314,24 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 "<mvjump>: is not known in <motion>"}),
     name_of);
+
+// GenCase v5.4.354 passes over all of them without a word.
+TEST(ReadCase, WarnsOfWhatHasNoEffect)
+{
+    CaseText text = test::tank();
+    text.lists = "<drawpoint />";
+    text.mkconfig = R"(<mkconfig boundcount="20" fluidcount="9"><mkorient /></mkconfig>)";
+    text.after_geometry =
+        R"(<initials><velocity mkfluid="9" x="1" y="0" z="0" /><velocity mkfluid="8" x="1" y="0" z="0" /></initials>)";
+    const std::vector<std::string> warnings = read(text).warnings;
+    ASSERT_EQ(warnings.size(), 3U);
+    EXPECT_NE(warnings[0].find("<mkorient>: is not known in <mkconfig> and has no effect"),
+              std::string::npos);
+    EXPECT_NE(warnings[1].find("<drawpoint>: is not known in <commands> and has no effect"),
+              std::string::npos);
+    EXPECT_NE(warnings[2].find("<velocity>: there is no mkfluid 9, so it has no effect"),
+              std::string::npos);
+}
 
 TEST(ReadCase, RefusesAMissingMainlistAndAForeignRoot)
 {

@@ -95,7 +95,26 @@ TEST(ParseXml, NamesTheLineWhereTheXmlBreaks)
     EXPECT_NE(error_of("<case>\n<a>\n</b>\n</case>").find("this is not well-formed XML"),
               std::string::npos);
     EXPECT_NE(error_of("<case").find("this is not well-formed XML"), std::string::npos);
-    EXPECT_NE(error_of("<case a=1/>").find("this is not well-formed XML"), std::string::npos);
+    EXPECT_NE(error_of("<case a/>").find("this is not well-formed XML"), std::string::npos);
+    EXPECT_NE(error_of("<case a=\"1\" a=\"2\"/>").find("this is not well-formed XML"),
+              std::string::npos);
+}
+
+// All tried with GenCase v5.4.354.
+TEST(ParseXml, TakesWhatTheParserOfGenCaseTakes)
+{
+    const Element root = parse_xml(
+        "<?xml version=\"1.0\"?>\n<case a=1 b= 'x > y' c=\"p<q & r\"><!-- a -- b=c --><?tool "
+        "<x>\n?>\n"
+        "<d e=2/><f g=h></f></case>\nbehind <it>",
+        "a.xml");
+    EXPECT_EQ(*root.find_attribute("a"), "1");
+    EXPECT_EQ(*root.find_attribute("b"), "x > y");
+    EXPECT_EQ(*root.find_attribute("c"), "p<q & r");
+    EXPECT_EQ(*root.find_child("d")->find_attribute("e"), "2");
+    EXPECT_EQ(*root.find_child("f")->find_attribute("g"), "h");
+    EXPECT_EQ(root.find_child("f")->line, 4);
+    EXPECT_EQ(parse_xml("<a><![CDATA[x=<y>]]></a>", "a.xml").text, "x=<y>");
 }
 
 TEST(ParseXml, RefusesAnEmptyFile)
