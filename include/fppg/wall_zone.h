@@ -17,8 +17,6 @@ struct WallZoneOptions
     /// for each side so that nodes and half of the wall's particles make up its volume.
     std::optional<double> clearance_dp;
     std::uint64_t wall_particles = 0; ///< on this surface, one dp^2 each
-    /// How much less of them lies inside than wall_share_inside says, in particles: edges.
-    double less_inside = 0;
     /// The nodes of `volume` will be drawn: they stop fills themselves, and may stay from 0.4 dp on
     /// where the volume asks for them.
     bool is_solid = false;
@@ -43,8 +41,8 @@ struct WallZone
     /// How much of the wall's particles lies in the body: one half where every facet has the body
     /// on one side, more where parts run through one another, less where sheets stand out of it.
     double wall_share_inside = 0.5;
-    /// (nodes of `volume` + wall_particles * wall_share_inside - less_inside) dp^3 / body_volume -
-    /// 1, over all of the body, be it in the lattice or not; 0 without an inside
+    /// (nodes of `volume` + wall_particles * wall_share_inside) dp^3 / body_volume - 1, over all of
+    /// the body, be it in the lattice or not; 0 without an inside
     double volume_error = 0;
     /// Nodes whose inside a winding number told because columns disagreed.
     std::uint64_t disputed_nodes = 0;
@@ -58,9 +56,8 @@ struct WallZone
 /// different sides at least one is in it and no 6-connected fill passes through. Beyond that, nodes
 /// nearer than the clearance are left out. With an automatic clearance, the nodes of each side are
 /// left out in the order of their distance (ties spread evenly over space) up to 1.0 dp, until
-///   inside:  nodes + wall_particles * share - less_inside = volume / dp^3, and
-///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles * (1 - share) +
-///            less_inside
+///   inside:  nodes + wall_particles * share = volume / dp^3, and
+///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles * (1 - share)
 /// or the limits 0.5 and 1.0 dp are reached. (No node is ever kept nearer than 0.5 dp: a plane wall
 /// whose nearest nodes inside stand at t < 0.5 dp lacks t dp of thickness, so the volume error of
 /// a body whose walls all lie so is down to -t dp area / volume.) The share is one half but for

@@ -11,6 +11,7 @@
 #include "fppg/version.h"
 
 #include "app/debug_pictures.h"
+#include "app/fit_check.h"
 #include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -21,7 +22,6 @@
 #include "app/stopwatch.h"
 #include "app/templates_command.h"
 #include "app/threads.h"
-#include "fit/check_fit.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -265,8 +265,8 @@ private:
                       relax_history_ = std::move(done.history);
                       for (std::string& w : done.warnings) warn(std::move(w));
                   });
-        for (const std::string& w : check_fit(def_.fit, field_.walls, def_.grid.dp))
-            warn(fmt::format("{}:{}", def_.file, w));
+        for (const std::string& w : check_fit(def_.fit, field_.walls, field_.grid, log_))
+            warn(fmt::format("{}: {}", def_.file, w));
     }
 
     /// After the relaxation, which would move them.

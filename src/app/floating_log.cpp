@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "app/fit_check.h"
 #include "lattice/exact_body.h"
 #include "particles/initials.h"
 
@@ -14,9 +15,6 @@ namespace fppg
 {
 namespace
 {
-
-/// Of the mass of a body to that of its shape, beyond which it is told.
-constexpr double largest_deviation = 0.02 + 1e-9;
 
 /// A shape that may make up a floating body.
 struct Shape
@@ -55,45 +53,41 @@ public:
         if (!f.rhop_body || f.mass_body || !(shape.volume > 0) || !is_fitted(block)) return;
         const double expected = *f.rhop_body * shape.volume;
         const double share = body.mass_body / expected - 1;
-        if (!(std::abs(share) > largest_deviation)) return;
-        const auto found = std::find_if(deviations_.begin(), deviations_.end(),
-                                        [&](const Deviation& d) { return d.name == shape.name; });
-        Deviation& d = found == deviations_.end() ? deviations_.emplace_back() : *found;
-        if (++d.bodies > 1 && std::abs(share) <= std::abs(d.share)) return;
-        d.name = shape.name;
-        d.share = share;
-        d.text = fmt::format(
-            "floating mkbound {}: at {:g} kg/m^3 its particles have {:.4g} kg, its {} of {:.4g} {} "
-            "would have {:.4g} kg ({:+.3g} %)",
-            block.mk_type, *f.rhop_body, body.mass_body, shape.name, shape.volume,
-            def_.grid.is_2d ? "m^2" : "m^3", expected, 100 * share);
+        if (!is_off(share)) return;
+        (is_hollow(block.mk) ? hollow_ : cut_)
+            .add(block.mk_type, share,
+                 fmt::format("particles have {:.4g} kg at {:g} kg/m^3, while its {} has {:.4g} {} "
+                             "and {:.4g} kg",
+                             body.mass_body, *f.rhop_body, shape.name, shape.volume,
+                             def_.grid.is_2d ? "m^2" : "m^3", expected));
     }
 
     std::vector<std::string> warnings() const
     {
         std::vector<std::string> out;
-        for (const Deviation& d : deviations_)
+        const auto tell = [&](const DeviationGroup& group, const char* why)
         {
+            if (group.is_empty()) return;
             out.push_back(
-                fmt::format("{}: {}: it is drawn hollow, or cut by the domain or later draws.",
-                            def_.file, d.text));
+                fmt::format("{}: floating bodies have another mass than their shapes, {}, "
+                            "{}.",
+                            def_.file, why, group.text("mkbound")));
             if (!def_.grid.is_2d)
-                out.back() += " <fppg><floatings exact=\"true\"> takes the shape's mass.";
-            if (d.bodies > 1)
-                out.back() += fmt::format(" {} bodies of this line are like this.", d.bodies);
-        }
+                out.back() += " <fppg><floatings exact=\"true\"> takes the mass of the shape.";
+        };
+        tell(hollow_, "as no draw fills them");
+        tell(cut_, "as the domain, later draws or touching bodies cut them");
         return out;
     }
 
 private:
-    /// The largest one of a draw.
-    struct Deviation
+    /// Whether no draw or fill gave a mk the inside of its fitted walls.
+    bool is_hollow(std::uint16_t mk) const
     {
-        std::string name;
-        int bodies = 0;
-        double share = 0;
-        std::string text;
-    };
+        return std::none_of(walls_.bodies.begin(), walls_.bodies.end(),
+                            [&](const FittedBody& body)
+                            { return body.mk == mk && body.figures.filled > 0.98; });
+    }
 
     /// Whether a block has particles of a fitted wall.
     bool is_fitted(const ParticleBlock& block) const
@@ -112,7 +106,8 @@ private:
     const CaseDef& def_;
     const CaseParticles& particles_;
     const FittedWalls& walls_;
-    std::vector<Deviation> deviations_;
+    DeviationGroup hollow_;
+    DeviationGroup cut_;
 };
 
 std::string text_of(const FloatingBody& body)

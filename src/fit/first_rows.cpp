@@ -10,13 +10,7 @@ namespace fppg
 namespace
 {
 
-// Lengths in dp.
-constexpr double row_distance = 0.93;
-/// Along a row, as in the front that goes on from it: rows with the dp of the line's own particles
-/// make a front of 1.07 particles a dp squared.
-constexpr double row_spacing = 1.075;
-/// Beside shorter lines the places between the line's own particles are better.
-constexpr double shortest_row = 6;
+constexpr double row_distance = 0.93; // dp
 
 /// The edges of one line in order, with the length of the line up to each.
 struct Course
@@ -60,7 +54,6 @@ public:
     /// places  lengths along the course of the particles on it, ascending
     void lay(const Course& course, const std::vector<double>& places, bool is_closed)
     {
-        if (course.lengths.back() > shortest_row * dp_) return lay_evenly(course, is_closed);
         for (std::size_t i = 0; i + 1 < places.size(); ++i)
             lay_beside(course, 0.5 * (places[i] + places[i + 1]));
         if (!is_closed || places.empty()) return;
@@ -86,17 +79,6 @@ private:
         std::uint32_t edge;
         Vec3 point;
     };
-
-    /// A row of an open line ends one row away from the lines across its ends.
-    void lay_evenly(const Course& course, bool is_closed)
-    {
-        const double away = is_closed ? 0 : row_distance * dp_;
-        const double length = course.lengths.back() - 2 * away;
-        // A gap rather too narrow than too wide: one too wide makes holes all along the front.
-        const int gaps = static_cast<int>(length / (row_spacing * dp_) + 0.6);
-        for (int i = 0; i < gaps + (is_closed ? 0 : 1); ++i)
-            lay_beside(course, away + length * i / gaps);
-    }
 
     void lay_beside(const Course& course, double length)
     {

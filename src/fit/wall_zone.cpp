@@ -451,9 +451,8 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
         const auto particles = static_cast<double>(options.wall_particles);
         const double cells = zone.body_volume / dp3;
         const auto nodes = static_cast<double>(in_body);
-        const double wall_inside = particles * zone.wall_share_inside - options.less_inside;
-        within.leave_out(nodes - (cells - wall_inside));
-        beyond.leave_out(cells + particles - wall_inside - nodes);
+        within.leave_out(nodes - (cells - particles * zone.wall_share_inside));
+        beyond.leave_out(cells + particles * (1 - zone.wall_share_inside) - nodes);
     }
 
     std::vector<std::uint64_t> kept(near.size(), 0);
@@ -485,8 +484,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     {
         for (const std::uint64_t count : kept) zone.nodes += count;
         const double wall_cells =
-            static_cast<double>(options.wall_particles) * zone.wall_share_inside -
-            options.less_inside;
+            static_cast<double>(options.wall_particles) * zone.wall_share_inside;
         zone.volume_error =
             (static_cast<double>(zone.nodes) + wall_cells) * dp3 / zone.body_volume - 1;
     }

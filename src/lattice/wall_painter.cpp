@@ -5,7 +5,6 @@
 #include "fppg/wall_zone.h"
 
 #include "core/parallel.h"
-#include "fit/wall_inside.h"
 #include "lattice/snap.h"
 #include "shapes/mesh_query.h"
 #include "shapes/point_grid.h"
@@ -227,7 +226,7 @@ void take_figures(const WallZone& zone, const WallZoneOptions& options, std::siz
     figures.volume = zone.body_volume;
     figures.sheet_volume = zone.sheet_area * dp;
     figures.node_volume = static_cast<double>(zone.nodes) * dp3;
-    figures.wall_volume = (n * zone.wall_share_inside - options.less_inside) * dp3;
+    figures.wall_volume = n * zone.wall_share_inside * dp3;
     figures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
     body.settle_share(dp);
 }
@@ -279,7 +278,6 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     zone_options.clearance_dp = settings.clearance_dp;
     zone_options.wall_particles = surface.positions.size();
     zone_options.is_solid = body.is_solid;
-    zone_options.less_inside = less_than_half(body.mesh, body.features, surface, grid.is_2d);
     WallZone zone = wall_zone(body.mesh, body.report, grid, zone_options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (body.is_solid && !zone.has_inside && zone.warnings.empty())

@@ -23,8 +23,7 @@ constexpr std::array<int, 6> renewals{10, 25, 40, 55, 70, 85};
 constexpr int quiet_end = 8;
 
 // Lengths in dp.
-// Holes below 0.8 close by themselves: to fill them puts 2 to 4 % too many on a sphere.
-constexpr double hole_radius = 0.80;
+constexpr double hole_radius = 0.74;
 constexpr double last_hole_radius = 0.735;
 constexpr double least_distance = 0.70;
 constexpr double last_least_distance = 0.62;

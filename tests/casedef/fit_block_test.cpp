@@ -114,7 +114,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
 TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
 {
     const CaseDef def = read_block(
-        R"(<bodyfitted density="area" clearance="auto" plates="both"><relax iterations="auto" /></bodyfitted>)");
+        R"(<bodyfitted density="area" clearance="auto" plates="auto"><relax iterations="auto" /></bodyfitted>)");
     EXPECT_EQ(settings(def, 0).relax.tolerance, 0.001);
     FitSettings plain;
     plain.line = settings(def, 0).line;
@@ -326,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Density", R"(<fppg><bodyfitted density="Area" /></fppg>)",
                 "attribute density=\"Area\" is invalid, expected area or cell"},
         Mistake{"Plates", R"(<fppg><bodyfitted plates="none" /></fppg>)",
-                "attribute plates=\"none\" is invalid, expected both or one"},
+                "attribute plates=\"none\" is invalid, expected auto, both or one"},
         Mistake{"NoIterations", R"(<fppg><bodyfitted><relax iterations="0" /></bodyfitted></fppg>)",
                 "iterations=\"0\" is 0, expected auto or a whole number from 1 to 1000000"},
         Mistake{"HalfAnIteration",
