@@ -10,13 +10,13 @@
 #include "batch/plan.h"
 #include "batch/report.h"
 #include "batch/run_batch.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -220,13 +220,12 @@ private:
     {
         if (call_.log_json)
         {
-            nlohmann::ordered_json json = {{"event", "checked"},
-                                           {"run", run.name},
-                                           {"definition", path},
-                                           {"refused", refusal.has_value()}};
+            Json json = {{"event", "checked"},
+                         {"run", run.name},
+                         {"definition", path},
+                         {"refused", refusal.has_value()}};
             if (refusal) json["error"] = *refusal;
-            fmt::print("{}\n",
-                       json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+            fmt::print("{}\n", json.text());
             return;
         }
         if (!refusal) return;

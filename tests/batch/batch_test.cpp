@@ -66,7 +66,7 @@ TEST(Batch, KilledInTheMiddleIsResumedWithNothingLostAndNothingDoneTwice)
 {
     const TemporaryFolder folder;
     copy_templates(folder.path() / "cases", template_names);
-    write_text(folder / "cases/Broken_Def.xml", box_case().text() + "<open>");
+    write_text(folder / "cases/Broken_Def.xml", "<case><open>" + box_case().text());
     const Arguments options{"batch",        "cases",
                             "--out",        "out",
                             "--threads",    "1",

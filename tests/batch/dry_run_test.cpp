@@ -29,7 +29,7 @@ void write_cases(const TemporaryFolder& folder)
     CaseText meshless = box_case();
     meshless.mainlist += "\n<drawfilestl file=\"gone.stl\" />";
     write_text(folder / "cases/deep/D_Def.xml", meshless.text());
-    write_text(folder / "cases/E_Def.xml", box_case().text() + "<open>");
+    write_text(folder / "cases/E_Def.xml", "<case><open>" + box_case().text());
 }
 
 TEST(DryRun, SaysWhichDefinitionsAreRefusedAndWritesNothing)
