@@ -109,8 +109,9 @@ struct NormalsReport
 /// threads    number of threads; the result does not depend on it
 /// returns    one vector a boundary particle, in id order, metres
 /// throws     CaseError for norparts in 3-D
-/// cost       O((particles + polygons) log polygons + candidates) time; 12 bytes a boundary
-/// particle source     rules N1 to N8 of the experiments with GenCase v5.4.354, told at the head of
+/// cost       O((particles + polygons) log polygons + candidates) time, 12 bytes per boundary
+///            particle
+/// source     experiments with GenCase v5.4.354; their rules are at the head of
 ///            src/normals/geometry_normals.h and at each function of src/normals/normals.cpp
 std::vector<std::array<float, 3>> compute_normals(const CaseDef& def,
                                                   const CaseParticles& particles,

@@ -137,20 +137,23 @@ public:
         const std::int64_t row = cells_.row_of(y);
         const bool may_be_surrounded = cells_.may_be_surrounded(column, row);
         std::array<Nearest, 4> quadrants; // left below, right below, left above, right above
-        const auto is_surrounded = [&]
+        const auto farthest = [&]
         {
-            return std::all_of(quadrants.begin(), quadrants.end(),
-                               [](const Nearest& n) { return !std::isinf(n.square); });
+            return std::max_element(quadrants.begin(), quadrants.end(),
+                                    [](const Nearest& a, const Nearest& b)
+                                    { return a.square < b.square; })
+                ->square;
         };
-        for (std::int64_t ring = 0, left = 2; ring <= cells_.last_ring() && left > 0; ++ring)
+        // Cells of the ring after `ring` are at least `distance` away.
+        double distance = 0;
+        for (std::int64_t ring = 0; ring <= cells_.last_ring(); ++ring)
         {
-            const double distance = static_cast<double>(ring - 1) * cells_.cell();
-            if (!may_be_surrounded && ring > 1 && distance * distance > limit_) break;
             cells_.visit_ring(column, row, ring,
                               [&](std::uint32_t i) { offer(quadrants, i, x, y); });
-            if (left < 2 || is_surrounded()) --left;
+            if (distance * distance >= (may_be_surrounded ? farthest() : limit_)) break;
+            distance += cells_.cell();
         }
-        if (is_surrounded()) return interpolated(quadrants, x, y);
+        if (!std::isinf(farthest())) return interpolated(quadrants, x, y);
         Nearest nearest;
         for (const Nearest& n : quadrants)
             if (is_better(n, nearest)) nearest = n;

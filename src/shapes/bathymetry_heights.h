@@ -9,11 +9,12 @@ namespace fppg
 
 /// Heights on the nodes of a grid from scattered points, as GenCase v5.4.354 gives them. Found by
 /// experiment on the polygons of its shapeout: 22 sets of 6 to 120 random points and lattices, all
-/// 18 600 heights equal, in the bits of float32 where that was looked at.
+/// 18 600 heights equal, in the bits of float32 where that was looked at, and on the grids that it
+/// saves for 25 sets of 60 to 5000 points in 6 to 60 clusters, all 10 800 heights equal.
 /// 1. The points are sorted into square cells of spacing * sqrt(nodes / points), from a tenth of a
 ///    cell below the least x and y to a tenth beyond the largest. A node looks for the nearest
 ///    point of each of its four quadrants (x and y up to its own, or larger), in its cell, then in
-///    rings of cells round it until each has one, and in one ring more. Of a ring its lower and its
+///    rings of cells round it as far as a nearer one may be. Of a ring its lower and its
 ///    upper row are taken where there are such rows of cells, and the cells at its left and right
 ///    between row max(y - r, 0) and row min(y + r, last), these two left out: in the first and last
 ///    row of cells the cells beside a node's own are never seen. GenCase is followed in that.
