@@ -496,8 +496,9 @@ private:
             bool is_outside = false;
             bool is_at_sides = false;
         };
-        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size());
+        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
+        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
         std::vector<std::vector<Candidate>> chunks((runs.size() + runs_a_chunk - 1) / runs_a_chunk);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
