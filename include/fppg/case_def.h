@@ -474,8 +474,9 @@ struct FitSettings
     double feature_angle_deg = 30; ///< [0, 180)
     FitDensity density = FitDensity::Area;
     std::optional<double> clearance_dp; ///< 0.5 to 1; empty: chosen per body from its volume
-    /// A plate thinner than dp gets one sheet of particles instead of one on each side.
-    bool one_sheet = false;
+    /// A plate thinner than this gets one sheet of particles instead of one on each side, dp: from
+    /// half a dp down two sheets are one of twice the density to SPH.
+    double one_sheet_dp = 0.5;
     RelaxSettings relax;
     bool operator==(const FitSettings&) const = default;
 };

@@ -5,6 +5,7 @@
 #include "fppg/surface_mesh.h"
 #include "fppg/vec.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,6 +33,24 @@ struct ShapeMesh
     double radius = 0;
 };
 
+/// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
+/// cut off counts as if it were there. SI units; in 2D areas are lengths times dp.
+struct FitFigures
+{
+    /// Of its surface, and of a strip of half a dp beyond open rims, where particles stand on the
+    /// rim.
+    double area = 0;
+    double second_sheet = 0; ///< area that is not in `area`: the side of a plate without particles
+    double wall_particles = 0;
+    double volume = 0;       ///< of the shape; 0: it is open
+    double sheet_volume = 0; ///< of facets that bound no volume, as if dp thick
+    double node_volume = 0;  ///< that the nodes inside stand for
+    double wall_volume = 0;  ///< that the wall's particles stand for, as far as they are inside
+    /// How much of the volume has particles, 0 to 1: all of a solid, of a surface what fills give
+    /// it; 1 too where its walls leave no room for nodes.
+    double filled = 0;
+};
+
 /// One drawn object whose particles stand on its true surface.
 struct FittedBody
 {
@@ -50,6 +69,22 @@ struct FittedBody
     Features features;
     double clearance_inside = 0;  ///< metres; lattice nodes nearer than this are left out
     double clearance_outside = 0; ///< the same on the other side
+    /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: in a filled body so much that
+    /// they and the nodes make up its volume, in a hollow one 1.
+    double share = 1;
+    FitFigures figures;
+
+    /// Settles the share by the figures.
+    ///
+    /// dp  metres
+    void settle_share(double dp)
+    {
+        if (figures.filled <= 0 || figures.wall_particles <= 0) return;
+        const double of_wall =
+            std::max(0.0, figures.volume + figures.sheet_volume - figures.node_volume);
+        const double of_filled = of_wall / (figures.wall_particles * dp * dp * dp);
+        share = 1 + figures.filled * (of_filled - 1);
+    }
 };
 
 /// Particles of the fitted walls, one entry each in all arrays, in the order of bodies and of
@@ -125,10 +160,13 @@ struct FittedWalls
     std::vector<FittedBody> bodies;
     WallParticles particles;
     VolumeParticles volume;
-    /// Where particles of a body were cut, by a later draw, a clip, the domain or as a second
-    /// sheet, and their bodies: no particle may be put there again.
+    /// Where particles of a body were cut, by a later draw, a clip or the domain, and their bodies:
+    /// no particle may be put there again.
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
+    /// Particles of the second sheets of plates, which were taken out: none may be put on their
+    /// side of the plate again.
+    WallParticles second_sheets;
 
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
     std::vector<std::uint16_t> free_mks;

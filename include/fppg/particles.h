@@ -91,6 +91,8 @@ struct FreeParticles
     std::vector<std::array<float, 3>> normals;
     std::vector<float> distances; ///< metres to the surface it belongs to, negative inside
     std::vector<float> rhop;      ///< boundary and floating particles: rhop0
+    /// How much of dp^3 (2D: dp^2) of a body it stands for (FittedBody::share); empty: all are 1.
+    std::vector<float> shares;
 
     std::size_t size() const { return positions.size(); }
 };

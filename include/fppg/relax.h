@@ -38,9 +38,9 @@ struct RelaxSurfaceOptions
     /// never. What it throws is passed on.
     int snapshot_interval = 0;
     std::function<void(int iteration, const WallParticles&)> on_snapshot = {};
-    /// Where particles may be put into holes, by index of the body and position; empty:
-    /// everywhere. Called from several threads.
-    std::function<bool(std::size_t, const Vec3&)> may_insert = {};
+    /// Where particles may be put into holes, by index of the body, position and normal of the
+    /// surface; empty: everywhere. Called from several threads.
+    std::function<bool(std::size_t, const Vec3&, const Vec3&)> may_insert = {};
 };
 
 struct RelaxSurfaceReport

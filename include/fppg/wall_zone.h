@@ -35,6 +35,9 @@ struct WallZone
     /// Of the body, metres cubed (2D: area of the section times dp); what several parts share
     /// counts once, holes are closed. 0 without an inside.
     double body_volume = 0;
+    double area = 0;         ///< of all facets, metres squared (2D: length of the section times dp)
+    double sheet_area = 0;   ///< of facets that bound no volume, likewise
+    std::uint64_t nodes = 0; ///< that `volume` would have if the lattice held all of the body
     /// How much of the wall's particles lies in the body: one half where every facet has the body
     /// on one side, more where parts run through one another, less where sheets stand out of it.
     double wall_share_inside = 0.5;

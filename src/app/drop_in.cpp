@@ -12,6 +12,7 @@
 #include "fppg/version.h"
 
 #include "app/debug_pictures.h"
+#include "app/fit_check.h"
 #include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -259,14 +260,16 @@ private:
     {
         if (field_.walls.bodies.empty()) return;
         log_fitted_walls(field_, log_);
-        if (!relaxes(def_, field_)) return;
-        stage("Relax",
-              [this]
-              {
-                  RelaxOutcome done = run_relaxation(def_, field_, output_, threads_, log_);
-                  relax_history_ = std::move(done.history);
-                  for (std::string& w : done.warnings) warn(std::move(w));
-              });
+        if (relaxes(def_, field_))
+            stage("Relax",
+                  [this]
+                  {
+                      RelaxOutcome done = run_relaxation(def_, field_, output_, threads_, log_);
+                      relax_history_ = std::move(done.history);
+                      for (std::string& w : done.warnings) warn(std::move(w));
+                  });
+        for (const std::string& w : check_fit(def_.fit, field_.walls, field_.grid, log_))
+            warn(fmt::format("{}: {}", def_.file, w));
     }
 
     /// After the relaxation, which would move them.
@@ -289,7 +292,8 @@ private:
                   std::vector<std::string> warnings;
                   particles_ = make_particles(def_, field_, threads_, constants_, warnings);
                   log_particles(def_, particles_, constants_, log_);
-                  settle_floatings(scene_, particles_, log_);
+                  for (std::string& w : settle_floatings(scene_, field_.walls, particles_, log_))
+                      warn(std::move(w));
                   for (std::string& w : warnings) warn(std::move(w));
                   for (std::string& w : check_motion(def_, particles_)) warn_of_slip(std::move(w));
               });

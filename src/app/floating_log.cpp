@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "app/fit_check.h"
 #include "lattice/exact_body.h"
 #include "particles/initials.h"
 
@@ -14,6 +15,100 @@ namespace fppg
 {
 namespace
 {
+
+/// A shape that may make up a floating body.
+struct Shape
+{
+    std::string name;  ///< the command and its line
+    double volume = 0; ///< metres cubed, in 2D metres squared; 0: there is none
+};
+
+/// Compares the masses of fitted floating bodies with those of their shapes.
+class MassCheck
+{
+public:
+    MassCheck(const CaseDef& def, const CaseParticles& particles, const FittedWalls& walls)
+        : def_(def), particles_(particles), walls_(walls)
+    {
+    }
+
+    /// In 2D, the section that a single fitted body makes.
+    Shape section_of(const ParticleBlock& block) const
+    {
+        Shape shape;
+        if (!def_.grid.is_2d) return shape;
+        for (const FittedBody& body : walls_.bodies)
+        {
+            if (body.mk != block.mk) continue;
+            if (!shape.name.empty()) return {};
+            shape = {fmt::format("<{}> of line {}", body.name, body.line),
+                     body.figures.volume / def_.grid.dp};
+        }
+        return shape;
+    }
+
+    void note(const FloatingBody& body, const FloatingDef& f, const Shape& shape)
+    {
+        const ParticleBlock& block = particles_.blocks[body.block];
+        if (!f.rhop_body || f.mass_body || !(shape.volume > 0) || !is_fitted(block)) return;
+        const double expected = *f.rhop_body * shape.volume;
+        const double share = body.mass_body / expected - 1;
+        if (!is_off(share)) return;
+        (is_hollow(block.mk) ? hollow_ : cut_)
+            .add(block.mk_type, share,
+                 fmt::format("particles have {:.4g} kg at {:g} kg/m^3, while its {} has {:.4g} {} "
+                             "and {:.4g} kg",
+                             body.mass_body, *f.rhop_body, shape.name, shape.volume,
+                             def_.grid.is_2d ? "m^2" : "m^3", expected));
+    }
+
+    std::vector<std::string> warnings() const
+    {
+        std::vector<std::string> out;
+        const auto tell = [&](const DeviationGroup& group, const char* why)
+        {
+            if (group.is_empty()) return;
+            out.push_back(
+                fmt::format("{}: floating bodies have another mass than their shapes, {}, "
+                            "{}.",
+                            def_.file, why, group.text("mkbound")));
+            if (!def_.grid.is_2d)
+                out.back() += " <fppg><floatings exact=\"true\"> takes the mass of the shape.";
+        };
+        tell(hollow_, "as no draw fills them");
+        tell(cut_, "as the domain, later draws or touching bodies cut them");
+        return out;
+    }
+
+private:
+    /// Whether no draw or fill gave a mk the inside of its fitted walls.
+    bool is_hollow(std::uint16_t mk) const
+    {
+        return std::none_of(walls_.bodies.begin(), walls_.bodies.end(),
+                            [&](const FittedBody& body)
+                            { return body.mk == mk && body.figures.filled > 0.98; });
+    }
+
+    /// Whether a block has particles of a fitted wall.
+    bool is_fitted(const ParticleBlock& block) const
+    {
+        const auto is_of_wall = [](FitKind kind) { return kind != FitKind::Volume; };
+        return std::any_of(block.runs.begin(), block.runs.end(),
+                           [&](const ParticleRun& run)
+                           {
+                               if (!run.is_free()) return false;
+                               const auto first = particles_.free.kinds.begin() +
+                                                  static_cast<std::ptrdiff_t>(run.free_begin());
+                               return std::any_of(first, first + run.count, is_of_wall);
+                           });
+    }
+
+    const CaseDef& def_;
+    const CaseParticles& particles_;
+    const FittedWalls& walls_;
+    DeviationGroup hollow_;
+    DeviationGroup cut_;
+};
 
 std::string text_of(const FloatingBody& body)
 {
@@ -54,11 +149,13 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
 
 } // namespace
 
-void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log)
+std::vector<std::string> settle_floatings(const Scene& scene, const FittedWalls& walls,
+                                          CaseParticles& particles, RunLog& log)
 {
     const CaseDef& def = *scene.def;
-    if (particles.floatings.empty()) return;
+    if (particles.floatings.empty()) return {};
     const ExactFloatings& exact = def.exact_floatings;
+    MassCheck check(def, particles, walls);
     log.line("Floating bodies:");
     for (FloatingBody& body : particles.floatings)
     {
@@ -77,6 +174,7 @@ void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log)
                                 fmt::format("<floatings exact=\"true\">: mkbound {} has no exact "
                                             "mass and inertia: {}; expected one closed shape",
                                             block.mk_type, why_not));
+            if (f != nullptr) check.note(body, *f, check.section_of(block));
             continue;
         }
         FloatingBody true_body = body;
@@ -95,9 +193,13 @@ void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log)
         if (f->distribute_mass) true_body.mass_part *= true_body.mass_body / body.mass_body;
         log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
                              text_of(true_body), is_wanted ? " (taken)" : ""));
-        if (is_wanted) body = true_body;
+        if (is_wanted)
+            body = true_body;
+        else
+            check.note(body, *f, {shape->shape, shape->volume});
     }
     log.line();
+    return check.warnings();
 }
 
 } // namespace fppg

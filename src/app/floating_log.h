@@ -1,8 +1,12 @@
 #pragma once
 
 #include "app/run_log.h"
+#include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 #include "fppg/scene.h"
+
+#include <string>
+#include <vector>
 
 namespace fppg
 {
@@ -13,7 +17,10 @@ namespace fppg
 /// `<fppg><floatings exact="true">` asks for it the exact ones take the place of the others, but
 /// for what `<floating>` itself gives.
 ///
-/// throws  CaseError where exact ones are asked for and no single closed shape draws the body
-void settle_floatings(const Scene& scene, CaseParticles& particles, RunLog& log);
+/// returns  warnings: bodies with fitted walls whose mass by their density is more than 2 % off
+///          that of their shape, as they are hollow or cut
+/// throws   CaseError where exact ones are asked for and no single closed shape draws the body
+std::vector<std::string> settle_floatings(const Scene& scene, const FittedWalls& walls,
+                                          CaseParticles& particles, RunLog& log);
 
 } // namespace fppg

@@ -72,11 +72,11 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
                              body.name, body.line, body.mk, counts[b][0], counts[b][1],
                              counts[b][2]));
-        if (body.is_solid && body.report.volume > 0)
+        if (body.figures.filled > 0)
             log.line(fmt::format(
                 "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",
-                body.report.volume, body.report.area, body.clearance_inside / dp,
-                body.clearance_outside / dp));
+                body.figures.volume, body.figures.area + body.figures.second_sheet,
+                body.clearance_inside / dp, body.clearance_outside / dp));
     }
     log.line();
 }

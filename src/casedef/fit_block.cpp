@@ -125,7 +125,13 @@ private:
             s.clearance_dp = number_or(
                 e, "clearance", 0, [](double v) { return v >= 0.5 && v <= 1; },
                 "auto or 0.5 to 1 (times dp)");
-        s.one_sheet = !is_first_of(e, "plates", "both", "one");
+        const std::string plates = read_.text_or(e, "plates", "auto");
+        if (plates == "both" || plates == "one")
+            s.one_sheet_dp = plates == "one" ? 1 : 0;
+        else if (plates != "auto")
+            read_.fail(e,
+                       fmt::format("attribute plates=\"{}\" is invalid, expected auto, both or one",
+                                   plates));
         bool has_relax = false;
         for (const Element& c : e.children)
         {

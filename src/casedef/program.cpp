@@ -247,6 +247,14 @@ MkValue Program::mk_value(const Element& e, MkKind kind, int mk_type) const
 void Program::set_mk(const Element& e, MkKind kind, int mk_type)
 {
     state.mk = mk_value(e, kind, mk_type);
+    const int count = kind == MkKind::Bound ? def.mkbound_count : def.mkfluid_count;
+    if (kind == MkKind::Void || mk_type < count % 256 || count < 256 || is_large_mk_known) return;
+    is_large_mk_known = true;
+    def.warnings.push_back(
+        fmt::format("{}:{}: <{}>: GenCase v5.4 refuses mk {}, as its mks have 8 bits and {}={} "
+                    "leaves {} of them there; the solver takes mks up to 2047",
+                    def.file, e.line, e.name, mk_type,
+                    kind == MkKind::Bound ? "boundcount" : "fluidcount", count, count % 256));
 }
 
 void Program::add_clip(const ClipPlane& plane)

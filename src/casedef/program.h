@@ -141,6 +141,7 @@ struct Program
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
         saved_mks;
     std::vector<DrawConstants> saved_constants;
+    bool is_large_mk_known = false;     ///< a warning named an mk that GenCase v5.4 refuses
     std::size_t pictures_forgotten = 0; ///< so many pictures are older than the last resetdraw
     int list_depth = 0;
     std::size_t commands_run = 0;

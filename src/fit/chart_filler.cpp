@@ -312,7 +312,9 @@ struct ChartFiller::Work
     void propose(const SurfaceRay& place_of)
     {
         if (place_of.facet == no_index || state.charts.of_facet(place_of.facet) != chart) return;
-        if (state.may_fill && !state.may_fill(place_of.position)) return;
+        if (state.may_fill &&
+            !state.may_fill(place_of.position, mesh.facets[place_of.facet].normal))
+            return;
         const double distance = own_sheet_distance(place_of);
         if (distance > state.hole_radius * dp) holes.push({distance, order++, place_of});
     }

@@ -50,8 +50,9 @@ struct FillState
     double dp;
     std::vector<ChartParticles> particles; ///< per chart
     double hole_radius = 0.90;             ///< dp; no point is left farther from a particle
-    /// Where particles may be put; empty: everywhere. Called from several threads.
-    std::function<bool(const Vec3&)> may_fill = {};
+    /// Where particles may be put, by place and normal of the surface; empty: everywhere. Called
+    /// from several threads.
+    std::function<bool(const Vec3&, const Vec3&)> may_fill = {};
 
     /// Gives every chart the feature particles that are near it.
     void share_out_features();

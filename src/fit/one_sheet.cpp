@@ -16,6 +16,8 @@ namespace
 /// Two particles on either side of a plate lie up to this far apart, dp: its thickness and half a
 /// spacing along it.
 constexpr double reach_dp = 1.2;
+/// Tells the sides of a surface that faces itself; no plane of a drawing is likely to contain it.
+constexpr Vec3 staying_side{0.36, 0.48, 0.8};
 /// A corner of a plate lies this far from the nearest particle on its sides, dp.
 constexpr double rim_reach_dp = 2;
 
@@ -59,14 +61,22 @@ SmoothParts smooth_parts(const SurfaceMesh& mesh, const Features& features)
 
 } // namespace
 
-std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& features, double dp,
-                                 SurfaceParticles& particles, int threads)
+SurfaceParticles keep_one_sheet(const SurfaceMesh& mesh, const Features& features,
+                                const OneSheetOptions& options, SurfaceParticles& particles,
+                                int threads)
 {
+    const double dp = options.dp;
     const std::size_t n = particles.positions.size();
     const SmoothParts parts = smooth_parts(mesh, features);
     const auto part_of = [&](std::size_t i) { return parts.of_facet[particles.facets[i]]; };
-    const auto gives_way = [&](std::uint32_t a, std::uint32_t b)
-    { return std::tuple(parts.areas[a], b) < std::tuple(parts.areas[b], a); };
+    const auto side_of = [&](std::size_t i)
+    { return dot(mesh.normals[particles.facets[i]], staying_side); };
+    const auto gives_way = [&](std::size_t i, std::size_t j)
+    {
+        const std::uint32_t a = part_of(i), b = part_of(j);
+        if (a == b) return side_of(i) < side_of(j);
+        return std::tuple(parts.areas[a], b) < std::tuple(parts.areas[b], a);
+    };
     PointGrid grid(reach_dp * dp, n);
     for (const Vec3& p : particles.positions) grid.add(p);
 
@@ -78,21 +88,23 @@ std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& featur
         {
             if (particles.kinds[i] != FitKind::Surface) return;
             const Vec3& normal = mesh.normals[particles.facets[i]];
-            grid.for_each_near(
-                particles.positions[i], reach_dp * dp,
-                [&](std::uint32_t j, double squared)
-                {
-                    if (particles.kinds[j] != FitKind::Surface ||
-                        dot(normal, mesh.normals[particles.facets[j]]) > -0.5)
-                        return;
-                    // Behind this particle, through the plate, and not farther than dp.
-                    const double depth =
-                        dot(particles.positions[i] - particles.positions[j], normal);
-                    if (depth <= 0 || depth >= dp || squared - depth * depth > dp * dp) return;
-                    if (!gives_way(part_of(i), part_of(j))) return;
-                    is_taken[i] = 1;
-                    stays[i] = std::min(stays[i], part_of(j));
-                });
+            grid.for_each_near(particles.positions[i], reach_dp * dp,
+                               [&](std::uint32_t j, double squared)
+                               {
+                                   if (particles.kinds[j] != FitKind::Surface ||
+                                       dot(normal, mesh.normals[particles.facets[j]]) > -0.5)
+                                       return;
+                                   // Behind this particle, through the plate, and not farther than
+                                   // it is thick.
+                                   const double depth =
+                                       dot(particles.positions[i] - particles.positions[j], normal);
+                                   if (depth <= 0 || depth >= options.thickness * dp ||
+                                       squared - depth * depth > dp * dp)
+                                       return;
+                                   if (!gives_way(i, j)) return;
+                                   is_taken[i] = 1;
+                                   stays[i] = std::min(stays[i], part_of(j));
+                               });
         },
         1024);
 
@@ -123,13 +135,15 @@ std::vector<Vec3> keep_one_sheet(const SurfaceMesh& mesh, const Features& featur
         },
         1024);
 
-    std::vector<Vec3> out;
+    SurfaceParticles out;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i)
     {
         if (is_taken[i] || is_rim[i])
         {
-            out.push_back(particles.positions[i]);
+            out.positions.push_back(particles.positions[i]);
+            out.kinds.push_back(particles.kinds[i]);
+            out.facets.push_back(particles.facets[i]);
             continue;
         }
         particles.positions[kept] = particles.positions[i];

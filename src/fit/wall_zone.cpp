@@ -381,6 +381,12 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
 
     const double dp3 = grid.dp * grid.dp * grid.dp;
     zone.sheet_facets = part.sheet_facets;
+    const double depth = grid.is_2d ? grid.dp : 1;
+    for (std::size_t i = 0; i < wall.sizes.size(); ++i)
+    {
+        zone.area += depth * wall.sizes[i];
+        if (wall.is_bounding[i] == 0) zone.sheet_area += depth * wall.sizes[i];
+    }
     zone.body_volume = grid.is_2d ? wall.section_area * grid.dp : part.volume;
     zone.has_inside = part.volume > 0 && zone.body_volume > 0;
     SpanSet inside;
@@ -476,11 +482,11 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     zone.clearance_outside_dp = beyond.clearance();
     if (zone.has_inside)
     {
-        double nodes = 0;
-        for (const std::uint64_t count : kept) nodes += static_cast<double>(count);
+        for (const std::uint64_t count : kept) zone.nodes += count;
         const double wall_cells =
             static_cast<double>(options.wall_particles) * zone.wall_share_inside;
-        zone.volume_error = (nodes + wall_cells) * dp3 / zone.body_volume - 1;
+        zone.volume_error =
+            (static_cast<double>(zone.nodes) + wall_cells) * dp3 / zone.body_volume - 1;
     }
     double area = 0;
     for (const double a : mesh.areas) area += a;

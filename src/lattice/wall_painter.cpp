@@ -38,6 +38,13 @@ Spans zone_of(const std::vector<Run>& runs)
     return out;
 }
 
+std::uint64_t count_nodes(const Spans& spans)
+{
+    std::uint64_t count = 0;
+    for (const Span& s : spans) count += s.z_end - s.z_begin;
+    return count;
+}
+
 /// Inside by the sum of signed crossings along each axis, two of three. Used away from the surface.
 bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
 {
@@ -85,7 +92,18 @@ void WallPainter::add(FittedDraw&& draw)
         walls.particles.append(draw.particles);
     walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
     walls.cut_bodies.resize(walls.cut.size(), body);
+    const SurfaceParticles& second = draw.second_sheet;
+    for (std::size_t i = 0; i < second.positions.size(); ++i)
+    {
+        walls.second_sheets.positions.push_back(second.positions[i]);
+        walls.second_sheets.kinds.push_back(second.kinds[i]);
+        walls.second_sheets.bodies.push_back(body);
+        walls.second_sheets.facets.push_back(second.facets[i]);
+        walls.second_sheets.mk.push_back(mk);
+        walls.second_sheets.held.push_back(0);
+    }
     is_cut_.resize(walls.particles.size(), 0);
+    if (!draw.hollow.empty()) hollows_.push_back({body, std::move(draw.hollow)});
     anchor(first, draw.zone);
 }
 
@@ -170,12 +188,45 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
 void WallPainter::reset()
 {
     field_->walls = {};
+    hollows_.clear();
     anchors_.clear();
     is_cut_.clear();
 }
 
+/// How much of a hollow body fills gave the mk of its wall.
+double WallPainter::filled_share(const Hollow& hollow) const
+{
+    const std::uint16_t mk = field_->walls.bodies[hollow.body].mk;
+    std::vector<std::array<std::uint64_t, 2>> counts(field_->slabs.size());
+    parallel_for(counts.size(), threads_,
+                 [&](std::size_t x)
+                 {
+                     if (hollow.nodes[x].empty()) return;
+                     Spans own;
+                     for (const Run& r : field_->slabs[x])
+                         if (r.mk == mk && !r.is_covered) own.push_back({r.y, r.z_begin, r.z_end});
+                     sort_and_join(own);
+                     counts[x] = {count_nodes(hollow.nodes[x]),
+                                  count_nodes(intersect(hollow.nodes[x], own))};
+                 });
+    std::uint64_t all = 0, filled = 0;
+    for (const auto& [of_slab, own] : counts)
+    {
+        all += of_slab;
+        filled += own;
+    }
+    return all > 0 ? static_cast<double>(filled) / static_cast<double>(all) : 0;
+}
+
 void WallPainter::finish()
 {
+    for (const Hollow& hollow : hollows_)
+    {
+        FittedBody& body = field_->walls.bodies[hollow.body];
+        body.figures.filled = filled_share(hollow);
+        body.settle_share(field_->grid.dp);
+    }
+    hollows_.clear();
     FittedWalls& walls = field_->walls;
     WallParticles& all = walls.particles;
     for (std::size_t i = 0; i < all.size(); ++i)

@@ -42,11 +42,20 @@ private:
         std::uint32_t particle = 0;
     };
 
+    /// A closed body that its draw did not fill, and the nodes in it.
+    struct Hollow
+    {
+        std::uint32_t body = 0;
+        std::vector<Spans> nodes; ///< one entry a slab of the lattice
+    };
+
+    double filled_share(const Hollow& hollow) const;
     void cut_by(const FittedDraw& draw);
     void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
 
     RunField* field_;
     int threads_;
+    std::vector<Hollow> hollows_;
     std::vector<std::vector<Anchor>> anchors_; ///< per slab, sorted by (y, z, particle)
     std::vector<char> is_cut_;                 ///< per particle of field.walls
 };

@@ -8,7 +8,7 @@ namespace fppg
 namespace
 {
 
-/// Calls body(place) for the particles of a block in id order.
+/// Calls body(place, share) for the particles of a block in id order.
 template <typename Body>
 void for_each_place(const CaseParticles& particles, const ParticleBlock& block,
                     const std::vector<InitialOp>& initials, const Body& body)
@@ -21,7 +21,9 @@ void for_each_place(const CaseParticles& particles, const ParticleBlock& block,
             state.position = place_in_run(particles, block, run, k);
             state.place = place++;
             if (!initials.empty()) apply_initials(initials, state);
-            body(state.position);
+            const bool has_share = run.is_free() && !particles.free.shares.empty();
+            body(state.position,
+                 has_share ? double{particles.free.shares[run.free_begin() + k]} : 1.0);
         }
 }
 
@@ -34,15 +36,20 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& nodes,
     const ParticleBlock& block = nodes.blocks[block_index];
     const double dp = nodes.grid.dp;
     const double volume = nodes.grid.is_2d ? dp * dp : dp * dp * dp;
-    const auto n = static_cast<double>(block.count);
+    Vec3 sum;
+    double n = 0; // of whole particles
+    for_each_place(nodes, block, initials,
+                   [&](const Vec3& p, double share)
+                   {
+                       n += share;
+                       sum = sum + share * p;
+                   });
 
     FloatingBody body;
     body.block = block_index;
     body.mass_body = def.mass_body ? *def.mass_body : def.rhop_body.value_or(0) * n * volume;
-    body.mass_part =
-        def.distribute_mass ? body.mass_body / n : def.mass_part.value_or(rhop0 * volume);
-    Vec3 sum;
-    for_each_place(nodes, block, initials, [&](const Vec3& p) { sum = sum + p; });
+    body.mass_part = def.distribute_mass ? body.mass_body / static_cast<double>(block.count)
+                                         : def.mass_part.value_or(rhop0 * volume);
     body.center = def.center.value_or(sum / n);
     if (def.inertia)
     {
@@ -51,15 +58,16 @@ FloatingBody floating_body(const FloatingDef& def, const CaseParticles& nodes,
     }
     std::array<Vec3, 3> rows{};
     for_each_place(nodes, block, initials,
-                   [&](const Vec3& p)
+                   [&](const Vec3& p, double share)
                    {
                        const Vec3 d = p - body.center;
-                       rows[0].x += d.y * d.y + d.z * d.z;
-                       rows[1].y += d.x * d.x + d.z * d.z;
-                       rows[2].z += d.x * d.x + d.y * d.y;
-                       rows[0].y -= d.x * d.y;
-                       rows[0].z -= d.x * d.z;
-                       rows[1].z -= d.y * d.z;
+                       const Vec3 by_share = share * d;
+                       rows[0].x += by_share.y * d.y + by_share.z * d.z;
+                       rows[1].y += by_share.x * d.x + by_share.z * d.z;
+                       rows[2].z += by_share.x * d.x + by_share.y * d.y;
+                       rows[0].y -= by_share.x * d.y;
+                       rows[0].z -= by_share.x * d.z;
+                       rows[1].z -= by_share.y * d.z;
                    });
     rows[1].x = rows[0].y;
     rows[2].x = rows[0].z;

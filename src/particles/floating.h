@@ -11,7 +11,9 @@ namespace fppg
 /// places; inertia of equal point masses massbody / n about the centre, off-diagonal entries with
 /// the minus sign, in a flat case too. What the definition gives replaces it. Sums are plain ones
 /// of doubles in id order, so that their rounding is GenCase's: it decides which form the inertia
-/// has in Case.xml (equal to all printed digits for 670 bodies of public cases).
+/// has in Case.xml (equal to all printed digits for 670 bodies of public cases). Particles of
+/// fitted walls count by their shares (FreeParticles::shares), so that mass, centre and inertia are
+/// those of the volume that the body has.
 ///
 /// nodes     with the block; where `<lattice>` doubles particles, those before it: GenCase counts
 ///           each pair once

@@ -124,6 +124,7 @@ FreeParticles sort_free_particles(const FittedWalls& walls,
     out.normals.resize(n);
     out.distances.resize(n);
     out.rhop.resize(n);
+    out.shares.assign(n, 1);
     const WallSurfaces surfaces(walls);
     for (std::size_t b = 0; b < blocks.size(); ++b)
     {
@@ -141,6 +142,8 @@ FreeParticles sort_free_particles(const FittedWalls& walls,
                     out.kinds[at] = walls.particles.kinds[source];
                     out.normals[at] = place.normal;
                     out.distances[at] = place.distance;
+                    out.shares[at] =
+                        static_cast<float>(walls.bodies[walls.particles.bodies[source]].share);
                 }
                 else
                 {

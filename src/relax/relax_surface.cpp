@@ -217,10 +217,10 @@ private:
         for (std::size_t l = 0; l < layers_.size(); ++l)
         {
             report_.removed += layers_[l].thin(least);
-            std::function<bool(const Vec3&)> may_fill;
+            std::function<bool(const Vec3&, const Vec3&)> may_fill;
             if (options_.may_insert)
-                may_fill = [&, body = body_of_layer_[l]](const Vec3& p)
-                { return options_.may_insert(body, p); };
+                may_fill = [&, body = body_of_layer_[l]](const Vec3& p, const Vec3& normal)
+                { return options_.may_insert(body, p, normal); };
             report_.inserted += layers_[l].fill(radius, may_fill);
         }
     }

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -27,6 +29,7 @@ constexpr double reach_of_cuts_dp = 3;
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int surface_iterations = 100;
 constexpr int volume_iterations = 30;
+constexpr std::size_t runs_a_chunk = 256;
 
 struct NodeIndex
 {
@@ -201,6 +204,13 @@ std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>&
     return out;
 }
 
+/// A run of the field and its slab.
+struct SlabRun
+{
+    std::uint32_t x = 0;
+    Run run;
+};
+
 class Relaxation
 {
 public:
@@ -305,16 +315,28 @@ private:
         { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
         PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
         for (const Vec3& p : walls.cut) cut.add(p);
-        if (!walls.cut.empty())
-            options.may_insert = [&](std::size_t body, const Vec3& p)
+        const WallParticles& second = walls.second_sheets;
+        PointGrid second_sheets(reach_of_cuts_dp * dp, second.size());
+        for (const Vec3& p : second.positions) second_sheets.add(p);
+        if (!walls.cut.empty() || second.size() > 0)
+            options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
             {
                 bool is_free = true;
                 cut.for_each_near(p, 1.5 * dp,
                                   [&](std::uint32_t c, double)
                                   { is_free = is_free && walls.cut_bodies[c] != body; });
+                second_sheets.for_each_near(
+                    p, 1.5 * dp,
+                    [&](std::uint32_t c, double)
+                    {
+                        const SurfaceMesh& mesh = walls.bodies[second.bodies[c]].mesh;
+                        is_free = is_free && (second.bodies[c] != body ||
+                                              dot(mesh.normals[second.facets[c]], normal) <= 0);
+                    });
                 return is_free;
             };
         std::vector<char> held = std::move(particles.held);
+        const std::vector<double> before = count_by_body(particles);
         const RelaxSurfaceReport done =
             relax_surface(walls.bodies, particles, held, options, threads_);
         particles.held = std::move(held);
@@ -327,6 +349,7 @@ private:
                                  particles.facets[i]);
             },
             1024);
+        take_new_counts(before, count_by_body(particles));
         surface_iterations_done_ += done.after.iteration;
         RelaxedPart part;
         part.what = "surface";
@@ -340,14 +363,43 @@ private:
         report_.parts.push_back(part);
     }
 
+    std::vector<double> count_by_body(const WallParticles& particles) const
+    {
+        std::vector<double> counts(field_.walls.bodies.size(), 0);
+        for (const std::uint32_t body : particles.bodies) ++counts[body];
+        return counts;
+    }
+
+    /// What a cut left of a body is taken for all of it.
+    void take_new_counts(const std::vector<double>& before, const std::vector<double>& after)
+    {
+        for (std::size_t b = 0; b < before.size(); ++b)
+        {
+            if (before[b] == 0) continue;
+            FittedBody& body = field_.walls.bodies[b];
+            FitFigures& figures = body.figures;
+            const double more = figures.wall_particles * (after[b] / before[b] - 1);
+            figures.wall_particles += more;
+            figures.wall_volume += 0.5 * more * std::pow(field_.grid.dp, 3);
+            body.settle_share(field_.grid.dp);
+        }
+    }
+
     void relax_volumes()
     {
-        std::vector<Region> regions;
-        for (const std::vector<std::uint16_t>& mks : solid_mks(field_.walls.bodies))
+        if (field_.walls.particles.size() == 0) return;
+        const std::vector<std::vector<std::uint16_t>> solids = solid_mks(field_.walls.bodies);
+        const bool has_solids = std::any_of(solids.begin(), solids.end(),
+                                            [&](const auto& mks) { return band_of(mks) > 0; });
+        if (!has_solids && def_.fluid_bands.empty()) return;
+        const AllWalls all(field_.walls.bodies, field_.grid, threads_);
+        if (all.is_empty()) return;
+        const std::vector<std::vector<SlabRun>> runs = runs_of_solids(solids);
+        for (std::size_t s = 0; s < solids.size() && !report_.is_stopped; ++s)
         {
+            const std::vector<std::uint16_t>& mks = solids[s];
             const FitSettings* settings = settings_of(mks.front());
-            if (settings == nullptr || !settings->relax.is_active || settings->relax.band_dp <= 0)
-                continue;
+            if (band_of(mks) <= 0) continue;
             Region region;
             region.what = fmt::format("volume mk {}", fmt::join(mks, ","));
             region.band.assign(65536, 0);
@@ -356,9 +408,9 @@ private:
             region.is_solid = true;
             if (settings->relax.iterations)
                 region.iterations = std::min(*settings->relax.iterations, volume_iterations);
-            regions.push_back(std::move(region));
+            relax_region(region, all, runs[s]);
         }
-        if (!def_.fluid_bands.empty())
+        if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {
             Region region;
             region.what = "fluid";
@@ -374,13 +426,55 @@ private:
                                                                   mk) != band.mk.end()))
                         region.band[mk] = band.width_dp;
             }
-            regions.push_back(std::move(region));
+            std::vector<SlabRun> of_fluid;
+            for_each_run(
+                [&](const SlabRun& r)
+                {
+                    if (region.band[r.run.mk] > 0 || region.beside[r.run.mk]) of_fluid.push_back(r);
+                });
+            relax_region(region, all, of_fluid);
         }
-        if (regions.empty() || field_.walls.particles.size() == 0) return;
-        const AllWalls all(field_.walls.bodies, field_.grid, threads_);
-        if (all.is_empty()) return;
-        for (const Region& region : regions)
-            if (!report_.is_stopped) relax_region(region, all);
+    }
+
+    /// How far from the wall the inside of a solid moves, in dp; 0: not at all.
+    double band_of(const std::vector<std::uint16_t>& mks) const
+    {
+        const FitSettings* settings = settings_of(mks.front());
+        return settings != nullptr && settings->relax.is_active ? settings->relax.band_dp : 0;
+    }
+
+    template <typename Visit>
+    void for_each_run(const Visit& visit) const
+    {
+        for (std::size_t x = 0; x < field_.slabs.size(); ++x)
+            for (const Run& run : field_.slabs[x])
+                if (!run.is_covered) visit(SlabRun{static_cast<std::uint32_t>(x), run});
+    }
+
+    /// The runs of each set of mks, which no set changes for another.
+    std::vector<std::vector<SlabRun>> runs_of_solids(
+        const std::vector<std::vector<std::uint16_t>>& solids) const
+    {
+        std::vector<std::size_t> of_mk(65536, solids.size());
+        for (std::size_t s = 0; s < solids.size(); ++s)
+            for (const std::uint16_t mk : solids[s]) of_mk[mk] = s;
+        std::vector<std::vector<SlabRun>> runs(solids.size());
+        for_each_run(
+            [&](const SlabRun& r)
+            {
+                if (of_mk[r.run.mk] < solids.size()) runs[of_mk[r.run.mk]].push_back(r);
+            });
+        return runs;
+    }
+
+    /// Blocks near all walls; kept, as many solids ask for the same.
+    const NearBlocks& near_blocks(std::uint32_t side, int reach)
+    {
+        const auto [place, is_new] = near_blocks_.try_emplace({side, reach});
+        if (is_new)
+            place->second = std::make_unique<NearBlocks>(field_.walls.particles.positions,
+                                                         field_.grid, side, reach);
+        return *place->second;
     }
 
     struct Mover
@@ -389,9 +483,9 @@ private:
         std::uint16_t mk = 0;
     };
 
-    /// The nodes of a region that move, slab by slab.
-    std::vector<Mover> find_movers(const Region& region, const AllWalls& all,
-                                   const NearBlocks& blocks)
+    /// The nodes of a region that move, in the order of its runs.
+    std::vector<Mover> find_movers(const Region& region, const std::vector<SlabRun>& runs,
+                                   const AllWalls& all, const NearBlocks& blocks)
     {
         const LatticeGrid& grid = field_.grid;
         const FittedWalls& walls = field_.walls;
@@ -402,50 +496,52 @@ private:
             bool is_outside = false;
             bool is_at_sides = false;
         };
-        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size());
+        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
-        std::vector<std::vector<Candidate>> slabs(field_.slabs.size());
-        parallel_for(
-            slabs.size(), threads_,
-            [&](std::size_t x)
+        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        std::vector<std::vector<Candidate>> chunks((runs.size() + runs_a_chunk - 1) / runs_a_chunk);
+        const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
+        {
+            const double band = region.band[r.run.mk];
+            if (band <= 0) return;
+            const auto test = [&](std::uint32_t begin, std::uint32_t end)
             {
-                for (const Run& run : field_.slabs[x])
+                for (std::uint32_t z = begin; z < end; ++z)
                 {
-                    const double band = region.band[run.mk];
-                    if (band <= 0 || run.is_covered) continue;
-                    const auto test = [&](std::uint32_t begin, std::uint32_t end)
-                    {
-                        for (std::uint32_t z = begin; z < end; ++z)
-                        {
-                            Candidate c;
-                            c.mover = {{static_cast<std::uint32_t>(x), run.y, z}, run.mk};
-                            const Vec3 p = place_of(c.mover.node, grid);
-                            const AllWalls::Closest near = all.closest(p);
-                            if (near.distance > band * grid.dp ||
-                                cut.has_nearer(p, reach_of_cuts_dp * grid.dp))
-                                continue;
-                            c.body = near.body;
-                            c.is_outside = near.is_outside;
-                            c.is_at_sides = near.distance < reach_of_sides_dp * grid.dp;
-                            slabs[x].push_back(c);
-                        }
-                    };
-                    if (std::isinf(band))
-                        test(run.z_begin, run.z_end);
-                    else
-                        blocks.for_each_stretch(static_cast<std::uint32_t>(x), run, test);
+                    Candidate c;
+                    c.mover = {{r.x, r.run.y, z}, r.run.mk};
+                    const Vec3 p = place_of(c.mover.node, grid);
+                    const AllWalls::Closest near = all.closest(p);
+                    if (near.distance > band * grid.dp ||
+                        cut.has_nearer(p, reach_of_cuts_dp * grid.dp))
+                        continue;
+                    c.body = near.body;
+                    c.is_outside = near.is_outside;
+                    c.is_at_sides = near.distance < reach_of_sides_dp * grid.dp;
+                    out.push_back(c);
                 }
-            },
-            1);
+            };
+            if (std::isinf(band))
+                test(r.run.z_begin, r.run.z_end);
+            else
+                blocks.for_each_stretch(r.x, r.run, test);
+        };
+        parallel_for(chunks.size(), threads_,
+                     [&](std::size_t c)
+                     {
+                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_a_chunk);
+                         for (std::size_t i = c * runs_a_chunk; i < end; ++i)
+                             look_at(runs[i], chunks[c]);
+                     });
         // Per body: whether it has nodes of the region on its inner and its outer side.
         std::vector<std::array<char, 2>> sides(walls.bodies.size());
-        for (const auto& slab : slabs)
-            for (const Candidate& c : slab)
+        for (const auto& chunk : chunks)
+            for (const Candidate& c : chunk)
                 if (c.is_at_sides) sides[c.body][c.is_outside ? 1 : 0] = 1;
         std::vector<Mover> movers;
         std::vector<char> is_warned(walls.bodies.size(), 0);
-        for (const auto& slab : slabs)
-            for (const Candidate& c : slab)
+        for (const auto& chunk : chunks)
+            for (const Candidate& c : chunk)
             {
                 if (walls.bodies[c.body].is_solid || !sides[c.body][0] || !sides[c.body][1])
                 {
@@ -463,8 +559,8 @@ private:
     }
 
     /// The nodes beside those that move, within the reach of their forces.
-    std::vector<Vec3> find_held(const Region& region, const std::vector<Mover>& movers,
-                                const NearBlocks& blocks) const
+    std::vector<Vec3> find_held(const Region& region, const std::vector<SlabRun>& runs,
+                                const std::vector<Mover>& movers, const NearBlocks& blocks) const
     {
         const LatticeGrid& grid = field_.grid;
         const double reach = (2 * region.h_dp + 0.6) * grid.dp;
@@ -472,41 +568,38 @@ private:
                                             [](double band) { return std::isinf(band); });
         PointGrid moving(reach, movers.size());
         for (const Mover& m : movers) moving.add(place_of(m.node, grid));
-        std::vector<std::vector<Vec3>> slabs(field_.slabs.size());
-        parallel_for(
-            slabs.size(), threads_,
-            [&](std::size_t x)
+        std::vector<std::vector<Vec3>> chunks((runs.size() + runs_a_chunk - 1) / runs_a_chunk);
+        const auto comes_before = [](const Mover& m, const NodeIndex& node)
+        { return std::tuple(m.node.x, m.node.y, m.node.z) < std::tuple(node.x, node.y, node.z); };
+        const auto look_at = [&](const SlabRun& r, std::vector<Vec3>& out)
+        {
+            auto mover = std::lower_bound(movers.begin(), movers.end(),
+                                          NodeIndex{r.x, r.run.y, r.run.z_begin}, comes_before);
+            const auto test = [&](std::uint32_t begin, std::uint32_t end)
             {
-                const auto at_slab = [](const Mover& m, std::size_t slab)
-                { return m.node.x < slab; };
-                auto mover = std::lower_bound(movers.begin(), movers.end(), x, at_slab);
-                for (const Run& run : field_.slabs[x])
+                for (std::uint32_t z = begin; z < end; ++z)
                 {
-                    if (run.is_covered) continue;
-                    if (region.band[run.mk] <= 0 && !region.beside[run.mk]) continue;
-                    const auto test = [&](std::uint32_t begin, std::uint32_t end)
-                    {
-                        for (std::uint32_t z = begin; z < end; ++z)
-                        {
-                            const NodeIndex node{static_cast<std::uint32_t>(x), run.y, z};
-                            while (mover != movers.end() && mover->node.x == x &&
-                                   std::tuple(mover->node.y, mover->node.z) <
-                                       std::tuple(node.y, node.z))
-                                ++mover;
-                            if (mover != movers.end() && mover->node == node) continue;
-                            const Vec3 p = place_of(node, grid);
-                            if (moving.has_nearer(p, reach)) slabs[x].push_back(p);
-                        }
-                    };
-                    if (is_endless)
-                        test(run.z_begin, run.z_end);
-                    else
-                        blocks.for_each_stretch(static_cast<std::uint32_t>(x), run, test);
+                    const NodeIndex node{r.x, r.run.y, z};
+                    while (mover != movers.end() && comes_before(*mover, node)) ++mover;
+                    if (mover != movers.end() && mover->node == node) continue;
+                    const Vec3 p = place_of(node, grid);
+                    if (moving.has_nearer(p, reach)) out.push_back(p);
                 }
-            },
-            1);
+            };
+            if (is_endless)
+                test(r.run.z_begin, r.run.z_end);
+            else
+                blocks.for_each_stretch(r.x, r.run, test);
+        };
+        parallel_for(chunks.size(), threads_,
+                     [&](std::size_t c)
+                     {
+                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_a_chunk);
+                         for (std::size_t i = c * runs_a_chunk; i < end; ++i)
+                             look_at(runs[i], chunks[c]);
+                     });
         std::vector<Vec3> held;
-        for (const auto& slab : slabs) held.insert(held.end(), slab.begin(), slab.end());
+        for (const auto& chunk : chunks) held.insert(held.end(), chunk.begin(), chunk.end());
         // What an earlier region set free pushes as well.
         const VolumeParticles& free = field_.walls.volume;
         for (std::size_t i = 0; i < free.size(); ++i)
@@ -516,27 +609,45 @@ private:
         return held;
     }
 
-    void relax_region(const Region& region, const AllWalls& all)
+    /// Wall particles within the reach of forces on those that move.
+    std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers) const
     {
         const LatticeGrid& grid = field_.grid;
-        const FittedWalls& walls = field_.walls;
+        const double reach = (2 * region.h_dp + 2) * grid.dp;
+        Box3 box;
+        for (const Mover& m : movers) box.add(place_of(m.node, grid));
+        std::vector<Vec3> out;
+        for (const Vec3& p : field_.walls.particles.positions)
+        {
+            bool is_near = true;
+            for (int axis = 0; axis < 3; ++axis)
+                is_near =
+                    is_near && p[axis] > box.min[axis] - reach && p[axis] < box.max[axis] + reach;
+            if (is_near) out.push_back(p);
+        }
+        return out;
+    }
+
+    /// runs  of the region, and of what is beside it, in their order in the field
+    void relax_region(const Region& region, const AllWalls& all, const std::vector<SlabRun>& runs)
+    {
+        const LatticeGrid& grid = field_.grid;
         double widest = 0;
         for (const double band : region.band)
             if (std::isfinite(band)) widest = std::max(widest, band);
         // Twice the side reaches from a wall particle over the band and the reach of forces.
         const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
-        const NearBlocks blocks(walls.particles.positions, grid, side, 1);
-        const std::vector<Mover> movers = find_movers(region, all, blocks);
+        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1));
         if (movers.empty()) return;
-        const NearBlocks wide_blocks(walls.particles.positions, grid, side, 2);
-        const std::vector<Vec3> held = find_held(region, movers, wide_blocks);
+        const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
+        const std::vector<Vec3> near_walls = find_walls(region, movers);
 
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
         VolumeSurroundings surroundings;
         surroundings.held = held;
-        surroundings.walls = walls.particles.positions;
+        surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)
         { return all.closest_point(p, within); };
         RelaxVolumeOptions options;
@@ -552,6 +663,9 @@ private:
         };
         const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
         keep_moved(region, all, movers, positions, done.sources);
+        if (region.is_solid)
+            take_new_nodes(
+                region, static_cast<double>(positions.size()) - static_cast<double>(movers.size()));
 
         RelaxedPart part;
         part.what = region.what;
@@ -562,6 +676,23 @@ private:
         part.mean = done.shepard_mean;
         part.deviation = done.shepard_std;
         report_.parts.push_back(part);
+    }
+
+    /// The bodies of a region share what its particles became more, by their volume.
+    void take_new_nodes(const Region& region, double more)
+    {
+        const double dp = field_.grid.dp;
+        const auto is_meant = [&](const FittedBody& body)
+        { return region.band[body.mk] > 0 && body.is_solid && body.figures.filled > 0; };
+        double volume = 0;
+        for (const FittedBody& body : field_.walls.bodies)
+            if (is_meant(body)) volume += body.figures.node_volume;
+        for (FittedBody& body : field_.walls.bodies)
+        {
+            if (!is_meant(body) || volume <= 0) continue;
+            body.figures.node_volume += more * dp * dp * dp * body.figures.node_volume / volume;
+            body.settle_share(dp);
+        }
     }
 
     /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
@@ -639,6 +770,7 @@ private:
     RelaxReport& report_;
     const RelaxSnapshot& snapshot_;
     int surface_iterations_done_ = 0;
+    std::map<std::pair<std::uint32_t, int>, std::unique_ptr<NearBlocks>> near_blocks_;
 };
 
 } // namespace

@@ -488,7 +488,8 @@ std::vector<char> SurfaceLayer::find_near_holes(float radius)
     return is_near_hole;
 }
 
-std::size_t SurfaceLayer::fill(double radius, const std::function<bool(const Vec3&)>& may_fill)
+std::size_t SurfaceLayer::fill(double radius,
+                               const std::function<bool(const Vec3&, const Vec3&)>& may_fill)
 {
     FillState state{work_, charts_, sites_, dp_, std::vector<ChartParticles>(charts_.size())};
     state.hole_radius = radius;

@@ -53,7 +53,7 @@ public:
     /// many.
     std::size_t thin(double least);
     /// Puts particles where the surface is farther than `radius` dp from all. Returns how many.
-    std::size_t fill(double radius, const std::function<bool(const Vec3&)>& may_fill);
+    std::size_t fill(double radius, const std::function<bool(const Vec3&, const Vec3&)>& may_fill);
 
     /// Places with facets of the work mesh, in the order of the curve.
     const std::vector<LayerParticle>& particles() const { return particles_; }

@@ -47,6 +47,9 @@ void share_nodes(const std::vector<BooleanWallPart>& parts, const std::vector<Sp
 {
     std::map<std::uint16_t, NodeShare> by_mk;
     out.volume.assign(grid.n[0], {});
+    if (std::any_of(parts.begin(), parts.end(),
+                    [](const BooleanWallPart& p) { return !p.is_solid; }))
+        out.body.figures.filled = 0; // part of it is hollow
     for (std::size_t p = 0; p < parts.size(); ++p)
     {
         if (shares[p].slabs.empty()) continue;

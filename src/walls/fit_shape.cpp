@@ -41,19 +41,16 @@ bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 }
 
 SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid, int threads, std::vector<Vec3>& cut)
+                            const LatticeGrid& grid, int threads)
 {
     FitOptions options;
     options.dp = grid.dp;
     options.lattice_origin = grid.origin;
     options.density = settings.density;
-    SurfaceParticles particles = fit_surface(
+    return fit_surface(
         body.mesh, body.features,
         place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
         threads);
-    if (settings.one_sheet)
-        cut = keep_one_sheet(body.mesh, body.features, grid.dp, particles, threads);
-    return particles;
 }
 
 /// In 2D the wall is where the surface meets the plane of the particles.
@@ -66,6 +63,45 @@ SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
     options.feature_angle_deg = settings.feature_angle_deg;
     SectionParticles section = section_particles(body.mesh, options);
     return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
+}
+
+/// Of open edges, metres; in 2D of those that meet the plane of the particles, dp each.
+double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
+{
+    double length = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        if (mesh.edge_facets[e][1] != no_index) continue;
+        const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+        const Vec3& b = mesh.vertices[mesh.edges[e][1]];
+        if (!grid.is_2d)
+            length += norm(b - a);
+        else if ((a.y < grid.origin.y) != (b.y < grid.origin.y))
+            length += grid.dp;
+    }
+    return length;
+}
+
+/// A closed surface that holds no node is as good as solid: its particles stand for all of it.
+void take_figures(const WallZone& zone, const WallZoneOptions& options, std::size_t second_sheet,
+                  const LatticeGrid& grid, FittedBody& body)
+{
+    const double dp = grid.dp;
+    const double dp3 = dp * dp * dp;
+    const auto n = static_cast<double>(options.wall_particles);
+    FitFigures& figures = body.figures;
+    figures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
+    if (second_sheet > 0)
+        figures.second_sheet = figures.area * (1 - n / (n + static_cast<double>(second_sheet)));
+    figures.area -= figures.second_sheet;
+    figures.wall_particles = n;
+    if (!zone.has_inside) return;
+    figures.volume = zone.body_volume;
+    figures.sheet_volume = zone.sheet_area * dp;
+    figures.node_volume = static_cast<double>(zone.nodes) * dp3;
+    figures.wall_volume = n * zone.wall_share_inside * dp3;
+    figures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
+    body.settle_share(dp);
 }
 
 /// The nodes inside a body and around its surface, and the clearances.
@@ -84,6 +120,9 @@ void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
+    take_figures(zone, options, out.second_sheet.positions.size(), grid, body);
+    if (zone.has_inside && body.figures.filled == 0)
+        out.hollow = by_slab(SpanSet{zone.volume}, grid);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
 }
@@ -186,8 +225,11 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.body = std::move(given);
     const FittedBody& body = out.body;
     out.warnings = body.report.warnings;
-    SurfaceParticles surface = grid.is_2d ? section_of(body, settings, grid)
-                                          : surface_of(body, settings, grid, threads, out.cut);
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
+    if (settings.one_sheet_dp > 0)
+        out.second_sheet = keep_one_sheet(body.mesh, body.features,
+                                          {grid.dp, settings.one_sheet_dp}, surface, threads);
     if (body.round != RoundShape::None)
         parallel_for(
             surface.positions.size(), threads,

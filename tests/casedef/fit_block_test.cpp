@@ -86,7 +86,8 @@ TEST(FitBlock, FitsEveryBoundaryWithTheDefaultsWhenItSaysNothingElse)
         const FitSettings& s = settings(def, mkbound);
         EXPECT_EQ(s.feature_angle_deg, 30);
         EXPECT_EQ(s.density, FitDensity::Area);
-        EXPECT_FALSE(s.clearance_dp || s.one_sheet || s.relax.iterations);
+        EXPECT_FALSE(s.clearance_dp || s.relax.iterations);
+        EXPECT_EQ(s.one_sheet_dp, 0.5);
         EXPECT_TRUE(s.relax.is_active);
         EXPECT_EQ(s.relax, RelaxSettings{});
     }
@@ -104,7 +105,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
         EXPECT_EQ(s.feature_angle_deg, 45);
         EXPECT_EQ(s.density, FitDensity::Cell);
         EXPECT_EQ(s.clearance_dp, 0.55);
-        EXPECT_TRUE(s.one_sheet);
+        EXPECT_EQ(s.one_sheet_dp, 1);
         EXPECT_EQ(s.relax, (RelaxSettings{true, 40, 0.1, 1.2, 2, 10}));
     }
     EXPECT_FALSE(is_fitted(def, 2));
@@ -113,7 +114,7 @@ TEST(FitBlock, SetsEverythingThatItNames)
 TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
 {
     const CaseDef def = read_block(
-        R"(<bodyfitted density="area" clearance="auto" plates="both"><relax iterations="auto" /></bodyfitted>)");
+        R"(<bodyfitted density="area" clearance="auto" plates="auto"><relax iterations="auto" /></bodyfitted>)");
     EXPECT_EQ(settings(def, 0).relax.tolerance, 0.001);
     FitSettings plain;
     plain.line = settings(def, 0).line;
@@ -325,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Density", R"(<fppg><bodyfitted density="Area" /></fppg>)",
                 "attribute density=\"Area\" is invalid, expected area or cell"},
         Mistake{"Plates", R"(<fppg><bodyfitted plates="none" /></fppg>)",
-                "attribute plates=\"none\" is invalid, expected both or one"},
+                "attribute plates=\"none\" is invalid, expected auto, both or one"},
         Mistake{"NoIterations", R"(<fppg><bodyfitted><relax iterations="0" /></bodyfitted></fppg>)",
                 "iterations=\"0\" is 0, expected auto or a whole number from 1 to 1000000"},
         Mistake{"HalfAnIteration",

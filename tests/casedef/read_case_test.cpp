@@ -6,6 +6,7 @@
 #include "helpers/case_text.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -130,6 +131,10 @@ INSTANTIATE_TEST_SUITE_P(
                 [](CaseText& text)
                 { text.mkconfig = R"(<mkconfig boundcount="65520" fluidcount="11" />)"; },
                 "<mkconfig>: boundcount and fluidcount are 65531 together, expected at most 65530"},
+        Mistake{"MoreMksThan16Bits",
+                [](CaseText& text)
+                { text.mkconfig = R"(<mkconfig boundcount="65531" fluidcount="0" />)"; },
+                "<mkconfig>: attribute boundcount=\"65531\" is out of range"},
         in_mainlist("MissingList", R"(<runlist name="Nobody" />)",
                     "<runlist>: there is no list named 'Nobody'"),
         in_mainlist("DivisionByZero", R"(<drawpoint x="#1/0" y="0" z="0" />)",
@@ -727,6 +732,34 @@ TEST(Properties, MayBeSummedWithBlanksAndComeSorted)
         R"(<floatings><floating mkbound="4" rhopbody="500" property="steel" /></floatings>)";
     EXPECT_NE(error_of(text).find("<floating>: there is no property named \"steel\""),
               std::string::npos);
+}
+
+TEST(MkConfig, WarnsOfMksThatGenCaseRefuses)
+{
+    const auto warnings = [](const char* mkconfig, const char* mainlist)
+    {
+        CaseText text = test::tank();
+        text.mkconfig = mkconfig;
+        text.mainlist = mainlist;
+        const CaseDef def = read(text);
+        EXPECT_LE(def.warnings.size(), 1U);
+        return def.warnings.empty() ? std::string() : def.warnings[0];
+    };
+    const char* const draw = R"(<setmkbound mk="239" /><drawpoint x="0" y="0" z="0" />)";
+    EXPECT_EQ(warnings(R"(<mkconfig boundcount="65520" fluidcount="9" />)", draw), "");
+    EXPECT_EQ(warnings(R"(<mkconfig boundcount="241" fluidcount="9" />)", draw), "");
+    EXPECT_THAT(
+        warnings(
+            R"(<mkconfig boundcount="65520" fluidcount="9" />)",
+            "<setmkbound mk=\"239\" />\n<setmknextbound next=\"true\" /><setmkbound mk=\"999\" />"),
+        testing::EndsWith(":8: <setmknextbound>: GenCase v5.4 refuses mk 240, as its mks have 8 "
+                          "bits and boundcount=65520 leaves 240 of them there; the solver takes "
+                          "mks up to 2047"));
+    EXPECT_THAT(warnings(R"(<mkconfig boundcount="244" fluidcount="10" />)", draw),
+                testing::HasSubstr("<mkconfig>: GenCase v5.4 refuses boundcount=244 with "
+                                   "fluidcount=10"));
+    EXPECT_THAT(warnings(R"(<mkconfig boundcount="240" fluidcount="265" />)", draw),
+                testing::EndsWith("mkbound 0 is mk 10 there and mk 266 here"));
 }
 
 TEST(Normals, MayHaveTheFormOfGenCase50)

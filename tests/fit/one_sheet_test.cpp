@@ -37,7 +37,7 @@ struct Fitted
         fit.dp = dp;
         particles =
             fit_surface(mesh, features, place_feature_particles(mesh, features, options), fit, 1);
-        taken = keep_one_sheet(mesh, features, dp, particles, threads).size();
+        taken = keep_one_sheet(mesh, features, {.dp = dp}, particles, threads).positions.size();
     }
     SurfaceMesh mesh;
     Features features;

@@ -332,7 +332,7 @@ TEST(RelaxSurface, FillsHolesOnlyWhereItMay)
         walls.held.push_back(p.positions[i].z > 0.35);
     }
     p = lower;
-    walls.options.may_insert = [](std::size_t body, const Vec3& at)
+    walls.options.may_insert = [](std::size_t body, const Vec3& at, const Vec3&)
     { return body == 0 && at.z <= 0.5; };
     walls.relax();
     for (const Vec3& at : p.positions) EXPECT_LE(at.z, 0.5);

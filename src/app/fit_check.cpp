@@ -1,0 +1,194 @@
+#include "app/fit_check.h"
+
+#include "fppg/files.h"
+
+#include "app/run_log.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+namespace fppg
+{
+namespace
+{
+
+/// With room for rounding.
+constexpr double largest_deviation = 0.02 + 1e-9;
+/// Of the nodes in a body that fills gave particles.
+constexpr double nearly_all = 0.98;
+/// A plate of this mean thickness or less has no room for nodes between the particles of its sides.
+constexpr double thin_dp = 2;
+/// Below so many dp^2 the particles of edges and corners are a share of all that counts.
+constexpr double small_surface = 1000;
+/// Of the particles of a wall: its edges are close to one another.
+constexpr double many_on_edges = 0.25;
+
+std::string percent(double share)
+{
+    return fmt::format("{:+.3g} %", 100 * share);
+}
+
+class FitCheck
+{
+public:
+    FitCheck(const FitDef& settings, const FittedWalls& walls, const LatticeGrid& grid)
+        : settings_(settings),
+          walls_(walls),
+          dp_(grid.dp),
+          depth_(grid.is_2d ? grid.dp : 1),
+          size_unit_(grid.is_2d ? "m^2" : "m^3"),
+          area_unit_(grid.is_2d ? "m" : "m^2"),
+          of_kind_(walls.bodies.size())
+    {
+        for (std::size_t i = 0; i < walls.particles.size(); ++i)
+            ++of_kind_[walls.particles.bodies[i]]
+                      [static_cast<std::size_t>(walls.particles.kinds[i])];
+    }
+
+    /// returns  the line of the log
+    std::string look_at(std::size_t b)
+    {
+        const FittedBody& body = walls_.bodies[b];
+        std::string line = fmt::format("  {} (xml row:{}, mk:{}):", body.name, body.line, body.mk);
+        return line + count_of(b) + volume_of(b);
+    }
+
+    std::vector<std::string> warnings() const
+    {
+        std::vector<std::string> out;
+        for (const auto& [why, group] : counts_)
+            out.push_back(
+                fmt::format("particles on fitted surfaces are more or fewer than one a "
+                            "dp^2, {}: {}.",
+                            why, group.text("mk")));
+        for (const auto& [why, group] : volumes_)
+            out.push_back(
+                fmt::format("fitted particles do not make up the volume of their solids, "
+                            "{}: {}.",
+                            why, group.text("mk")));
+        return out;
+    }
+
+private:
+    std::string count_of(std::size_t b)
+    {
+        const FittedBody& body = walls_.bodies[b];
+        const FitFigures& figures = body.figures;
+        const double expected = figures.area / (dp_ * dp_);
+        if (!(expected > 0)) return {};
+        const double share = figures.wall_particles / expected - 1;
+        if (is_off(share))
+            counts_[why_count(b, expected, share)].add(
+                body.mk, share,
+                fmt::format("<{}> of line {} has {:.0f} particles on {:.4g} {}, {:.0f} would be "
+                            "one a dp^2",
+                            body.name, body.line, figures.wall_particles, figures.area / depth_,
+                            area_unit_, expected));
+        return fmt::format(" {:.0f} particles on {:.4g} {}, {} of one a dp^2;",
+                           figures.wall_particles, figures.area / depth_, area_unit_,
+                           percent(share));
+    }
+
+    std::string volume_of(std::size_t b)
+    {
+        const FittedBody& body = walls_.bodies[b];
+        const FitFigures& figures = body.figures;
+        if (!(figures.volume > 0)) return " no volume";
+        if (!body.is_solid || figures.filled < nearly_all)
+            return fmt::format(" {:.4g} {}, not filled by its draw", figures.volume / depth_,
+                               size_unit_);
+        const double got = figures.node_volume + figures.wall_volume;
+        const double share = got / figures.volume - 1;
+        const std::string both =
+            fmt::format("{:.4g} of {:.4g} {}", got / depth_, figures.volume / depth_, size_unit_);
+        if (is_off(share))
+            volumes_[why_volume(body)].add(
+                body.mk, share, fmt::format("<{}> of line {} has {}", body.name, body.line, both));
+        return fmt::format(" {} ({})", both, percent(share));
+    }
+
+    std::string why_count(std::size_t b, double expected, double share) const
+    {
+        const FitSettings* settings = fit_settings(settings_, walls_.bodies[b].mk);
+        if (settings != nullptr && settings->density == FitDensity::Cell)
+            return "as density=\"cell\" asks for one a cell";
+        if (expected < small_surface) return "as they are small against dp";
+        const std::array<std::uint64_t, 4>& kinds = of_kind_[b];
+        const auto on_edges = static_cast<double>(kinds[0] + kinds[1]);
+        if (on_edges > many_on_edges * (on_edges + static_cast<double>(kinds[2])))
+            return "as their edges are few dp from one another";
+        return share > 0 ? "as holes between particles are filled"
+                         : "as rows of particles meet with gaps";
+    }
+
+    std::string why_volume(const FittedBody& body) const
+    {
+        const FitSettings* settings = fit_settings(settings_, body.mk);
+        const FitFigures& figures = body.figures;
+        if (settings != nullptr && settings->clearance_dp)
+            return fmt::format("as clearance=\"{:g}\" is given", *settings->clearance_dp);
+        const double thickness = 2 * figures.volume / ((figures.area + figures.second_sheet) * dp_);
+        if (thickness < thin_dp && figures.second_sheet > 0)
+            return "as they are thinner than dp and a sheet counts as if dp thick";
+        if (thickness < thin_dp)
+            return "as they are thinner than 2 dp and both of their sides have particles";
+        if (!body.report.is_watertight)
+            return "as their mesh is not closed and what is inside is a guess";
+        return "as they are small against dp, or thin in places";
+    }
+
+    const FitDef& settings_;
+    const FittedWalls& walls_;
+    double dp_;
+    double depth_; ///< of what counts as a volume, metres in 2D
+    const char* size_unit_;
+    const char* area_unit_;
+    std::vector<std::array<std::uint64_t, 4>> of_kind_;
+    std::map<std::string, DeviationGroup> counts_;
+    std::map<std::string, DeviationGroup> volumes_;
+};
+
+} // namespace
+
+bool is_off(double share)
+{
+    return std::abs(share) > largest_deviation;
+}
+
+void DeviationGroup::add(int mk, double share, std::string most)
+{
+    least_ = mks_.empty() ? share : std::min(least_, share);
+    greatest_ = mks_.empty() ? share : std::max(greatest_, share);
+    if (mks_.empty() || std::abs(share) > std::abs(most_))
+    {
+        most_ = share;
+        mk_of_most_ = mk;
+        text_of_most_ = std::move(most);
+    }
+    mks_.push_back(mk);
+}
+
+std::string DeviationGroup::text(const std::string& name_of_mk) const
+{
+    const std::string all =
+        fmt::format("{} {}: {}", name_of_mk, format_ranges(mks_), percent(least_));
+    if (mks_.size() == 1) return fmt::format("{}; its {}", all, text_of_most_);
+    return fmt::format("{} to {}, the most at {} {}, whose {}", all, percent(greatest_), name_of_mk,
+                       mk_of_most_, text_of_most_);
+}
+
+std::vector<std::string> check_fit(const FitDef& settings, const FittedWalls& walls,
+                                   const LatticeGrid& grid, RunLog& log)
+{
+    FitCheck check(settings, walls, grid);
+    log.line("Fitted bodies against their shapes:");
+    for (std::size_t b = 0; b < walls.bodies.size(); ++b) log.line(check.look_at(b));
+    log.line();
+    return check.warnings();
+}
+
+} // namespace fppg

@@ -1,0 +1,273 @@
+// Masses and counts of body-fitted bodies against their shapes, and the warnings about those that
+// are off; FPPG_PROGRAM is the program's path.
+
+#include "fppg/element.h"
+#include "fppg/particles.h"
+#include "fppg/read_particles.h"
+
+#include "casedef/xml_document.h"
+#include "helpers/case_text.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace
+{
+
+using fppg::Element;
+using fppg::ParticleCloud;
+using namespace fppg::test;
+
+constexpr double dp = 0.02;
+constexpr double rhop_body = 500;
+
+/// A floating body of mkbound 0 alone in the domain.
+CaseText floating(const std::string& draw)
+{
+    CaseText out;
+    out.dp = fmt::format("{}", dp);
+    out.pointmin = R"(<pointmin x="-1" y="-1" z="-1" />)";
+    out.pointmax = R"(<pointmax x="1" y="1" z="1" />)";
+    out.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" + draw;
+    out.after_geometry = R"(<floatings><floating mkbound="0" rhopbody="500" /></floatings>)";
+    return out;
+}
+
+RunResult run_case(const TemporaryFolder& folder, const CaseText& text, const Arguments& more)
+{
+    write_text(folder / "Case_Def.xml", text.text());
+    Arguments words{"Case_Def", "Case"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder, words);
+}
+
+const Element& child(const Element& e, const std::string& name)
+{
+    const Element* found = e.find_child(name);
+    if (found == nullptr) throw std::runtime_error("no element " + name);
+    return *found;
+}
+
+double number(const Element& e, const std::string& name)
+{
+    return std::stod(*e.find_attribute(name));
+}
+
+Element floating_block(const TemporaryFolder& folder)
+{
+    const Element root = fppg::read_xml(folder / "Case.xml");
+    return child(child(child(root, "execution"), "particles"), "floating");
+}
+
+double mass(const TemporaryFolder& folder)
+{
+    return number(child(floating_block(folder), "massbody"), "value");
+}
+
+/// Moments of inertia about the axes.
+std::array<double, 3> inertia(const TemporaryFolder& folder)
+{
+    const Element block = floating_block(folder);
+    const Element& e = child(block, "inertia");
+    std::array<double, 3> out{};
+    if (e.find_attribute("x") != nullptr) return {number(e, "x"), number(e, "y"), number(e, "z")};
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = number(e.children.at(i), fmt::format("v{0}{0}", i + 1));
+    return out;
+}
+
+std::size_t count(const TemporaryFolder& folder)
+{
+    return fppg::read_particles(folder / "Case", false, 1).positions.size();
+}
+
+std::string box(double x, double y, double z, const std::string& fill = "solid")
+{
+    return box_command(R"(x="0.013" y="0.007" z="0.003")",
+                       fmt::format(R"(x="{}" y="{}" z="{}")", x, y, z), fill);
+}
+
+constexpr const char* mass_warning = "floating bodies have another mass than their shapes";
+
+/// With the relaxation and without it.
+class FloatingMass : public testing::TestWithParam<const char*>
+{
+protected:
+    /// A wall's particles stand on its surface, so that thin rims weigh too much: inertia_within.
+    void expect_box(double x, double y, double z, double inertia_within)
+    {
+        const RunResult result = run_case(folder_, floating(box(x, y, z)), {GetParam()});
+        ASSERT_EQ(result.code, 0) << result.output;
+        const double m = rhop_body * x * y * z;
+        EXPECT_NEAR(mass(folder_) / m, 1, 0.005);
+        const auto got = inertia(folder_);
+        EXPECT_NEAR(got[0] / (m * (y * y + z * z) / 12), 1, inertia_within);
+        EXPECT_NEAR(got[1] / (m * (x * x + z * z) / 12), 1, inertia_within);
+        EXPECT_NEAR(got[2] / (m * (x * x + y * y) / 12), 1, inertia_within);
+        EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_P(FloatingMass, OfABoxIsThatOfItsVolume)
+{
+    expect_box(0.41, 0.33, 0.25, 0.05);
+}
+
+TEST_P(FloatingMass, OfAThinPlateToo)
+{
+    expect_box(0.51, 0.43, 0.031, 0.12); // 1.55 dp
+    expect_box(0.51, 0.43, 0.013, 0.12); // 0.65 dp
+    expect_box(0.51, 0.43, 0.006, 0.12); // 0.3 dp
+}
+
+TEST_P(FloatingMass, OfASphereIsThatOfItsVolume)
+{
+    const RunResult result = run_case(
+        folder_,
+        floating(R"(<drawsphere radius="0.21"><point x="0.1" y="0.2" z="0.3" /></drawsphere>)"),
+        {GetParam()});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const double m = rhop_body * 4 / 3 * std::numbers::pi * std::pow(0.21, 3);
+    EXPECT_NEAR(mass(folder_) / m, 1, 0.005);
+    for (const double i : inertia(folder_)) EXPECT_NEAR(i / (0.4 * m * 0.21 * 0.21), 1, 0.02);
+    EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(FittedBodies, FloatingMass, testing::Values("-fit", "-fit:raw"),
+                         [](const auto& info)
+                         { return std::string(info.param) == "-fit" ? "Relaxed" : "Raw"; });
+
+TEST(FloatingMassIn2D, IsThatOfTheSection)
+{
+    const TemporaryFolder folder;
+    CaseText text =
+        floating(box_command(R"(x="0.013" y="-0.1" z="0.003")", R"(x="0.41" y="0.2" z="0.25")"));
+    text.pointmin = R"(<pointmin x="-1" y="0" z="-1" />)";
+    text.pointmax = R"(<pointmax x="1" y="0" z="1" />)";
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_NEAR(mass(folder) / (rhop_body * 0.41 * 0.25), 1, 0.01);
+    EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
+}
+
+TEST(FloatingMass, ThatIsGivenStays)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.after_geometry =
+        R"(<floatings><floating mkbound="0"><massbody value="3.5" /></floating></floatings>)";
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(mass(folder), 3.5);
+}
+
+TEST(FloatingMass, OfAHollowBodyIsToldWithMkAndBothMasses)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.mainlist.replace(text.mainlist.find("full"), 4, "face");
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, std::string("*** WARNING: Case_Def.xml: ") + mass_warning +
+                                            ", as no draw fills them, mkbound 0: -"))
+        << result.output;
+    EXPECT_TRUE(contains(result.output, "has 0.03383 m^3 and 16.91 kg")) << result.output;
+    // A shell of one particle a dp^2 weighs about dp of its surface.
+    const double shell = 2 * (0.41 * 0.33 + 0.33 * 0.25 + 0.25 * 0.41) * dp * rhop_body;
+    EXPECT_NEAR(mass(folder) / shell, 1, 0.1);
+}
+
+TEST(FloatingMass, OfABodyThatALaterDrawCutsIsTold)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.mainlist += "<setmkvoid />" +
+                     box_command(R"(x="-0.1" y="-0.1" z="-0.1")", R"(x="0.3" y="0.6" z="0.6")");
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "cut them, mkbound 0: -")) << result.output;
+    EXPECT_LT(mass(folder), 0.6 * rhop_body * 0.41 * 0.33 * 0.25);
+}
+
+// -- plates
+// ------------------------------------------------------------------------------------------
+
+TEST(FittedPlate, ThinnerThanHalfADpHasOneSheetByDefault)
+{
+    const double area = 0.51 * 0.43;
+    const auto particles_a_dp2 = [&](double thickness, const std::string& plates)
+    {
+        const TemporaryFolder folder;
+        CaseText text = floating(box(0.51, 0.43, thickness));
+        if (!plates.empty())
+            text.after_geometry +=
+                "<fppg><bodyfitted mkbound=\"0\" plates=\"" + plates + "\" /></fppg>";
+        const RunResult result = run_case(folder, text, {"-fit"});
+        EXPECT_EQ(result.code, 0) << result.output;
+        return static_cast<double>(count(folder)) * dp * dp / area;
+    };
+    EXPECT_NEAR(particles_a_dp2(0.008, ""), 1, 0.2);
+    EXPECT_NEAR(particles_a_dp2(0.008, "auto"), 1, 0.2);
+    EXPECT_NEAR(particles_a_dp2(0.008, "both"), 2, 0.4);
+    EXPECT_NEAR(particles_a_dp2(0.012, ""), 2, 0.4);
+    EXPECT_NEAR(particles_a_dp2(0.012, "one"), 1, 0.2);
+}
+
+// -- warnings about counts and volumes
+// ------------------------------------------------------------------------------------------
+
+TEST(FitCheck, TellsAGivenClearanceWithMkLineAndVolumes)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.21, 0.17, 0.19));
+    text.after_geometry +=
+        R"(<fppg><bodyfitted mkbound="0" clearance="1"><relax active="false" /></bodyfitted></fppg>)";
+    const RunResult result = run_case(folder, text, {});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output,
+                         "*** WARNING: Case_Def.xml: fitted particles do not make up the volume "
+                         "of their solids, as clearance=\"1\" is given: mk 10: "))
+        << result.output;
+    EXPECT_TRUE(contains(result.output, "; its <drawbox> of line 7 has ")) << result.output;
+    EXPECT_TRUE(contains(result.output, " of 0.006783 m^3.")) << result.output;
+}
+
+TEST(FitCheck, SaysInOneSentenceWhichBodiesAreOffAlike)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.dp = "0.1";
+    text.mainlist = R"(<setdrawmode mode="full" />)";
+    for (int mk = 0; mk < 3; ++mk)
+        text.mainlist += fmt::format(R"(<setmkbound mk="{}" />)", mk) +
+                         box_command(fmt::format(R"(x="{}" y="0" z="0")", 0.5 * mk - 0.3),
+                                     fmt::format(R"(x="{}" y="0.13" z="0.17")", 0.11 + 0.1 * mk));
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string said =
+        "particles on fitted surfaces are more or fewer than one a dp^2, as "
+        "they are small against dp: mk 10-12: +";
+    const std::size_t first = result.output.find("*** WARNING: Case_Def.xml: " + said);
+    ASSERT_NE(first, std::string::npos) << result.output;
+    EXPECT_EQ(result.output.find("*** WARNING: Case_Def.xml: " + said, first + 1),
+              std::string::npos);
+    EXPECT_TRUE(contains(result.output, "the most at mk ")) << result.output;
+}
+
+TEST(FitCheck, WritesTheFiguresOfEveryBodyToTheLog)
+{
+    const TemporaryFolder folder;
+    const RunResult result = run_case(folder, floating(box(0.41, 0.33, 0.25)), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "Fitted bodies against their shapes:")) << result.output;
+    EXPECT_TRUE(contains(result.output, "  drawbox (xml row:7, mk:10): ")) << result.output;
+    EXPECT_TRUE(contains(result.output, " of 0.03383 m^3 (")) << result.output;
+}
+
+} // namespace
