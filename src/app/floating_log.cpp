@@ -3,7 +3,7 @@
 #include "fppg/error.h"
 
 #include "app/fit_check.h"
-#include "lattice/exact_body.h"
+#include "scene/exact_body.h"
 #include "particles/initials.h"
 
 #include <fmt/format.h>

@@ -1,25 +1,19 @@
 #include "lattice/draw_checks.h"
 
+#include "meshes/open_edges.h"
 #include "nodes/snap.h"
+#include "shapes/shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 namespace fppg
 {
 namespace
 {
-
-void add_ball(Box3& box, const Vec3& center, const Vec3& half)
-{
-    box.add(center - half);
-    box.add(center + half);
-}
 
 /// The largest or smallest extent over the axes that count.
 struct Extents
@@ -41,119 +35,7 @@ Extents extents_of(const Vec3& low, const Vec3& high, const IsFlat& is_flat)
     return out;
 }
 
-bool is_body(const DrawOp& op)
-{
-    if (const auto* figure = shape_as<FigureOp>(op))
-        return figure->solid != SolidKind::None && op.state->mode != DrawMode::Face;
-    if (const auto* sphere = shape_as<SphereOp>(op)) return sphere->layers_dp.empty();
-    if (const auto* cylinder = shape_as<CylinderOp>(op)) return cylinder->layers.empty();
-    return shape_as<EllipsoidOp>(op) != nullptr || shape_as<MeshFileOp>(op) != nullptr;
-}
-
 } // namespace
-
-std::uint64_t open_edge_count(const TriangleSoup& soup)
-{
-    Box3 box;
-    for (const Vec3& v : soup.vertices) box.add(v);
-    if (box.is_empty()) return 0;
-    const Vec3 size = box.max - box.min;
-    const double step = std::max({size.x, size.y, size.z, 1e-300}) * 1e-6;
-    using Place = std::array<std::int64_t, 3>;
-    std::vector<std::pair<Place, std::uint32_t>> places;
-    places.reserve(soup.vertices.size());
-    for (std::uint32_t i = 0; i < soup.vertices.size(); ++i)
-    {
-        Place p{};
-        for (int axis = 0; axis < 3; ++axis)
-            p[static_cast<std::size_t>(axis)] =
-                std::llround((soup.vertices[i][axis] - box.min[axis]) / step);
-        places.emplace_back(p, i);
-    }
-    std::sort(places.begin(), places.end());
-    std::vector<std::uint32_t> corner(soup.vertices.size());
-    for (std::size_t i = 0; i < places.size(); ++i)
-        corner[places[i].second] = i > 0 && places[i].first == places[i - 1].first
-                                       ? corner[places[i - 1].second]
-                                       : places[i].second;
-    // Each side with its lower corner first, +1 or -1 for its way.
-    std::vector<std::tuple<std::uint32_t, std::uint32_t, int>> sides;
-    sides.reserve(soup.vertices.size());
-    for (std::uint32_t i = 0; i < soup.vertices.size(); ++i)
-    {
-        const std::uint32_t a = corner[i];
-        const std::uint32_t b = corner[i % 3 == 2 ? i - 2 : i + 1];
-        if (a != b) sides.emplace_back(std::min(a, b), std::max(a, b), a < b ? 1 : -1);
-    }
-    std::sort(sides.begin(), sides.end());
-    std::uint64_t open = 0;
-    for (std::size_t i = 0; i < sides.size();)
-    {
-        int balance = 0;
-        const auto [a, b, way] = sides[i];
-        for (; i < sides.size() && std::get<0>(sides[i]) == a && std::get<1>(sides[i]) == b; ++i)
-            balance += std::get<2>(sides[i]);
-        open += balance != 0 ? 1U : 0U;
-    }
-    return open;
-}
-
-Box3 bounds_of(const DrawOp& op, double dp)
-{
-    Box3 box;
-    const auto thickest = [&](const std::vector<double>& layers)
-    { return layers.empty() ? 0 : *std::max_element(layers.begin(), layers.end()) * dp; };
-    if (const auto* points = shape_as<PointsOp>(op))
-        for (const Vec3& p : points->points) box.add(p);
-    else if (const auto* lines = shape_as<LinesOp>(op))
-        for (const auto& [from, to] : lines->segments)
-        {
-            box.add(from);
-            box.add(to);
-        }
-    else if (const auto* figure = shape_as<FigureOp>(op))
-        for (const FigureFace& face : figure->faces)
-        {
-            if (!face.is_visible) continue;
-            for (const std::uint32_t v : face.vertices) box.add(figure->vertices[v]);
-        }
-    else if (const auto* sphere = shape_as<SphereOp>(op))
-    {
-        const double r = sphere->radius + thickest(sphere->layers_dp);
-        add_ball(box, sphere->center, {r, r, r});
-    }
-    else if (const auto* cylinder = shape_as<CylinderOp>(op))
-    {
-        const Vec3 along = cylinder->p1 - cylinder->p0;
-        const double length = norm(along);
-        if (!(length > 0)) return box;
-        double r = cylinder->radius;
-        for (const CylinderLayer& layer : cylinder->layers) r = std::max(r, layer.radius);
-        Vec3 half;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            const double u = along[axis] / length;
-            half[axis] = r * std::sqrt(std::max(0.0, 1 - u * u));
-        }
-        add_ball(box, cylinder->p0, half);
-        add_ball(box, cylinder->p1, half);
-    }
-    else if (const auto* ellipsoid = shape_as<EllipsoidOp>(op))
-    {
-        const Vec3 along = ellipsoid->focus1 - ellipsoid->focus0;
-        const double a = ellipsoid->radius / 2;
-        const double c = norm(along) / 2;
-        if (!(a > c)) return box;
-        Vec3 half;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            const double u = c > 0 ? along[axis] / (2 * c) : 0;
-            half[axis] = std::sqrt(a * a - c * c * (1 - u * u));
-        }
-        add_ball(box, (ellipsoid->focus0 + ellipsoid->focus1) * 0.5, half);
-    }
-    return box;
-}
 
 void DrawChecks::warn(const SourceRef& source, Kind kind, const std::string& text)
 {
@@ -187,7 +69,8 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
             return;
         }
     }
-    if (is_body(op) && size.smallest > 0 && size.smallest < grid.dp * (1 - 1e-9))
+    if (const auto* shape = std::get_if<Shape>(&op.what);
+        shape != nullptr && is_body(*shape, state.mode) && size.smallest > 0 && size.smallest < grid.dp * (1 - 1e-9))
         warn(
             op.source, Kind::Thin,
             fmt::format("the body is {:g} m thick, less than dp = {:g} m, so its particles are as "

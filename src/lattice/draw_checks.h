@@ -10,15 +10,6 @@
 namespace fppg
 {
 
-/// Edges of a mesh that are not run through as often in one way as in the other. Corners nearer
-/// than a millionth of the mesh's size are one.
-///
-/// cost  O(n log n) for n facets
-std::uint64_t open_edge_count(const TriangleSoup& soup);
-
-/// The box around what a draw without a file draws; empty for what draws no shape.
-Box3 bounds_of(const DrawOp& op, double dp);
-
 /// Looks for slips in draws that GenCase passes over in silence. Each kind of warning comes once a
 /// line of the definition, however often a list runs it.
 class DrawChecks

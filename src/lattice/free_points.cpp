@@ -2,8 +2,8 @@
 
 #include "fppg/error.h"
 
-#include "lattice/plane_shapes.h"
-#include "lattice/planes.h"
+#include "shapes/plane_shapes.h"
+#include "shapes/planes.h"
 #include "nodes/snap.h"
 #include "shapes/figures.h"
 #include "shapes/polygon_cut.h"

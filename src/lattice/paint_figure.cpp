@@ -1,8 +1,8 @@
 // Points, lines and what planes bound.
 #include "lattice/paint_free.h"
 #include "lattice/painting.h"
-#include "lattice/plane_shapes.h"
-#include "lattice/solids.h"
+#include "shapes/plane_shapes.h"
+#include "shapes/solids.h"
 #include "nodes/snap.h"
 #include "shapes/figures.h"
 

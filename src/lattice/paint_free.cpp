@@ -4,7 +4,7 @@
 
 #include "lattice/draw_pattern.h"
 #include "lattice/free_points.h"
-#include "lattice/solids.h"
+#include "shapes/solids.h"
 #include "shapes/figures.h"
 #include "shapes/free_parts.h"
 

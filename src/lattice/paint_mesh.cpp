@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_free.h"
-#include "lattice/plane_shapes.h"
+#include "shapes/plane_shapes.h"
 #include "meshes/mesh_library.h"
 #include "nodes/snap.h"
 #include "scene/surfaces.h"

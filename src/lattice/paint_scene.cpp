@@ -1,11 +1,13 @@
 #include "lattice/paint_scene.h"
 
 #include "fppg/combination.h"
+#include "fppg/error.h"
 
 #include "core/parallel.h"
 #include "lattice/node_files.h"
 #include "lattice/paint_mesh.h"
 #include "scene/surfaces.h"
+#include "shapes/kinds.h"
 
 #include <fmt/format.h>
 
@@ -25,15 +27,10 @@ void keep(LatticeReport& report, NodeFile file)
     report.node_files.push_back(std::move(file));
 }
 
-void paint(Painting& painting, const Brush&, const ResetOp&)
-{
-    painting.canvas.reset();
-}
-
 /// Shapes are written from the case, not from its nodes.
-void paint(Painting&, const Brush&, const ShapeOutOp&) {}
+void paint_output(Painting&, const Brush&, const ShapeOutOp&) {}
 
-void paint(Painting& painting, const Brush&, const CellsOutOp& op)
+void paint_output(Painting& painting, const Brush&, const CellsOutOp& op)
 {
     NodeFile file;
     file.name = "_" + op.file + "_MkCells" + op.suffix + ".vtk";
@@ -43,7 +40,7 @@ void paint(Painting& painting, const Brush&, const CellsOutOp& op)
     keep(painting.report, std::move(file));
 }
 
-void paint(Painting& painting, const Brush& brush, const PointsMkOutOp& op)
+void paint_output(Painting& painting, const Brush& brush, const PointsMkOutOp& op)
 {
     NodeFile file;
     file.name = fmt::format("_{}_mk{}.vtk", op.file, brush.mk.mk);
@@ -51,12 +48,37 @@ void paint(Painting& painting, const Brush& brush, const PointsMkOutOp& op)
     keep(painting.report, std::move(file));
 }
 
-/// The commands of a kind.
-template <typename Kinds>
-void paint(Painting& painting, const Brush& brush, const Kinds& kinds)
+/// A shape in the way of its own kind, or by its nodes alone.
+template <typename Kind>
+void paint_kind(Painting& painting, const Brush& brush, const Kind& kind)
 {
-    std::visit([&](const auto& what) { paint(painting, brush, what); }, kinds);
+    if constexpr (requires { fppg::paint(painting, brush, kind); })
+        fppg::paint(painting, brush, kind);
+    else if (brush.state->off_lattice)
+        throw CaseError(painting.def.file, brush.source->line,
+                        fmt::format("<{}>: is not possible with setfrdrawmode",
+                                    brush.source->command));
+    else
+        painting.canvas.paint(brush, kinds::nodes_of(kind, *brush.state, painting.grid()));
 }
+
+void paint_any(Painting& painting, const Brush& brush, const Edit& edit)
+{
+    std::visit([&](const auto& kind) { fppg::paint(painting, brush, kind); }, edit);
+}
+
+void paint_any(Painting& painting, const Brush& brush, const Output& output)
+{
+    std::visit([&](const auto& kind) { paint_output(painting, brush, kind); }, output);
+}
+
+void paint_any(Painting& painting, const Brush&, const ResetOp&)
+{
+    painting.canvas.reset();
+}
+
+/// Shapes have steps of their own.
+void paint_any(Painting&, const Brush&, const Shape&) {}
 
 void add_fitted(Painting& painting, FittedStep& fitted)
 {
@@ -78,10 +100,10 @@ void paint_shape(Painting& painting, const DrawOp& draw, FittedStep& fitted)
     if (file != nullptr)
         check_mesh(painting, draw, mesh_of(painting, brush, *file), file->transform);
     else if (painting.def.zone == 0) // the limits of other zones are meant to cut shapes
-        painting.checks.check_shape(draw, bounds_of(draw, painting.grid().dp));
+        painting.checks.check_shape(draw, bounds_of(shape, painting.grid().dp));
     add_fitted(painting, fitted);
     if (!fitted.is_fitted)
-        std::visit([&](const auto& what) { paint(painting, brush, what); }, shape);
+        std::visit([&](const auto& kind) { paint_kind(painting, brush, kind); }, shape);
     else if (file != nullptr && !file->advanced)
         paint_points_and_lines(painting, brush, mesh_of(painting, brush, *file), file->transform);
 }
@@ -146,7 +168,7 @@ void paint_step(Painting& painting, const SceneStep& step, FittedStep& fitted)
     else if (step.shape() != nullptr)
         paint_shape(painting, *step.draw, fitted);
     else if (!step.is_part)
-        std::visit([&](const auto& what) { paint(painting, Brush(*step.draw), what); },
+        std::visit([&](const auto& what) { paint_any(painting, Brush(*step.draw), what); },
                    step.draw->what);
 }
 

@@ -5,7 +5,7 @@
 
 #include "lattice/canvas.h"
 #include "lattice/draw_checks.h"
-#include "lattice/plane_shapes.h"
+#include "shapes/plane_shapes.h"
 
 #include <set>
 #include <vector>
@@ -36,7 +36,7 @@ struct Painting
 };
 
 // A file a kind of draw. Each paints one draw over what is there; clips, pattern and mk are the
-// brush's.
+// brush's. Kinds of shapes without a function here are painted by their nodes alone.
 
 // paint_figure.cpp
 void paint(Painting& painting, const Brush& brush, const PointsOp& op);
@@ -51,9 +51,6 @@ SlabRegion solid_of(const FigureOp& figure, const DrawState& state, const Lattic
 // paint_round.cpp
 void paint(Painting& painting, const Brush& brush, const SphereOp& op);
 void paint(Painting& painting, const Brush& brush, const CylinderOp& op);
-/// throws  CaseError off the lattice
-void paint(Painting& painting, const Brush& brush, const EllipsoidOp& op);
-void paint(Painting& painting, const Brush& brush, const WaveOp& op);
 
 // paint_mesh.cpp
 void paint(Painting& painting, const Brush& brush, const MeshFileOp& op);

@@ -1,6 +1,6 @@
 #include "leak/case_solids.h"
 
-#include "lattice/draw_checks.h"
+#include "meshes/open_edges.h"
 #include "walls/step_surfaces.h"
 
 #include <fmt/format.h>

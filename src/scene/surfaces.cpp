@@ -40,14 +40,13 @@ std::vector<ShapeMesh> surfaces_of(const Scene& scene, const DrawOp& draw, Parts
 {
     const MeshFile* mesh = mesh_of(scene, draw, threads);
     if (mesh != nullptr && mesh->soup.vertices.empty()) return {};
-    const TriangleSoup* soup = mesh != nullptr ? &mesh->soup : nullptr;
-    const double dp = scene.def->grid.dp;
+    const LatticeGrid& grid = scene.def->grid;
     const auto* figure = shape_as<FigureOp>(draw);
     const bool is_part = figure != nullptr && figure->part_count > 0;
     if (parts == PartsAs::Drawn || (!is_part && !draw.state->mk_next_auto))
-        return shape_meshes(draw, soup, dp);
+        return shape_meshes(draw, mesh, grid);
     if (is_part && figure->part > 0) return {};
-    return shape_meshes(whole_of(draw), soup, dp);
+    return shape_meshes(whole_of(draw), mesh, grid);
 }
 
 ShapeMesh surface_of_part(const Scene& scene, const Combination& combination, std::size_t part,

@@ -2,6 +2,7 @@
 
 #include "fppg/case_def.h"
 #include "fppg/fitted_walls.h"
+#include "fppg/mesh.h"
 
 #include <vector>
 
@@ -29,10 +30,11 @@ namespace fppg
 /// watertight for boxes, prisms and pyramids; for `drawfigure` and files as they are given.
 ///
 /// op    clip planes are not applied; mk and draw_points are the caller's to look at
-/// file  the facets of a MeshFileOp before its transform; null for every other draw
-/// dp    metres; layers are counted in it, and the facets of round shapes chosen by it
+/// file  what a MeshFileOp draws, before its transform; null for every other draw
+/// grid  layers are counted in its dp, and the facets of round shapes chosen by it
 /// throws  GeometryError without a place, to which the caller adds it: a part of a solid drawn by
 ///         setmknextauto, which has no true shape of its own; a radius that is not positive
-std::vector<ShapeMesh> shape_meshes(const DrawOp& op, const TriangleSoup* file, double dp);
+std::vector<ShapeMesh> shape_meshes(const DrawOp& op, const MeshFile* file,
+                                    const LatticeGrid& grid);
 
 } // namespace fppg

@@ -7,7 +7,7 @@
 #include "batch/estimate.h"
 #include "batch/wall_geometry.h"
 #include "helpers/case_text.h"
-#include "lattice/exact_body.h"
+#include "scene/exact_body.h"
 #include "meshes/mesh_library.h"
 
 #include <gtest/gtest.h>

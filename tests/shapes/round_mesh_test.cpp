@@ -1,4 +1,4 @@
-#include "shapes/round_mesh.h"
+#include "helpers/round_meshes.h"
 #include "meshes/round_surface.h"
 
 #include "fppg/error.h"
@@ -13,6 +13,10 @@ namespace fppg
 {
 namespace
 {
+
+using test::cylinder_mesh;
+using test::ellipsoid_mesh;
+using test::sphere_mesh;
 
 constexpr double pi = std::numbers::pi;
 constexpr double dp = 0.01;

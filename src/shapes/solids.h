@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lattice/plane_shapes.h"
+#include "shapes/plane_shapes.h"
 
 #include <algorithm>
 #include <array>

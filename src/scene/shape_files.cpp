@@ -3,7 +3,7 @@
 #include "fppg/scene.h"
 
 #include "core/float32.h"
-#include "lattice/shape_cells.h"
+#include "scene/shape_cells.h"
 
 #include <algorithm>
 #include <array>

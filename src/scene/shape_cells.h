@@ -2,13 +2,12 @@
 
 #include "fppg/scene.h"
 
+#include "shapes/shape.h"
+
 #include <vector>
 
 namespace fppg
 {
-
-/// The corners of a line (two) or of a face (three and more), metres.
-using ShapeCell = std::vector<Vec3>;
 
 /// Whether shape files show what a command draws: lines, figures, spheres, cylinders, mesh files.
 bool has_shape_cells(const Command& what);

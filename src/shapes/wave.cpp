@@ -1,14 +1,19 @@
-#include "lattice/wave_region.h"
-
 #include "nodes/snap.h"
+#include "shapes/kinds.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fppg
+namespace fppg::kinds
 {
 
-SlabRegion wave_region(const WaveOp& wave, const LatticeGrid& grid)
+/// A wave is cut at its box, which may reach beyond the domain.
+Box3 bounds_of(const WaveOp&, double)
+{
+    return {};
+}
+
+SlabRegion nodes_of(const WaveOp& wave, const DrawState&, const LatticeGrid& grid)
 {
     const Node low = snap(wave.corner, grid);
     const Node high = snap(wave.matrix(position(low, grid) + wave.size), grid);
@@ -45,4 +50,4 @@ SlabRegion wave_region(const WaveOp& wave, const LatticeGrid& grid)
     return region;
 }
 
-} // namespace fppg
+} // namespace fppg::kinds

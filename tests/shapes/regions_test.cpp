@@ -2,10 +2,10 @@
 // asked node by node.
 
 #include "helpers/dense_grid.h"
-#include "lattice/plane_shapes.h"
-#include "lattice/planes.h"
-#include "lattice/round_shapes.h"
-#include "lattice/solids.h"
+#include "shapes/plane_shapes.h"
+#include "shapes/planes.h"
+#include "shapes/kinds.h"
+#include "shapes/solids.h"
 #include "shapes/polygon_cut.h"
 
 #include <gtest/gtest.h>
@@ -369,7 +369,7 @@ TEST(SphereRegion, HasTheNodesByTheirDistanceFromTheCentre)
             return (state.mode != DrawMode::Solid && near_shell(sphere.radius)) ||
                    (state.mode != DrawMode::Face && d <= sphere.radius);
         };
-        ASSERT_EQ(difference(dense(grid, sphere_region(sphere, state, grid)), where(grid, holds)),
+        ASSERT_EQ(difference(dense(grid, kinds::nodes_of(sphere, state, grid)), where(grid, holds)),
                   "")
             << "case " << i;
     }
@@ -415,7 +415,7 @@ TEST(CylinderRegion, HasTheNodesByTheirPlaceAlongAndAcrossTheAxis)
                    (cylinder.is_visible[1] && std::fabs(at_b / length) < cover && is_filled);
         };
         ASSERT_EQ(
-            difference(dense(grid, cylinder_region(cylinder, state, grid)), where(grid, holds)), "")
+            difference(dense(grid, kinds::nodes_of(cylinder, state, grid)), where(grid, holds)), "")
             << "case " << i;
     }
 }
@@ -448,7 +448,7 @@ TEST(EllipsoidRegion, HasTheNodesByTheSumOfTheDistancesToTheFoci)
         };
         const EllipsoidOp ellipsoid{position(f0, grid), position(f1, grid), radius};
         ASSERT_EQ(
-            difference(dense(grid, ellipsoid_region(ellipsoid, state, grid)), where(grid, holds)),
+            difference(dense(grid, kinds::nodes_of(ellipsoid, state, grid)), where(grid, holds)),
             "")
             << "case " << i;
     }

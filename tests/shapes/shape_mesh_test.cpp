@@ -4,7 +4,7 @@
 #include "fppg/error.h"
 #include "meshes/test_shapes.h"
 #include "shapes/figures.h"
-#include "shapes/round_mesh.h"
+#include "shapes/round_facets.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "lattice/plane_shapes.h"
+#include "shapes/plane_shapes.h"
 
-#include "lattice/planes.h"
+#include "shapes/planes.h"
 #include "shapes/figures.h"
 
 #include <algorithm>

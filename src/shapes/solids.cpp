@@ -1,6 +1,6 @@
-#include "lattice/solids.h"
+#include "shapes/solids.h"
 
-#include "lattice/planes.h"
+#include "shapes/planes.h"
 #include "shapes/figures.h"
 #include "shapes/polygon_cut.h"
 

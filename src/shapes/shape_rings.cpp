@@ -1,4 +1,4 @@
-#include "lattice/shape_rings.h"
+#include "shapes/shape_rings.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,0 +1,50 @@
+#include "scene/exact_body.h"
+
+#include "scene/surfaces.h"
+#include "shapes/shape.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+#include <vector>
+
+namespace fppg
+{
+
+std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::string& why_not)
+{
+    if (scene.def->grid.is_2d)
+    {
+        why_not = "a case in two dimensions has no closed shapes";
+        return std::nullopt;
+    }
+    std::vector<const DrawOp*> draws;
+    bool is_recoloured = false;
+    for (const SceneStep& step : scene.remaining())
+    {
+        const DrawState& state = *step.draw->state;
+        if (step.combination || state.mk.kind != MkKind::Bound || state.mk.mk != mk ||
+            !state.draw_points)
+            continue;
+        const auto* shape = std::get_if<Shape>(&step.draw->what);
+        const Edit* edit = step.edit();
+        is_recoloured =
+            is_recoloured || !state.clips.empty() || (edit != nullptr && is_redraw(*edit));
+        if (shape != nullptr && !std::holds_alternative<WaveOp>(*shape)) draws.push_back(step.draw);
+    }
+    if (draws.size() != 1 || is_recoloured)
+    {
+        why_not = is_recoloured ? "redraws or clips take part in it"
+                                : fmt::format("{} draws make it", draws.size());
+        return std::nullopt;
+    }
+    std::optional<ExactBody> body = body_of(
+        std::get<Shape>(draws.front()->what),
+        {*draws.front()->state, scene.def->grid, mesh_of(scene, *draws.front(), 1)}, why_not);
+    if (body)
+        body->shape = fmt::format("<{}> of line {}", draws.front()->source.command,
+                                  draws.front()->source.line);
+    return body;
+}
+
+} // namespace fppg
