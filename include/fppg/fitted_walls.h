@@ -7,30 +7,23 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace fppg
 {
 
-/// What a body is besides its triangles, so that its particles can be put on the exact surface.
-enum class RoundShape : std::uint8_t
-{
-    None,      ///< the triangles are the shape
-    Sphere,    ///< centre p0, radius
-    Cylinder,  ///< axis p0 p1, radius; facets of the covers are plane and exact
-    Ellipsoid, ///< foci p0 and p1; `radius` is the sum of the distances to them
-};
+/// The exact surface behind the triangles of a round body, on which its particles are put
+/// (meshes/round_surface.h).
+struct RoundSurface;
 
 /// A shape of the case as triangles, in the coordinates of the case.
 struct ShapeMesh
 {
     TriangleSoup soup;     ///< counter-clockwise from outside; of a surface, as drawn
     bool is_solid = false; ///< the draw fills the inside, not only the surface
-    RoundShape round = RoundShape::None;
-    Vec3 p0;
-    Vec3 p1;
-    double radius = 0;
+    std::shared_ptr<const RoundSurface> round{}; ///< null: the triangles are the shape
 };
 
 /// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
@@ -60,10 +53,7 @@ struct FittedBody
     /// Of a combination of parts, per facet the mk of the part that it belongs to; else empty.
     std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
-    RoundShape round = RoundShape::None;
-    Vec3 p0;
-    Vec3 p1;
-    double radius = 0;
+    std::shared_ptr<const RoundSurface> round; ///< null: the triangles are the shape
     SurfaceMesh mesh;
     MeshReport report;
     Features features;

@@ -3,9 +3,28 @@
 #include "fppg/fitted_walls.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace fppg
 {
+
+/// A point's level and the way in which it grows: zero on a round surface, positive outside.
+struct Level
+{
+    double value = 0; ///< metres
+    Vec3 gradient;
+};
+
+struct RoundSurface
+{
+    std::function<Level(const Vec3&)> level_at;
+    double size = 0; ///< metres, of a radius: by it rounding is measured
+    /// Facets that look along it are plane covers, which are exact; zero: there are none.
+    Vec3 cover_normal{};
+};
+
+/// A vector of length 1 in the same direction; of the zero vector zero.
+Vec3 unit(const Vec3& p);
 
 /// Moves a particle from the triangles of a round body to its exact surface, by about the chord
 /// error. Covers of a cylinder stay plane; a particle on a rim comes to lie on the rim's circle.
@@ -22,7 +41,8 @@ void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t face
 Vec3 exact_normal(const FittedBody& body, const Vec3& position, std::uint32_t facet);
 
 /// How far a point is outside the exact surface, metres, negative inside; to first order in the
-/// distance for an ellipsoid. From the facet's plane where the body is not round, and on covers.
+/// distance where the level is no distance (an ellipsoid). From the facet's plane where the body is
+/// not round, and on covers.
 double exact_distance(const FittedBody& body, const Vec3& position, std::uint32_t facet);
 
 } // namespace fppg

@@ -1,3 +1,4 @@
+#include "meshes/round_surface.h"
 #include "shapes/kinds.h"
 #include "shapes/round_columns.h"
 #include "shapes/round_facets.h"
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -84,8 +86,10 @@ private:
     /// Rings with half as many corners each towards the middle, so that facets stay well shaped.
     void add_cover(const Vec3& center, const Ring& rim, bool looks_down)
     {
-        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-            mesh_.facets.push_back(looks_down ? std::array<std::uint32_t, 3>{a, c, b} : std::array<std::uint32_t, 3>{a, b, c});
+        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c)
+        {
+            mesh_.facets.push_back(looks_down ? std::array<std::uint32_t, 3>{a, c, b}
+                                              : std::array<std::uint32_t, 3>{a, b, c});
         };
         Ring outer = rim;
         for (int halving = 1; halving <= halvings_; ++halving)
@@ -124,14 +128,16 @@ ShapeMesh cylinder_mesh(const CylinderLayer& cylinder, const std::array<bool, 3>
 {
     check_size("a cylinder with a radius", cylinder.radius);
     ShapeMesh out;
-    out.round = RoundShape::Cylinder;
-    out.p0 = cylinder.p0;
-    out.p1 = cylinder.p1;
-    out.radius = cylinder.radius;
+    const Vec3 u = unit(cylinder.p1 - cylinder.p0);
+    const auto level = [p0 = cylinder.p0, u, radius = cylinder.radius](const Vec3& p) -> Level
+    {
+        const Vec3 away = p - p0 - u * dot(p - p0, u);
+        return {norm(away) - radius, unit(away)};
+    };
+    out.round = std::make_shared<const RoundSurface>(RoundSurface{level, cylinder.radius, u});
     if (norm(cylinder.p1 - cylinder.p0) > 0)
-        out.soup = CylinderMesher(cylinder.p0, cylinder.p1, cylinder.radius, dp)
-                       .run(is_visible)
-                       .soup();
+        out.soup =
+            CylinderMesher(cylinder.p0, cylinder.p1, cylinder.radius, dp).run(is_visible).soup();
     return out;
 }
 
@@ -173,8 +179,7 @@ struct Body
 
 void add_faces(const CylinderOp& cylinder, double radius, double dp, std::vector<Piece>& pieces)
 {
-    if (cylinder.is_visible[2])
-        pieces.push_back({-1, rounded_radius(radius, dp) * dp, true});
+    if (cylinder.is_visible[2]) pieces.push_back({-1, rounded_radius(radius, dp) * dp, true});
     if (cylinder.is_visible[0]) pieces.push_back({0, radius, false});
     if (cylinder.is_visible[1]) pieces.push_back({1, radius, false});
 }
@@ -397,8 +402,7 @@ void add_cells_of(const CylinderLayer& cylinder, const std::array<bool, 3>& is_v
     if (norm(b - a) == 0) return;
     const DrawConstants& constants = context.state.constants;
     const double more = context.snapped ? constants.cylinder_tube * context.grid.dp : 0;
-    const auto [near, far] =
-        cylinder_rings(a, b, cylinder.radius + more, constants.cylinder_sides);
+    const auto [near, far] = cylinder_rings(a, b, cylinder.radius + more, constants.cylinder_sides);
     const std::size_t n = near.size();
     for (std::size_t i = 0; is_visible[0] && i < n; ++i)
         out.add_round_face({near[i], near[(i + 1) % n], a});

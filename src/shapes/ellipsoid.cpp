@@ -1,9 +1,11 @@
+#include "meshes/round_surface.h"
 #include "shapes/kinds.h"
 #include "shapes/round_columns.h"
 #include "shapes/round_facets.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace fppg::kinds
@@ -19,10 +21,10 @@ ShapeMesh ellipsoid_mesh(const Vec3& focus0, const Vec3& focus1, double sum, dou
 {
     check_size("an ellipsoid with a sum of distances", sum);
     ShapeMesh out;
-    out.round = RoundShape::Ellipsoid;
-    out.p0 = focus0;
-    out.p1 = focus1;
-    out.radius = sum;
+    const auto level = [focus0, focus1, sum](const Vec3& p) -> Level {
+        return {norm(p - focus0) + norm(p - focus1) - sum, unit(p - focus0) + unit(p - focus1)};
+    };
+    out.round = std::make_shared<const RoundSurface>(RoundSurface{level, sum});
     const double apart = norm(focus1 - focus0);
     const double along = 0.5 * sum;
     const double side = 0.5 * std::sqrt(std::max(0.0, (sum - apart) * (sum + apart)));
@@ -137,8 +139,8 @@ bool is_body(const EllipsoidOp&, DrawMode)
 std::vector<ShapeMesh> surfaces_of(const EllipsoidOp& ellipsoid, const ShapeContext& context)
 {
     if (context.is_wire()) return {};
-    ShapeMesh mesh = ellipsoid_mesh(ellipsoid.focus0, ellipsoid.focus1, ellipsoid.radius,
-                                    context.grid.dp);
+    ShapeMesh mesh =
+        ellipsoid_mesh(ellipsoid.focus0, ellipsoid.focus1, ellipsoid.radius, context.grid.dp);
     mesh.is_solid = context.may_fill();
     return {std::move(mesh)};
 }

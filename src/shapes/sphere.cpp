@@ -1,3 +1,4 @@
+#include "meshes/round_surface.h"
 #include "shapes/kinds.h"
 #include "shapes/round_columns.h"
 #include "shapes/round_facets.h"
@@ -5,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -24,10 +26,10 @@ ShapeMesh sphere_mesh(const Vec3& center, double radius, double dp)
     for (Vec3& p : mesh.vertices) p = center + p * radius;
     ShapeMesh out;
     out.soup = mesh.soup();
-    out.round = RoundShape::Sphere;
-    out.p0 = center;
-    out.p1 = center;
-    out.radius = radius;
+    const auto level = [center, radius](const Vec3& p) -> Level {
+        return {norm(p - center) - radius, unit(p - center)};
+    };
+    out.round = std::make_shared<const RoundSurface>(RoundSurface{level, radius});
     return out;
 }
 
@@ -92,8 +94,8 @@ public:
         }
         if (s.has_ball)
             push_without(
-                out, y,
-                ball(column, s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }), {});
+                out, y, ball(column, s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }),
+                {});
     }
 
 private:
@@ -145,8 +147,7 @@ void add_cells_of(const Vec3& center, double radius, CellList& out)
 Box3 bounds_of(const SphereOp& sphere, double dp)
 {
     const auto thickest = std::max_element(sphere.layers_dp.begin(), sphere.layers_dp.end());
-    const double r =
-        sphere.radius + (thickest == sphere.layers_dp.end() ? 0 : *thickest * dp);
+    const double r = sphere.radius + (thickest == sphere.layers_dp.end() ? 0 : *thickest * dp);
     Box3 box;
     add_ball(box, sphere.center, {r, r, r});
     return box;

@@ -210,9 +210,6 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     FittedBody body;
     body.is_solid = shape.is_solid;
     body.round = shape.round;
-    body.p0 = shape.p0;
-    body.p1 = shape.p1;
-    body.radius = shape.radius;
     body.mesh = take_in_mesh(shape.soup, {}, threads, body.report);
     body.features = find_features(body.mesh, feature_options(settings, grid));
     return fit_body(std::move(body), settings, grid, clips, threads);
@@ -230,7 +227,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     if (settings.one_sheet_dp > 0)
         out.second_sheet = keep_one_sheet(body.mesh, body.features,
                                           {grid.dp, settings.one_sheet_dp}, surface, threads);
-    if (body.round != RoundShape::None)
+    if (body.round != nullptr)
         parallel_for(
             surface.positions.size(), threads,
             [&](std::size_t i)

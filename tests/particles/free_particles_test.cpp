@@ -4,6 +4,8 @@
 #include "helpers/case_text.h"
 #include "helpers/dense_grid.h"
 
+#include "helpers/round_meshes.h"
+
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -499,10 +501,8 @@ TEST(FreeParticles, OnRoundBodiesHaveTheNormalOfTheTrueShape)
     const CaseDef def = read(small_case());
     RunField field = walled(test::DenseMks(def.grid));
     FittedBody& body = field.walls.bodies[0];
-    body.round = RoundShape::Cylinder;
-    body.p0 = {0.5, 0.5, 0};
-    body.p1 = {0.5, 0.5, 1};
-    body.radius = 0.5;
+    body.round =
+        test::cylinder_mesh({0.5, 0.5, 0}, {0.5, 0.5, 1}, 0.5, {true, true, true}, 0.1).round;
     const std::uint32_t side = facet_towards(body.mesh, {1, 0, 0});
     const std::uint32_t cover = facet_towards(body.mesh, {0, 0, 1});
     add_to_wall(field.walls, {0.5 + 0.3, 0.5 + 0.4, 0.3}, 10, FitKind::Surface, side);

@@ -1,4 +1,5 @@
 #include "shapes/shape_mesh.h"
+#include "meshes/round_surface.h"
 
 #include "casedef/transforms.h"
 #include "fppg/error.h"
@@ -19,6 +20,13 @@ namespace
 constexpr double pi = std::numbers::pi;
 constexpr double dp = 0.01;
 
+LatticeGrid grid()
+{
+    LatticeGrid out;
+    out.dp = dp;
+    return out;
+}
+
 DrawOp op_of(const Command& what, DrawMode mode = DrawMode::Solid, bool normal_invert = false)
 {
     DrawState state;
@@ -33,7 +41,7 @@ DrawOp op_of(const Command& what, DrawMode mode = DrawMode::Solid, bool normal_i
 std::vector<ShapeMesh> meshes(const Command& what, DrawMode mode = DrawMode::Solid,
                               bool normal_invert = false)
 {
-    return shape_meshes(op_of(what, mode, normal_invert), nullptr, dp);
+    return shape_meshes(op_of(what, mode, normal_invert), nullptr, grid());
 }
 
 struct Taken
@@ -260,7 +268,7 @@ TEST(ShapeMeshes, RoundShapesAreSolidUnlessInFaceMode)
             const auto shapes = meshes(what, mode);
             ASSERT_EQ(shapes.size(), 1U);
             EXPECT_EQ(shapes[0].is_solid, mode != DrawMode::Face);
-            EXPECT_NE(shapes[0].round, RoundShape::None);
+            EXPECT_NE(shapes[0].round, nullptr);
             EXPECT_TRUE(taken(shapes[0]).report.is_watertight);
         }
     EXPECT_FALSE(meshes(CylinderOp{{}, {0, 0, 1}, r, {true, false, true}, {}})[0].is_solid);
@@ -270,8 +278,8 @@ TEST(ShapeMeshes, LayersAreShellsAroundTheShape)
 {
     const auto spheres = meshes(SphereOp{{1, 1, 1}, 0.1, {0, 1, -2.5}});
     ASSERT_EQ(spheres.size(), 3U);
-    EXPECT_DOUBLE_EQ(spheres[1].radius, 0.1 + dp);
-    EXPECT_DOUBLE_EQ(spheres[2].radius, 0.1 - 2.5 * dp);
+    EXPECT_DOUBLE_EQ(spheres[1].round->size, 0.1 + dp);
+    EXPECT_DOUBLE_EQ(spheres[2].round->size, 0.1 - 2.5 * dp);
     EXPECT_FALSE(spheres[0].is_solid);
     const auto pipes = meshes(CylinderOp{{0, 0, 0},
                                          {0, 0, 1},
@@ -291,12 +299,13 @@ TEST(ShapeMeshes, AFileIsMovedAndStaysOutward)
     MeshFileOp op;
     op.transform = translation({1, 2, 3}) * rotation({0, 1, 1}, 0.5) * scaling({1, 1, -2});
     op.autofill = true;
-    const TriangleSoup cube = test::box({0, 0, 0}, {1, 1, 1});
-    expect_solid(shape_meshes(op_of(op), &cube, dp), 2);
+    MeshFile cube;
+    cube.soup = test::box({0, 0, 0}, {1, 1, 1});
+    expect_solid(shape_meshes(op_of(op), &cube, grid()), 2);
     op.autofill = false;
-    const auto shell = shape_meshes(op_of(op, DrawMode::Face), &cube, dp);
+    const auto shell = shape_meshes(op_of(op, DrawMode::Face), &cube, grid());
     EXPECT_FALSE(shell[0].is_solid);
-    EXPECT_EQ(shell[0].round, RoundShape::None);
+    EXPECT_EQ(shell[0].round, nullptr);
 }
 
 TEST(ShapeMeshes, WhatStaysOnTheLatticeGivesNone)
