@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes closed triangle meshes of parametric bodies, as binary STL, PLY or VTK.
+"""Makes closed triangle meshes of parametric bodies, as binary STL, PLY, OBJ, OFF or VTK.
 
     make_meshes.py SHAPE FILE.stl [name=value ...]   one mesh; angles in degrees
     make_meshes.py --all DIR                         every shape with its default parameters
@@ -153,7 +153,19 @@ def vtk_xml_text(mesh, is_polydata):
             + f"</Points>\n{cells}</Piece>\n</{kind}>\n</VTKFile>\n")
 
 
-TEXT_FORMATS = {".ply": ply_text, ".vtk": vtk_text,
+def obj_text(mesh):
+    points, _ = text_rows(mesh)
+    return "\n".join(["v " + p for p in points]
+                     + ["f " + " ".join(str(i + 1) for i in f) for f in mesh.facets]) + "\n"
+
+
+def off_text(mesh):
+    points, facets = text_rows(mesh)
+    return "\n".join(["OFF", f"{len(points)} {len(facets)} 0"] + points
+                     + ["3 " + f for f in facets]) + "\n"
+
+
+TEXT_FORMATS = {".ply": ply_text, ".obj": obj_text, ".off": off_text, ".vtk": vtk_text,
                 ".vtp": lambda mesh: vtk_xml_text(mesh, True),
                 ".vtu": lambda mesh: vtk_xml_text(mesh, False)}
 
@@ -839,7 +851,7 @@ CASE_MESHES = (
 # Those of the case templates, in every format that a draw command reads.
 PART = ("l_shape", {"length": 0.6, "thickness": 0.25, "depth": 0.3})
 TEMPLATE_MESHES = (
-    ("part.stl", *PART), ("part.ply", *PART), ("part.vtk", *PART), ("part.vtp", *PART),
+    ("part.stl", *PART), ("part.ply", *PART), ("part.obj", *PART), ("part.off", *PART), ("part.vtk", *PART), ("part.vtp", *PART),
     ("part.vtu", *PART),
     ("block.stl", "box", {"x": 0.4, "y": 0.4, "z": 0.4}),
     ("block.vtp", "box", {"x": 0.4, "y": 0.4, "z": 0.4}),

@@ -219,8 +219,16 @@ struct EllipsoidOp
     double radius = 0;
 };
 
-/// `drawfilestl`, `drawfileply`, `drawfilevtk`, `drawfilecsv`, `drawbathymetry`, and one file of
-/// `drawfilevtm`
+/// A closed solid that answers for itself (shapes/solid_shape.h).
+class SolidShape;
+
+/// `drawtorus`
+struct SolidOp
+{
+    std::shared_ptr<const SolidShape> shape; ///< not null
+};
+
+/// `drawfilestl` and the like of all mesh formats, `drawbathymetry`, and one file of `drawfilevtm`
 struct MeshFileOp
 {
     std::string file;      ///< as written in the case; of a VTM file: beside it
@@ -370,7 +378,7 @@ struct PointsMkOutOp
 };
 
 /// What a draw puts into the domain.
-using Shape = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
+using Shape = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, SolidOp,
                            MeshFileOp, WaveOp>;
 /// What changes nodes that are there.
 using Edit = std::variant<FillOp, CavityFillOp, RedrawOp, RedrawNearOp>;

@@ -16,7 +16,9 @@ enum class MeshFormat : std::uint8_t
     Ply,
     Vtk,           ///< legacy .vtk, .vtp or .vtu, told apart by their first bytes
     CsvBathymetry, ///< a table of heights
-    Bathymetry,    ///< points from which a grid of heights is made
+    Obj,           ///< Wavefront
+    Off,
+    Bathymetry, ///< points from which a grid of heights is made
 };
 
 /// Which shapes of a VTK file are taken: `polyselec`.

@@ -27,12 +27,12 @@ namespace fppg
 ///          cannot be read (names the line), or has no facet left
 MeshFile read_stl(const std::string& path, int threads = 1);
 
-/// Reads a mesh file of any kind that is known: STL as read_stl; PLY; legacy VTK and the XML files
-/// .vtp and .vtu, points, lines and polygons; a table of heights (CSV); points of a bathymetry.
-/// Polygons and strips are cut into triangles as GenCase v5.4.354 cuts them, so that the soup of
-/// every kind can be body-fitted. Coordinates are float32 or double, as the file says: GenCase
-/// keeps both (points a millionth of dp beside a tie of the lattice fall as their type rounds
-/// them).
+/// Reads a mesh file of any kind that is known: STL as read_stl; PLY, OBJ, OFF; legacy VTK and the
+/// XML files .vtp and .vtu, points, lines and polygons; a table of heights (CSV); points of a
+/// bathymetry. Polygons and strips are cut into triangles as GenCase v5.4.354 cuts them, so that
+/// the soup of every kind can be body-fitted. Coordinates are float32 or double, as the file says:
+/// GenCase keeps both (points a millionth of dp beside a tie of the lattice fall as their type
+/// rounds them).
 ///
 /// path     as the user named it, relative to the working directory
 /// reading  what the file is, and which of its shapes are wanted

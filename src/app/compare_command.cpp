@@ -11,6 +11,7 @@
 #include "fppg/compare.h"
 #include "fppg/files.h"
 #include "fppg/render.h"
+#include "meshes/mesh_formats.h"
 #include "report/scene.h"
 
 #include <optional>
@@ -56,8 +57,9 @@ bool read_arguments(std::vector<std::string> arguments, CompareCall& call)
     app.add_option("--json", call.json, "all numbers, as JSON");
     app.add_option("--html", call.html, "a page with pictures and histograms, in one file");
     app.add_option("--stl", options.geometry,
-                   "mesh (STL, PLY, VTK) in the place of the particles: how far they are from it; "
-                   "may be repeated")
+                   "mesh in the place of the particles: how far they are from it; may be repeated. "
+                   "Formats: " +
+                       mesh_format_list())
         .may_be_repeated();
     app.add_option("--definition", call.definition,
                    "Case_Def whose boundaries are that mesh, where the case draws them; read with "

@@ -11,6 +11,7 @@
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
+#include "meshes/mesh_formats.h"
 #include "meshes/mesh_query.h"
 
 namespace fppg
@@ -177,7 +178,6 @@ Json as_json(const Vec3& p)
 
 MeshFile read_file(const InspectOptions& options, Inspection& found)
 {
-    static constexpr std::array<const char*, 4> names{"stl", "ply", "vtk", "csv"};
     if (options.path.ends_with(".vtm") || options.path.ends_with(".VTM"))
         throw GeometryError(
             fmt::format("{}: names other files that hold the meshes, expected one "
@@ -185,7 +185,7 @@ MeshFile read_file(const InspectOptions& options, Inspection& found)
                         options.path));
     MeshReading reading;
     reading.format = mesh_format_of(options.path);
-    found.format = names[static_cast<std::size_t>(reading.format)];
+    found.format = mesh_format_name(reading.format);
     return read_mesh_file(options.path, reading, options.threads);
 }
 

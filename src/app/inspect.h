@@ -25,7 +25,7 @@ struct Inspection
 {
     InspectOptions options;
     MeshReport report;         ///< of the surface
-    std::string format;        ///< "stl", "ply", "vtk" or "csv", by the ending of the name
+    std::string format;        ///< "stl", "ply" and so on, by the ending of the name
     std::size_t points = 0;    ///< single ones, that a case draws beside the surface
     std::size_t polylines = 0; ///< likewise
     std::vector<std::string> file_warnings;

@@ -7,6 +7,7 @@
 #include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "fppg/error.h"
+#include "meshes/mesh_formats.h"
 
 #include <optional>
 
@@ -20,8 +21,7 @@ int run_inspect(const std::vector<std::string>& arguments)
         "fppg inspect");
     InspectOptions inspect;
     bool as_json = false;
-    app.add_option("mesh", inspect.path, "STL, PLY, VTK (.vtk, .vtp, .vtu) or CSV file (heights)")
-        .required();
+    app.add_option("mesh", inspect.path, "a mesh file: " + mesh_format_list()).required();
     app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file").positive();
     app.add_option("--angle", inspect.angle_deg, "feature angle, degrees")
         .range(0.0, 179.999)

@@ -14,6 +14,7 @@
 #include "fppg/files.h"
 #include "fppg/render.h"
 #include "fppg/version.h"
+#include "meshes/mesh_formats.h"
 #include "report/html.h"
 #include "report/result_look.h"
 #include "report/run_facts.h"
@@ -58,8 +59,9 @@ bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
     app.add_option("RESULT", call.results, "one or more").required().expected(1, 1000);
     app.add_option("-o,--output", call.output, "the page").shows_default();
     app.add_option("--stl", call.geometry,
-                   "mesh (STL, PLY, VTK) in the place of the particles: how far they are from it; "
-                   "may be repeated")
+                   "mesh in the place of the particles: how far they are from it; may be repeated. "
+                   "Formats: " +
+                       mesh_format_list())
         .may_be_repeated();
     app.add_option("--definition", call.definition,
                    "Case_Def whose boundaries are that mesh, read with the options behind --, such "

@@ -92,6 +92,13 @@ public:
         note_data_files(casedef);
         read_draw_block(read_, def_);
         read_fit(root, read_, options_.fit, def_);
+        // Body-fitted walls are for fppg alone anyway.
+        for (const auto& [name, line] : program.own_commands)
+            if (def_.fit.is_empty())
+                def_.warnings.push_back(fmt::format(
+                    "{}:{}: <{}>: is a command of fppg's own; GenCase does not know it and refuses "
+                    "the case.",
+                    def_.file, line, name));
         if (!def_.fit.is_empty() &&
             (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))
             read_.fail(casedef,

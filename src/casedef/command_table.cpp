@@ -1,6 +1,7 @@
 #include "casedef/command_table.h"
 
 #include "meshes/mesh_formats.h"
+#include "shapes/solid_shape.h"
 
 #include <algorithm>
 #include <array>
@@ -78,6 +79,7 @@ void set_line_begin(Program& p, const Element& e);
 // round_commands.cpp
 void draw_cylinder(Program& p, const Element& e);
 void draw_ellipsoid(Program& p, const Element& e);
+void draw_read(Program& p, const Element& e, std::optional<Shape> (*read)(const DrawReader&));
 void draw_sphere(Program& p, const Element& e);
 void draw_wave(Program& p, const Element& e);
 
@@ -117,6 +119,13 @@ using namespace commands;
 
 constexpr std::string_view any_child = "*";
 
+/// A command whose shape reads it.
+template <std::optional<Shape> (*Read)(const DrawReader&)>
+void draw(Program& p, const Element& e)
+{
+    draw_read(p, e, Read);
+}
+
 /// All commands by name. Which elements they may have was found by giving each command 17 other
 /// elements in GenCase v5.0 and some in v5.4, and each of its own elements twice in 18 of them.
 constexpr auto table = std::to_array<CommandRow>({
@@ -154,6 +163,7 @@ constexpr auto table = std::to_array<CommandRow>({
     {"drawpyramid", "point+", draw_pyramid},
     {"drawquadri", "point+", draw_quadri},
     {"drawsphere", "layers point+", draw_sphere},
+    {"drawtorus", "point+ vector", draw<read_torus>, true},
     {"drawtriangle", "point+", draw_triangle},
     {"drawtriangles", "points triangles", draw_triangles},
     {"drawtrianglesfan", "point+", draw_triangles_fan},
@@ -215,9 +225,10 @@ constexpr auto table = std::to_array<CommandRow>({
     {"varssave", any_child, run_variable_command},
 });
 
-/// Of a mesh format that has no row of its own.
+/// Of mesh formats that have no row of their own, GenCase's and fppg's.
 constexpr CommandRow mesh_file{
     "drawfile", "clipdomain depth drawcenter drawmove drawrotate drawscale layers", draw_mesh_file};
+constexpr CommandRow own_mesh_file{mesh_file.name, mesh_file.children, mesh_file.run, true};
 
 } // namespace
 
@@ -227,9 +238,10 @@ const CommandRow* find_command(std::string_view name)
                                        [](const CommandRow& r, std::string_view wanted)
                                        { return r.name < wanted; });
     if (row != table.end() && row->name == name) return &*row;
-    const bool is_mesh_file = name.starts_with(mesh_file.name) &&
-                              mesh_format_named(name.substr(mesh_file.name.size())).has_value();
-    return is_mesh_file ? &mesh_file : nullptr;
+    if (!name.starts_with(mesh_file.name)) return nullptr;
+    const auto format = mesh_format_named(name.substr(mesh_file.name.size()));
+    if (!format) return nullptr;
+    return is_own_format(*format) ? &own_mesh_file : &mesh_file;
 }
 
 std::size_t allowed_children(const CommandRow& row, std::string_view child)

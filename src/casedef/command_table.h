@@ -16,6 +16,7 @@ struct CommandRow
     /// any.
     std::string_view children;
     void (*run)(Program& p, const Element& e);
+    bool is_own = false; ///< GenCase does not have it
 };
 
 /// The row of a command; null: there is none of this name. `drawfileply` and the like are found

@@ -102,6 +102,7 @@ void Program::run_command(const Element& e)
     if (!read.is_active(e)) return;
     count_command(e);
     check_children(*row, e, read);
+    if (row->is_own) own_commands.emplace(e.name, e.line);
     row->run(*this, e);
 }
 

@@ -143,6 +143,8 @@ struct Program
     std::vector<DrawConstants> saved_constants;
     bool is_large_mk_known = false;     ///< a warning named an mk that GenCase v5.4 refuses
     std::size_t pictures_forgotten = 0; ///< so many pictures are older than the last resetdraw
+    /// fppg's own commands that were run, which GenCase refuses, with the lines of the first ones.
+    std::map<std::string, int> own_commands;
     int list_depth = 0;
     std::size_t commands_run = 0;
 

@@ -31,10 +31,13 @@ std::vector<Vec3> Program::points_of(const Element& e, std::size_t at_least,
 {
     std::vector<Vec3> points = read.points(e);
     if (points.size() < at_least || points.size() > at_most)
-        read.fail(
-            e, at_least == at_most
-                   ? fmt::format("has {} points, expected {}", points.size(), at_least)
-                   : fmt::format("has {} points, expected at least {}", points.size(), at_least));
+    {
+        const std::string wanted = at_least == at_most ? fmt::format("{}", at_least)
+                                   : at_most < many_points
+                                       ? fmt::format("{} to {}", at_least, at_most)
+                                       : fmt::format("at least {}", at_least);
+        read.fail(e, fmt::format("has {} points, expected {}", points.size(), wanted));
+    }
     return points;
 }
 

@@ -1,6 +1,7 @@
 // Commands that draw spheres, cylinders, ellipsoids and waves.
 #include "casedef/command_table.h"
 #include "shapes/figures.h"
+#include "shapes/solid_shape.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,42 @@
 
 namespace fppg::commands
 {
+namespace
+{
+
+class ElementReader : public DrawReader
+{
+public:
+    ElementReader(const Program& p, const Element& e) : p_(p), e_(e) {}
+
+    DrawMode mode() const override { return p_.state.mode; }
+    std::vector<Vec3> points(std::size_t at_least, std::size_t at_most) const override
+    {
+        return p_.transformed_points(e_, at_least, at_most);
+    }
+    std::optional<Vec3> direction(const char* child) const override
+    {
+        const Element* found = e_.find_child(child);
+        if (found == nullptr) return std::nullopt;
+        Transform turn = p_.matrix;
+        turn.offset = {};
+        return turn(p_.read.vec3(*found));
+    }
+    double number(const char* attribute) const override { return p_.read.number(e_, attribute); }
+    [[noreturn]] void fail(const std::string& text) const override { p_.read.fail(e_, text); }
+
+private:
+    const Program& p_;
+    const Element& e_;
+};
+
+} // namespace
+
+/// A shape that reads its own command.
+void draw_read(Program& p, const Element& e, std::optional<Shape> (*read)(const DrawReader&))
+{
+    if (std::optional<Shape> shape = read(ElementReader(p, e))) p.add(e, std::move(*shape));
+}
 
 void draw_sphere(Program& p, const Element& e)
 {

@@ -20,8 +20,10 @@ struct MeshFormatRow
 {
     MeshFormat format;
     std::string_view name;    ///< of `<drawfileNAME>`; empty: other commands draw it
+    std::string_view title;   ///< in help texts
     std::string_view endings; ///< of its files, in small letters, separated by blanks
     MeshFile (*read)(const std::string& path, const MeshReading& reading, int threads);
+    bool is_own = false; ///< GenCase cannot read it
 };
 
 /// Reads a file by points and the cells that name them.
@@ -53,11 +55,13 @@ MeshFile read_heights(const std::string& path, const MeshReading& reading, int t
 
 /// All formats; the first one is that of files whose ending is not known.
 constexpr auto table = std::to_array<MeshFormatRow>({
-    {MeshFormat::Stl, "stl", "stl", read_stl_file},
-    {MeshFormat::Ply, "ply", "ply", read_with<read_ply>},
-    {MeshFormat::Vtk, "vtk", "vtk vtp vtu", read_with<read_vtk>},
-    {MeshFormat::CsvBathymetry, "csv", "csv", read_with<read_csv_bathymetry>},
-    {MeshFormat::Bathymetry, "", "", read_heights},
+    {MeshFormat::Stl, "stl", "STL", "stl", read_stl_file},
+    {MeshFormat::Ply, "ply", "PLY", "ply", read_with<read_ply>},
+    {MeshFormat::Vtk, "vtk", "VTK (.vtk, .vtp, .vtu)", "vtk vtp vtu", read_with<read_vtk>},
+    {MeshFormat::Obj, "obj", "OBJ", "obj", read_with<read_obj>, true},
+    {MeshFormat::Off, "off", "OFF", "off", read_with<read_off>, true},
+    {MeshFormat::CsvBathymetry, "csv", "CSV (heights)", "csv", read_with<read_csv_bathymetry>},
+    {MeshFormat::Bathymetry, "", "", "", read_heights},
 });
 
 bool has_word(std::string_view words, std::string_view wanted)
@@ -71,26 +75,37 @@ bool has_word(std::string_view words, std::string_view wanted)
     return false;
 }
 
+const MeshFormatRow& row_of(MeshFormat format)
+{
+    return *std::find_if(table.begin(), table.end(),
+                         [format](const MeshFormatRow& r) { return r.format == format; });
+}
+
 } // namespace
+
+bool is_own_format(MeshFormat format)
+{
+    return row_of(format).is_own;
+}
+
+std::string_view mesh_format_name(MeshFormat format)
+{
+    return row_of(format).name;
+}
+
+std::string mesh_format_list()
+{
+    std::string out;
+    for (const MeshFormatRow& row : table)
+        if (!row.title.empty()) out += (out.empty() ? "" : ", ") + std::string(row.title);
+    return out;
+}
 
 std::optional<MeshFormat> mesh_format_named(std::string_view name)
 {
     for (const MeshFormatRow& row : table)
         if (!row.name.empty() && row.name == name) return row.format;
     return std::nullopt;
-}
-
-std::string mesh_file_endings()
-{
-    std::string out;
-    for (const MeshFormatRow& row : table)
-        for (std::size_t i = 0; i < row.endings.size();)
-        {
-            const std::size_t end = std::min(row.endings.find(' ', i), row.endings.size());
-            out += (out.empty() ? "." : ", .") + std::string(row.endings.substr(i, end - i));
-            i = end + 1;
-        }
-    return out;
 }
 
 MeshFormat mesh_format_of(const std::string& path)
@@ -114,10 +129,7 @@ IndexedMesh read_bathymetry_file(const std::string& path, const BathymetryGrid& 
 
 MeshFile read_mesh_file(const std::string& path, const MeshReading& reading, int threads)
 {
-    const auto* row =
-        std::find_if(table.begin(), table.end(),
-                     [&](const MeshFormatRow& r) { return r.format == reading.format; });
-    return row->read(path, reading, threads);
+    return row_of(reading.format).read(path, reading, threads);
 }
 
 } // namespace fppg

@@ -30,6 +30,21 @@ IndexedMesh read_vtk_legacy(std::string_view bytes, const std::string& path);
 /// throws GeometryError that names the file, the line or the array, and what was expected
 IndexedMesh read_vtk_xml(std::string_view bytes, const std::string& path);
 
+/// Reads a Wavefront OBJ file: vertices, faces of any number of corners, lines and points. Corners
+/// may name textures and normals too and count backwards from the last vertex below 0. Groups and
+/// objects are read as one mesh; textures, normals and materials are passed over. Free-form
+/// surfaces are refused.
+///
+/// throws GeometryError that names the file, the line and what was expected
+IndexedMesh read_obj(std::string_view bytes, const std::string& path);
+
+/// Reads an OFF file as text, with colours, normals and texture places or without (COFF, NOFF,
+/// STOFF and together), which are passed over. Binary files and those of other dimensions (4OFF,
+/// nOFF) are refused.
+///
+/// throws GeometryError that names the file, the line and what was expected
+IndexedMesh read_off(std::string_view bytes, const std::string& path);
+
 /// Reads a table of heights, separated by semicolons: the first line holds x from its second cell
 /// on, every other line y and then the heights. Cells that are empty are 0. Gives one quad a cell,
 /// row by row, (x0, y0), (x1, y0), (x1, y1), (x0, y1), as GenCase v5.4.354 does (golden

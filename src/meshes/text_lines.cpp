@@ -144,7 +144,7 @@ std::uint64_t TextLines::count(const char* of_what)
     if (value < 0)
     {
         at_ = before;
-        fail_at(peek_word(), fmt::format("a count of {}, 0 or more", of_what));
+        fail_at(next_word(), fmt::format("a count of {}, 0 or more", of_what));
     }
     return static_cast<std::uint64_t>(value);
 }

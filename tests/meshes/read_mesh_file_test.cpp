@@ -124,6 +124,91 @@ TEST(ReadPly, RefusesAWrongCountOfItsHeader)
     EXPECT_NE(message_of(huge, MeshFormat::Ply).find("truncated"), std::string::npos);
 }
 
+std::string vertex_lines(const std::string& keyword, const std::string& behind)
+{
+    std::string text;
+    for (const Vec3& c : corners)
+        text += fmt::format("{}{} {} {}{}\n", keyword, c.x, c.y, c.z, behind);
+    return text;
+}
+
+TEST(ReadObj, ReadsCornersWithTexturesAndNormalsAndCountedBackwards)
+{
+    const std::string vertices = "# a remark\r\nmtllib a.mtl\no part\n" + vertex_lines("v ", "") +
+                                 "vt 0 0\nvn 0 0 1\ng one two\nusemtl red\ns off\n";
+    for (const std::string faces :
+         {"f 1 2 3 4\ng three\nf 2 5 3", "f 1/1 2/1 3/1 4/1 # four\nf 2/1 5/1 3/1\n",
+          "f 1//1 2//1 3//1 4//1\nf 2/1/1 5/1/1 3/1/1\n", "f -5 -4 -3 -2\nf -4 -1 -3\n",
+          "f 1 2 \\\n 3 4\nf 2 5 3\n"})
+        expect_quad_and_triangle(read(vertices + faces, MeshFormat::Obj));
+    expect_quad_and_triangle(
+        read(vertex_lines("v ", " 0.1 0.2 0.3") + "f 1 2 3 4\nf 2 5 3\n", MeshFormat::Obj));
+}
+
+TEST(ReadObj, CutsWidePolygonsAndReadsLinesAndPoints)
+{
+    const std::string text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 0\nv 0 2 0\n";
+    EXPECT_EQ(read(text + "f 1 2 3 4 5\n", MeshFormat::Obj).soup.size(), 3U);
+    const MeshFile mesh = read(text + "l 1 2 3\np 4\nf 1 2 3\n", MeshFormat::Obj);
+    ASSERT_EQ(mesh.lines.size(), 1U);
+    EXPECT_EQ(mesh.lines[0].size(), 3U);
+    EXPECT_EQ(mesh.points.size(), 1U);
+}
+
+TEST(ReadObj, NamesTheLineOfWhatIsBrokenAndWhatWasExpected)
+{
+    const std::string vertices = vertex_lines("v ", "");
+    const std::vector<std::pair<std::string, std::string>> broken{
+        {"f 1 2 6", ":6: names vertex 6, expected 1 to 5"},
+        {"f 1 2 -6", ":6: names vertex -6, expected 1 to 5, or -1 to -5"},
+        {"f 0 1 2", ":6: names vertex 0"},
+        {"f 1 2", ":6: a face of 2 corners, expected 3 or more"},
+        {"f 1 2 x", ":6: expected a corner as v, v/vt, v//vn or v/vt/vn, found 'x'"},
+        {"v 1 2", ":6: expected a number of z, found the end of the file"},
+        {"v 1 b 2", ":6: expected a number of y, found 'b'"},
+        {"surf 0 1 0 1 1 2", ":6: 'surf' belongs to a free-form surface, expected polygons"},
+        {"solid cube", ":6: expected v, f, l, p or another keyword of an OBJ file, found 'solid'"}};
+    for (const auto& [line, message] : broken)
+        EXPECT_NE(message_of(vertices + line, MeshFormat::Obj).find(message), std::string::npos)
+            << message_of(vertices + line, MeshFormat::Obj);
+    EXPECT_NE(message_of(vertices, MeshFormat::Obj), "");
+}
+
+TEST(ReadOff, ReadsColoursAndNormalsAndRemarks)
+{
+    const std::string faces = "4 0 1 2 3 255 0 0\n# a remark\n3 1 4 2\n\n";
+    for (const auto& [header, behind] : std::vector<std::pair<std::string, std::string>>{
+             {"OFF", ""},
+             {"# made by hand\noff", " # a corner"},
+             {"COFF", " 255 0 0 255"},
+             {"NOFF", " 0 0 1"},
+             {"STCNOFF", " 0 0 1 255 0 0 255 0.5 0.5"}})
+        expect_quad_and_triangle(
+            read(header + "\n5 2 0\n" + vertex_lines("", behind) + faces, MeshFormat::Off));
+    expect_quad_and_triangle(read("OFF 5 2 6\r\n" + vertex_lines("", "") + faces, MeshFormat::Off));
+}
+
+TEST(ReadOff, NamesTheLineOfWhatIsBrokenAndWhatWasExpected)
+{
+    const std::string head = "OFF\n5 2 0\n" + vertex_lines("", "");
+    const std::vector<std::pair<std::string, std::string>> broken{
+        {head + "4 0 1 2 3\n3 1 5 2\n", ":9: a face names vertex 5, expected 0 to 4"},
+        {head + "4 0 1 2 3\n", "the file ends after 1 of 2 faces"},
+        {head + "4 0 1 2 3\n3 1 4 2\n3 0 1 2\n", "has '3' after the last of 2 faces"},
+        {head + "0\n3 1 4 2\n", ":8: a face has 0 corners, expected 1 or more"},
+        {head + "3 0 1\n", ":9: expected a whole number of corners, found the end of the file"},
+        {"OFF\n5 1 0\n0 0 0 255 0 0\n", ":3: a vertex has '255' after x, y and z"},
+        {"OFF\n5 1 0\n0 0\n", "expected a number of z, found the end of the file"},
+        {"4OFF\n1 1 0\n", ":1: expected OFF, COFF, NOFF or STOFF: vertices of three coordinates"},
+        {"nOFF\n3\n1 1 0\n", ":1: is an nOFF file of more than three dimensions"},
+        {"OFF BINARY\n", ":1: is a binary OFF file, expected one as text"},
+        {"5 2 0\n", ":1: expected OFF, COFF, NOFF or STOFF, found '5'"},
+        {"OFF\n-5 2 0\n", ":2: expected a count of vertices, 0 or more"}};
+    for (const auto& [text, message] : broken)
+        EXPECT_NE(message_of(text, MeshFormat::Off).find(message), std::string::npos)
+            << message_of(text, MeshFormat::Off);
+}
+
 std::string vtk_header(const std::string& version, const std::string& encoding)
 {
     return "# vtk DataFile Version " + version + "\ntitle\n" + encoding + "\nDATASET POLYDATA\n";
@@ -381,6 +466,8 @@ std::vector<std::pair<std::string, MeshFormat>> whole_files()
             {xml_vtp(Packing::Text, true), MeshFormat::Vtk},
             {xml_vtp(Packing::Base64, false), MeshFormat::Vtk},
             {xml_vtp(Packing::AppendedZlib, true), MeshFormat::Vtk},
+            {vertex_lines("v ", "") + "f 1 2 3 4\nf 2 5 3\n", MeshFormat::Obj},
+            {"OFF\n5 2 0\n" + vertex_lines("", "") + "4 0 1 2 3\n3 1 4 2\n", MeshFormat::Off},
             {"a;0;0.3;1\n0;1;2;3\n0.5;4;;6\n", MeshFormat::CsvBathymetry}};
 }
 
@@ -424,6 +511,8 @@ TEST(ReadMeshFile, TellsKindsByTheirEnding)
 {
     EXPECT_EQ(mesh_format_of("a/b.PLY"), MeshFormat::Ply);
     EXPECT_EQ(mesh_format_of("b.vtu"), MeshFormat::Vtk);
+    EXPECT_EQ(mesh_format_of("b.Obj"), MeshFormat::Obj);
+    EXPECT_EQ(mesh_format_of("b.off"), MeshFormat::Off);
     EXPECT_EQ(mesh_format_of("b.stl"), MeshFormat::Stl);
     EXPECT_EQ(mesh_format_of("b"), MeshFormat::Stl);
 }

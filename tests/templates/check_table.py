@@ -22,8 +22,9 @@ ONE_PARENT = {"list": "", "mainlist": "", "obj": "motion", "objreal": "motion"}
 FREE = {"special", "gauges", "swl", "wavepaddles", "piston", "property", "properties/property", "extra"}
 
 
-# Draws that may have fppg:fill.
-WITH_INSIDE = {"drawfilestl", "drawfileply", "drawfilevtk", "drawfilevtm"}
+def has_inside(name):
+    """Whether a draw may have fppg:fill: all of files but a table of heights."""
+    return name.startswith("drawfile") and name != "drawfilecsv"
 
 
 def path_of(parent, name):
@@ -60,7 +61,7 @@ class Schema:
             if child.tag == XS + "attribute":
                 if child.get("name") not in self.common:
                     self.elements[path].add(child.get("name"))
-            elif child.tag == XS + "anyAttribute" and name in WITH_INSIDE:
+            elif child.tag == XS + "anyAttribute" and has_inside(name):
                 self.elements[path].add("fppg:fill")
             elif child.tag == XS + "element":
                 self.read(child, name)

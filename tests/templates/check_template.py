@@ -8,7 +8,8 @@
 expected.json beside this script holds what GenCase v5.4 wrote for NAME_Def.xml: for every particle file
 (one, or one a region of <vres>) type, mk and number of particles, and the endings of all files. Templates
 of what only this program has are run twice: with -fit:off they give GenCase's counts, then the function of
-this script that has their name looks at the particles.
+this script that has their name looks at the particles. What GenCase refuses ("refused") has counts of this
+program's own.
 """
 
 import glob

@@ -13,7 +13,7 @@ _fppg()
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
-        *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu csv" ;;
+        *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:render)
             options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette
