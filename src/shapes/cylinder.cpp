@@ -84,8 +84,10 @@ private:
     /// Rings with half as many corners each towards the middle, so that facets stay well shaped.
     void add_cover(const Vec3& center, const Ring& rim, bool looks_down)
     {
-        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-            mesh_.facets.push_back(looks_down ? std::array<std::uint32_t, 3>{a, c, b} : std::array<std::uint32_t, 3>{a, b, c});
+        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c)
+        {
+            mesh_.facets.push_back(looks_down ? std::array<std::uint32_t, 3>{a, c, b}
+                                              : std::array<std::uint32_t, 3>{a, b, c});
         };
         Ring outer = rim;
         for (int halving = 1; halving <= halvings_; ++halving)
@@ -129,9 +131,8 @@ ShapeMesh cylinder_mesh(const CylinderLayer& cylinder, const std::array<bool, 3>
     out.p1 = cylinder.p1;
     out.radius = cylinder.radius;
     if (norm(cylinder.p1 - cylinder.p0) > 0)
-        out.soup = CylinderMesher(cylinder.p0, cylinder.p1, cylinder.radius, dp)
-                       .run(is_visible)
-                       .soup();
+        out.soup =
+            CylinderMesher(cylinder.p0, cylinder.p1, cylinder.radius, dp).run(is_visible).soup();
     return out;
 }
 
@@ -173,8 +174,7 @@ struct Body
 
 void add_faces(const CylinderOp& cylinder, double radius, double dp, std::vector<Piece>& pieces)
 {
-    if (cylinder.is_visible[2])
-        pieces.push_back({-1, rounded_radius(radius, dp) * dp, true});
+    if (cylinder.is_visible[2]) pieces.push_back({-1, rounded_radius(radius, dp) * dp, true});
     if (cylinder.is_visible[0]) pieces.push_back({0, radius, false});
     if (cylinder.is_visible[1]) pieces.push_back({1, radius, false});
 }
@@ -397,8 +397,7 @@ void add_cells_of(const CylinderLayer& cylinder, const std::array<bool, 3>& is_v
     if (norm(b - a) == 0) return;
     const DrawConstants& constants = context.state.constants;
     const double more = context.snapped ? constants.cylinder_tube * context.grid.dp : 0;
-    const auto [near, far] =
-        cylinder_rings(a, b, cylinder.radius + more, constants.cylinder_sides);
+    const auto [near, far] = cylinder_rings(a, b, cylinder.radius + more, constants.cylinder_sides);
     const std::size_t n = near.size();
     for (std::size_t i = 0; is_visible[0] && i < n; ++i)
         out.add_round_face({near[i], near[(i + 1) % n], a});

@@ -137,8 +137,8 @@ bool is_body(const EllipsoidOp&, DrawMode)
 std::vector<ShapeMesh> surfaces_of(const EllipsoidOp& ellipsoid, const ShapeContext& context)
 {
     if (context.is_wire()) return {};
-    ShapeMesh mesh = ellipsoid_mesh(ellipsoid.focus0, ellipsoid.focus1, ellipsoid.radius,
-                                    context.grid.dp);
+    ShapeMesh mesh =
+        ellipsoid_mesh(ellipsoid.focus0, ellipsoid.focus1, ellipsoid.radius, context.grid.dp);
     mesh.is_solid = context.may_fill();
     return {std::move(mesh)};
 }

@@ -68,10 +68,10 @@ std::optional<ExactBody> body_of(const SphereOp& sphere, const ShapeContext& con
 Box3 bounds_of(const CylinderOp& cylinder, double dp);
 bool is_body(const CylinderOp& cylinder, DrawMode mode);
 std::vector<ShapeMesh> surfaces_of(const CylinderOp& cylinder, const ShapeContext& context);
-/// Rule R2: A, B real places of the snapped ends, V = B - A, va = V . x - V . A, vb = V . x - V . B,
-/// d the distance from the axis, r = floor(R / dp + 0.5) * dp: tube |d - r| < width with va >= 0 >=
-/// vb; covers |va| / |V| < width or |vb| / |V| < width, and d <= R; interior d <= R with va >= 0 >=
-/// vb. The arithmetic is GenCase's (v5.4.354: 27 sets of 216 oblique cylinders and ties, none
+/// Rule R2: A, B real places of the snapped ends, V = B - A, va = V . x - V . A, vb = V . x - V .
+/// B, d the distance from the axis, r = floor(R / dp + 0.5) * dp: tube |d - r| < width with va >= 0
+/// >= vb; covers |va| / |V| < width or |vb| / |V| < width, and d <= R; interior d <= R with va >= 0
+/// >= vb. The arithmetic is GenCase's (v5.4.354: 27 sets of 216 oblique cylinders and ties, none
 /// different).
 SlabRegion nodes_of(const CylinderOp& cylinder, const DrawState& state, const LatticeGrid& grid);
 void add_cells(const CylinderOp& cylinder, CellList& out);

@@ -92,8 +92,8 @@ public:
         }
         if (s.has_ball)
             push_without(
-                out, y,
-                ball(column, s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }), {});
+                out, y, ball(column, s.ball, [&](std::int64_t z) { return distance(z) <= s.ball; }),
+                {});
     }
 
 private:
@@ -145,8 +145,7 @@ void add_cells_of(const Vec3& center, double radius, CellList& out)
 Box3 bounds_of(const SphereOp& sphere, double dp)
 {
     const auto thickest = std::max_element(sphere.layers_dp.begin(), sphere.layers_dp.end());
-    const double r =
-        sphere.radius + (thickest == sphere.layers_dp.end() ? 0 : *thickest * dp);
+    const double r = sphere.radius + (thickest == sphere.layers_dp.end() ? 0 : *thickest * dp);
     Box3 box;
     add_ball(box, sphere.center, {r, r, r});
     return box;
