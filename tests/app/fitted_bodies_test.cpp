@@ -195,6 +195,19 @@ TEST(FloatingMass, OfABodyThatALaterDrawCutsIsTold)
     EXPECT_LT(mass(folder), 0.6 * rhop_body * 0.41 * 0.33 * 0.25);
 }
 
+TEST(FloatingMass, OfBodiesThatTouchIsThatOfEach)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.mainlist += R"(<setmkbound mk="1" />)" + box_command(R"(x="0.013" y="0.057" z="0.253")",
+                                                              R"(x="0.41" y="0.2" z="0.25")");
+    text.after_geometry = R"(<floatings><floating mkbound="0-1" rhopbody="500" /></floatings>)";
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_NEAR(mass(folder) / (rhop_body * 0.41 * 0.33 * 0.25), 1, 0.02);
+    EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
+}
+
 // -- plates
 // ------------------------------------------------------------------------------------------
 
