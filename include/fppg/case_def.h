@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fppg/boolean.h"
 #include "fppg/box_picture.h"
+#include "fppg/combination.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
 #include "fppg/initials.h"
@@ -278,7 +278,7 @@ struct FillOp
 {
     Vec3 seed;
     FillFilter filter;
-    std::variant<std::monostate, BoxRegion, FigureOp> region;
+    std::optional<BoxLimits> region; ///< empty: the whole lattice
 };
 
 /// A filter by type, and by number where one is given.
@@ -365,9 +365,20 @@ struct PointsMkOutOp
     std::string file; ///< may be empty
 };
 
-using DrawVariant = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
-                                 MeshFileOp, WaveOp, FillOp, CavityFillOp, RedrawOp, RedrawNearOp,
-                                 ResetOp, ShapeOutOp, CellsOutOp, PointsMkOutOp>;
+/// What a draw puts into the domain.
+using Shape = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp,
+                           MeshFileOp, WaveOp>;
+/// What changes nodes that are there.
+using Edit = std::variant<FillOp, CavityFillOp, RedrawOp, RedrawNearOp>;
+/// Whether an edit gives nodes another mk where they are.
+inline bool is_redraw(const Edit& edit)
+{
+    return std::holds_alternative<RedrawOp>(edit) || std::holds_alternative<RedrawNearOp>(edit);
+}
+/// What is written about the nodes and shapes as they are then.
+using Output = std::variant<ShapeOutOp, CellsOutOp, PointsMkOutOp>;
+
+using Command = std::variant<Shape, Edit, Output, ResetOp>;
 
 /// One executed command.
 struct DrawOp
@@ -375,9 +386,17 @@ struct DrawOp
     SourceRef source;
     /// Shared by the commands between two state changes.
     std::shared_ptr<const DrawState> state;
-    DrawVariant what;
+    Command what;
     std::size_t call = 0; ///< number of the command that was run; its layers and parts share it
 };
+
+/// The shape that a command draws if it is of this kind, else null.
+template <typename Kind>
+const Kind* shape_as(const DrawOp& draw)
+{
+    const auto* shape = std::get_if<Shape>(&draw.what);
+    return shape != nullptr ? std::get_if<Kind>(shape) : nullptr;
+}
 
 /// `<constantsdef>`: what the case fixes and what it leaves to the formulas.
 struct ConstantsDef
@@ -525,6 +544,8 @@ struct UserVariable
     std::string text;
 };
 
+class MeshLibrary;
+
 /// A case definition, read and executed. Nothing after it knows XML.
 struct CaseDef
 {
@@ -546,6 +567,7 @@ struct CaseDef
 
     std::vector<DrawOp> ops; ///< in order of execution
     std::vector<BoxPicture> box_pictures;
+    std::shared_ptr<MeshLibrary> meshes; ///< that reading needed; null: none is read yet
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
@@ -600,6 +622,7 @@ struct CaseOptions
     /// The zones as zone 0 gave them, to read the case as zone `zone`; null: zone 0.
     const VresDef* vres = nullptr;
     std::size_t zone = 0;
+    std::shared_ptr<MeshLibrary> meshes; ///< of a case read before from this file; may be null
 };
 
 /// The name of a zone's case: NAME_vres00 and so on.

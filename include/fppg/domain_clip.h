@@ -4,8 +4,6 @@
 #include "fppg/mesh_reading.h"
 #include "fppg/vec.h"
 
-#include <string>
-
 namespace fppg
 {
 
@@ -45,10 +43,5 @@ bool is_within(const MeshFile& mesh, const Transform& place, const Box3& box);
 /// included: none different in 200 triangles with corners on the sides.
 MeshFile clip_to_box(const MeshFile& mesh, const Transform& place, const Box3& box,
                      const MeshReading& reading);
-
-/// Reads a file and leaves of it what lies in a box; all of it as in read_mesh_file() where it is
-/// within.
-MeshFile read_clipped(const std::string& path, const MeshReading& reading, const Transform& place,
-                      const Box3& box);
 
 } // namespace fppg

@@ -13,11 +13,6 @@
 namespace fppg
 {
 
-/// A run whose mk has this bit lies in the zone of a fitted wall: its nodes carry no particle, the
-/// wall's own particles stand in for them. They count as nodes of the mk without the bit for
-/// filters and fills. Used only in a field that has walls.
-inline constexpr std::uint16_t wall_zone_bit = 0x8000;
-
 /// What a body is besides its triangles, so that its particles can be put on the exact surface.
 enum class RoundShape : std::uint8_t
 {
@@ -151,8 +146,8 @@ struct WallParticles
 
 /// Particles off the lattice that belong to no wall, one entry each in all arrays: those near walls
 /// or of `setfrdrawmode`, which stand in for lattice nodes, and those of point files. The nodes
-/// carry the wall_zone_bit on their mk, so that a water column still counts them (of point files
-/// those of fluid); where they were taken out of the field altogether, the column ends below them.
+/// are covered (Run::is_covered), so that a water column still counts them (of point files those
+/// of fluid); where they were taken out of the field altogether, the column ends below them.
 struct VolumeParticles
 {
     std::vector<Vec3> positions;
@@ -180,10 +175,10 @@ struct FittedWalls
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
     std::vector<std::uint16_t> free_mks;
 
-    /// Nodes of the fluid of point files carry the bit.
+    /// Nodes of the fluid of point files are covered.
     bool has_point_water = false;
 
-    /// Whether nodes may carry the wall_zone_bit.
+    /// Whether nodes may be covered.
     bool has_zones() const { return !bodies.empty() || !free_mks.empty() || has_point_water; }
 };
 

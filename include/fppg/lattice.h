@@ -48,21 +48,26 @@ struct Run
     std::uint32_t z_begin = 0;
     std::uint32_t z_end = 0;
     std::uint16_t mk = 0; ///< absolute mk, from 1; void nodes have no run
+    /// Particles off the lattice stand in for the nodes: those of a body-fitted wall in its zone,
+    /// or of setfrdrawmode. For filters and fills they are nodes of the mk, but no particles.
+    bool is_covered = false;
     bool operator==(const Run&) const = default;
 };
 
 /// The state of the lattice: which mk every node carries. slabs[x] holds the runs of that x, sorted
-/// by (y, z_begin), disjoint; neighbours in a column that touch carry different mk. Memory grows
-/// with the surface of the drawn regions and with grid.n[0], never with the number of nodes.
+/// by (y, z_begin), disjoint; neighbours in a column that touch differ in mk or in is_covered.
+/// Memory grows with the surface of the drawn regions and with grid.n[0], never with the number of
+/// nodes.
 struct RunField
 {
     LatticeGrid grid;
     std::vector<std::vector<Run>> slabs; ///< size grid.n[0]
-    /// Walls off the lattice; without any, no run has the wall_zone_bit.
+    /// Particles off the lattice; without any, no run is covered.
     FittedWalls walls;
 };
 
 struct CaseDef;
+struct Scene;
 
 /// A mesh file that a draw uses.
 struct MeshFileUse
@@ -96,29 +101,32 @@ struct LatticeReport
 /// Called before every draw with the number of draws done and of all.
 using LatticeProgress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Executes the draws of a case on the lattice, in order: each paints over what was there (rule
-/// O1).
+/// Executes the draws of a scene in order, each over what was there (rule O1): body-fitted shapes
+/// by their true surfaces, all others on the nodes of the lattice.
 ///
 /// threads   number of threads; the result does not depend on it
 /// progress  may be empty; an exception thrown in it stops the work
 /// throws    IoError, GeometryError for mesh files; CaseError for what is not supported yet
 /// cost      time and memory O(surface of what is drawn), never O(nodes of the domain)
-RunField generate_lattice(const CaseDef& def, int threads, const LatticeProgress& progress,
-                          LatticeReport& report);
+RunField draw_scene(const Scene& scene, int threads, const LatticeProgress& progress,
+                    LatticeReport& report);
 
-/// The nodes of a field with the plain mk of those that walls stand in for (wall_zone_bit);
-/// touching runs of one mk are one. Without the walls.
+/// The same with every shape on the nodes of the lattice.
+RunField draw_on_lattice(const Scene& scene, int threads, const LatticeProgress& progress,
+                         LatticeReport& report);
+
+/// The nodes of a field, none of them covered; touching runs of one mk are one. Without the walls.
 RunField plain_nodes(const RunField& field, int threads);
 
 /// Puts the particles of `<points>` files into field.walls.volume, in the order of the files.
 ///
-/// field   with all that was drawn; its nodes stay, empty ones where fluid comes get its mk and the
-///         wall_zone_bit, so that water columns count it
+/// field   with all that was drawn; its nodes stay, empty ones where fluid comes get its mk and
+///         are covered, so that water columns count it
 /// throws  IoError, GeometryError for the files; GeometryError that names the point and its line
 /// for
 ///         one outside the domain (between its first and last nodes; in 2D off its plane)
 /// warns   of points nearer than dp/2 to a drawn node that is a particle, or equal to another one
-void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report);
+void add_point_files(const Scene& scene, RunField& field, LatticeReport& report);
 
 struct ShapePolygons;
 enum class ShapeFormat : std::uint8_t;
@@ -137,6 +145,6 @@ struct ShapeFile
 /// nothing.
 ///
 /// throws IoError, GeometryError for mesh files
-std::vector<ShapeFile> collect_shape_files(const CaseDef& def);
+std::vector<ShapeFile> collect_shape_files(const Scene& scene);
 
 } // namespace fppg

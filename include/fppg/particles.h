@@ -182,7 +182,7 @@ struct CaseDef;
 /// order and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
 /// `<initials>` are distributed over the blocks; floating bodies and limits are those after it.
 ///
-/// With fitted walls, nodes whose mk has the wall_zone_bit give no particle; the particles of
+/// With fitted walls, covered nodes give no particle; the particles of
 /// field.walls join the block of their mk. In the order of a block all positions are compared as
 /// doubles; at equal ones nodes come first, then the particles of walls, then those of the volume.
 /// Fluid of `<setfrdrawmode>` has rhop0, as in GenCase, unless def.hydrostatic_off_lattice. Another

@@ -63,7 +63,7 @@ bool relaxes(const CaseDef& def, const RunField& field);
 ///
 /// The particles of a surface stay on it (relax_surface()); those within 2 dp of a cut are held.
 /// Lattice nodes within the band of a wall become particles off the lattice: they go into
-/// walls.volume, and their nodes carry the wall_zone_bit. Nodes that did not move stay nodes.
+/// walls.volume, and their nodes are covered. Nodes that did not move stay nodes.
 /// Nodes within 3 dp of a place where a wall was cut do not move, nor do those along a sheet that
 /// has nodes of the same mks on both sides.
 ///

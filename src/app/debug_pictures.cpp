@@ -1,8 +1,8 @@
 #include "app/debug_pictures.h"
 
-#include "casedef/mesh_path.h"
 #include "core/float32.h"
-#include "shapes/readers.h"
+#include "meshes/mesh_library.h"
+#include "meshes/readers.h"
 
 #include <fmt/format.h>
 
@@ -55,8 +55,8 @@ void add_boxes(const CaseDef& def, std::vector<DebugPicture>& out)
 void add_bathymetry(const CaseDef& def, const DrawOp& op, int threads,
                     std::vector<DebugPicture>& out)
 {
-    const auto& mesh = std::get<MeshFileOp>(op.what);
-    const IndexedMesh grid = read_bathymetry_file(find_mesh_file(def, op.source, mesh.file),
+    const MeshFileOp& mesh = *shape_as<MeshFileOp>(op);
+    const IndexedMesh grid = read_bathymetry_file(def.meshes->find(op.source, mesh.file),
                                                   *mesh.reading.bathymetry, threads);
     const std::string stem = "_Dbg_" + std::filesystem::path(mesh.file).stem().string();
     const auto add = [&](const char* ending, std::vector<std::vector<std::uint32_t>> cells)
@@ -87,7 +87,7 @@ std::vector<DebugPicture> debug_pictures(const CaseDef& def, int threads)
     std::vector<DebugPicture> out;
     add_boxes(def, out);
     for (const DrawOp& op : def.ops)
-        if (const auto* mesh = std::get_if<MeshFileOp>(&op.what);
+        if (const auto* mesh = shape_as<MeshFileOp>(op);
             mesh != nullptr && (mesh->saves_points || mesh->saves_grid))
             add_bathymetry(def, op, threads, out);
     return out;

@@ -8,6 +8,7 @@
 #include "fppg/particles.h"
 #include "fppg/read_shapes.h"
 #include "fppg/relax_walls.h"
+#include "fppg/scene.h"
 #include "fppg/version.h"
 
 #include "app/debug_pictures.h"
@@ -189,7 +190,9 @@ private:
                   CaseOptions of_zone = case_options(options_);
                   of_zone.vres = vres;
                   of_zone.zone = zone;
+                  of_zone.meshes = scene_.meshes;
                   def_ = read_case(options_.input + ".xml", of_zone);
+                  scene_ = make_scene(def_);
                   output_ =
                       def_.vres.is_active() ? zone_name(options_.output, zone) : options_.output;
                   if (def_.vres.is_active())
@@ -217,7 +220,7 @@ private:
                   for (const std::string& line : def_.list_log) log_.line(line);
                   LatticeReport report;
                   mesh_files_.clear();
-                  field_ = generate_lattice(def_, threads_, draw_progress(), report);
+                  field_ = draw_scene(scene_, threads_, draw_progress(), report);
                   enter_zone();
                   mesh_files_ = std::move(report.mesh_files);
                   for (const std::string& line : report.log) log_.line(line);
@@ -274,7 +277,7 @@ private:
     {
         if (def_.point_files.empty()) return;
         LatticeReport report;
-        add_point_files(def_, field_, report);
+        add_point_files(scene_, field_, report);
         std::move(report.mesh_files.begin(), report.mesh_files.end(),
                   std::back_inserter(mesh_files_));
         for (const std::string& line : report.log) log_.line(line);
@@ -289,7 +292,7 @@ private:
                   std::vector<std::string> warnings;
                   particles_ = make_particles(def_, field_, threads_, constants_, warnings);
                   log_particles(def_, particles_, constants_, log_);
-                  for (std::string& w : settle_floatings(def_, field_.walls, particles_, log_))
+                  for (std::string& w : settle_floatings(scene_, field_.walls, particles_, log_))
                       warn(std::move(w));
                   for (std::string& w : warnings) warn(std::move(w));
                   for (std::string& w : check_motion(def_, particles_)) warn_of_slip(std::move(w));
@@ -455,7 +458,7 @@ private:
 
     void save_shapes(std::vector<VtkOutEntry>& vtk_out)
     {
-        shape_files_ = collect_shape_files(def_);
+        shape_files_ = collect_shape_files(scene_);
         for (const ShapeFile& shape_file : shape_files_)
         {
             write(shape_file.name, "", [&](OutputFile& f) { write_shape_file(f, shape_file); });
@@ -597,6 +600,7 @@ private:
     RunLog log_;
     std::string output_; ///< as options_.output, of the zone that is made
     CaseDef def_;
+    Scene scene_; ///< of def_
     RunField field_;
     std::string relax_history_;
     CaseParticles particles_;

@@ -149,11 +149,11 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
 
 } // namespace
 
-std::vector<std::string> settle_floatings(const CaseDef& def, const FittedWalls& walls,
+std::vector<std::string> settle_floatings(const Scene& scene, const FittedWalls& walls,
                                           CaseParticles& particles, RunLog& log)
 {
-    std::vector<std::string> warnings;
-    if (particles.floatings.empty()) return warnings;
+    const CaseDef& def = *scene.def;
+    if (particles.floatings.empty()) return {};
     const ExactFloatings& exact = def.exact_floatings;
     MassCheck check(def, particles, walls);
     log.line("Floating bodies:");
@@ -165,7 +165,7 @@ std::vector<std::string> settle_floatings(const CaseDef& def, const FittedWalls&
         const bool is_wanted =
             exact.all || std::find(exact.mk.begin(), exact.mk.end(), block.mk) != exact.mk.end();
         std::string why_not;
-        const std::optional<ExactBody> shape = exact_body(def, block.mk, why_not);
+        const std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
         if (!shape || f == nullptr)
         {
             log.line(fmt::format("    there is no single closed shape of it: {}", why_not));

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/run_log.h"
-#include "fppg/case_def.h"
 #include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
+#include "fppg/scene.h"
 
 #include <string>
 #include <vector>
@@ -18,10 +18,9 @@ namespace fppg
 /// for what `<floating>` itself gives.
 ///
 /// returns  warnings: bodies with fitted walls whose mass by their density is more than 2 % off
-/// that
-///          of their shape, as they are hollow or cut
+///          that of their shape, as they are hollow or cut
 /// throws   CaseError where exact ones are asked for and no single closed shape draws the body
-std::vector<std::string> settle_floatings(const CaseDef& def, const FittedWalls& walls,
+std::vector<std::string> settle_floatings(const Scene& scene, const FittedWalls& walls,
                                           CaseParticles& particles, RunLog& log);
 
 } // namespace fppg

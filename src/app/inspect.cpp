@@ -11,7 +11,7 @@
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 namespace fppg
 {

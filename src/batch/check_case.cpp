@@ -1,7 +1,8 @@
 #include "batch/check_case.h"
 
-#include "casedef/mesh_path.h"
 #include "fppg/error.h"
+
+#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 
@@ -13,12 +14,12 @@ namespace
 void require_files(const CaseDef& def)
 {
     for (const DrawOp& op : def.ops)
-        if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+        if (const auto* mesh = shape_as<MeshFileOp>(op))
         {
-            find_mesh_file(def, op.source, mesh->file);
-            for (const std::string& file : mesh->joined) find_mesh_file(def, op.source, file);
+            def.meshes->find(op.source, mesh->file);
+            for (const std::string& file : mesh->joined) def.meshes->find(op.source, file);
         }
-    for (const PointFile& file : def.point_files) find_mesh_file(def, file.source, file.file);
+    for (const PointFile& file : def.point_files) def.meshes->find(file.source, file.file);
 }
 
 void check_zone(const std::string& path, const CaseOptions& options, bool is_strict, CaseDef& def)

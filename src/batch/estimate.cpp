@@ -3,12 +3,11 @@
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/lattice.h"
-#include "fppg/shapes.h"
+#include "fppg/scene.h"
 
 #include "batch/rates.h"
-#include "casedef/mesh_path.h"
 #include "core/json.h"
-#include "lattice/shape_mesh.h"
+#include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -48,6 +47,7 @@ public:
     {
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
+        scene_ = make_scene(def_);
         out_.definition = path;
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;
@@ -55,7 +55,7 @@ public:
         draw_seconds_ =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (!def_.grid.is_2d)
-            for (const DrawOp& op : def_.ops) count_wall(op);
+            for (const SceneStep& step : scene_.remaining()) count_wall(step);
         count_blocks();
         add_up();
     }
@@ -70,9 +70,9 @@ private:
         on_lattice.fit = {};
         on_lattice.fluid_bands.clear();
         LatticeReport report;
-        RunField field = generate_lattice(on_lattice, options_.threads, {}, report);
+        RunField field = draw_on_lattice(scene_, options_.threads, {}, report);
         for (const auto& slab : field.slabs) runs_ += slab.size();
-        add_point_files(on_lattice, field, report);
+        add_point_files(scene_, field, report);
         CaseConstants constants;
         std::vector<std::string> warnings;
         const CaseParticles particles =
@@ -114,25 +114,50 @@ private:
         for (const Element& child : e.children) note_attributes(child, note, folder);
     }
 
-    void count_wall(const DrawOp& op)
+    void count_wall(const SceneStep& step)
     {
-        const DrawState& state = *op.state;
-        if (state.mk.kind != MkKind::Bound || !state.draw_points || state.mode == DrawMode::Wire)
+        const DrawState& state = *step.draw->state;
+        if (state.mk.kind != MkKind::Bound || !state.draw_points ||
+            (!step.combination && state.mode == DrawMode::Wire))
             return;
         const FitSettings* settings = fit_settings(def_.fit, state.mk.mk);
         if (settings == nullptr) return;
-        MeshFile file;
-        if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
-            file = read_mesh_file(find_mesh_file(def_, op.source, mesh->file), mesh->reading,
-                                  options_.threads);
-        if (std::holds_alternative<MeshFileOp>(op.what) && file.soup.size() == 0) return;
-        for (const ShapeMesh& shape : shape_meshes(op, &file.soup, def_.grid.dp))
-            count_shape(shape, state, *settings);
+        for (const StepSurface& surface : step_surfaces(scene_, step, options_.threads))
+        {
+            const WallCount count = count_shape(surface.shape, state.clips, *settings);
+            for (const auto& [mk, share] : mk_shares(surface, state.mk.mk))
+            {
+                WallCount& wall = walls_[mk];
+                wall.on_surface += share * count.on_surface;
+                wall.on_lines += share * count.on_lines;
+                wall.inside += share * count.inside;
+                wall.relaxed += share * count.relaxed;
+            }
+        }
     }
 
-    void count_shape(const ShapeMesh& shape, const DrawState& state, const FitSettings& settings)
+    /// How much of a surface each mk has, by area.
+    static std::map<std::uint16_t, double> mk_shares(const StepSurface& surface, std::uint16_t mk)
     {
-        if (shape.soup.size() == 0) return;
+        if (surface.facet_mk.empty()) return {{mk, 1.0}};
+        std::map<std::uint16_t, double> out;
+        double all = 0;
+        const std::vector<Vec3>& v = surface.shape.soup.vertices;
+        for (std::size_t f = 0; f < surface.facet_mk.size(); ++f)
+        {
+            const double area = norm(cross(v[3 * f + 1] - v[3 * f], v[3 * f + 2] - v[3 * f]));
+            out[surface.facet_mk[f]] += area;
+            all += area;
+        }
+        for (auto& share : out) share.second /= all;
+        return out;
+    }
+
+    WallCount count_shape(const ShapeMesh& shape, const std::vector<ClipPlane>& clips,
+                          const FitSettings& settings)
+    {
+        WallCount count;
+        if (shape.soup.size() == 0) return count;
         const double dp = def_.grid.dp;
         MeshReport report;
         const SurfaceMesh mesh = take_in_mesh(shape.soup, {}, options_.threads, report);
@@ -140,20 +165,17 @@ private:
             find_features(mesh, {.angle_deg = settings.feature_angle_deg, .dp = dp});
         double length = 0;
         for (const FeatureLine& line : features.lines) length += line.length;
-        const double share = share_inside(mesh, state.clips);
+        const double share = share_inside(mesh, clips);
         const double density = settings.density == FitDensity::Cell ? cell_density : 1;
-        WallCount& count = walls_[state.mk.mk];
-        const double on_lines =
-            share * (length / dp + static_cast<double>(features.singular.size()));
-        const double on_surface = std::max(on_lines, share * density * report.area / (dp * dp));
-        count.on_lines += on_lines;
-        count.on_surface += on_surface;
-        if (settings.relax.is_active) count.relaxed += on_surface;
+        count.on_lines = share * (length / dp + static_cast<double>(features.singular.size()));
+        count.on_surface = std::max(count.on_lines, share * density * report.area / (dp * dp));
+        if (settings.relax.is_active) count.relaxed = count.on_surface;
         if (shape.is_solid)
-            count.inside +=
-                std::max(0.0, share * std::abs(report.volume) / (dp * dp * dp) - on_surface / 2);
+            count.inside = std::max(
+                0.0, share * std::abs(report.volume) / (dp * dp * dp) - count.on_surface / 2);
         out_.wall_area += share * report.area;
         out_.line_length += share * length;
+        return count;
     }
 
     bool is_inside(const Vec3& p, const std::vector<ClipPlane>& clips) const
@@ -277,6 +299,7 @@ private:
 
     EstimateOptions options_;
     CaseDef def_;
+    Scene scene_; ///< of def_
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
     std::uint64_t runs_ = 0;

@@ -64,7 +64,7 @@ struct Estimate
 /// time follow from counts by the rates of src/batch/rates.h and from the time that drawing takes.
 ///
 /// path    the definition, with its extension
-/// throws  as read_case() and generate_lattice()
+/// throws  as read_case() and draw_on_lattice()
 /// cost    that of drawing on the lattice, and of taking in the meshes of fitted walls
 Estimate estimate_case(const std::string& path, const EstimateOptions& options);
 

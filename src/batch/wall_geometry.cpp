@@ -1,11 +1,8 @@
 #include "batch/wall_geometry.h"
 
-#include "fppg/shapes.h"
+#include "fppg/scene.h"
 
-#include "casedef/mesh_path.h"
-#include "lattice/shape_mesh.h"
-
-#include <variant>
+#include "walls/step_surfaces.h"
 
 namespace fppg
 {
@@ -13,20 +10,17 @@ namespace fppg
 TriangleSoup wall_geometry(const std::string& path, const CaseOptions& options, int threads)
 {
     const CaseDef def = read_case(path, options);
+    const Scene scene = make_scene(def);
     TriangleSoup out;
-    for (const DrawOp& op : def.ops)
+    for (const SceneStep& step : scene.remaining())
     {
-        if (!op.state || op.state->mk.kind != MkKind::Bound || !op.state->draw_points) continue;
-        MeshFile file;
-        if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+        const DrawState& state = *step.draw->state;
+        if (state.mk.kind != MkKind::Bound || !state.draw_points) continue;
+        for (const StepSurface& surface : step_surfaces(scene, step, threads))
         {
-            file =
-                read_mesh_file(find_mesh_file(def, op.source, mesh->file), mesh->reading, threads);
-            if (file.soup.size() == 0) continue;
+            const std::vector<Vec3>& vertices = surface.shape.soup.vertices;
+            out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
         }
-        for (const ShapeMesh& shape : shape_meshes(op, &file.soup, def.grid.dp))
-            out.vertices.insert(out.vertices.end(), shape.soup.vertices.begin(),
-                                shape.soup.vertices.end());
     }
     return out;
 }

@@ -8,8 +8,9 @@
 namespace fppg
 {
 
-/// The surfaces of all boundaries that a case draws, in the place of its particles; what clips and
-/// later draws take away is not taken off.
+/// The surfaces of all boundaries that a case draws and does not forget (`<resetdraw>`), in the
+/// place of its particles: of Booleans the result. What clips and later draws take away is not
+/// taken off.
 ///
 /// path    the definition, with its extension
 /// throws  as read_case(), and for mesh files as read_mesh_file()

@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/predicates.h"
-#include "shapes/point_grid.h"
+#include "meshes/point_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,10 @@
 #include "core/parallel.h"
 #include "fit/closed_part.h"
 #include "fppg/error.h"
-#include "shapes/connect_mesh.h"
-#include "shapes/mesh_query.h"
-#include "shapes/winding_tree.h"
+#include "fppg/shapes.h"
+#include "meshes/connect_mesh.h"
+#include "meshes/mesh_query.h"
+#include "meshes/winding_tree.h"
 
 #include <fmt/format.h>
 
@@ -549,6 +550,15 @@ BooleanMesh boolean_mesh(const std::vector<BooleanPart>& parts, const BooleanNod
                          const BooleanOptions& options, int threads)
 {
     return Combiner(parts, node, options, threads).run();
+}
+
+SpanSet solid_nodes(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+{
+    const ClosedPart closed = find_closed_part(mesh);
+    if (!(closed.volume > 0) || closed.soup.size() == 0) return {};
+    if (closed.is_exact) return inside_spans(closed.soup, grid, threads);
+    std::uint64_t disputed = 0;
+    return inside_by_vote(closed.soup, grid, threads, disputed);
 }
 
 } // namespace fppg

@@ -2,8 +2,8 @@
 
 #include "core/parallel.h"
 #include "core/predicates.h"
-#include "shapes/box_tree.h"
-#include "shapes/point_grid.h"
+#include "meshes/box_tree.h"
+#include "meshes/point_grid.h"
 
 #include <algorithm>
 #include <cmath>

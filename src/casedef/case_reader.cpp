@@ -16,6 +16,7 @@
 #include "casedef/variable_commands.h"
 #include "casedef/vres.h"
 #include "casedef/xml_document.h"
+#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +46,7 @@ public:
     {
         def_.document = read_document(def_.file);
         const Element& root = root_of(def_.document);
+        def_.meshes = options_.meshes ? options_.meshes : std::make_shared<MeshLibrary>(def_.file);
         if (root.name != "case")
             throw CaseError(def_.file, root.line,
                             fmt::format("<{}>: the root must be <case>, as in a GenCase definition",
@@ -187,14 +189,35 @@ private:
                         def_.file, e.line, e.name, parent, expected));
     }
 
+    /// GenCase v5.4.354 takes both counts up to 65530 together, keeps their last 8 bits and refuses
+    /// more than 250 of what is left (some 40 pairs of counts). Its edition with mks of 16
+    /// bits does without, as fppg does.
+    void warn_of_small_mks(const Element& e)
+    {
+        const int bound = def_.mkbound_count % 256;
+        const int fluid = def_.mkfluid_count % 256;
+        if (bound + fluid > 250)
+            def_.warnings.push_back(fmt::format(
+                "{}:{}: <mkconfig>: GenCase v5.4 refuses boundcount={} with fluidcount={}, as its "
+                "mks have 8 bits, expected at most 250 together for it",
+                def_.file, e.line, def_.mkbound_count, def_.mkfluid_count));
+        else if (fluid != def_.mkfluid_count)
+            def_.warnings.push_back(fmt::format(
+                "{}:{}: <mkconfig>: GenCase v5.4 takes fluidcount={} as {}, as its mks have 8 "
+                "bits: mkbound 0 is mk {} there and mk {} here",
+                def_.file, e.line, def_.mkfluid_count, fluid, fluid + 1, def_.mkfluid_count + 1));
+    }
+
     void read_mk_config(const Element& e)
     {
-        def_.mkbound_count = read_.integer(e, "boundcount", 0, 65520, false);
-        def_.mkfluid_count = read_.integer(e, "fluidcount", 0, 5000, false);
-        if (def_.mkbound_count + def_.mkfluid_count > 65530)
+        def_.mkbound_count = read_.integer(e, "boundcount", 0, 65530, false);
+        def_.mkfluid_count = read_.integer(e, "fluidcount", 0, 65530, false);
+        const int count = def_.mkbound_count + def_.mkfluid_count;
+        if (count > 65530)
             read_.fail(e, fmt::format("boundcount and fluidcount are {} together, expected at "
                                       "most 65530",
-                                      def_.mkbound_count + def_.mkfluid_count));
+                                      count));
+        warn_of_small_mks(e);
         def_.mk_fluid_first = 1;
         def_.mk_bound_first = static_cast<std::uint16_t>(def_.mkfluid_count + 1);
         for (const Element& o : e.children)

@@ -1,8 +1,7 @@
 #include "casedef/fit_block.h"
 
-#include "fppg/fitted_walls.h"
-
 #include "casedef/block_reader.h"
+#include "shapes/shape.h"
 
 #include <fmt/format.h>
 
@@ -108,10 +107,6 @@ private:
                                           "{} there)",
                                           name, number, count - 1,
                                           is_bound ? "boundcount" : "fluidcount"));
-            if (number + first >= wall_zone_bit)
-                read_.fail(e, fmt::format("{} {} is mk {} and cannot be fitted, expected a number "
-                                          "below {}",
-                                          name, number, number + first, wall_zone_bit - first));
             mks.insert(static_cast<std::uint16_t>(number + first));
         }
         return {mks.begin(), mks.end()};
@@ -320,11 +315,8 @@ private:
 
     static bool is_part(const DrawOp& op)
     {
-        return std::holds_alternative<FigureOp>(op.what) ||
-               std::holds_alternative<SphereOp>(op.what) ||
-               std::holds_alternative<CylinderOp>(op.what) ||
-               std::holds_alternative<EllipsoidOp>(op.what) ||
-               std::holds_alternative<MeshFileOp>(op.what);
+        const auto* shape = std::get_if<Shape>(&op.what);
+        return shape != nullptr && has_surface(*shape);
     }
 
     /// What stays of the result is of one kind, and all parts are drawn under the same clips.
@@ -398,35 +390,14 @@ void refuse_stray_blocks(const Element& e, const AttributeReader& read)
 
 bool paints(const DrawOp& op)
 {
-    return !std::holds_alternative<ResetOp>(op.what) &&
-           !std::holds_alternative<ShapeOutOp>(op.what);
+    return std::holds_alternative<Shape>(op.what) || std::holds_alternative<Edit>(op.what);
 }
 
 /// Whether a draw is of a shape that has a surface to put particles on.
-bool has_surface(const DrawOp& op)
+bool draws_surface(const DrawOp& op)
 {
-    return op.state->draw_points && (std::holds_alternative<FigureOp>(op.what) ||
-                                     std::holds_alternative<SphereOp>(op.what) ||
-                                     std::holds_alternative<CylinderOp>(op.what) ||
-                                     std::holds_alternative<EllipsoidOp>(op.what) ||
-                                     std::holds_alternative<MeshFileOp>(op.what));
-}
-
-/// An mk with the bit of the zones would be taken for one.
-void refuse_high_mks(const CaseDef& def, const AttributeReader& read)
-{
-    for (const DrawOp& op : def.ops)
-    {
-        if (!paints(op) || op.state->mk.mk < wall_zone_bit) continue;
-        Element at;
-        at.name = op.source.command;
-        at.line = op.source.line;
-        read.fail(at, fmt::format("mkbound {} is mk {} and cannot stand in a case with body-fitted "
-                                  "walls, <setfrdrawmode> or fluid of <points>, expected a number "
-                                  "below {}",
-                                  op.state->mk.mk_type, op.state->mk.mk,
-                                  wall_zone_bit - def.mk_bound_first));
-    }
+    const auto* shape = std::get_if<Shape>(&op.what);
+    return op.state->draw_points && shape != nullptr && has_surface(*shape);
 }
 
 void warn_of_undrawn_mks(CaseDef& def)
@@ -435,7 +406,7 @@ void warn_of_undrawn_mks(CaseDef& def)
     std::set<std::uint16_t> fluids;
     for (const DrawOp& op : def.ops)
     {
-        if (op.state->mk.kind == MkKind::Bound && has_surface(op)) walls.insert(op.state->mk.mk);
+        if (op.state->mk.kind == MkKind::Bound && draws_surface(op)) walls.insert(op.state->mk.mk);
         if (op.state->mk.kind == MkKind::Fluid && paints(op)) fluids.insert(op.state->mk.mk);
     }
     for (const BooleanDef& boolean : def.booleans)
@@ -497,13 +468,6 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     if ((choice == FitChoice::On || choice == FitChoice::Raw) && !def.fit.all)
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
-    const bool is_off_lattice =
-        std::any_of(def.ops.begin(), def.ops.end(),
-                    [](const DrawOp& op) { return op.state && op.state->off_lattice; });
-    const bool has_point_water =
-        std::any_of(def.point_files.begin(), def.point_files.end(),
-                    [](const PointFile& file) { return file.mk.kind == MkKind::Fluid; });
-    if (!def.fit.is_empty() || is_off_lattice || has_point_water) refuse_high_mks(def, read);
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

@@ -1,14 +1,12 @@
 #include "casedef/program.h"
 
-#include "fppg/domain_clip.h"
 #include "fppg/error.h"
-#include "fppg/shapes.h"
 
-#include "casedef/figures.h"
-#include "casedef/file_polygons.h"
-#include "casedef/free_parts.h"
 #include "casedef/known_commands.h"
-#include "casedef/mesh_path.h"
+#include "meshes/mesh_library.h"
+#include "shapes/figures.h"
+#include "shapes/file_polygons.h"
+#include "shapes/free_parts.h"
 
 #include <fmt/format.h>
 
@@ -150,18 +148,19 @@ bool ProgramRunner::run_flow_command(const Element& e)
     return true;
 }
 
-void ProgramRunner::add(const Element& e, DrawVariant what)
+void ProgramRunner::add(const Element& e, Command what)
 {
-    const auto* figure = std::get_if<FigureOp>(&what);
-    if (state_.mk_next_auto)
-        add_in_parts(e, std::move(what));
+    auto* shape = std::get_if<Shape>(&what);
+    auto* figure = shape != nullptr ? std::get_if<FigureOp>(shape) : nullptr;
+    if (shape != nullptr && state_.mk_next_auto)
+        add_in_parts(e, std::move(*shape));
     else if (figure != nullptr && has_quads_move_clips(*figure))
-        add_between_clips(e, *figure);
+        add_between_clips(e, std::move(*figure));
     else
         add_whole(e, std::move(what));
 }
 
-void ProgramRunner::add_whole(const Element& e, DrawVariant what)
+void ProgramRunner::add_whole(const Element& e, Command what)
 {
     state_.matrix = state_.off_lattice ? matrix_ : Transform{};
     if (!shared_state_ || !(shared_state_->matrix == state_.matrix))
@@ -176,20 +175,9 @@ void ProgramRunner::add_whole(const Element& e, DrawVariant what)
 std::uint32_t ProgramRunner::count_file_parts(const Element& e, const MeshFileOp& op) const
 {
     if (op.fill_inside) read_.fail_unsupported(e, "setmknextauto together with fppg:fill");
-    const std::string path = find_mesh_file(def_, {e.line, e.name}, op.file);
-    MeshFile file;
-    try
-    {
-        file = op.clip_resize && !op.advanced
-                   ? read_clipped(path, op.reading, op.transform,
-                                  clip_box(def_.case_pos_min, def_.case_pos_max, *op.clip_resize))
-                   : read_mesh_file(path, op.reading);
-    }
-    catch (const GeometryError& error)
-    {
-        throw GeometryError(
-            fmt::format("{}:{}: <{}>: {}", def_.file, e.line, e.name, error.what()));
-    }
+    MeshFile cut;
+    const MeshFile& file =
+        def_.meshes->read_drawn({e.line, e.name}, op, {def_.case_pos_min, def_.case_pos_max}, cut);
     const bool is_wire = state_.mode == DrawMode::Wire;
     if (has_heights(op.reading.format))
     {
@@ -243,47 +231,45 @@ void ProgramRunner::add_between_clips(const Element& e, FigureOp figure)
     }
 }
 
-void ProgramRunner::add_in_parts(const Element& e, DrawVariant what)
+void ProgramRunner::add_figure_in_parts(const Element& e, FigureOp figure)
 {
-    const auto add_part = [&](DrawVariant part)
+    if (has_quads_move_clips(figure))
     {
-        add_whole(e, std::move(part));
-        take_next_mk(e);
-    };
-    const bool is_drawn =
-        std::holds_alternative<FigureOp>(what) || std::holds_alternative<LinesOp>(what) ||
-        std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
-        std::holds_alternative<EllipsoidOp>(what);
-    if (const auto* file = std::get_if<MeshFileOp>(&what))
-    {
-        const std::uint32_t count = count_file_parts(e, *file);
-        add_whole(e, std::move(what));
-        for (std::uint32_t part = 0; part < count; ++part) take_next_mk(e);
+        add_between_clips(e, std::move(figure));
         return;
     }
-    if (!is_drawn)
-        add_whole(e, std::move(what)); // points and fills do not count
-    else if (const auto* lines = std::get_if<LinesOp>(&what))
-        for (const auto& segment : lines->segments) add_part(LinesOp{{segment}});
-    else if (auto* figure = std::get_if<FigureOp>(&what))
+    figure.part_count = state_.off_lattice ? count_free_parts(figure, state_.mode, def_.grid)
+                                           : count_parts(figure, state_.mode);
+    const std::optional<std::uint32_t> between = part_between(figure, state_.mode);
+    for (figure.part = 0; figure.part < figure.part_count; ++figure.part)
     {
-        const bool is_free = state_.off_lattice;
-        if (has_quads_move_clips(*figure))
-        {
-            add_between_clips(e, std::move(*figure));
-            return;
-        }
-        figure->part_count = is_free ? count_free_parts(*figure, state_.mode, def_.grid)
-                                     : count_parts(*figure, state_.mode);
-        const std::optional<std::uint32_t> between = part_between(*figure, state_.mode);
-        for (figure->part = 0; figure->part < figure->part_count; ++figure->part)
-            if (figure->part == between)
-                add_whole(e, *figure);
-            else
-                add_part(*figure);
+        add_whole(e, figure);
+        if (figure.part != between) take_next_mk(e);
     }
-    else
-        add_part(std::move(what)); // all layers of a round shape are one part
+}
+
+void ProgramRunner::add_in_parts(const Element& e, Shape shape)
+{
+    if (auto* figure = std::get_if<FigureOp>(&shape))
+    {
+        add_figure_in_parts(e, std::move(*figure));
+        return;
+    }
+    if (const auto* lines = std::get_if<LinesOp>(&shape))
+    {
+        for (const auto& segment : lines->segments)
+        {
+            add_whole(e, LinesOp{{segment}});
+            take_next_mk(e);
+        }
+        return;
+    }
+    // Points and waves do not count; all layers of a round shape are one part.
+    std::uint32_t count = 1;
+    if (std::holds_alternative<PointsOp>(shape) || std::holds_alternative<WaveOp>(shape)) count = 0;
+    if (const auto* file = std::get_if<MeshFileOp>(&shape)) count = count_file_parts(e, *file);
+    add_whole(e, std::move(shape));
+    for (std::uint32_t part = 0; part < count; ++part) take_next_mk(e);
 }
 
 void ProgramRunner::cells_out(const Element& e)

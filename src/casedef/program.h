@@ -61,8 +61,8 @@ private:
     /// Puts the clips where the current matrix moves them.
     void place_clips();
     void put_clips(const Transform& matrix);
-    void add(const Element& e, DrawVariant what);
-    void add_whole(const Element& e, DrawVariant what);
+    void add(const Element& e, Command what);
+    void add_whole(const Element& e, Command what);
     bool has_quads_move_clips(const FigureOp& figure) const;
     /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a
     /// solid box, meets the plane of a 2D case, and then puts it back, with all clips: particles
@@ -71,7 +71,8 @@ private:
     /// counts).
     void add_between_clips(const Element& e, FigureOp figure);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
-    void add_in_parts(const Element& e, DrawVariant what);
+    void add_in_parts(const Element& e, Shape shape);
+    void add_figure_in_parts(const Element& e, FigureOp figure);
     /// Goes on to the next mk, which must exist even where nothing is drawn with it, as for
     /// GenCase.
     void take_next_mk(const Element& e);
@@ -157,6 +158,8 @@ private:
     /// mk, mk_back, pattern
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
         saved_mks_;
+    /// Whether a warning named an mk that GenCase v5.4 refuses.
+    bool is_large_mk_known_ = false;
     std::vector<DrawConstants> saved_constants_;
     int depth_ = 0;
     std::size_t commands_run_ = 0;

@@ -1,8 +1,8 @@
 // Commands that draw.
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
 #include "casedef/program.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Commands that fill and redraw.
-#include "casedef/figures.h"
 #include "casedef/program.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 
@@ -141,8 +141,7 @@ bool ProgramRunner::run_fill_or_redraw(const Element& e)
         if (name == "fillbox")
         {
             keep_picture(e, state_.box_limit_full, op.seed);
-            std::visit([&](auto&& limits) { op.region = std::move(limits); },
-                       limits_of(e, state_.box_limit_full));
+            op.region = limits_of(e, state_.box_limit_full);
         }
         if (name == "fillfigure")
         {

@@ -1,10 +1,10 @@
 // Commands that draw files of meshes and heights.
 #include "fppg/error.h"
 
-#include "casedef/mesh_path.h"
 #include "casedef/program.h"
 #include "casedef/transforms.h"
 #include "casedef/xml_document.h"
+#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 
@@ -222,7 +222,7 @@ void ProgramRunner::draw_mesh_file(const Element& e)
 void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
 {
     op.container = op.file;
-    const std::string path = find_mesh_file(def_, {e.line, e.name}, op.container);
+    const std::string path = def_.meshes->find({e.line, e.name}, op.container);
     const std::vector<VtmEntry> entries = read_vtm(path, op.container);
     if (const std::size_t n = data_sets_elsewhere(read_xml(path), false); n > 0)
         def_.warnings.push_back(fmt::format(
@@ -242,7 +242,8 @@ void ProgramRunner::draw_vtm_file(const Element& e, MeshFileOp op)
             const auto [first, is_new] = first_of_mk.emplace(state_.mk.mk, def_.ops.size());
             op.is_drawn_before = !is_new;
             if (!is_new)
-                std::get<MeshFileOp>(def_.ops[first->second].what).joined.push_back(op.file);
+                std::get<MeshFileOp>(std::get<Shape>(def_.ops[first->second].what))
+                    .joined.push_back(op.file);
         }
         if (counts_at_end)
             add_whole(e, op);

@@ -1,9 +1,9 @@
 // Commands that change the state: mk, modes, constants, transforms, clips.
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
 #include "casedef/program.h"
 #include "casedef/transforms.h"
+#include "shapes/figures.h"
 
 #include <fmt/format.h>
 
@@ -46,6 +46,14 @@ void ProgramRunner::set_mk(const Element& e, MkKind kind, int mk_type)
 {
     state_.mk = mk_value(e, kind, mk_type);
     shared_state_.reset();
+    const int count = kind == MkKind::Bound ? def_.mkbound_count : def_.mkfluid_count;
+    if (kind == MkKind::Void || mk_type < count % 256 || count < 256 || is_large_mk_known_) return;
+    is_large_mk_known_ = true;
+    def_.warnings.push_back(
+        fmt::format("{}:{}: <{}>: GenCase v5.4 refuses mk {}, as its mks have 8 bits and {}={} "
+                    "leaves {} of them there; the solver takes mks up to 2047",
+                    def_.file, e.line, e.name, mk_type,
+                    kind == MkKind::Bound ? "boundcount" : "fluidcount", count, count % 256));
 }
 
 bool ProgramRunner::run_state_command(const Element& e)

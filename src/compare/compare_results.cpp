@@ -11,7 +11,7 @@
 #include "files/particle_source.h"
 #include "files/thinned_cloud.h"
 #include "files/typical_distance.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "compare/exact_spread.h"
 #include "compare/slabs.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <cmath>
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include "fit/first_rows.h"
 #include "fit/for_each_chart.h"
 #include "fppg/error.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <algorithm>
 

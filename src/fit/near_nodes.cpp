@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
-#include "shapes/facet_distance.h"
+#include "meshes/facet_distance.h"
 
 #include <algorithm>
 #include <bit>

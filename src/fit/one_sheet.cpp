@@ -1,8 +1,8 @@
 #include "fppg/one_sheet.h"
 
 #include "core/parallel.h"
-#include "shapes/mesh_query.h"
-#include "shapes/point_grid.h"
+#include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 
 #include <cmath>
 #include <tuple>

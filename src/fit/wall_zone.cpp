@@ -5,10 +5,10 @@
 #include "fit/near_nodes.h"
 #include "fit/wall_section.h"
 #include "fppg/error.h"
-#include "shapes/column_spans.h"
-#include "shapes/inside_by_vote.h"
-#include "shapes/mesh_query.h"
-#include "shapes/winding_tree.h"
+#include "meshes/column_spans.h"
+#include "meshes/inside_by_vote.h"
+#include "meshes/mesh_query.h"
+#include "meshes/winding_tree.h"
 
 #include <algorithm>
 #include <cmath>

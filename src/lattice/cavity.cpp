@@ -142,9 +142,8 @@ private:
             if (r.y == seed.y && seed.z >= r.z_begin && seed.z < r.z_end)
                 throw GeometryError(fmt::format(
                     "the seed {} is not on an empty node: {}", text(position(seed, field_.grid)),
-                    (r.mk & wall_zone_bit) != 0 && field_.walls.has_zones()
-                        ? "it is too near to a body-fitted wall"
-                        : fmt::format("mk {} is drawn there", r.mk)));
+                    r.is_covered ? "it is too near to a body-fitted wall"
+                                 : fmt::format("mk {} is drawn there", r.mk)));
     }
 
     Slabs empty_nodes() const

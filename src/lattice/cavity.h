@@ -2,8 +2,8 @@
 
 #include "fppg/lattice.h"
 
-#include "lattice/snap.h"
-#include "lattice/spans.h"
+#include "nodes/snap.h"
+#include "nodes/spans.h"
 
 #include <cstdint>
 #include <optional>

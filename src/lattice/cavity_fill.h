@@ -3,7 +3,7 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 #include <string>
 #include <vector>

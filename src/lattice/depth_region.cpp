@@ -2,7 +2,7 @@
 #include "core/float32.h"
 
 #include "core/parallel.h"
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "lattice/draw_checks.h"
 
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <fmt/format.h>
 
@@ -43,12 +43,11 @@ Extents extents_of(const Vec3& low, const Vec3& high, const IsFlat& is_flat)
 
 bool is_body(const DrawOp& op)
 {
-    if (const auto* figure = std::get_if<FigureOp>(&op.what))
+    if (const auto* figure = shape_as<FigureOp>(op))
         return figure->solid != SolidKind::None && op.state->mode != DrawMode::Face;
-    if (const auto* sphere = std::get_if<SphereOp>(&op.what)) return sphere->layers_dp.empty();
-    if (const auto* cylinder = std::get_if<CylinderOp>(&op.what)) return cylinder->layers.empty();
-    return std::holds_alternative<EllipsoidOp>(op.what) ||
-           std::holds_alternative<MeshFileOp>(op.what);
+    if (const auto* sphere = shape_as<SphereOp>(op)) return sphere->layers_dp.empty();
+    if (const auto* cylinder = shape_as<CylinderOp>(op)) return cylinder->layers.empty();
+    return shape_as<EllipsoidOp>(op) != nullptr || shape_as<MeshFileOp>(op) != nullptr;
 }
 
 } // namespace
@@ -104,26 +103,26 @@ Box3 bounds_of(const DrawOp& op, double dp)
     Box3 box;
     const auto thickest = [&](const std::vector<double>& layers)
     { return layers.empty() ? 0 : *std::max_element(layers.begin(), layers.end()) * dp; };
-    if (const auto* points = std::get_if<PointsOp>(&op.what))
+    if (const auto* points = shape_as<PointsOp>(op))
         for (const Vec3& p : points->points) box.add(p);
-    else if (const auto* lines = std::get_if<LinesOp>(&op.what))
+    else if (const auto* lines = shape_as<LinesOp>(op))
         for (const auto& [from, to] : lines->segments)
         {
             box.add(from);
             box.add(to);
         }
-    else if (const auto* figure = std::get_if<FigureOp>(&op.what))
+    else if (const auto* figure = shape_as<FigureOp>(op))
         for (const FigureFace& face : figure->faces)
         {
             if (!face.is_visible) continue;
             for (const std::uint32_t v : face.vertices) box.add(figure->vertices[v]);
         }
-    else if (const auto* sphere = std::get_if<SphereOp>(&op.what))
+    else if (const auto* sphere = shape_as<SphereOp>(op))
     {
         const double r = sphere->radius + thickest(sphere->layers_dp);
         add_ball(box, sphere->center, {r, r, r});
     }
-    else if (const auto* cylinder = std::get_if<CylinderOp>(&op.what))
+    else if (const auto* cylinder = shape_as<CylinderOp>(op))
     {
         const Vec3 along = cylinder->p1 - cylinder->p0;
         const double length = norm(along);
@@ -139,7 +138,7 @@ Box3 bounds_of(const DrawOp& op, double dp)
         add_ball(box, cylinder->p0, half);
         add_ball(box, cylinder->p1, half);
     }
-    else if (const auto* ellipsoid = std::get_if<EllipsoidOp>(&op.what))
+    else if (const auto* ellipsoid = shape_as<EllipsoidOp>(op))
     {
         const Vec3 along = ellipsoid->focus1 - ellipsoid->focus0;
         const double a = ellipsoid->radius / 2;
@@ -156,11 +155,11 @@ Box3 bounds_of(const DrawOp& op, double dp)
     return box;
 }
 
-void DrawChecks::warn(const DrawOp& op, Kind kind, const std::string& text)
+void DrawChecks::warn(const SourceRef& source, Kind kind, const std::string& text)
 {
-    if (!said_.insert({op.source.line, kind}).second) return;
+    if (!said_.insert({source.line, kind}).second) return;
     warnings_.push_back(
-        fmt::format("{}:{}: <{}>: {}", def_.file, op.source.line, op.source.command, text));
+        fmt::format("{}:{}: <{}>: {}", def_.file, source.line, source.command, text));
 }
 
 void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
@@ -173,12 +172,12 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
     const auto flat = [this](int axis) { return is_flat(axis); };
     const Extents size = extents_of(bounds.min, bounds.max, flat);
     const Extents domain = extents_of(def_.case_pos_min, def_.case_pos_max, flat);
-    if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+    if (const auto* mesh = shape_as<MeshFileOp>(op))
     {
         const bool is_large = size.largest > 100 * domain.largest;
         if (is_large || (100 * size.largest < domain.largest && size.largest < 4 * grid.dp))
         {
-            warn(op, Kind::Size,
+            warn(op.source, Kind::Size,
                  fmt::format(
                      "{} is {:g} m wide in a domain of {:g} m with dp = {:g} m; if the file "
                      "is in other units (mm), <drawscale x=\"{}\" y=\"{}\" z=\"{}\" /> turns "
@@ -190,7 +189,7 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
     }
     if (is_body(op) && size.smallest > 0 && size.smallest < grid.dp * (1 - 1e-9))
         warn(
-            op, Kind::Thin,
+            op.source, Kind::Thin,
             fmt::format("the body is {:g} m thick, less than dp = {:g} m, so its particles are as "
                         "thick as one or two of them; a dp of {:g} or less resolves it, and size 0 "
                         "draws a single layer on purpose",
@@ -203,7 +202,7 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
         const std::int64_t low = snap(bounds.min[axis], grid.origin[axis], grid.dp);
         const std::int64_t high = snap(bounds.max[axis], grid.origin[axis], grid.dp);
         if (low >= 0 && high <= last) continue;
-        warn(op, Kind::Lost,
+        warn(op.source, Kind::Lost,
              fmt::format("it reaches from {} = {:g} to {:g}, the nodes of the domain from {:g} to "
                          "{:g}: what lies beyond gives no particles; expected a <pointmin> and "
                          "<pointmax> around it (the node at pointmax is none of them)",
@@ -213,22 +212,22 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
     }
 }
 
-void DrawChecks::check_closed(const DrawOp& op, const TriangleSoup& soup)
+void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
+                              const TriangleSoup& soup)
 {
-    const auto* mesh = std::get_if<MeshFileOp>(&op.what);
-    if (mesh == nullptr || !(mesh->autofill || mesh->fill_inside || mesh->advanced)) return;
+    if (!op.autofill && !op.fill_inside && !op.advanced) return;
     const std::uint64_t open = open_edge_count(soup);
     if (open > 0)
-        warn(op, Kind::Open,
+        warn(source, Kind::Open,
              fmt::format("{} has {} open edges or edges between facets that look to different "
                          "sides, so its inside is not certain; close the mesh (fppg inspect shows "
                          "where) or draw it without autofill, advanced or fppg:fill",
-                         mesh->file, open));
+                         op.file, open));
 }
 
-void DrawChecks::check_fill(const DrawOp& op, const std::vector<std::vector<Span>>& nodes)
+void DrawChecks::check_fill(const SourceRef& source, const DrawState& state,
+                            const std::vector<std::vector<Span>>& nodes)
 {
-    const DrawState& state = *op.state;
     if (!state.draw_points || state.mk.kind == MkKind::Void) return;
     const LatticeGrid& grid = def_.grid;
     std::string sides;
@@ -255,7 +254,7 @@ void DrawChecks::check_fill(const DrawOp& op, const std::vector<std::vector<Span
     for (std::size_t i = 0; i < 6; ++i)
         add(touches[i] && !is_flat(static_cast<int>(i / 2)), names[i]);
     if (!sides.empty())
-        warn(op, Kind::Leak,
+        warn(source, Kind::Leak,
              fmt::format("the fill reached the border of the domain ({}): expected walls around "
                          "its seed; close them, or limit the fill by <fillbox>",
                          sides));

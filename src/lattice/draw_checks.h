@@ -35,10 +35,11 @@ public:
     void check_shape(const DrawOp& op, const Box3& bounds);
 
     /// A file that is to be filled, with open edges.
-    void check_closed(const DrawOp& op, const TriangleSoup& soup);
+    void check_closed(const SourceRef& source, const MeshFileOp& op, const TriangleSoup& soup);
 
     /// The nodes that a fill added, slab by slab, at the border of the domain.
-    void check_fill(const DrawOp& op, const std::vector<std::vector<Span>>& nodes);
+    void check_fill(const SourceRef& source, const DrawState& state,
+                    const std::vector<std::vector<Span>>& nodes);
 
 private:
     enum class Kind
@@ -54,7 +55,7 @@ private:
     {
         return (def_.grid.is_2d && axis == 1) || def_.grid.n[static_cast<std::size_t>(axis)] == 1;
     }
-    void warn(const DrawOp& op, Kind kind, const std::string& text);
+    void warn(const SourceRef& source, Kind kind, const std::string& text);
 
     const CaseDef& def_;
     std::vector<std::string>& warnings_;

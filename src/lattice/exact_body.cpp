@@ -1,10 +1,7 @@
 #include "lattice/exact_body.h"
 
-#include "fppg/shapes.h"
-
-#include "casedef/mesh_path.h"
 #include "lattice/draw_checks.h"
-#include "lattice/shape_mesh.h"
+#include "scene/surfaces.h"
 
 #include <fmt/format.h>
 
@@ -43,11 +40,11 @@ std::array<Vec3, 3> inertia_around(const Vec3& u, double axial, double across)
     return out;
 }
 
-std::optional<ExactBody> body_of(const DrawOp& op, const CaseDef& def, std::string& why_not)
+std::optional<ExactBody> body_of(const DrawOp& op, const Scene& scene, std::string& why_not)
 {
     ExactBody body;
-    const auto* sphere = std::get_if<SphereOp>(&op.what);
-    const auto* cylinder = std::get_if<CylinderOp>(&op.what);
+    const auto* sphere = shape_as<SphereOp>(op);
+    const auto* cylinder = shape_as<CylinderOp>(op);
     if ((sphere != nullptr && !sphere->layers_dp.empty()) ||
         (cylinder != nullptr && !(cylinder->layers.empty() && cylinder->is_visible[0] &&
                                   cylinder->is_visible[1] && cylinder->is_visible[2])))
@@ -80,7 +77,7 @@ std::optional<ExactBody> body_of(const DrawOp& op, const CaseDef& def, std::stri
                                       body.volume * (3 * r * r + length * length) / 12);
         return body;
     }
-    if (const auto* ellipsoid = std::get_if<EllipsoidOp>(&op.what))
+    if (const auto* ellipsoid = shape_as<EllipsoidOp>(op))
     {
         const Vec3 along = ellipsoid->focus1 - ellipsoid->focus0;
         const double a = ellipsoid->radius / 2;
@@ -98,21 +95,19 @@ std::optional<ExactBody> body_of(const DrawOp& op, const CaseDef& def, std::stri
         return body;
     }
     TriangleSoup soup;
-    if (const auto* mesh = std::get_if<MeshFileOp>(&op.what))
+    if (const auto* mesh = shape_as<MeshFileOp>(op))
     {
-        const MeshFile file =
-            read_mesh_file(find_mesh_file(def, op.source, mesh->file), mesh->reading);
-        for (const Vec3& v : file.soup.vertices) soup.vertices.push_back(mesh->transform(v));
+        for (const Vec3& v : mesh_of(scene, op, 1)->soup.vertices)
+            soup.vertices.push_back(mesh->transform(v));
     }
-    else if (const auto* figure = std::get_if<FigureOp>(&op.what))
+    else if (const auto* figure = shape_as<FigureOp>(op))
     {
+        if (figure->part > 0) return std::nullopt; // the first part stands for the whole
         DrawOp whole = op;
         auto state = std::make_shared<DrawState>(*op.state);
         state->mode = DrawMode::Full;
         whole.state = state;
-        std::get<FigureOp>(whole.what).part_count = 0;
-        if (figure->part > 0) return std::nullopt; // the first part stands for the whole
-        for (const ShapeMesh& shape : shape_meshes(whole, nullptr, def.grid.dp)) soup = shape.soup;
+        for (const ShapeMesh& shape : surfaces_of(scene, whole, PartsAs::One, 1)) soup = shape.soup;
     }
     const std::uint64_t open = open_edge_count(soup);
     if (soup.size() == 0 || open > 0)
@@ -183,33 +178,26 @@ std::array<Vec3, 3> inertia_about(const std::array<Vec3, 3>& inertia, double mas
     return out;
 }
 
-std::optional<ExactBody> exact_body(const CaseDef& def, std::uint16_t mk, std::string& why_not)
+std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::string& why_not)
 {
-    if (def.grid.is_2d)
+    if (scene.def->grid.is_2d)
     {
         why_not = "a case in two dimensions has no closed shapes";
         return std::nullopt;
     }
     std::vector<const DrawOp*> draws;
     bool is_recoloured = false;
-    for (const DrawOp& op : def.ops)
+    for (const SceneStep& step : scene.remaining())
     {
-        if (std::holds_alternative<ResetOp>(op.what))
-        {
-            draws.clear();
-            is_recoloured = false;
-        }
-        if (op.state->mk.kind != MkKind::Bound || op.state->mk.mk != mk || !op.state->draw_points)
+        const DrawState& state = *step.draw->state;
+        if (step.combination || state.mk.kind != MkKind::Bound || state.mk.mk != mk ||
+            !state.draw_points)
             continue;
-        is_recoloured = is_recoloured || std::holds_alternative<RedrawOp>(op.what) ||
-                        std::holds_alternative<RedrawNearOp>(op.what) || !op.state->clips.empty();
-        if (std::holds_alternative<PointsOp>(op.what) || std::holds_alternative<LinesOp>(op.what) ||
-            std::holds_alternative<FigureOp>(op.what) ||
-            std::holds_alternative<SphereOp>(op.what) ||
-            std::holds_alternative<CylinderOp>(op.what) ||
-            std::holds_alternative<EllipsoidOp>(op.what) ||
-            std::holds_alternative<MeshFileOp>(op.what))
-            draws.push_back(&op);
+        const auto* shape = std::get_if<Shape>(&step.draw->what);
+        const Edit* edit = step.edit();
+        is_recoloured =
+            is_recoloured || !state.clips.empty() || (edit != nullptr && is_redraw(*edit));
+        if (shape != nullptr && !std::holds_alternative<WaveOp>(*shape)) draws.push_back(step.draw);
     }
     if (draws.size() != 1 || is_recoloured)
     {
@@ -217,7 +205,7 @@ std::optional<ExactBody> exact_body(const CaseDef& def, std::uint16_t mk, std::s
                                 : fmt::format("{} draws make it", draws.size());
         return std::nullopt;
     }
-    std::optional<ExactBody> body = body_of(*draws.front(), def, why_not);
+    std::optional<ExactBody> body = body_of(*draws.front(), scene, why_not);
     if (body)
         body->shape = fmt::format("<{}> of line {}", draws.front()->source.command,
                                   draws.front()->source.line);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fppg/case_def.h"
+#include "fppg/scene.h"
 
 #include <optional>
 #include <string>
@@ -25,7 +25,7 @@ struct ExactBody
 /// mk       absolute
 /// why_not  filled with a sentence when nothing is returned
 /// throws   IoError, GeometryError for mesh files
-std::optional<ExactBody> exact_body(const CaseDef& def, std::uint16_t mk, std::string& why_not);
+std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::string& why_not);
 
 /// A body of density 1 from the facets of its closed surface, whichever side they look to.
 ExactBody body_of_facets(const TriangleSoup& soup);

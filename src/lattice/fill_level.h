@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 #include <array>
 #include <cstdint>

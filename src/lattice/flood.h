@@ -2,8 +2,8 @@
 
 #include "fppg/case_def.h"
 
-#include "lattice/snap.h"
-#include "lattice/spans.h"
+#include "nodes/snap.h"
+#include "nodes/spans.h"
 
 namespace fppg
 {

@@ -3,8 +3,8 @@
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
-#include "lattice/snap.h"
-#include "shapes/point_grid.h"
+#include "meshes/point_grid.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <tuple>
@@ -56,6 +56,7 @@ void for_each_node(const Vec3& p, const LatticeGrid& grid, const Body& body)
             }
 }
 
+/// 0 for empty nodes and those that particles of a wall stand in for.
 std::uint16_t mk_at(const std::vector<Run>& runs, std::uint32_t y, std::uint32_t z)
 {
     const auto after =
@@ -64,7 +65,7 @@ std::uint16_t mk_at(const std::vector<Run>& runs, std::uint32_t y, std::uint32_t
                          { return at.first < r.y || (at.first == r.y && at.second < r.z_begin); });
     if (after == runs.begin()) return 0;
     const Run& run = *std::prev(after);
-    return run.y == y && z < run.z_end ? run.mk : std::uint16_t{0};
+    return run.y == y && z < run.z_end && !run.is_covered ? run.mk : std::uint16_t{0};
 }
 
 } // namespace
@@ -288,7 +289,7 @@ void FreePainter::finish()
                 for (; run != hidden[x].end() && run->mk == mk; ++run)
                     spans.push_back({run->y, run->z_begin, run->z_end});
                 sort_and_join(spans);
-                paint(slab, spans, static_cast<std::uint16_t>(mk | wall_zone_bit));
+                paint(slab, spans, mk, true);
             }
         },
         16);

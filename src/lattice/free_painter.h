@@ -3,7 +3,7 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 #include <compare>
 #include <vector>
@@ -59,7 +59,7 @@ public:
     /// Forgets everything.
     void reset();
 
-    /// Puts the particles that stay into the field; their nodes get the wall_zone_bit.
+    /// Puts the particles that stay into the field; their nodes are covered.
     void finish();
 
 private:

@@ -2,11 +2,11 @@
 
 #include "fppg/error.h"
 
-#include "casedef/figures.h"
-#include "casedef/polygon_cut.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
-#include "lattice/snap.h"
+#include "nodes/snap.h"
+#include "shapes/figures.h"
+#include "shapes/polygon_cut.h"
 
 #include <fmt/format.h>
 

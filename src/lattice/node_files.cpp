@@ -3,8 +3,8 @@
 #include "fppg/fitted_walls.h"
 
 #include "core/parallel.h"
-#include "lattice/snap.h"
-#include "lattice/spans.h"
+#include "nodes/snap.h"
+#include "nodes/spans.h"
 
 #include <algorithm>
 #include <tuple>
@@ -47,7 +47,7 @@ RunField plain_nodes(const RunField& field, int threads)
         {
             for (Run run : field.slabs[x])
             {
-                run.mk = static_cast<std::uint16_t>(run.mk & ~wall_zone_bit);
+                run.is_covered = false;
                 std::vector<Run>& runs = out.slabs[x];
                 if (!runs.empty() && runs.back().y == run.y && runs.back().mk == run.mk &&
                     runs.back().z_end == run.z_begin)

@@ -1,7 +1,7 @@
 #include "lattice/plane_shapes.h"
 
-#include "casedef/figures.h"
 #include "lattice/planes.h"
+#include "shapes/figures.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,11 +1,11 @@
-#include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 #include "fppg/particles.h"
+#include "fppg/scene.h"
 #include "fppg/shapes.h"
 
-#include "casedef/mesh_path.h"
-#include "lattice/snap.h"
+#include "meshes/mesh_library.h"
+#include "nodes/snap.h"
 
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ const Run* run_at(const RunField& field, const Node& n)
 bool is_taken(const RunField& field, const Node& n)
 {
     const Run* r = run_at(field, n);
-    return r != nullptr && !(field.walls.has_zones() && (r->mk & wall_zone_bit) != 0);
+    return r != nullptr && !r->is_covered;
 }
 
 /// How near a point must be to a node that is water, dp.
@@ -139,7 +139,7 @@ void mark_water(const std::vector<Vec3>& points, std::uint16_t mk, const Vec3& g
             if (!of_slab[k].empty()) near.push_back(&of_slab[k]);
         if (near.empty()) continue;
         paint(field.slabs[x], water_of(static_cast<std::uint32_t>(x), near, points, gravity, field),
-              static_cast<std::uint16_t>(mk | wall_zone_bit));
+              mk, true);
     }
     field.walls.has_point_water = true;
 }
@@ -176,13 +176,14 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
 
 } // namespace
 
-void add_point_files(const CaseDef& def, RunField& field, LatticeReport& report)
+void add_point_files(const Scene& scene, RunField& field, LatticeReport& report)
 {
+    const CaseDef& def = *scene.def;
     for (const PointFile& file : def.point_files)
     {
         const std::string at = fmt::format("{}:{}: <{} file=\"{}\">", def.file, file.source.line,
                                            file.source.command, file.file);
-        const std::string path = find_mesh_file(def, file.source, file.file);
+        const std::string path = scene.meshes->find(file.source, file.file);
         std::vector<Vec3> points;
         try
         {

@@ -26,8 +26,7 @@ std::vector<Spans> nodes_of(const RunField& field, const MkFilter& filter, const
                             std::uint16_t mk_bound_first, int threads)
 {
     std::vector<Spans> out(field.slabs.size());
-    std::vector<char> wanted = wanted_mks(filter, mk_bound_first);
-    if (!field.walls.bodies.empty()) count_wall_zones(wanted);
+    const std::vector<char> wanted = wanted_mks(filter, mk_bound_first);
     parallel_for(field.slabs.size(), threads,
                  [&](std::size_t x)
                  {

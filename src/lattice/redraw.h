@@ -2,7 +2,7 @@
 
 #include "fppg/case_def.h"
 
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 namespace fppg
 {

@@ -1,6 +1,6 @@
 #include "lattice/round_shapes.h"
 
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <cmath>

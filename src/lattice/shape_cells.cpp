@@ -1,14 +1,12 @@
 #include "lattice/shape_cells.h"
 
-#include "fppg/domain_clip.h"
-#include "fppg/shapes.h"
-
-#include "casedef/file_polygons.h"
-#include "casedef/mesh_path.h"
 #include "core/float32.h"
 #include "lattice/shape_rings.h"
-#include "lattice/snap.h"
-#include "shapes/cut_at_plane.h"
+#include "meshes/cut_at_plane.h"
+#include "meshes/mesh_library.h"
+#include "nodes/snap.h"
+#include "shapes/file_polygons.h"
+#include "shapes/shape.h"
 
 #include <algorithm>
 #include <array>
@@ -22,14 +20,18 @@ namespace
 class CellMaker
 {
 public:
-    CellMaker(const CaseDef& def, const DrawOp& op, bool snapped)
-        : def_(def), op_(op), state_(*op.state), snapped_(snapped && !state_.off_lattice)
+    CellMaker(const Scene& scene, const DrawOp& op, bool snapped)
+        : scene_(scene),
+          def_(*scene.def),
+          op_(op),
+          state_(*op.state),
+          snapped_(snapped && !state_.off_lattice)
     {
     }
 
     std::vector<ShapeCell> run()
     {
-        std::visit([this](const auto& what) { draw(what); }, op_.what);
+        std::visit([this](const auto& kind) { draw(kind); }, std::get<Shape>(op_.what));
         if (!state_.clips.empty())
             for (ShapeCell& cell : cells_)
                 for (Vec3& corner : cell) corner = as_float32(corner);
@@ -197,12 +199,9 @@ private:
     /// line of no length.
     void draw(const MeshFileOp& mesh)
     {
-        const std::string path = find_mesh_file(def_, op_.source, mesh.file);
-        const MeshFile file =
-            mesh.clip_resize && !mesh.advanced
-                ? read_clipped(path, mesh.reading, mesh.transform,
-                               clip_box(def_.case_pos_min, def_.case_pos_max, *mesh.clip_resize))
-                : read_mesh_file(path, mesh.reading);
+        MeshFile cut;
+        const MeshFile& file = scene_.meshes->read_drawn(
+            op_.source, mesh, {def_.case_pos_min, def_.case_pos_max}, cut);
         const auto placed = [&](const Vec3& v) { return place(mesh.transform(v)); };
         for (const std::vector<Vec3>& line : file.lines)
         {
@@ -220,7 +219,7 @@ private:
                          });
     }
 
-    /// Points and ellipsoids have no shape; fills and all that is no draw neither.
+    /// Points, ellipsoids and waves have none.
     template <typename Other>
     void draw(const Other&)
     {
@@ -252,6 +251,7 @@ private:
         std::erase_if(cells_, [](const ShapeCell& cell) { return cell.empty(); });
     }
 
+    const Scene& scene_;
     const CaseDef& def_;
     const DrawOp& op_;
     const DrawState& state_;
@@ -261,16 +261,15 @@ private:
 
 } // namespace
 
-bool has_shape_cells(const DrawVariant& what)
+bool has_shape_cells(const Command& what)
 {
-    return std::holds_alternative<LinesOp>(what) || std::holds_alternative<FigureOp>(what) ||
-           std::holds_alternative<SphereOp>(what) || std::holds_alternative<CylinderOp>(what) ||
-           std::holds_alternative<MeshFileOp>(what);
+    const auto* shape = std::get_if<Shape>(&what);
+    return shape != nullptr && has_polygons(*shape);
 }
 
-std::vector<ShapeCell> shape_cells(const CaseDef& def, const DrawOp& op, bool snapped)
+std::vector<ShapeCell> shape_cells(const Scene& scene, const DrawOp& op, bool snapped)
 {
-    return CellMaker(def, op, snapped).run();
+    return CellMaker(scene, op, snapped).run();
 }
 
 } // namespace fppg

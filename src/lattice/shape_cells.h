@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fppg/case_def.h"
+#include "fppg/scene.h"
 
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace fppg
 using ShapeCell = std::vector<Vec3>;
 
 /// Whether shape files show what a command draws: lines, figures, spheres, cylinders, mesh files.
-bool has_shape_cells(const DrawVariant& what);
+bool has_shape_cells(const Command& what);
 
 /// The lines and faces of one draw in the order and with the corners that GenCase v5.4.354 writes
 /// into the files of `shapeout` (found by experiment, 150 small cases):
@@ -28,6 +28,6 @@ bool has_shape_cells(const DrawVariant& what);
 ///   cells in the first part
 ///
 /// throws IoError, GeometryError for mesh files
-std::vector<ShapeCell> shape_cells(const CaseDef& def, const DrawOp& op, bool snapped);
+std::vector<ShapeCell> shape_cells(const Scene& scene, const DrawOp& op, bool snapped);
 
 } // namespace fppg

@@ -1,6 +1,6 @@
-#include "fppg/case_def.h"
 #include "fppg/files.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "core/float32.h"
 #include "lattice/shape_cells.h"
@@ -17,19 +17,21 @@ namespace
 class ShapeCollector
 {
 public:
-    explicit ShapeCollector(const CaseDef& def) : def_(def) {}
+    explicit ShapeCollector(const Scene& scene) : scene_(scene) {}
 
     std::vector<ShapeFile> run()
     {
-        const bool has_output = std::any_of(
-            def_.ops.begin(), def_.ops.end(),
-            [](const DrawOp& op) { return std::holds_alternative<ShapeOutOp>(op.what); });
+        const bool has_output =
+            std::any_of(scene_.steps.begin(), scene_.steps.end(),
+                        [](const SceneStep& step) { return output_of(step) != nullptr; });
         if (!has_output) return {};
-        for (const DrawOp& op : def_.ops)
+        for (const SceneStep& step : scene_.steps)
         {
+            if (step.combination) continue; // its parts are written
+            const DrawOp& op = *step.draw;
             if (std::holds_alternative<ResetOp>(op.what))
                 kept_ = {};
-            else if (const auto* out = std::get_if<ShapeOutOp>(&op.what))
+            else if (const ShapeOutOp* out = output_of(step))
                 write(*out, op.state->shape_mode);
             else if (op.state->draw_shapes && has_shape_cells(op.what))
                 keep_shape(op);
@@ -38,6 +40,12 @@ public:
     }
 
 private:
+    static const ShapeOutOp* output_of(const SceneStep& step)
+    {
+        const auto* output = std::get_if<Output>(&step.draw->what);
+        return output != nullptr ? std::get_if<ShapeOutOp>(output) : nullptr;
+    }
+
     void keep_shape(const DrawOp& op)
     {
         const ShapeMode& mode = op.state->shape_mode;
@@ -85,7 +93,7 @@ private:
     /// as in the files, also for the normals that are made of them.
     void add_cells(const DrawOp& op, bool snapped, std::vector<ShapePolygons>& shapes)
     {
-        const std::vector<ShapeCell> cells = shape_cells(def_, op, snapped);
+        const std::vector<ShapeCell> cells = shape_cells(scene_, op, snapped);
         if (cells.empty()) return;
         const bool is_same = !shapes.empty() && call_ == op.call;
         const int mk = op.state->mk.kind == MkKind::Void ? 0 : op.state->mk.mk;
@@ -139,7 +147,7 @@ private:
                 if (norm(normal) > 0) normal = normal / norm(normal);
                 const auto i = static_cast<std::uint32_t>(lines.vertices.size());
                 lines.vertices.push_back(middle);
-                lines.vertices.push_back(middle + normal * (length_dp * def_.grid.dp));
+                lines.vertices.push_back(middle + normal * (length_dp * scene_.def->grid.dp));
                 lines.polygons.push_back({i, i + 1});
             }
             if (!lines.polygons.empty()) out.push_back(std::move(lines));
@@ -147,7 +155,7 @@ private:
         return out;
     }
 
-    const CaseDef& def_;
+    const Scene& scene_;
     std::array<std::vector<const DrawOp*>, 2> kept_; ///< by form: actual, snapped
     std::size_t call_ = 0;                           ///< of the cells that were added last
     std::vector<ShapeFile> files_;
@@ -155,9 +163,9 @@ private:
 
 } // namespace
 
-std::vector<ShapeFile> collect_shape_files(const CaseDef& def)
+std::vector<ShapeFile> collect_shape_files(const Scene& scene)
 {
-    return ShapeCollector(def).run();
+    return ShapeCollector(scene).run();
 }
 
 } // namespace fppg

@@ -1,8 +1,8 @@
 #include "lattice/solids.h"
 
-#include "casedef/figures.h"
-#include "casedef/polygon_cut.h"
 #include "lattice/planes.h"
+#include "shapes/figures.h"
+#include "shapes/polygon_cut.h"
 
 #include <algorithm>
 #include <memory>

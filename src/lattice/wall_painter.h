@@ -1,55 +1,12 @@
 #pragma once
 
-#include "fppg/case_def.h"
-#include "fppg/fitted_walls.h"
-#include "fppg/lattice.h"
+#include "lattice/fitted_draw.h"
 
-#include "lattice/spans.h"
-
-#include <string>
+#include <cstdint>
 #include <vector>
 
 namespace fppg
 {
-
-/// Nodes that one part of a combination has.
-struct NodeShare
-{
-    std::uint16_t mk = 0;     ///< absolute
-    std::vector<Spans> nodes; ///< one entry a slab of the lattice
-};
-
-/// What one fitted draw adds to the field.
-struct FittedDraw
-{
-    FittedBody body;
-    WallParticles particles;       ///< of this body only; `bodies` is 0
-    std::vector<Vec3> cut;         ///< places of particles that were left out
-    SurfaceParticles second_sheet; ///< taken out of a thin plate
-    std::vector<Spans> volume;     ///< one entry a slab of the lattice
-    std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
-    std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
-    /// Nodes of `volume` and `zone` with another mk than the body's.
-    std::vector<NodeShare> shares;
-    std::vector<std::string> warnings; ///< without the place of the draw
-};
-
-/// Feature edges and particles as the settings of a wall ask for them.
-FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid);
-
-/// Puts particles on the true surface of a shape and finds the nodes inside and around it.
-///
-/// shape    in the coordinates of the case
-/// clips    particles and nodes beyond them are left out; particles are judged by their true place
-/// returns  particles inside the domain (between its first and last nodes) only
-/// throws   GeometryError without the place of the draw
-FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
-                     const std::vector<ClipPlane>& clips, int threads);
-
-/// The same for a body whose mesh, report and features are made; is_solid and, where it is round,
-/// its shape are set.
-FittedDraw fit_body(FittedBody&& body, const FitSettings& settings, const LatticeGrid& grid,
-                    const std::vector<ClipPlane>& clips, int threads);
 
 /// The walls of a field while it is drawn: what a later draw paints over is cut out of them.
 ///
@@ -68,7 +25,7 @@ public:
 
     /// Before the spans of slab x are painted with `mk` (0: void). A redraw gives walls another mk
     /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
-    /// same time. Returns the spans that must be painted with `mk` and the bit of the zone.
+    /// same time. Returns the spans that must be painted with `mk` as covered.
     Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls);
 
     /// Forgets everything.

@@ -1,6 +1,6 @@
 #include "lattice/wave_region.h"
 
-#include "lattice/snap.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "fppg/vres.h"
 
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 #include <algorithm>
 #include <cmath>

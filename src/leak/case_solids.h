@@ -1,5 +1,7 @@
 #pragma once
 
+#include "fppg/scene.h"
+
 #include "leak/rigid_motion.h"
 #include "leak/solid.h"
 
@@ -47,9 +49,9 @@ struct CaseSolids
     std::size_t find(const Vec3& p, const MotionOfMk& motions) const;
 };
 
-/// Takes in the shapes of a definition. Points, lines, wires and fills have no inside.
+/// Takes in the shapes that a scene leaves. Points, lines, wires and fills have no inside.
 ///
 /// throws  IoError, GeometryError for mesh files
-CaseSolids case_solids(const CaseDef& def, int threads);
+CaseSolids case_solids(const Scene& scene, int threads);
 
 } // namespace fppg

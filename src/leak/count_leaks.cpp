@@ -9,6 +9,7 @@
 #include "leak/case_solids.h"
 #include "leak/closed_housing.h"
 #include "leak/part_file.h"
+#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -36,7 +37,7 @@ public:
                             case_name));
         facts_ = case_facts(*source_.xml(), source_.xml_path());
         read_definition();
-        solids_ = case_solids(def_, options_.threads);
+        solids_ = case_solids(make_scene(def_), options_.threads);
         report_.case_name = case_name;
         report_.dp = def_.grid.dp;
         report_.notes = solids_.notes;
@@ -74,6 +75,8 @@ private:
         options.evars = options_.evars;
         const std::string& path =
             options_.definition.empty() ? source_.xml_path() : options_.definition;
+        // The meshes that the case was made with.
+        options.meshes = std::make_shared<MeshLibrary>(path, MeshPlaces::DefinitionFirst);
         def_ = read_case(path, options);
         if (!def_.vres.zones.empty())
             throw CaseError(path, 0,

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "fppg/case_def.h"
-#include "shapes/mesh_query.h"
-#include "shapes/winding_tree.h"
+#include "meshes/mesh_query.h"
+#include "meshes/winding_tree.h"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fppg/files.h"
-#include "shapes/box_tree.h"
+#include "meshes/box_tree.h"
 
 #include <array>
 #include <optional>

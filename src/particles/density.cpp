@@ -54,22 +54,11 @@ private:
     const std::vector<ParticleType>& type_of_mk_;
 };
 
-/// Whether the nodes of a run are particles.
-class ParticleTest
-{
-public:
-    explicit ParticleTest(const RunField& field) : has_walls_(field.walls.has_zones()) {}
-    bool operator()(const Run& run) const { return !has_walls_ || (run.mk & wall_zone_bit) == 0; }
-
-private:
-    bool has_walls_;
-};
-
 /// Whether a node counts for hswl: also one that a particle off the lattice hides, as it does in
 /// GenCase, but none in the zone of a fitted wall.
 bool counts_for_hswl(const RunField& field, const Run& run)
 {
-    return field.walls.bodies.empty() || (run.mk & wall_zone_bit) == 0;
+    return field.walls.bodies.empty() || !run.is_covered;
 }
 
 /// The node of water that gives a particle off the lattice its depth.
@@ -158,7 +147,7 @@ public:
     explicit BlockCursor(CaseParticles& particles)
         : particles_(particles), next_(particles.blocks.size(), 0)
     {
-        block_of_mk_.assign(65536, SIZE_MAX);
+        block_of_mk_.assign(65536, 0);
         for (std::size_t b = 0; b < particles.blocks.size(); ++b)
             block_of_mk_[particles.blocks[b].mk] = b;
     }
@@ -168,8 +157,8 @@ public:
     {
         for (std::size_t i = 0; i < runs.size(); ++i)
         {
+            if (runs[i].is_covered) continue;
             const std::size_t b = block_of_mk_[runs[i].mk];
-            if (b == SIZE_MAX) continue;
             body(i, particles_.blocks[b], next_[b]++);
         }
     }
@@ -449,7 +438,6 @@ void compute_densities(const CaseDef& def, const RunField& field,
     const DepthMeter meter(field, type_of_mk);
     const bool is_vertical = c.gravity.x == 0 && c.gravity.y == 0;
     const bool by_height = c.rhop_gradient == 3;
-    const ParticleTest is_particle(field);
 
     std::vector<std::vector<std::uint32_t>> top(field.slabs.size());
     parallel_for(
@@ -470,7 +458,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
                 if (meter.medium(r.mk) != Medium::Water) continue;
                 if (counts_for_hswl(field, r))
                     w.deepest = std::max(w.deepest, top[x][i] + (r.z_end - r.z_begin - 1));
-                if (!is_particle(r)) continue;
+                if (r.is_covered) continue;
                 if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
                 w.z_max = std::max(w.z_max, r.z_end - 1);
                 if (g > 0 && by_height)
@@ -632,7 +620,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
     particles.rhop.assign(particles.n_fluid, static_cast<float>(c.rhop0));
     const auto set = [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
     {
-        if (!is_particle(field.slabs[x][i])) return;
+        if (field.slabs[x][i].is_covered) return;
         const std::size_t b = block_of_mk[field.slabs[x][i].mk];
         if (particles.blocks[b].type == ParticleType::Fluid && !is_plain(particles.blocks[b]))
             particles.rhop[run_begin[b][run_of[x][i]] + k] = rhop(d);
@@ -650,7 +638,7 @@ void compute_densities(const CaseDef& def, const RunField& field,
                      for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
                      {
                          const Run& r = field.slabs[x][i];
-                         if (type_of_mk[r.mk] != ParticleType::Fluid || !is_particle(r)) continue;
+                         if (type_of_mk[r.mk] != ParticleType::Fluid || r.is_covered) continue;
                          for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
                              set(x, i, z - r.z_begin,
                                  s_max - height(place(0, static_cast<std::uint32_t>(x)),

@@ -20,7 +20,7 @@ namespace fppg
 /// - all fluid of an mk that has particles of `<setfrdrawmode>` has rhop0, on nodes too, unless
 ///   def.hydrostatic_off_lattice (33 cases, 2D too, with all gradients and oblique gravity)
 ///
-/// A node with the wall_zone_bit counts in its column as the mk without the bit but has no depth of
+/// A covered node counts in its column as one of its mk but has no depth of
 /// its own. A particle off the lattice has the number of steps of its nearest node, less its real
 /// distance from there along each axis, at least 0; where its nearest node is no water, of the
 /// nearest node of water within 4 dp, and without any the depth 0. For hswl all nodes of fluid
@@ -33,7 +33,7 @@ namespace fppg
 /// (x, y, z) and without those off the lattice; where values are stored one a particle, those of a
 /// block's nodes come first.
 ///
-/// type_of_mk  size 65536; with walls, an mk with the bit has the type of that without
+/// type_of_mk  size 65536
 /// free_begin  per block its first particle in particles.free, and their number as last entry
 void compute_densities(const CaseDef& def, const RunField& field,
                        const std::vector<ParticleType>& type_of_mk,

@@ -94,17 +94,14 @@ private:
                 type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =
                     ParticleType::Floating;
             }
-        if (!field_.walls.has_zones()) return;
-        for (std::size_t mk = 0; mk < wall_zone_bit; ++mk)
-            type_of_mk_[mk | wall_zone_bit] = type_of_mk_[mk];
     }
 
     void make_blocks()
     {
         std::vector<char> used(65536, 0);
         for (const auto& slab : field_.slabs)
-            for (const Run& r : slab) used[r.mk] = 1;
-        if (field_.walls.has_zones()) std::fill(used.begin() + wall_zone_bit, used.end(), 0);
+            for (const Run& r : slab)
+                if (!r.is_covered) used[r.mk] = 1;
         if (has_free())
         {
             free_of_mk_ = count_free_particles(field_.walls);
@@ -139,8 +136,8 @@ private:
             {
                 for (const Run& r : field_.slabs[x])
                 {
+                    if (r.is_covered) continue;
                     const std::size_t b = block_of_mk_[r.mk];
-                    if (b == no_block) continue; // in the zone of a wall
                     ++run_begin_[(x + 1) * n + b];
                     nodes[x * n + b] += r.z_end - r.z_begin;
                 }
@@ -192,8 +189,8 @@ private:
                     run_begin_.begin() + static_cast<std::ptrdiff_t>((x + 1) * n));
                 for (const Run& r : field_.slabs[x])
                 {
+                    if (r.is_covered) continue;
                     const std::size_t b = block_of_mk_[r.mk];
-                    if (b == no_block) continue;
                     out_.blocks[b].runs[next[b]++] = {static_cast<std::uint32_t>(x), r.y, r.z_begin,
                                                       r.z_end - r.z_begin, 0};
                 }

@@ -1,6 +1,6 @@
 #include "particles/wall_surfaces.h"
 
-#include "shapes/round_surface.h"
+#include "meshes/round_surface.h"
 
 #include <cmath>
 

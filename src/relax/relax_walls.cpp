@@ -2,9 +2,9 @@
 
 #include "core/parallel.h"
 #include "fit/wall_section.h"
-#include "shapes/mesh_query.h"
-#include "shapes/point_grid.h"
-#include "shapes/round_surface.h"
+#include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
+#include "meshes/round_surface.h"
 
 #include <fmt/format.h>
 
@@ -190,7 +190,7 @@ std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>&
     }
     std::vector<std::vector<std::uint16_t>> out;
     std::vector<std::size_t> group(65536, 0);
-    for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+    for (std::uint32_t mk = 1; mk < 65536; ++mk)
     {
         if (first_of[mk] == 0) continue;
         const std::uint16_t first = find(static_cast<std::uint16_t>(mk));
@@ -416,7 +416,7 @@ private:
             region.what = "fluid";
             region.band.assign(65536, 0);
             region.beside.assign(65536, 0);
-            for (std::uint32_t mk = 1; mk < wall_zone_bit; ++mk)
+            for (std::uint32_t mk = 1; mk < 65536; ++mk)
             {
                 const bool is_fluid = mk < def_.mk_bound_first;
                 region.beside[mk] =
@@ -448,7 +448,7 @@ private:
     {
         for (std::size_t x = 0; x < field_.slabs.size(); ++x)
             for (const Run& run : field_.slabs[x])
-                visit(SlabRun{static_cast<std::uint32_t>(x), run});
+                if (!run.is_covered) visit(SlabRun{static_cast<std::uint32_t>(x), run});
     }
 
     /// The runs of each set of mks, which no set changes for another.
@@ -730,11 +730,11 @@ private:
         for (std::size_t i = 0; i < movers.size(); ++i)
             if (!stays[i]) left[movers[i].node.x].push_back(movers[i]);
         parallel_for(field_.slabs.size(), threads_,
-                     [&](std::size_t x) { mark_zone(field_.slabs[x], left[x]); });
+                     [&](std::size_t x) { cover(field_.slabs[x], left[x]); });
     }
 
-    /// Gives nodes, sorted by (y, z), the bit of the zone.
-    static void mark_zone(std::vector<Run>& runs, const std::vector<Mover>& nodes)
+    /// Covers nodes, sorted by (y, z).
+    static void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes)
     {
         if (nodes.empty()) return;
         std::vector<Run> out;
@@ -742,7 +742,7 @@ private:
         {
             if (run.z_begin >= run.z_end) return;
             if (!out.empty() && out.back().y == run.y && out.back().mk == run.mk &&
-                out.back().z_end == run.z_begin)
+                out.back().is_covered == run.is_covered && out.back().z_end == run.z_begin)
                 out.back().z_end = run.z_end;
             else
                 out.push_back(run);
@@ -754,11 +754,11 @@ private:
             for (; node != nodes.end() && node->node.y == run.y && node->node.z < run.z_end; ++node)
             {
                 const std::uint32_t z = node->node.z;
-                append_run({run.y, from, z, run.mk});
-                append_run({run.y, z, z + 1, static_cast<std::uint16_t>(run.mk | wall_zone_bit)});
+                append_run({run.y, from, z, run.mk, run.is_covered});
+                append_run({run.y, z, z + 1, run.mk, true});
                 from = z + 1;
             }
-            append_run({run.y, from, run.z_end, run.mk});
+            append_run({run.y, from, run.z_end, run.mk, run.is_covered});
         }
         runs = std::move(out);
     }

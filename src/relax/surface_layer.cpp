@@ -3,7 +3,7 @@
 #include "core/parallel.h"
 #include "core/raw_array.h"
 #include "fit/for_each_chart.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <algorithm>
 #include <memory>

@@ -10,8 +10,8 @@
 #include "app/inspect_command.h"
 #include "app/subcommands.h"
 #include "fppg/error.h"
-#include "shapes/stl_files.h"
-#include "shapes/test_shapes.h"
+#include "meshes/stl_files.h"
+#include "meshes/test_shapes.h"
 
 namespace fppg
 {

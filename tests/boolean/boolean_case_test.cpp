@@ -2,6 +2,7 @@
 #include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "helpers/case_text.h"
 
@@ -61,7 +62,7 @@ std::string error_of(const std::string& block)
 RunField run(const CaseDef& def)
 {
     LatticeReport report;
-    return generate_lattice(def, 2, {}, report);
+    return draw_scene(make_scene(def), 2, {}, report);
 }
 
 /// Nodes by mk, without those of the zone of a wall.
@@ -70,7 +71,7 @@ std::map<int, std::size_t> count(const RunField& field)
     std::map<int, std::size_t> out;
     for (const auto& slab : field.slabs)
         for (const Run& r : slab)
-            if ((r.mk & wall_zone_bit) == 0) out[r.mk] += r.z_end - r.z_begin;
+            if (!r.is_covered) out[r.mk] += r.z_end - r.z_begin;
     return out;
 }
 

@@ -2,8 +2,8 @@
 #include "boolean/boolean_parts.h"
 
 #include "fppg/relax.h"
-#include "shapes/mesh_query.h"
-#include "shapes/point_grid.h"
+#include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "fit/fit_shapes.h"
 #include "fppg/boolean.h"
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
 
 #include <cmath>
 #include <deque>

@@ -1,7 +1,7 @@
 // Combinations against those of CGAL, which finds them by another way (corefinement).
 #include "boolean/boolean_parts.h"
 
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include "helpers/case_text.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -73,7 +74,7 @@ void expect_near(const Vec3& found, const Vec3& expected)
 Vec3 moved(const std::string& transforms)
 {
     const CaseDef def = run(transforms + R"(<drawpoint x="1" y="2" z="3" />)");
-    return std::get<PointsOp>(def.ops.back().what).points[0];
+    return shape_as<PointsOp>(def.ops.back())->points[0];
 }
 
 // -- mistakes
@@ -130,6 +131,10 @@ INSTANTIATE_TEST_SUITE_P(
                 [](CaseText& text)
                 { text.mkconfig = R"(<mkconfig boundcount="65520" fluidcount="11" />)"; },
                 "<mkconfig>: boundcount and fluidcount are 65531 together, expected at most 65530"},
+        Mistake{"MoreMksThan16Bits",
+                [](CaseText& text)
+                { text.mkconfig = R"(<mkconfig boundcount="65531" fluidcount="0" />)"; },
+                "<mkconfig>: attribute boundcount=\"65531\" is out of range"},
         in_mainlist("MissingList", R"(<runlist name="Nobody" />)",
                     "<runlist>: there is no list named 'Nobody'"),
         in_mainlist("DivisionByZero", R"(<drawpoint x="#1/0" y="0" z="0" />)",
@@ -380,7 +385,7 @@ TEST(ReadCase, SkipsCommandsThatAnIfSwitchesOff)
     const CaseDef def = run(R"(<newvar a="2" /><drawpoint if="#a>3" x="0" y="0" z="0" />
 <drawpoint if="#a==2" x="1" y="0" z="0" /><drawbeach if="#0" />)");
     ASSERT_EQ(def.ops.size(), 1u);
-    EXPECT_EQ(std::get<PointsOp>(def.ops[0].what).points[0].x, 1);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops[0])->points[0].x, 1);
 }
 
 TEST(ReadCase, RefusesWhatIsNoCommand)
@@ -392,7 +397,7 @@ TEST(ReadCase, RefusesWhatIsNoCommand)
 
 const MeshFileOp& mesh_op(const CaseDef& def, std::size_t i)
 {
-    return std::get<MeshFileOp>(def.ops.at(i).what);
+    return *shape_as<MeshFileOp>(def.ops.at(i));
 }
 
 TEST(ReadCase, ReadsWhichShapesOfAVtkFileAreDrawn)
@@ -430,10 +435,10 @@ TEST(ReadCase, MeansEmptyNodesWithARedrawboxWithoutMk)
 {
     const std::string box = R"(<point x="0" y="0" z="0" /><size x="1" y="1" z="1" />)";
     const CaseDef def = run("<redrawbox>" + box + "</redrawbox><redraw />");
-    const auto& op = std::get<RedrawOp>(def.ops.at(0).what);
+    const auto& op = std::get<RedrawOp>(std::get<Edit>(def.ops.at(0).what));
     ASSERT_EQ(op.filters.size(), 1u);
     EXPECT_EQ(op.filters[0].kind, MkKind::Void);
-    EXPECT_TRUE(std::get<RedrawOp>(def.ops.at(1).what).filters.empty());
+    EXPECT_TRUE(std::get<RedrawOp>(std::get<Edit>(def.ops.at(1).what)).filters.empty());
 }
 
 /// A case beside a VTM file of three parts.
@@ -521,7 +526,7 @@ TEST(State, ComesBackFromItsStackWithoutTheClips)
         EXPECT_EQ(op.state->mk.mk_type, 1);
         EXPECT_EQ(op.state->mode, DrawMode::Wire);
         EXPECT_EQ(op.state->clips.size(), 1u);
-        expect_near(std::get<PointsOp>(op.what).points[0], {1, 0, 0});
+        expect_near(shape_as<PointsOp>(op)->points[0], {1, 0, 0});
     }
 }
 
@@ -602,7 +607,7 @@ TEST(State, IsForgottenByResetdraw)
     EXPECT_EQ(state.mk.kind, MkKind::Void);
     EXPECT_EQ(state.mode, DrawMode::Solid);
     EXPECT_TRUE(state.clips.empty());
-    expect_near(std::get<PointsOp>(def.ops.at(1).what).points[0], {0, 0, 0});
+    expect_near(shape_as<PointsOp>(def.ops.at(1))->points[0], {0, 0, 0});
 }
 
 TEST(State, CountsMksOnWithSetmknext)
@@ -630,7 +635,7 @@ TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
     {
         const CaseDef def = run("<drawprism mask=\"" + mask + "\">" + points);
         std::string out;
-        for (const FigureFace& face : std::get<FigureOp>(def.ops.at(0).what).faces)
+        for (const FigureFace& face : shape_as<FigureOp>(def.ops.at(0))->faces)
             out += face.is_visible ? '1' : '0';
         return out;
     };
@@ -677,9 +682,9 @@ TEST(Texts, BehindADollarHaveTheirVariablesReplaced)
     text.predefinition = R"(<predefinition><newvarstrcte vtx="u" /></predefinition>)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.ops.size(), 3U);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).file, "x2");
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[1].what).format, ShapeFormat::Vtu);
-    EXPECT_EQ(std::get<ShapeOutOp>(def.ops[2].what).file, "x[n]");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).file, "x2");
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[1].what)).format, ShapeFormat::Vtu);
+    EXPECT_EQ(std::get<ShapeOutOp>(std::get<Output>(def.ops[2].what)).file, "x[n]");
     EXPECT_NE(std::find(def.list_log.begin(), def.list_log.end(), "abc2"), def.list_log.end());
 }
 
@@ -727,6 +732,34 @@ TEST(Properties, MayBeSummedWithBlanksAndComeSorted)
         R"(<floatings><floating mkbound="4" rhopbody="500" property="steel" /></floatings>)";
     EXPECT_NE(error_of(text).find("<floating>: there is no property named \"steel\""),
               std::string::npos);
+}
+
+TEST(MkConfig, WarnsOfMksThatGenCaseRefuses)
+{
+    const auto warnings = [](const char* mkconfig, const char* mainlist)
+    {
+        CaseText text = test::tank();
+        text.mkconfig = mkconfig;
+        text.mainlist = mainlist;
+        const CaseDef def = read(text);
+        EXPECT_LE(def.warnings.size(), 1U);
+        return def.warnings.empty() ? std::string() : def.warnings[0];
+    };
+    const char* const draw = R"(<setmkbound mk="239" /><drawpoint x="0" y="0" z="0" />)";
+    EXPECT_EQ(warnings(R"(<mkconfig boundcount="65520" fluidcount="9" />)", draw), "");
+    EXPECT_EQ(warnings(R"(<mkconfig boundcount="241" fluidcount="9" />)", draw), "");
+    EXPECT_THAT(
+        warnings(
+            R"(<mkconfig boundcount="65520" fluidcount="9" />)",
+            "<setmkbound mk=\"239\" />\n<setmknextbound next=\"true\" /><setmkbound mk=\"999\" />"),
+        testing::EndsWith(":8: <setmknextbound>: GenCase v5.4 refuses mk 240, as its mks have 8 "
+                          "bits and boundcount=65520 leaves 240 of them there; the solver takes "
+                          "mks up to 2047"));
+    EXPECT_THAT(warnings(R"(<mkconfig boundcount="244" fluidcount="10" />)", draw),
+                testing::HasSubstr("<mkconfig>: GenCase v5.4 refuses boundcount=244 with "
+                                   "fluidcount=10"));
+    EXPECT_THAT(warnings(R"(<mkconfig boundcount="240" fluidcount="265" />)", draw),
+                testing::EndsWith("mkbound 0 is mk 10 there and mk 266 here"));
 }
 
 TEST(Normals, MayHaveTheFormOfGenCase50)
@@ -864,7 +897,7 @@ TEST(Expressions, StandInAnyNumber)
 {
     const CaseDef def = run(
         R"(<newvar a="1/4" /><drawsphere radius="#a*Dp"><point x="#a" y="#-a" z="#PosMax_x" /></drawsphere>)");
-    const auto& sphere = std::get<SphereOp>(def.ops.at(0).what);
+    const auto& sphere = *shape_as<SphereOp>(def.ops.at(0));
     EXPECT_DOUBLE_EQ(sphere.radius, 0.025);
     expect_near(sphere.center, {0.25, -0.25, 1.5});
 }
@@ -877,7 +910,7 @@ TEST(Evars, ReplaceTheValuesOfTheDefinitionAndShowInItsCopy)
     CaseOptions options;
     options.evars = {{"Width", "0.5"}};
     const CaseDef def = read(text, options);
-    EXPECT_EQ(std::get<PointsOp>(def.ops.at(0).what).points[0].x, 0.5);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops.at(0))->points[0].x, 0.5);
     const Element* geometry = def.casedef.find_child("geometry");
     ASSERT_NE(geometry, nullptr);
     EXPECT_EQ(
@@ -900,7 +933,7 @@ TEST(Runlist, RunsAListAsOftenAsItSays)
         R"(<newvar k="0" /><runlist name="Dots" times="3" /><runlist name="Dots" times="0" />)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.ops.size(), 3u);
-    EXPECT_EQ(std::get<PointsOp>(def.ops[2].what).points[0].x, 2);
+    EXPECT_EQ(shape_as<PointsOp>(def.ops[2])->points[0].x, 2);
 }
 
 TEST(Runlist, StopsAtSomeNumberOfCallsEvenOfAnEmptyList)

@@ -1,5 +1,6 @@
 #include "files/helpers.h"
 #include "files/vtk_reader.h"
+#include "helpers/dense_grid.h"
 
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -48,7 +49,8 @@ RunField run_field(const NodeField& nodes, bool is_2d = false)
                     field.slabs[static_cast<std::size_t>(x)].push_back(
                         {static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
                          static_cast<std::uint32_t>(end),
-                         static_cast<std::uint16_t>(nodes.at(x, y, z))});
+                         static_cast<std::uint16_t>(nodes.at(x, y, z) & ~test::covered),
+                         (nodes.at(x, y, z) & test::covered) != 0});
                 z = end;
             }
     return field;
@@ -179,7 +181,7 @@ TEST(WriteCellsVtk, DrawsNodesInTheZoneOfAWallAsThoseOfItsMk)
     for (std::size_t i = 0; i < 120; ++i) nodes.mk[i] = std::array{0, 1, 1, 11, 11, 11}[i * 7 % 6];
     NodeField zoned = nodes;
     for (std::size_t i = 0; i < 120; i += 4)
-        if (zoned.mk[i] != 0) zoned.mk[i] |= wall_zone_bit;
+        if (zoned.mk[i] != 0) zoned.mk[i] |= test::covered;
     RunField field = run_field(zoned);
     field.walls.bodies.emplace_back();
     EXPECT_TRUE(vtk_of(field) == vtk_of(run_field(nodes)));

@@ -3,7 +3,7 @@
 
 #include "files/helpers.h"
 #include "files/vtk_reader.h"
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
 
 #include <algorithm>
 #include <set>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
 
 namespace fppg::test
 {

@@ -2,7 +2,7 @@
 
 #include "fit/wall_of_soup.h"
 #include "fppg/shapes.h"
-#include "shapes/spans_helpers.h"
+#include "meshes/spans_helpers.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "fppg/features.h"
 #include "fppg/fit.h"
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
 
 #include <cmath>
 #include <numbers>

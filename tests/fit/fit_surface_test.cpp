@@ -3,7 +3,7 @@
 #include "fit/fit_shapes.h"
 #include "fit/neighbour_grid.h"
 #include "helpers/surface_cover.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <gtest/gtest.h>
 

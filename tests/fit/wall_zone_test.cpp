@@ -4,8 +4,8 @@
 #include "fit/wall_of_soup.h"
 #include "fppg/error.h"
 #include "fppg/shapes.h"
-#include "shapes/mesh_query.h"
-#include "shapes/spans_helpers.h"
+#include "meshes/mesh_query.h"
+#include "meshes/spans_helpers.h"
 
 #include <gtest/gtest.h>
 

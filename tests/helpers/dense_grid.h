@@ -2,8 +2,8 @@
 
 #include "fppg/lattice.h"
 
-#include "lattice/snap.h"
-#include "lattice/spans.h"
+#include "nodes/snap.h"
+#include "nodes/spans.h"
 
 #include <cstdint>
 #include <random>
@@ -35,6 +35,14 @@ struct Dense
     LatticeGrid grid;
     std::vector<Value> values;
 };
+
+/// The mk of a covered node has this bit in the dense form.
+inline constexpr std::uint16_t covered = 0x8000;
+
+inline std::uint16_t dense_mk(const Run& run)
+{
+    return static_cast<std::uint16_t>(run.is_covered ? run.mk | covered : run.mk);
+}
 
 using DenseMks = Dense<std::uint16_t>;
 using DenseSet = Dense<char>;
@@ -88,7 +96,7 @@ inline DenseMks dense(const RunField& field)
     for (std::size_t x = 0; x < field.slabs.size(); ++x)
         for (const Run& r : field.slabs[x])
             for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
-                out.at(static_cast<std::int64_t>(x), r.y, z) = r.mk;
+                out.at(static_cast<std::int64_t>(x), r.y, z) = dense_mk(r);
     return out;
 }
 
@@ -106,10 +114,11 @@ inline RunField runs_of(const DenseMks& nodes)
                       const auto y = static_cast<std::uint32_t>(n.y);
                       const auto z = static_cast<std::uint32_t>(n.z);
                       if (!runs.empty() && runs.back().y == y && runs.back().z_end == z &&
-                          runs.back().mk == mk)
+                          dense_mk(runs.back()) == mk)
                           ++runs.back().z_end;
                       else
-                          runs.push_back({y, z, z + 1, mk});
+                          runs.push_back({y, z, z + 1, static_cast<std::uint16_t>(mk & ~covered),
+                                          (mk & covered) != 0});
                   });
     return field;
 }

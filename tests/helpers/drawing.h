@@ -2,8 +2,9 @@
 
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
-#include "casedef/figures.h"
+#include "shapes/figures.h"
 
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,7 @@ struct Drawing
     void fluid() { state.mk = {MkKind::Fluid, fluid_mk, 0}; }
     void empty() { state.mk = {}; }
 
-    void draw(DrawVariant what)
+    void draw(Command what)
     {
         DrawOp op;
         op.source = {7, "test"};
@@ -66,7 +67,7 @@ struct Drawing
     RunField run(int threads = 1) const
     {
         LatticeReport report;
-        return generate_lattice(def, threads, {}, report);
+        return draw_scene(make_scene(def), threads, {}, report);
     }
 
     CaseDef def;

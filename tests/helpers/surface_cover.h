@@ -3,7 +3,7 @@
 #include "fppg/mesh.h"
 
 #include "fit/neighbour_grid.h"
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
 
 #include <algorithm>
 #include <array>

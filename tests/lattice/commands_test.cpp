@@ -2,6 +2,7 @@
 #include "fppg/domain_clip.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "helpers/case_text.h"
 
@@ -31,7 +32,7 @@ Drawn run(const test::CaseText& text, FitChoice fit = FitChoice::AsCase)
     options.fit = fit;
     const CaseDef def = read_case(folder / "Case_Def.xml", options);
     Drawn out;
-    const RunField field = generate_lattice(def, 2, {}, out.report);
+    const RunField field = draw_scene(make_scene(def), 2, {}, out.report);
     for (const auto& slab : field.slabs)
         for (const Run& r : slab) out.nodes[r.mk] += static_cast<int>(r.z_end - r.z_begin);
     return out;

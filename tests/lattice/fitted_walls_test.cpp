@@ -1,6 +1,7 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
+#include "helpers/dense_grid.h"
 #include "helpers/drawing.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ void for_each_node(const RunField& field, const Visit& visit)
                 visit(field.grid.origin + Vec3{static_cast<double>(x), static_cast<double>(r.y),
                                                static_cast<double>(z)} *
                                               field.grid.dp,
-                      r.mk);
+                      test::dense_mk(r));
 }
 
 TEST(FittedWalls, StopAFillAsTheirShapeDoes)
@@ -160,7 +161,7 @@ TEST(FittedWalls, ARedrawWithAnotherBoundaryMkMovesNothing)
     EXPECT_EQ(after.walls.particles.size(), before.walls.particles.size());
     for (const std::uint16_t mk : after.walls.particles.mk) EXPECT_EQ(mk, wall_mk + 3);
     for_each_node(
-        after, [&](const Vec3&, std::uint16_t mk) { EXPECT_EQ(mk & ~wall_zone_bit, wall_mk + 3); });
+        after, [&](const Vec3&, std::uint16_t mk) { EXPECT_EQ(mk & ~test::covered, wall_mk + 3); });
 }
 
 TEST(FittedWalls, ARedrawToFluidPutsThemBackOnTheLattice)

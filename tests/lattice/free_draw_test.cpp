@@ -1,6 +1,7 @@
 #include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "helpers/case_text.h"
 
@@ -26,7 +27,7 @@ RunField field_of(const std::string& commands, int threads = 2)
         commands;
     test::write_text(folder / "Case_Def.xml", text.text());
     LatticeReport report;
-    return generate_lattice(read_case(folder / "Case_Def.xml", {}), threads, {}, report);
+    return draw_scene(make_scene(read_case(folder / "Case_Def.xml", {})), threads, {}, report);
 }
 
 std::uint64_t node_particles(const RunField& field)
@@ -34,7 +35,7 @@ std::uint64_t node_particles(const RunField& field)
     std::uint64_t n = 0;
     for (const auto& slab : field.slabs)
         for (const Run& run : slab)
-            if ((run.mk & wall_zone_bit) == 0) n += run.z_end - run.z_begin;
+            if (!run.is_covered) n += run.z_end - run.z_begin;
     return n;
 }
 
@@ -137,7 +138,7 @@ std::vector<Vec3> drawn_in_plane(const std::string& commands)
     text.mainlist = "<setfrdrawmode auto=\"true\" /><setmkbound mk=\"0\" />" + commands;
     test::write_text(folder / "Case_Def.xml", text.text());
     LatticeReport report;
-    return generate_lattice(read_case(folder / "Case_Def.xml", {}), 2, {}, report)
+    return draw_scene(make_scene(read_case(folder / "Case_Def.xml", {})), 2, {}, report)
         .walls.volume.positions;
 }
 

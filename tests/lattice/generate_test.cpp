@@ -1,7 +1,8 @@
 #include "fppg/case_def.h"
+#include "fppg/scene.h"
 
-#include "casedef/figures.h"
 #include "helpers/dense_grid.h"
+#include "shapes/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ public:
         state.mk = {MkKind::Bound, 10, 0};
     }
 
-    void draw(DrawVariant what)
+    void draw(Command what)
     {
         DrawOp op;
         op.source = {1, "test"};
@@ -48,7 +49,7 @@ public:
     RunField run(int threads) const
     {
         LatticeReport report;
-        return generate_lattice(def, threads, {}, report);
+        return draw_scene(make_scene(def), threads, {}, report);
     }
 
     CaseDef def;
@@ -210,7 +211,7 @@ TEST(GenerateLattice, WarnsOfAFillWithoutANode)
     fill.filter.names = {true, false, false};
     drawing.draw(fill);
     LatticeReport report;
-    generate_lattice(drawing.def, 1, {}, report);
+    draw_scene(make_scene(drawing.def), 1, {}, report);
     // The drawing itself has a warning of its own: a shape of it is thinner than dp.
     ASSERT_FALSE(report.warnings.empty());
     EXPECT_NE(report.warnings.back().find("the fill added no node"), std::string::npos);
@@ -222,7 +223,7 @@ TEST(GenerateLattice, StopsWhenProgressThrows)
     drawing.draw_everything();
     LatticeReport report;
     const auto stop = [](std::size_t, std::size_t) { throw std::runtime_error("enough"); };
-    EXPECT_THROW(generate_lattice(drawing.def, 2, stop, report), std::runtime_error);
+    EXPECT_THROW(draw_scene(make_scene(drawing.def), 2, stop, report), std::runtime_error);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/lattice.h"
+#include "fppg/scene.h"
 
 #include "helpers/case_text.h"
 
@@ -25,7 +26,7 @@ std::map<int, int> nodes_of_parts(const std::string& mode, const std::string& co
     test::write_text(folder / "Case_Def.xml", text.text());
     const CaseDef def = read_case(folder / "Case_Def.xml", {});
     LatticeReport report;
-    const RunField field = generate_lattice(def, 2, {}, report);
+    const RunField field = draw_scene(make_scene(def), 2, {}, report);
     std::map<int, int> out;
     for (const auto& slab : field.slabs)
         for (const Run& run : slab)

@@ -1,12 +1,12 @@
 // Every region lists its nodes as intervals found by estimates; here each is held to its predicate
 // asked node by node.
 
-#include "casedef/polygon_cut.h"
 #include "helpers/dense_grid.h"
 #include "lattice/plane_shapes.h"
 #include "lattice/planes.h"
 #include "lattice/round_shapes.h"
 #include "lattice/solids.h"
+#include "shapes/polygon_cut.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "lattice/round_mesh.h"
-#include "shapes/round_surface.h"
+#include "shapes/round_mesh.h"
+#include "meshes/round_surface.h"
 
 #include "fppg/error.h"
 #include "fppg/section.h"

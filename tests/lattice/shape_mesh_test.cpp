@@ -1,10 +1,10 @@
-#include "lattice/shape_mesh.h"
+#include "shapes/shape_mesh.h"
 
-#include "casedef/figures.h"
 #include "casedef/transforms.h"
 #include "fppg/error.h"
-#include "lattice/round_mesh.h"
-#include "shapes/test_shapes.h"
+#include "meshes/test_shapes.h"
+#include "shapes/figures.h"
+#include "shapes/round_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace
 constexpr double pi = std::numbers::pi;
 constexpr double dp = 0.01;
 
-DrawOp op_of(const DrawVariant& what, DrawMode mode = DrawMode::Solid, bool normal_invert = false)
+DrawOp op_of(const Command& what, DrawMode mode = DrawMode::Solid, bool normal_invert = false)
 {
     DrawState state;
     state.mode = mode;
@@ -30,7 +30,7 @@ DrawOp op_of(const DrawVariant& what, DrawMode mode = DrawMode::Solid, bool norm
     return op;
 }
 
-std::vector<ShapeMesh> meshes(const DrawVariant& what, DrawMode mode = DrawMode::Solid,
+std::vector<ShapeMesh> meshes(const Command& what, DrawMode mode = DrawMode::Solid,
                               bool normal_invert = false)
 {
     return shape_meshes(op_of(what, mode, normal_invert), nullptr, dp);
@@ -254,8 +254,7 @@ TEST(ShapeMeshes, RoundShapesAreSolidUnlessInFaceMode)
     const SphereOp sphere{{1, 1, 1}, r, {}};
     const CylinderOp cylinder{{0, 0, 0}, {0, 0.3, 0}, r, {true, true, true}, {}};
     const EllipsoidOp ellipsoid{{0, 0, 0}, {r, 0, 0}, 2 * r};
-    for (const DrawVariant& what :
-         {DrawVariant(sphere), DrawVariant(cylinder), DrawVariant(ellipsoid)})
+    for (const Command& what : {Command(sphere), Command(cylinder), Command(ellipsoid)})
         for (const DrawMode mode : {DrawMode::Face, DrawMode::Solid, DrawMode::Full})
         {
             const auto shapes = meshes(what, mode);

@@ -1,4 +1,4 @@
-#include "lattice/spans.h"
+#include "nodes/spans.h"
 
 #include "helpers/dense_grid.h"
 

@@ -190,7 +190,7 @@ RunField with_nodes_set_free(test::DenseMks nodes, Dice& dice)
                             std::uint16_t& mk = nodes.at(n.x, n.y, n.z);
                             if (mk == 0 || dice.whole(0, 3) > 0) return;
                             add_to_volume(walls, place_of(nodes.grid, n.x, n.y, n.z), mk);
-                            mk |= wall_zone_bit;
+                            mk |= test::covered;
                         });
     RunField field = walled(nodes);
     field.walls.volume = walls.volume;
@@ -348,7 +348,7 @@ TEST(FreeParticles, MakeABlockOfAnMkWithoutNodes)
     const CaseDef def = read(small_case());
     test::DenseMks nodes(def.grid);
     for (std::int64_t z = 0; z < 5; ++z) nodes.at(3, 3, z) = 1;
-    for (std::int64_t z = 0; z < 4; ++z) nodes.at(4, 3, z) = 11 | wall_zone_bit;
+    for (std::int64_t z = 0; z < 4; ++z) nodes.at(4, 3, z) = 11 | test::covered;
     RunField field = walled(nodes);
     for (int i = 0; i < 7; ++i) add_to_wall(field.walls, {0.01 * i, 0.1, 0.2}, 11);
     for (int i = 0; i < 3; ++i) add_to_wall(field.walls, {0.1, 0.1, 0.3 + 0.05 * i}, 12);
@@ -403,7 +403,7 @@ float density_at(const Vec3& steps, const CaseDef& def, CaseConstants& constants
     for (std::int64_t x = 0; x < 5; ++x)
         for (std::int64_t y = 0; y < 5; ++y)
             for (std::int64_t z = 0; z < 10; ++z)
-                nodes.at(x, y, z) = z < 2 ? 10 | wall_zone_bit : 1;
+                nodes.at(x, y, z) = z < 2 ? 10 | test::covered : 1;
     RunField field = walled(nodes);
     add_to_volume(field.walls, def.grid.origin + def.grid.dp * steps, 1, 0.5F);
     const Made made = make(def, field);

@@ -4,7 +4,7 @@
 #include "fit/neighbour_grid.h"
 #include "fppg/error.h"
 #include "helpers/surface_cover.h"
-#include "shapes/mesh_query.h"
+#include "meshes/mesh_query.h"
 
 #include <gtest/gtest.h>
 

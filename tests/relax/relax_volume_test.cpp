@@ -2,8 +2,8 @@
 
 #include "fit/fit_shapes.h"
 #include "fppg/error.h"
+#include "meshes/mesh_query.h"
 #include "relax/volume_regions.h"
-#include "shapes/mesh_query.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
 #include "fppg/relax_walls.h"
 
-#include "casedef/figures.h"
+#include "helpers/dense_grid.h"
 #include "helpers/drawing.h"
+#include "shapes/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,8 @@ std::map<std::array<std::uint32_t, 3>, std::uint16_t> nodes_of(const RunField& f
     std::map<std::array<std::uint32_t, 3>, std::uint16_t> nodes;
     for (std::uint32_t x = 0; x < field.slabs.size(); ++x)
         for (const Run& r : field.slabs[x])
-            for (std::uint32_t z = r.z_begin; z < r.z_end; ++z) nodes[{x, r.y, z}] = r.mk;
+            for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
+                nodes[{x, r.y, z}] = test::dense_mk(r);
     return nodes;
 }
 
@@ -80,7 +82,7 @@ bool is_whole(const FittedWalls& walls)
            walls.volume.distances.size() == walls.volume.size();
 }
 
-/// Only the bit of the zone came to nodes, one for each particle that left its node.
+/// Nodes were covered only, one for each particle that left its node.
 void expect_marked_nodes(const Relaxed& relaxed)
 {
     const auto before = nodes_of(relaxed.before);
@@ -90,7 +92,7 @@ void expect_marked_nodes(const Relaxed& relaxed)
     for (const auto& [node, mk] : before)
     {
         if (after.at(node) == mk) continue;
-        EXPECT_EQ(after.at(node), mk | wall_zone_bit);
+        EXPECT_EQ(after.at(node), mk | test::covered);
         ++marked;
     }
     std::size_t moved = relaxed.after.walls.volume.size();

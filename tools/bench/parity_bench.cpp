@@ -8,8 +8,8 @@
 // vertices, as they do in drawings with round numbers.
 
 #include "fppg/shapes.h"
-#include "shapes/embree.h"
-#include "shapes/mesh_query.h"
+#include "meshes/embree.h"
+#include "meshes/mesh_query.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,9 +12,9 @@
 #include "fppg/lattice.h"
 #include "fppg/relax_volume.h"
 #include "fppg/shapes.h"
+#include "meshes/mesh_query.h"
 #include "relax/kernel.h"
 #include "relax/neighbour_list.h"
-#include "shapes/mesh_query.h"
 
 #include <malloc.h>
 #include <algorithm>

@@ -9,34 +9,45 @@ cmake_minimum_required(VERSION 3.25)
 
 set(core_may_see)
 set(report_may_see core)
-foreach(folder casedef shapes)
-  set(${folder}_may_see core)
+# Runs of nodes and their sets.
+set(nodes_may_see core)
+# Mesh files, read, mended and asked.
+set(meshes_may_see nodes core)
+# What can be drawn: what bounds it, its surface, its polygons.
+set(shapes_may_see meshes nodes core)
+set(casedef_may_see shapes meshes core)
+# What a case draws, as all stages below see it.
+set(scene_may_see casedef shapes meshes nodes core)
+set(particles_may_see meshes nodes core)
+foreach(folder fit normals files)
+  set(${folder}_may_see casedef shapes meshes particles nodes core)
 endforeach()
-set(particles_may_see shapes core)
-foreach(folder lattice fit normals files)
-  set(${folder}_may_see casedef shapes particles core)
-endforeach()
-# Relaxation fills the holes that open as fitting does; parts have an inside where walls have one.
-set(relax_may_see fit casedef shapes particles core)
-set(boolean_may_see fit casedef shapes particles core)
-set(render_may_see files particles shapes core)
+set(lattice_may_see scene casedef shapes meshes particles nodes core)
+# Parts have an inside where walls have one.
+set(boolean_may_see fit meshes particles nodes core)
+# Relaxation fills the holes that open as fitting does.
+set(relax_may_see fit casedef shapes meshes particles nodes core)
+# Body-fitted shapes and combinations of a scene; what they leave of it is painted on the lattice.
+set(walls_may_see boolean fit lattice scene casedef shapes meshes particles nodes core)
+set(render_may_see files particles shapes meshes core)
 # What differs in Case.xml is found in its tree, which casedef reads.
-set(compare_may_see report files casedef particles shapes core)
+set(compare_may_see report files casedef particles shapes meshes core)
 # Cases beforehand and many at a time.
-set(batch_may_see report lattice files casedef shapes particles core)
+set(batch_may_see report walls lattice scene files casedef shapes meshes particles nodes core)
 # What the solver made of a case, against the true shapes of its draws.
-set(leak_may_see lattice files casedef shapes particles core)
+set(leak_may_see walls lattice scene files casedef shapes meshes particles nodes core)
 # The text of a definition, in newer forms.
 set(upgrade_may_see core)
-set(app_may_see upgrade leak batch report compare render lattice fit boolean relax normals files casedef shapes particles core)
+set(app_may_see upgrade leak batch report compare render walls lattice fit boolean relax normals files scene casedef shapes meshes
+    particles nodes core)
 set(main_may_see app)
 
 # Third parties that few folders wrap for all others.
 set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
 # The case definition, and mesh files whose numbers are too many to pass through a tree.
-set(tinyxml2_may_be_seen_by casedef shapes)
-set(zlib_may_be_seen_by shapes)
-set(embree_may_be_seen_by shapes render)
+set(tinyxml2_may_be_seen_by casedef meshes)
+set(zlib_may_be_seen_by meshes)
+set(embree_may_be_seen_by meshes render)
 set(png_may_be_seen_by render)
 set(CLI_may_be_seen_by app)
 set(nlohmann_may_be_seen_by core)

@@ -68,7 +68,8 @@ def write_case(case, folder):
 def program_path(name):
     path = os.path.abspath(name) if os.sep in name else shutil.which(name)
     if not path or not os.access(path, os.X_OK):
-        sys.exit(f"{name}: expected a program that can be run")
+        script = ", or a script that starts it through Wine" if name.lower().endswith(".exe") else ""
+        sys.exit(f"{name}: expected a program that can be run{script}")
     return path
 
 

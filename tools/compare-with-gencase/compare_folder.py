@@ -15,9 +15,10 @@ definitions. Compared, of every definition that both run:
   fields      velocities and densities of particles of one id
   normals     those of boundary particles of one id, within 1e-4 dp
   Case.xml    element by element, comments too; numbers to six digits
-Fields and normals are compared where the particles are the same.
+Fields and normals are compared where the particles are the same. A cell says "-" where there was nothing to compare.
 
-README.md in this folder says more. Needs python3-numpy. Exits with 1 where something differs.
+README.md in this folder says more. Needs python3-numpy. Exits with 1 where something differs, or where one of the two
+refuses what the other runs.
 """
 
 import argparse
@@ -91,7 +92,11 @@ def find_definitions(given):
         return [(given, "")]
     with open(given, encoding="utf-8") as file:
         rows = [line.rstrip("\n").split("\t") for line in file if line.strip() and not line.startswith("#")]
-    return [(os.path.join(os.path.dirname(given), row[0]), row[1] if len(row) > 1 else "") for row in rows]
+    listed = [(os.path.join(os.path.dirname(given), row[0]), row[1] if len(row) > 1 else "") for row in rows]
+    for path, _ in listed:
+        if not os.path.isfile(path):
+            sys.exit(f"{given}: {path} is no file, expected a definition a line, relative to the list")
+    return listed
 
 
 def case_name(definition):
@@ -120,6 +125,8 @@ def far_rows(ours, theirs, tolerance):
     """How many rows of two arrays differ, and by how much at most; None where they cannot be compared."""
     if ours is None or theirs is None or ours.shape != theirs.shape:
         return None
+    if not len(theirs):
+        return 0, 0.0
     a, b = (v.astype(float).reshape(len(v), -1) for v in (ours, theirs))
     with np.errstate(invalid="ignore"):
         error = np.where(np.isnan(a) & np.isnan(b), 0, np.abs(a - b))
@@ -194,12 +201,12 @@ def cells(row):
         return ", ".join(f"{t} {n:,}" for t, n in side.particles.items()) or ("0" if side.ended == 0 else "")
 
     def told(lines, same="same"):
-        return "" if lines is None else f"{len(lines)} differ" if lines else same
+        return "-" if lines is None else f"{len(lines)} differ" if lines else same
 
-    particles = counts(row.gencase)
+    particles = counts(row.gencase) or "-"
     if row.fppg.particles and row.fppg.particles != row.gencase.particles:
         particles += f" (fppg: {counts(row.fppg)})"
-    same = "" if row.particles is None else row.particles[0] if row.particles else "same"
+    same = "-" if row.particles is None else row.particles[0] if row.particles else "same"
     return [f"{row.definition} {row.options}".strip(), str(row.gencase.ended), str(row.fppg.ended), particles, same,
             told(row.constants), told(row.fields), "; ".join(row.normals) if row.normals else told(row.normals),
             told(row.case_xml), f"{row.gencase.seconds:.2f}", f"{row.fppg.seconds:.2f}"]
@@ -221,9 +228,10 @@ def print_table(rows):
                 print(f"\n{row.definition}: {name}:\n  " + "\n  ".join(found[:10] + more), end="")
     both = [row for row in rows if row.gencase.ended == 0 and row.fppg.ended == 0]
     run = sum(row.gencase.ended == 0 for row in rows)
+    alone = sum(row.gencase.ended != 0 and row.fppg.ended == 0 for row in rows)
     print(f"\n{len(rows)} definitions: GenCase runs {run}, of these fppg runs {len(both)}; "
           f"same particles {sum(not row.particles for row in both)}, all else the same too "
-          f"{sum(not row.differs() for row in both)}")
+          f"{sum(not row.differs() for row in both)}" + (f"; {alone} run in fppg only" if alone else ""))
 
 
 def arguments(words):

@@ -9,6 +9,7 @@
 #include "fppg/files.h"
 #include "fppg/lattice.h"
 #include "fppg/particles.h"
+#include "fppg/scene.h"
 #include "fppg/shapes.h"
 
 #include <benchmark/benchmark.h>
@@ -84,7 +85,7 @@ Made make(const std::string& path, double dp)
     Made made;
     made.def = read(path, dp);
     fppg::LatticeReport report;
-    made.field = fppg::generate_lattice(made.def, 1, {}, report);
+    made.field = fppg::draw_scene(make_scene(made.def), 1, {}, report);
     std::vector<std::string> warnings;
     made.particles = fppg::make_particles(made.def, made.field, 1, made.constants, warnings);
     for (const fppg::ParticleBlock& block : made.particles.blocks)
@@ -156,16 +157,16 @@ void add_reading(const CaseRef& what)
 
 void add_generating(const CaseRef& what)
 {
-    add("generate_lattice", what,
+    add("draw_scene", what,
         [](State& state, const Made& made, int threads)
         {
-            time_stage(
-                state, "particles", made.particles.np,
-                [&]
-                {
-                    fppg::LatticeReport report;
-                    benchmark::DoNotOptimize(fppg::generate_lattice(made.def, threads, {}, report));
-                });
+            time_stage(state, "particles", made.particles.np,
+                       [&]
+                       {
+                           fppg::LatticeReport report;
+                           benchmark::DoNotOptimize(
+                               fppg::draw_scene(make_scene(made.def), threads, {}, report));
+                       });
         });
 }
 

@@ -1,0 +1,118 @@
+#include "lattice/canvas.h"
+
+#include "fppg/error.h"
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "lattice/draw_pattern.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fppg
+{
+
+Brush::Brush(const DrawOp& op) : source(&op.source), state(op.state.get()), mk(op.state->mk)
+{
+    if (const auto* edit = std::get_if<Edit>(&op.what))
+    {
+        heeds_pattern = !std::holds_alternative<RedrawNearOp>(*edit);
+        empties_left_out = std::holds_alternative<FillOp>(*edit);
+    }
+}
+
+Brush Brush::of_part(std::uint32_t steps) const
+{
+    Brush part = *this;
+    if (mk.kind != MkKind::Void) part.mk.mk = static_cast<std::uint16_t>(mk.mk + steps);
+    return part;
+}
+
+Canvas::Canvas(const CaseDef& def, int threads)
+    : def_(def),
+      threads_(threads),
+      walls_(field_, threads),
+      free_(field_, threads),
+      run_limit_(available_memory() / 5 * 4 / sizeof(Run))
+{
+    field_.grid = def.grid;
+    field_.slabs.resize(def.grid.n[0]);
+}
+
+void Canvas::paint(const Brush& brush, const SlabRegion& region)
+{
+    if (!brush.state->draw_points || region.x_end <= region.x_begin) return;
+    const std::vector<ClipPlane> none;
+    const std::vector<ClipPlane>& clips = brush.is_clipped ? brush.state->clips : none;
+    parallel_for(region.x_end - region.x_begin, threads_,
+                 [&](std::size_t i)
+                 {
+                     const auto x = region.x_begin + static_cast<std::uint32_t>(i);
+                     paint_slab(brush, x, listed(region, x, clips, grid()));
+                 });
+}
+
+void Canvas::paint(const Brush& brush, const std::vector<Spans>& nodes)
+{
+    if (!brush.state->draw_points) return;
+    parallel_for(nodes.size(), threads_, [&](std::size_t x) { paint_slab(brush, x, nodes[x]); });
+}
+
+void Canvas::paint_free(const Brush& brush, const std::vector<Vec3>& points)
+{
+    Brush plain = brush;
+    plain.heeds_pattern = false;
+    paint(plain, free_.draw(points, brush.state->clips, brush.mk.mk));
+}
+
+void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans)
+{
+    const DrawState& state = *brush.state;
+    if (!state.pattern || !brush.heeds_pattern)
+    {
+        paint_slab(brush, x, spans, brush.mk);
+        return;
+    }
+    const PatternSplit split =
+        split_by_pattern(*state.pattern, spans, static_cast<std::uint32_t>(x));
+    paint_slab(brush, x, split.drawn, brush.mk);
+    if (!state.mk_back && !brush.empties_left_out) return;
+    const MkValue back = state.mk_back.value_or(MkValue{});
+    Brush behind = brush;
+    behind.keeps_walls = brush.keeps_walls && back.kind == MkKind::Bound;
+    paint_slab(behind, x, split.left_out, back);
+}
+
+void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans, const MkValue& mk)
+{
+    std::vector<Run>& slab = field_.slabs[x];
+    const std::size_t before = slab.size();
+    const Spans zone = walls_.paint_over(x, spans, mk.mk, brush.keeps_walls);
+    fppg::paint(slab, spans, mk.mk);
+    if (!zone.empty()) fppg::paint(slab, zone, mk.mk, true);
+    const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
+    if (runs > run_limit_ && runs < UINT64_MAX / 2)
+        throw CaseError(
+            def_.file, brush.source->line,
+            fmt::format(
+                "<{}>: the drawn regions need more memory than this machine has left: {} runs "
+                "of nodes so far; a larger dp or a smaller domain needs less",
+                brush.source->command, runs));
+}
+
+void Canvas::reset()
+{
+    for (auto& slab : field_.slabs) slab.clear();
+    walls_.reset();
+    free_.reset();
+}
+
+RunField Canvas::take()
+{
+    free_.finish();
+    walls_.finish();
+    return std::move(field_);
+}
+
+} // namespace fppg

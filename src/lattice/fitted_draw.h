@@ -1,0 +1,45 @@
+#pragma once
+
+#include "fppg/fitted_walls.h"
+#include "fppg/lattice.h"
+
+#include "nodes/spans.h"
+
+#include <string>
+#include <vector>
+
+namespace fppg
+{
+
+/// Nodes that one part of a combination has.
+struct NodeShare
+{
+    std::uint16_t mk = 0;     ///< absolute
+    std::vector<Spans> nodes; ///< one entry a slab of the lattice
+};
+
+/// What one fitted draw adds to the field.
+struct FittedDraw
+{
+    FittedBody body;
+    WallParticles particles;       ///< of this body only; `bodies` is 0
+    std::vector<Vec3> cut;         ///< places of particles that were left out
+    SurfaceParticles second_sheet; ///< taken out of a thin plate
+    std::vector<Spans> volume;     ///< one entry a slab of the lattice
+    std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
+    std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
+    /// Nodes of `volume` and `zone` with another mk than the body's.
+    std::vector<NodeShare> shares;
+    std::vector<std::string> warnings;
+};
+
+/// What body-fitting made of one step of a scene.
+struct FittedStep
+{
+    bool is_fitted = false;        ///< false: the shape stays on the lattice
+    std::vector<FittedDraw> draws; ///< in order; none for a draw that paints nothing
+    /// Whole sentences that name the draw.
+    std::vector<std::string> warnings;
+};
+
+} // namespace fppg

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "fppg/lattice.h"
+#include "fppg/scene.h"
+
+#include "lattice/canvas.h"
+#include "lattice/draw_checks.h"
+#include "lattice/plane_shapes.h"
+
+#include <set>
+#include <vector>
+
+namespace fppg
+{
+
+/// What the draws of a case share while they are painted in order.
+struct Painting
+{
+    Painting(const Scene& drawn, int threads, LatticeReport& said)
+        : scene(drawn),
+          def(*drawn.def),
+          report(said),
+          checks(*drawn.def, said.warnings),
+          canvas(*drawn.def, threads)
+    {
+    }
+
+    const LatticeGrid& grid() const { return def.grid; }
+
+    const Scene& scene;
+    const CaseDef& def;
+    LatticeReport& report;
+    DrawChecks checks;
+    Canvas canvas;
+    std::set<const MeshFile*> used; ///< mesh files that the report tells of
+};
+
+// A file a kind of draw. Each paints one draw over what is there; clips, pattern and mk are the
+// brush's.
+
+// paint_figure.cpp
+void paint(Painting& painting, const Brush& brush, const PointsOp& op);
+void paint(Painting& painting, const Brush& brush, const LinesOp& op);
+void paint(Painting& painting, const Brush& brush, const FigureOp& op);
+/// Nodes by their distance to triangles, which the report counts.
+void paint_triangles(Painting& painting, const Brush& brush,
+                     std::vector<SnappedTriangle> triangles);
+/// The inside of a figure with the constants of setdpctes.
+SlabRegion solid_of(const FigureOp& figure, const DrawState& state, const LatticeGrid& grid);
+
+// paint_round.cpp
+void paint(Painting& painting, const Brush& brush, const SphereOp& op);
+void paint(Painting& painting, const Brush& brush, const CylinderOp& op);
+/// throws  CaseError off the lattice
+void paint(Painting& painting, const Brush& brush, const EllipsoidOp& op);
+void paint(Painting& painting, const Brush& brush, const WaveOp& op);
+
+// paint_mesh.cpp
+void paint(Painting& painting, const Brush& brush, const MeshFileOp& op);
+
+// paint_fill.cpp
+void paint(Painting& painting, const Brush& brush, const FillOp& op);
+void paint(Painting& painting, const Brush& brush, const CavityFillOp& op);
+void paint(Painting& painting, const Brush& brush, const RedrawOp& op);
+void paint(Painting& painting, const Brush& brush, const RedrawNearOp& op);
+
+} // namespace fppg

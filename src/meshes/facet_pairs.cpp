@@ -1,0 +1,85 @@
+#include "meshes/facet_pairs.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "core/predicates.h"
+#include "meshes/box_tree.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+using Corners = std::array<Vec3, 3>;
+
+/// Whether a side of `a` has its ends on both sides of `b`'s plane and passes inside the facet.
+bool pierces(const Corners& a, const Corners& b)
+{
+    std::array<int, 3> side{};
+    for (std::size_t i = 0; i < 3; ++i) side[i] = orient3d(b[0], b[1], b[2], a[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::size_t j = (i + 1) % 3;
+        if (side[i] * side[j] >= 0) continue;
+        int turns = 0;
+        for (std::size_t k = 0; k < 3; ++k) turns += orient3d(a[i], a[j], b[k], b[(k + 1) % 3]);
+        if (turns == 3 || turns == -3) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads)
+{
+    const std::size_t n = mesh.facets.size();
+    const auto corners_of = [&mesh](std::size_t f)
+    {
+        const auto& c = mesh.facets[f];
+        return Corners{mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
+    };
+    const auto box_of = [](const Corners& corners)
+    {
+        Box3 box;
+        for (const Vec3& p : corners) box.add(p);
+        return box;
+    };
+    std::vector<Box3> boxes(n);
+    for (std::size_t f = 0; f < n; ++f) boxes[f] = box_of(corners_of(f));
+    const BoxTree tree(std::move(boxes), threads);
+
+    std::vector<std::uint32_t> crossed(n, 0);
+    std::vector<std::uint32_t> first(n, no_index);
+    parallel_for(
+        n, threads,
+        [&](std::size_t f)
+        {
+            const Corners own = corners_of(f);
+            tree.for_each_overlap(
+                box_of(own),
+                [&](std::uint32_t other)
+                {
+                    if (other <= f) return;
+                    for (const std::uint32_t v : mesh.facets[f])
+                        if (std::find(mesh.facets[other].begin(), mesh.facets[other].end(), v) !=
+                            mesh.facets[other].end())
+                            return;
+                    const Corners theirs = corners_of(other);
+                    if (!pierces(own, theirs) && !pierces(theirs, own)) return;
+                    ++crossed[f];
+                    first[f] = std::min(first[f], other);
+                });
+        },
+        256);
+    FacetPairs pairs;
+    for (std::size_t f = n; f-- > 0;)
+    {
+        pairs.count += crossed[f];
+        if (crossed[f] > 0) pairs.first = {static_cast<std::uint32_t>(f), first[f]};
+    }
+    return pairs;
+}
+
+} // namespace fppg

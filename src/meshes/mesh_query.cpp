@@ -1,0 +1,216 @@
+#include "meshes/mesh_query.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "fppg/error.h"
+#include "meshes/column_cut.h"
+#include "meshes/embree.h"
+#include "meshes/facet_distance.h"
+
+namespace fppg
+{
+
+namespace
+{
+
+/// Room for what float rounds away in coordinates between -1 and 1 and in Embree's own arithmetic.
+constexpr double rounding_room = 1.0 / (1 << 20);
+
+struct ReleaseDevice
+{
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene
+{
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+
+void check(RTCDevice device)
+{
+    const RTCError code = rtcGetDeviceError(device);
+    if (code != RTC_ERROR_NONE)
+        throw Error(fmt::format("Embree failed with error {}", static_cast<int>(code)));
+}
+
+} // namespace
+
+/// Embree works on the mesh moved and scaled into [-1, 1], where float is finest. Facets are given
+/// as boxes with callbacks, because triangles rounded to float would miss what doubles still hit.
+struct MeshQuery::Scene
+{
+    TriangleSoup soup;
+    Vec3 centre;
+    double scale = 1; ///< half the largest extent of the mesh
+    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
+    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
+
+    Scene(TriangleSoup mesh, int threads) : soup(std::move(mesh))
+    {
+        if (soup.size() == 0) throw GeometryError("a mesh without facets has no surface");
+        Box3 box;
+        for (const Vec3& vertex : soup.vertices)
+        {
+            if (!is_finite(vertex))
+                throw GeometryError("a mesh with a coordinate that is not finite has no surface");
+            box.add(vertex);
+        }
+        centre = box.min + 0.5 * (box.max - box.min);
+        const Vec3 half = 0.5 * (box.max - box.min);
+        scale = std::max({half.x, half.y, half.z});
+        if (!(scale > 0)) scale = 1;
+        build(threads);
+    }
+
+    void build(int threads)
+    {
+        device.reset(rtcNewDevice(fmt::format("threads={}", std::max(threads, 1)).c_str()));
+        if (!device)
+            throw Error(fmt::format("Embree cannot be started: error {}",
+                                    static_cast<int>(rtcGetDeviceError(nullptr))));
+        scene.reset(rtcNewScene(device.get()));
+        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+        const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(soup.size()));
+        rtcSetGeometryUserData(geometry, this);
+        rtcSetGeometryBoundsFunction(geometry, give_bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, meet_ray);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene.get());
+        check(device.get());
+    }
+
+    Vec3 to_unit(const Vec3& point) const { return (point - centre) / scale; }
+
+    static void give_bounds(const RTCBoundsFunctionArguments* arguments)
+    {
+        const Scene& self = *static_cast<const Scene*>(arguments->geometryUserPtr);
+        Box3 box;
+        for (std::size_t k = 0; k < 3; ++k)
+            box.add(self.to_unit(self.soup.vertices[3 * std::size_t{arguments->primID} + k]));
+        RTCBounds& bounds = *arguments->bounds_o;
+        bounds.lower_x = static_cast<float>(box.min.x - rounding_room);
+        bounds.lower_y = static_cast<float>(box.min.y - rounding_room);
+        bounds.lower_z = static_cast<float>(box.min.z - rounding_room);
+        bounds.upper_x = static_cast<float>(box.max.x + rounding_room);
+        bounds.upper_y = static_cast<float>(box.max.y + rounding_room);
+        bounds.upper_z = static_cast<float>(box.max.z + rounding_room);
+    }
+
+    struct RayContext : EmbreeRayContext
+    {
+        Vec3 origin;
+        int axis = 0;
+        std::vector<Crossing>* found = nullptr;
+    };
+
+    /// Notes the crossing and reports no hit, so that the ray goes on to the end.
+    static void meet_ray(const RTCIntersectFunctionNArguments* arguments)
+    {
+        if (arguments->valid[0] == 0) return;
+        const Scene& self = *static_cast<const Scene*>(arguments->geometryUserPtr);
+        const RayContext& context = *static_cast<const RayContext*>(arguments->context);
+        const ColumnFacet facet(&self.soup.vertices[3 * std::size_t{arguments->primID}],
+                                context.axis);
+        const Vec3 at = ColumnFacet::turned(context.origin, context.axis);
+        if (!cut_column(facet, at.x, at.y).is_crossed) return;
+        if (side_of_plane(facet, at.x, at.y, at.z) > 0) return;
+        const double position = std::max(at.z, height_above(facet, at.x, at.y).z);
+        context.found->push_back({position, -facet.facing, arguments->primID});
+    }
+
+    struct Nearest
+    {
+        const Scene* scene;
+        Vec3 point;
+        double reach; ///< what float rounding can change in a distance, in units of the box
+        ClosestPoint best;
+    };
+
+    static bool meet_point(RTCPointQueryFunctionArguments* arguments)
+    {
+        Nearest& nearest = *static_cast<Nearest*>(arguments->userPtr);
+        const Scene& self = *nearest.scene;
+        const Vec3 candidate = closest_on_facet(
+            nearest.point, &self.soup.vertices[3 * std::size_t{arguments->primID}]);
+        const double distance = norm(candidate - nearest.point);
+        const bool is_equal = distance == nearest.best.distance;
+        if (!(distance < nearest.best.distance) &&
+            !(is_equal && arguments->primID < nearest.best.facet))
+            return false;
+        nearest.best = {candidate, arguments->primID, distance};
+        const double unit = distance / self.scale;
+        arguments->query->radius = static_cast<float>(unit * (1 + rounding_room) + nearest.reach);
+        return true;
+    }
+};
+
+MeshQuery::MeshQuery(TriangleSoup soup, int threads)
+    : scene_(std::make_unique<Scene>(std::move(soup), threads))
+{
+}
+
+MeshQuery::~MeshQuery() = default;
+MeshQuery::MeshQuery(MeshQuery&&) noexcept = default;
+MeshQuery& MeshQuery::operator=(MeshQuery&&) noexcept = default;
+
+const TriangleSoup& MeshQuery::soup() const
+{
+    return scene_->soup;
+}
+
+ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
+{
+    const Vec3 unit = scene_->to_unit(point);
+    Scene::Nearest nearest{scene_.get(), point, (1 + norm(unit)) * rounding_room, {}};
+    nearest.best.distance = std::numeric_limits<double>::infinity();
+    nearest.best.facet = std::numeric_limits<std::uint32_t>::max();
+
+    RTCPointQuery query;
+    query.x = static_cast<float>(unit.x);
+    query.y = static_cast<float>(unit.y);
+    query.z = static_cast<float>(unit.z);
+    query.time = 0;
+    query.radius = static_cast<float>(within / scene_->scale * (1 + rounding_room) + nearest.reach);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_->scene.get(), &query, &context, Scene::meet_point, &nearest);
+    return nearest.best;
+}
+
+std::vector<Crossing> MeshQuery::crossings(const Vec3& origin, int axis) const
+{
+    std::vector<Crossing> found;
+    Scene::RayContext context;
+    context.origin = origin;
+    context.axis = axis;
+    context.found = &found;
+
+    // The ray starts below the whole mesh; where the half line begins is decided in double.
+    Vec3 start = scene_->to_unit(origin);
+    for (int other = 0; other < 3; ++other)
+        if (other != axis && !(std::abs(start[other]) <= 1 + rounding_room)) return found;
+    start[axis] = -2;
+    RTCRayHit ray{};
+    ray.ray.org_x = static_cast<float>(start.x);
+    ray.ray.org_y = static_cast<float>(start.y);
+    ray.ray.org_z = static_cast<float>(start.z);
+    ray.ray.dir_x = axis == 0 ? 1.0F : 0.0F;
+    ray.ray.dir_y = axis == 1 ? 1.0F : 0.0F;
+    ray.ray.dir_z = axis == 2 ? 1.0F : 0.0F;
+    ray.ray.tnear = 0;
+    ray.ray.tfar = std::numeric_limits<float>::infinity();
+    ray.ray.mask = ~0U;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(scene_->scene.get(), context, ray);
+
+    std::sort(found.begin(), found.end(),
+              [](const Crossing& a, const Crossing& b)
+              { return a.position != b.position ? a.position < b.position : a.facet < b.facet; });
+    return found;
+}
+
+} // namespace fppg

@@ -1,0 +1,120 @@
+#include "fppg/surface_mesh.h"
+
+#include <fmt/format.h>
+
+#include "fppg/error.h"
+#include "meshes/close_cracks.h"
+#include "meshes/drop_copies.h"
+#include "meshes/drop_degenerate.h"
+#include "meshes/edge_map.h"
+#include "meshes/facet_pairs.h"
+#include "meshes/judge_edges.h"
+#include "meshes/measure_facets.h"
+#include "meshes/mesh_facets.h"
+#include "meshes/orient_shells.h"
+#include "meshes/t_junctions.h"
+#include "meshes/turn_outwards.h"
+#include "meshes/warning_words.h"
+#include "meshes/weld_corners.h"
+
+namespace fppg
+{
+
+SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
+                         MeshReport& report)
+{
+    report = {};
+    report.facets_read = soup.size();
+    if (soup.size() >= no_index / 3)
+        throw GeometryError(fmt::format("a mesh of {} facets is too large, expected fewer than {}",
+                                        soup.size(), no_index / 3));
+    for (std::size_t i = 0; i < soup.vertices.size(); ++i)
+        if (!is_finite(soup.vertices[i]))
+            throw GeometryError(
+                fmt::format("facet {} has a coordinate that is not finite", i / 3 + 1));
+
+    SurfaceMesh mesh;
+    weld_equal(soup, threads, mesh);
+    if (options.weld_distance > 0) weld_near(options.weld_distance, {}, mesh);
+    drop_degenerate(mesh, report);
+    if (mesh.facets.empty())
+        throw GeometryError(
+            fmt::format("no facet is left of {}: all lack area", report.facets_read));
+    build_edges(mesh, threads);
+    if (options.weld_distance == 0)
+    {
+        join_rounded_corners(mesh, threads, report);
+        close_cracks(mesh, threads, report);
+    }
+    drop_copies(mesh, threads, report);
+    if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
+    drop_loose_slivers(mesh, threads, report);
+    const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
+    Vec3 junction_at;
+    if (!junctions.empty())
+    {
+        junction_at = mesh.vertices[junctions.front().vertex];
+        report.t_junctions = junctions.size();
+        split_at(junctions, mesh);
+        const std::size_t copies = report.duplicate_facets;
+        build_edges(mesh, threads);
+        drop_copies(mesh, threads, report);
+        report.duplicate_facets = copies; // these are pieces of facets, not of the file
+    }
+    std::vector<char> is_turned = orient_shells(mesh, report.shells);
+    turn_outwards(mesh, report.shells, threads, is_turned);
+    measure_facets(mesh, threads);
+
+    for (const Facet& facet : mesh.facets)
+        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
+    const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
+    std::size_t first_turned = 0;
+    for (std::size_t f = mesh.facets.size(); f-- > 0;)
+    {
+        report.volume += volume_times_six(mesh, f, middle) / 6;
+        report.area += mesh.areas[f];
+        if (is_turned[f] == 0) continue;
+        ++report.flipped_facets;
+        first_turned = f;
+    }
+
+    if (report.joined_corners > 0)
+        report.warnings.push_back(fmt::format(
+            "The facets do not meet: {} within {:.3g} m of another, joined with it.",
+            counted(report.joined_corners, "corner lies", "corners lie"), report.joined_within));
+    if (report.degenerate_facets > 0)
+        report.warnings.push_back(
+            fmt::format("{} without area but for rounding, left out.",
+                        counted(report.degenerate_facets, "facet is", "facets are")));
+    if (report.duplicate_facets > 0)
+        report.warnings.push_back(
+            fmt::format("{} of another, left out.",
+                        counted(report.duplicate_facets, "facet is a copy", "facets are copies")));
+    if (report.inner_wall_facets > 0)
+        report.warnings.push_back(
+            fmt::format("{} facets are walls between two bodies that touch, left out.",
+                        report.inner_wall_facets));
+    if (report.t_junctions > 0)
+        report.warnings.push_back(fmt::format(
+            "{} inside an edge of another facet, the first {}; these facets are split there.",
+            counted(report.t_junctions, "vertex lies", "vertices lie"), near(junction_at)));
+    if (report.flipped_facets > 0)
+        report.warnings.push_back(
+            fmt::format("{} inwards, the first {}; turned.",
+                        counted(report.flipped_facets, "facet looks", "facets look"),
+                        near(mesh.vertices[mesh.facets[first_turned][0]])));
+    judge_edges(mesh, report);
+    if (options.count_self_intersections)
+    {
+        const FacetPairs pairs = find_crossing_facets(mesh, threads);
+        report.self_intersections = pairs.count;
+        if (pairs.count > 0)
+            report.warnings.push_back(
+                fmt::format("{} of facets cross each other, the first {}.",
+                            counted(pairs.count, "pair", "pairs"),
+                            near(mesh.vertices[mesh.facets[pairs.first[0]][0]])));
+    }
+    return mesh;
+}
+
+} // namespace fppg

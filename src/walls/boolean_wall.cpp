@@ -1,0 +1,136 @@
+#include "walls/boolean_wall.h"
+
+#include "fppg/error.h"
+
+#include "core/parallel.h"
+#include "nodes/cell_nodes.h"
+#include "walls/fit_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// The body of a combination, with its features.
+FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
+                   CombinedParts& combined, const FitSettings& settings, const LatticeGrid& grid)
+{
+    const std::vector<char> stays = staying_parts(tree, parts.size());
+    BooleanMesh& result = combined.result;
+    FittedBody body;
+    for (std::size_t p = parts.size(); p-- > 0;)
+    {
+        if (stays[p] == 0) continue;
+        body.mk = parts[p].mk;
+        body.is_solid = body.is_solid || parts[p].is_solid;
+    }
+    for (const std::uint32_t owner : result.owners) body.facet_mk.push_back(parts[owner].mk);
+    body.mesh = std::move(result.mesh);
+    body.report = std::move(result.report);
+    body.report.facets_read = combined.facets_read;
+    // Faults of the parts are told with their names.
+    body.report.warnings.clear();
+    body.features = find_features(body.mesh, feature_options(settings, grid), result.seams);
+    return body;
+}
+
+/// Gives the nodes inside to the first of their parts each.
+void share_nodes(const std::vector<BooleanWallPart>& parts, const std::vector<SpanSet>& shares,
+                 const std::vector<ClipPlane>& clips, const LatticeGrid& grid, int threads,
+                 FittedDraw& out)
+{
+    std::map<std::uint16_t, NodeShare> by_mk;
+    out.volume.assign(grid.n[0], {});
+    if (std::any_of(parts.begin(), parts.end(),
+                    [](const BooleanWallPart& p) { return !p.is_solid; }))
+        out.body.figures.filled = 0; // part of it is hollow
+    for (std::size_t p = 0; p < parts.size(); ++p)
+    {
+        if (shares[p].slabs.empty()) continue;
+        const std::vector<Spans> own = by_slab(shares[p], grid);
+        NodeShare& share = by_mk[parts[p].mk];
+        share.mk = parts[p].mk;
+        share.nodes.resize(grid.n[0]);
+        parallel_for(grid.n[0], threads,
+                     [&](std::size_t x)
+                     {
+                         share.nodes[x] = unite(share.nodes[x], own[x]);
+                         if (!parts[p].is_solid) return;
+                         Spans volume = subtract(own[x], out.zone[x]);
+                         for (const ClipPlane& clip : clips)
+                             apply_clip(volume, static_cast<std::uint32_t>(x), clip, grid);
+                         out.volume[x] = unite(out.volume[x], volume);
+                     });
+    }
+    for (auto& [mk, share] : by_mk)
+        if (mk != out.body.mk) out.shares.push_back(std::move(share));
+}
+
+} // namespace
+
+std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination& combination,
+                                           PartsAs as, int threads)
+{
+    std::vector<BooleanWallPart> parts;
+    for (std::size_t p = 0; p < combination.parts.size(); ++p)
+    {
+        ShapeMesh surface = surface_of_part(scene, combination, p, as, threads);
+        parts.push_back({name_of(combination.parts[p]->source), std::move(surface.soup),
+                         combination.mks[p].mk, surface.is_solid,
+                         combination.boolean->parts[p].is_sheet});
+    }
+    return parts;
+}
+
+CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
+                            int threads)
+{
+    CombinedParts out;
+    std::vector<BooleanPart> operands;
+    for (const BooleanWallPart& part : parts)
+    {
+        MeshReport report;
+        try
+        {
+            out.meshes.push_back(take_in_mesh(part.soup, {}, threads, report));
+        }
+        catch (const GeometryError& e)
+        {
+            throw GeometryError(fmt::format("{}: {}", part.name, e.what()));
+        }
+        out.facets_read += report.facets_read;
+        for (const std::string& w : report.warnings)
+            out.warnings.push_back(fmt::format("{}: {}", part.name, w));
+        operands.push_back({part.name, &out.meshes.back(), part.may_be_sheet});
+    }
+    out.result = boolean_mesh(operands, tree, {}, threads);
+    out.warnings.insert(out.warnings.end(), out.result.warnings.begin(), out.result.warnings.end());
+    if (out.result.mesh.facets.empty())
+        throw GeometryError("nothing is left of the combination of its parts");
+    return out;
+}
+
+FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
+                       const FitSettings& settings, const LatticeGrid& grid,
+                       const std::vector<ClipPlane>& clips, int threads)
+{
+    CombinedParts combined = combine_parts(parts, tree, threads);
+    FittedDraw out =
+        fit_body(body_of(parts, tree, combined, settings, grid), settings, grid, clips, threads);
+    out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());
+
+    std::vector<SpanSet> sets;
+    for (const SurfaceMesh& mesh : combined.meshes)
+        sets.push_back(solid_nodes(mesh, grid, threads));
+    const SpanSet nodes = boolean_spans(sets, tree, threads);
+    share_nodes(parts, share_out(nodes, sets, tree, threads), clips, grid, threads, out);
+    return out;
+}
+
+} // namespace fppg

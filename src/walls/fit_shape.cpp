@@ -1,0 +1,252 @@
+#include "walls/fit_shape.h"
+
+#include "fppg/one_sheet.h"
+#include "fppg/section.h"
+#include "fppg/wall_zone.h"
+
+#include "core/parallel.h"
+#include "meshes/round_surface.h"
+#include "nodes/cell_nodes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr std::size_t particles_per_chunk = 4096;
+
+/// Between the first and the last nodes of the lattice, with room for rounding.
+bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        if (!(index >= -1e-6 && index <= grid.n[static_cast<std::size_t>(axis)] - 1 + 1e-6))
+            return false;
+    }
+    return true;
+}
+
+bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
+{
+    return std::all_of(clips.begin(), clips.end(),
+                       [&](const ClipPlane& clip)
+                       {
+                           const double length = norm(clip.normal);
+                           return dot(p - clip.point, clip.normal) <= 1e-9 * dp * length;
+                       });
+}
+
+SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid, int threads)
+{
+    FitOptions options;
+    options.dp = grid.dp;
+    options.lattice_origin = grid.origin;
+    options.density = settings.density;
+    return fit_surface(
+        body.mesh, body.features,
+        place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
+        threads);
+}
+
+/// In 2D the wall is where the surface meets the plane of the particles.
+SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid)
+{
+    SectionOptions options;
+    options.y = grid.origin.y;
+    options.dp = grid.dp;
+    options.feature_angle_deg = settings.feature_angle_deg;
+    SectionParticles section = section_particles(body.mesh, options);
+    return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
+}
+
+/// Of open edges, metres; in 2D of those that meet the plane of the particles, dp each.
+double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
+{
+    double length = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        if (mesh.edge_facets[e][1] != no_index) continue;
+        const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+        const Vec3& b = mesh.vertices[mesh.edges[e][1]];
+        if (!grid.is_2d)
+            length += norm(b - a);
+        else if ((a.y < grid.origin.y) != (b.y < grid.origin.y))
+            length += grid.dp;
+    }
+    return length;
+}
+
+/// A closed surface that holds no node is as good as solid: its particles stand for all of it.
+void take_figures(const WallZone& zone, const WallZoneOptions& options, std::size_t second_sheet,
+                  const LatticeGrid& grid, FittedBody& body)
+{
+    const double dp = grid.dp;
+    const double dp3 = dp * dp * dp;
+    const auto n = static_cast<double>(options.wall_particles);
+    FitFigures& figures = body.figures;
+    figures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
+    if (second_sheet > 0)
+        figures.second_sheet = figures.area * (1 - n / (n + static_cast<double>(second_sheet)));
+    figures.area -= figures.second_sheet;
+    figures.wall_particles = n;
+    if (!zone.has_inside) return;
+    figures.volume = zone.body_volume;
+    figures.sheet_volume = zone.sheet_area * dp;
+    figures.node_volume = static_cast<double>(zone.nodes) * dp3;
+    figures.wall_volume = n * zone.wall_share_inside * dp3;
+    figures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
+    body.settle_share(dp);
+}
+
+/// The nodes inside a body and around its surface, and the clearances.
+void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_t wall_particles,
+                int threads, FittedDraw& out)
+{
+    FittedBody& body = out.body;
+    WallZoneOptions options;
+    options.clearance_dp = settings.clearance_dp;
+    options.wall_particles = wall_particles;
+    options.is_solid = body.is_solid;
+    WallZone zone = wall_zone(body.mesh, body.report, grid, options, threads);
+    out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
+    if (body.is_solid && !zone.has_inside && zone.warnings.empty())
+        out.warnings.emplace_back(
+            "the shape has no inside that could be filled: only its surface has particles");
+    body.clearance_inside = zone.clearance_inside_dp * grid.dp;
+    body.clearance_outside = zone.clearance_outside_dp * grid.dp;
+    take_figures(zone, options, out.second_sheet.positions.size(), grid, body);
+    if (zone.has_inside && body.figures.filled == 0)
+        out.hollow = by_slab(SpanSet{zone.volume}, grid);
+    out.zone = by_slab(std::move(zone.zone), grid);
+    out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
+}
+
+/// Keeps the particles in the domain and within the clips; the places of the others are cut.
+void keep_particles(const SurfaceParticles& surface, const LatticeGrid& grid,
+                    const std::vector<ClipPlane>& clips, int threads, FittedDraw& out)
+{
+    const std::size_t n = surface.positions.size();
+    std::vector<char> is_kept(n);
+    parallel_for(
+        n, threads,
+        [&](std::size_t i)
+        {
+            const Vec3& p = surface.positions[i];
+            is_kept[i] = is_in_domain(p, grid) && is_kept_by(clips, p, grid.dp);
+        },
+        particles_per_chunk);
+    WallParticles& particles = out.particles;
+    const auto kept = static_cast<std::size_t>(
+        std::count_if(is_kept.begin(), is_kept.end(), [](char k) { return k != 0; }));
+    particles.positions.reserve(kept);
+    particles.kinds.reserve(kept);
+    particles.facets.reserve(kept);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        if (!is_kept[i])
+        {
+            out.cut.push_back(surface.positions[i]);
+            continue;
+        }
+        particles.positions.push_back(surface.positions[i]);
+        particles.kinds.push_back(surface.kinds[i]);
+        particles.facets.push_back(surface.facets[i]);
+    }
+    particles.bodies.assign(kept, 0);
+    particles.mk.assign(kept, 0);
+    particles.held.assign(kept, 0);
+}
+
+/// A blob smaller than a cell, or a clip, can leave a particle without a node of the zone.
+void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDraw& out)
+{
+    const std::vector<Vec3>& positions = out.particles.positions;
+    std::vector<char> is_alone(positions.size());
+    parallel_for(
+        positions.size(), threads,
+        [&](std::size_t i)
+        {
+            const Vec3& p = positions[i];
+            is_alone[i] = !find_node_in(out.zone, p, grid) && cell_corners(p, grid).count > 0;
+        },
+        1024);
+    std::vector<Spans> added(grid.n[0]);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+        if (!is_alone[i]) continue;
+        const Node c = cell_corners(positions[i], grid).nodes[0];
+        added[static_cast<std::size_t>(c.x)].push_back({static_cast<std::uint32_t>(c.y),
+                                                        static_cast<std::uint32_t>(c.z),
+                                                        static_cast<std::uint32_t>(c.z) + 1});
+    }
+    for (std::size_t x = 0; x < added.size(); ++x)
+    {
+        if (added[x].empty()) continue;
+        sort_and_join(added[x]);
+        out.zone[x] = unite(out.zone[x], added[x]);
+        out.volume[x] = subtract(out.volume[x], added[x]);
+    }
+}
+
+} // namespace
+
+FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid)
+{
+    FeatureOptions options;
+    options.angle_deg = settings.feature_angle_deg;
+    options.dp = grid.dp;
+    return options;
+}
+
+FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+                     const std::vector<ClipPlane>& clips, int threads)
+{
+    FittedBody body;
+    body.is_solid = shape.is_solid;
+    body.round = shape.round;
+    body.p0 = shape.p0;
+    body.p1 = shape.p1;
+    body.radius = shape.radius;
+    body.mesh = take_in_mesh(shape.soup, {}, threads, body.report);
+    body.features = find_features(body.mesh, feature_options(settings, grid));
+    return fit_body(std::move(body), settings, grid, clips, threads);
+}
+
+FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const LatticeGrid& grid,
+                    const std::vector<ClipPlane>& clips, int threads)
+{
+    FittedDraw out;
+    out.body = std::move(given);
+    const FittedBody& body = out.body;
+    out.warnings = body.report.warnings;
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
+    if (settings.one_sheet_dp > 0)
+        out.second_sheet = keep_one_sheet(body.mesh, body.features,
+                                          {grid.dp, settings.one_sheet_dp}, surface, threads);
+    if (body.round != RoundShape::None)
+        parallel_for(
+            surface.positions.size(), threads,
+            [&](std::size_t i)
+            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
+            particles_per_chunk);
+    find_nodes(settings, grid, surface.positions.size(), threads, out);
+    for (const ClipPlane& clip : clips)
+        parallel_for(grid.n[0], threads,
+                     [&](std::size_t x)
+                     {
+                         apply_clip(out.zone[x], static_cast<std::uint32_t>(x), clip, grid);
+                         apply_clip(out.volume[x], static_cast<std::uint32_t>(x), clip, grid);
+                     });
+    keep_particles(surface, grid, clips, threads, out);
+    give_nodes_to_lone_particles(grid, threads, out);
+    return out;
+}
+
+} // namespace fppg

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "fppg/case_def.h"
+
+#include "lattice/fitted_draw.h"
+
+#include <vector>
+
+namespace fppg
+{
+
+/// Feature edges and particles as the settings of a wall ask for them.
+FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid);
+
+/// Puts particles on the true surface of a shape and finds the nodes inside and around it.
+///
+/// shape    in the coordinates of the case
+/// clips    particles and nodes beyond them are left out; particles are judged by their true place
+/// returns  particles inside the domain (between its first and last nodes) only
+/// throws   GeometryError without the place of the draw
+FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+                     const std::vector<ClipPlane>& clips, int threads);
+
+/// The same for a body whose mesh, report and features are made; is_solid and, where it is round,
+/// its shape are set.
+FittedDraw fit_body(FittedBody&& body, const FitSettings& settings, const LatticeGrid& grid,
+                    const std::vector<ClipPlane>& clips, int threads);
+
+} // namespace fppg

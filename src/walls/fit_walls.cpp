@@ -1,0 +1,215 @@
+#include "walls/fit_walls.h"
+
+#include "fppg/error.h"
+
+#include "core/parallel.h"
+#include "lattice/depth_region.h"
+#include "lattice/paint_mesh.h"
+#include "scene/surfaces.h"
+#include "walls/boolean_wall.h"
+#include "walls/fit_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// From the lowest y of some shapes to their highest, in dp from the plane of a 2D case.
+std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shapes,
+                                             const LatticeGrid& grid)
+{
+    Box3 bounds;
+    for (const ShapeMesh& shape : shapes)
+        for (const Vec3& v : shape.soup.vertices) bounds.add(v);
+    return {(bounds.min.y - grid.origin.y) / grid.dp, (bounds.max.y - grid.origin.y) / grid.dp};
+}
+
+/// Rounding of the place of a shape, dp.
+constexpr double plane_tolerance = 1e-9;
+
+bool lies_in_plane(const std::vector<ShapeMesh>& shapes, const LatticeGrid& grid)
+{
+    if (!grid.is_2d) return false;
+    const auto [low, high] = heights_over_plane(shapes, grid);
+    return low >= -plane_tolerance && high <= plane_tolerance;
+}
+
+/// In 2D, whether shapes have no line in common with the plane of the particles though the lattice
+/// has nodes for them: they lie in the plane, beside it by less than half a step, or touch it in
+/// points.
+bool lacks_section(const std::vector<ShapeMesh>& shapes, const std::vector<FittedDraw>& walls,
+                   const LatticeGrid& grid)
+{
+    if (!grid.is_2d) return false;
+    const bool is_empty = std::all_of(walls.begin(), walls.end(),
+                                      [](const FittedDraw& wall)
+                                      { return wall.particles.size() + wall.cut.size() == 0; });
+    const auto [low, high] = heights_over_plane(shapes, grid);
+    const bool is_beside = low > -0.5 && high < 0.5;
+    const bool touches = low <= plane_tolerance && high >= -plane_tolerance;
+    return is_empty && (is_beside || touches);
+}
+
+/// `advanced`: of the inside, the nodes whose depth is asked for.
+void keep_depth(const Scene& scene, const DrawOp& draw, int threads, FittedDraw& fitted)
+{
+    const auto* file = shape_as<MeshFileOp>(draw);
+    if (file == nullptr || !file->advanced) return;
+    const LatticeGrid& grid = scene.def->grid;
+    TriangleSoup moved = moved_soup(mesh_of(scene, draw, threads)->soup, file->transform, threads);
+    if (draw.state->normal_invert) turn_over(moved);
+    if (!file->any_depth) fitted.body.figures.filled = 0; // only a layer of it is
+    const SlabRegion region = depth_region(moved, *file, grid, threads);
+    parallel_for(fitted.volume.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     fitted.volume[x] = intersect(
+                         fitted.volume[x],
+                         listed(region, static_cast<std::uint32_t>(x), draw.state->clips, grid));
+                 });
+}
+
+/// Completes the warnings of a fitted draw: each names its place.
+void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
+{
+    const std::string place = place_of(*scene.def, draw.source);
+    const auto* file = shape_as<MeshFileOp>(draw);
+    // A tank drawn without its lid is open on purpose.
+    if (file == nullptr && !fitted.body.is_solid && fitted.body.facet_mk.empty())
+        fitted.warnings.clear();
+    for (std::string& w : fitted.warnings)
+        w = file != nullptr ? fmt::format("{}: {}: {}", place, file->file, w)
+                            : fmt::format("{}: {}", place, w);
+    if (fitted.particles.size() == 0)
+        fitted.warnings.push_back(
+            fmt::format("{}: no particle of the body-fitted wall lies inside the domain", place));
+}
+
+FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
+               const FitSettings& settings, int threads)
+{
+    FittedDraw out = fit_shape(shape, settings, scene.def->grid, draw.state->clips, threads);
+    out.body.line = draw.source.line;
+    out.body.name = draw.source.command;
+    out.body.mk = draw.state->mk.mk;
+    if (const auto* file = shape_as<MeshFileOp>(draw)) out.body.name += " " + file->file;
+    return out;
+}
+
+void refuse_unfittable(const DrawOp& draw)
+{
+    if (shape_as<WaveOp>(draw) != nullptr)
+        throw GeometryError(
+            "it has no surface for body-fitted particles; draw it with a mk that "
+            "is not body-fitted");
+    const auto* file = shape_as<MeshFileOp>(draw);
+    if (file != nullptr && file->clip_resize && !file->advanced)
+        throw GeometryError(
+            "<clipdomain> opens the surface, which body-fitted particles cannot "
+            "follow; they end at the domain without it");
+}
+
+FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& settings,
+                    int threads)
+{
+    const DrawState& state = *draw.state;
+    const LatticeGrid& grid = scene.def->grid;
+    FittedStep out;
+    const std::vector<ShapeMesh> shapes = surfaces_of(scene, draw, PartsAs::Drawn, threads);
+    if (shapes.empty()) return out;
+    if (state.pattern && state.draw_points)
+        throw GeometryError(
+            "setpattern leaves nodes of the lattice out, which body-fitted "
+            "particles cannot follow; draw this shape with a mk that is not "
+            "body-fitted, or without a pattern");
+    std::vector<FittedDraw> walls;
+    if (state.draw_points && !lies_in_plane(shapes, grid))
+        for (const ShapeMesh& shape : shapes)
+            walls.push_back(fit(scene, draw, shape, settings, threads));
+    if (state.draw_points && lacks_section(shapes, walls, grid))
+    {
+        out.warnings.push_back(fmt::format(
+            "{}: the shape lies within dp/2 of the plane y = {:g} of this 2D case or only touches "
+            "it, so it has no section to put particles on; it is drawn on the lattice, not "
+            "body-fitted",
+            place_of(*scene.def, draw.source), grid.origin.y));
+        return out;
+    }
+    out.is_fitted = true;
+    for (FittedDraw& wall : walls)
+    {
+        keep_depth(scene, draw, threads, wall);
+        say_place(scene, draw, wall);
+        out.draws.push_back(std::move(wall));
+    }
+    return out;
+}
+
+FittedStep fit_combination(const Scene& scene, const Combination& combination,
+                           const FitSettings& settings, int threads)
+{
+    const BooleanDef& boolean = *combination.boolean;
+    const DrawState& state = *combination.whole.state;
+    const std::vector<BooleanWallPart> parts =
+        boolean_parts(scene, combination, PartsAs::Drawn, threads);
+    FittedStep out;
+    out.is_fitted = true;
+    if (!state.draw_points) return out;
+    try
+    {
+        FittedDraw draw =
+            fit_boolean(parts, boolean.tree, settings, scene.def->grid, state.clips, threads);
+        draw.body.line = boolean.line;
+        draw.body.name = boolean.name.empty() ? "boolean" : "boolean " + boolean.name;
+        say_place(scene, combination.whole, draw);
+        out.draws.push_back(std::move(draw));
+    }
+    catch (const GeometryError& e)
+    {
+        throw GeometryError(
+            fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
+    }
+    return out;
+}
+
+FittedStep fit_step(const Scene& scene, const SceneStep& step, int threads)
+{
+    const DrawState& state = *step.draw->state;
+    const FitSettings* settings =
+        state.mk.kind == MkKind::Bound ? fit_settings(scene.def->fit, state.mk.mk) : nullptr;
+    if (settings == nullptr) return {};
+    if (step.combination) return fit_combination(scene, *step.combination, *settings, threads);
+    if (step.shape() == nullptr || state.mode == DrawMode::Wire) return {};
+    mesh_of(scene, *step.draw, threads); // what is wrong with the file is said with its place
+    try
+    {
+        refuse_unfittable(*step.draw);
+        return fit_draw(scene, *step.draw, *settings, threads);
+    }
+    catch (const GeometryError& e)
+    {
+        throw GeometryError(
+            fmt::format("{}: {}", place_of(*scene.def, step.draw->source), e.what()));
+    }
+}
+
+} // namespace
+
+std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const LatticeProgress& progress)
+{
+    std::vector<FittedStep> out(scene.steps.size());
+    if (scene.def->fit.is_empty()) return out;
+    for (std::size_t i = 0; i < out.size(); ++i)
+    {
+        if (progress) progress(i, out.size());
+        out[i] = fit_step(scene, scene.steps[i], threads);
+    }
+    return out;
+}
+
+} // namespace fppg

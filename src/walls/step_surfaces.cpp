@@ -1,0 +1,48 @@
+#include "walls/step_surfaces.h"
+
+#include "fppg/boolean.h"
+#include "fppg/error.h"
+
+#include "walls/boolean_wall.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fppg
+{
+
+std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads)
+{
+    if (!step.combination && step.shape() == nullptr) return {};
+    if (!step.combination) mesh_of(scene, *step.draw, threads); // says what is wrong with the file
+    std::vector<BooleanWallPart> parts;
+    if (step.combination) parts = boolean_parts(scene, *step.combination, PartsAs::One, threads);
+    try
+    {
+        if (!step.combination)
+        {
+            std::vector<StepSurface> out;
+            for (ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
+                out.push_back({std::move(shape), {}});
+            return out;
+        }
+        const CombinedParts combined =
+            combine_parts(parts, step.combination->boolean->tree, threads);
+        StepSurface out;
+        out.shape.soup = soup_of(combined.result.mesh);
+        for (const std::uint32_t owner : combined.result.owners)
+            out.facet_mk.push_back(parts[owner].mk);
+        for (std::size_t p = 0; p < parts.size(); ++p)
+            out.shape.is_solid =
+                out.shape.is_solid || (step.combination->stays[p] != 0 && parts[p].is_solid);
+        return {std::move(out)};
+    }
+    catch (const GeometryError& e)
+    {
+        throw GeometryError(
+            fmt::format("{}: {}", place_of(*scene.def, step.draw->source), e.what()));
+    }
+}
+
+} // namespace fppg

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "fppg/scene.h"
+
+#include "scene/surfaces.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace fppg
+{
+
+/// A surface of a step, in the coordinates of the case.
+struct StepSurface
+{
+    ShapeMesh shape;
+    /// Of a combination, per facet the mk of the part whose solid lies behind it; else empty.
+    std::vector<std::uint16_t> facet_mk;
+};
+
+/// The true surfaces that a step of a scene leaves: those of its shape, with all parts of
+/// setmknextauto as one body, or that of its combination. None for all other steps.
+///
+/// throws  IoError, GeometryError with the place of the draw
+std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads);
+
+} // namespace fppg
