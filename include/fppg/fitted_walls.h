@@ -42,6 +42,9 @@ struct FitFigures
     /// How much of the volume has particles, 0 to 1: all of a solid, of a surface what fills give
     /// it; 1 too where its walls leave no room for nodes.
     double filled = 0;
+    /// How many of its wall's particles stayed where later draws touch it without cutting into its
+    /// volume, over those before.
+    double kept = 1;
 };
 
 /// One drawn object whose particles stand on its true surface.
@@ -69,11 +72,12 @@ struct FittedBody
     /// dp  metres
     void settle_share(double dp)
     {
+        share = 1 / figures.kept;
         if (figures.filled <= 0 || figures.wall_particles <= 0) return;
         const double of_wall =
             std::max(0.0, figures.volume + figures.sheet_volume - figures.node_volume);
         const double of_filled = of_wall / (figures.wall_particles * dp * dp * dp);
-        share = 1 + figures.filled * (of_filled - 1);
+        share = (1 + figures.filled * (of_filled - 1)) / figures.kept;
     }
 };
 

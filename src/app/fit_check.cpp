@@ -177,8 +177,10 @@ std::string DeviationGroup::text(const std::string& name_of_mk) const
     const std::string all =
         fmt::format("{} {}: {}", name_of_mk, format_ranges(mks_), percent(least_));
     if (mks_.size() == 1) return fmt::format("{}; its {}", all, text_of_most_);
-    return fmt::format("{} to {}, the most at {} {}, whose {}", all, percent(greatest_), name_of_mk,
-                       mk_of_most_, text_of_most_);
+    const std::string most =
+        fmt::format("the most at {} {}, whose {}", name_of_mk, mk_of_most_, text_of_most_);
+    if (percent(least_) == percent(greatest_)) return fmt::format("{} each, {}", all, most);
+    return fmt::format("{} to {}, {}", all, percent(greatest_), most);
 }
 
 std::vector<std::string> check_fit(const FitDef& settings, const FittedWalls& walls,

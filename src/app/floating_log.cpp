@@ -3,8 +3,8 @@
 #include "fppg/error.h"
 
 #include "app/fit_check.h"
-#include "scene/exact_body.h"
 #include "particles/initials.h"
+#include "scene/exact_body.h"
 
 #include <fmt/format.h>
 

@@ -158,11 +158,16 @@ public:
 private:
     bool has_own_domain() const
     {
+        const auto is_given = [](const Element::Attribute& a)
+        { return a.name.size() == 1 && a.value != "default"; };
         for (const Element& e : def_.execution)
-            if (const Element* domain = e.find_child("simulationdomain"))
-                for (const Element& limit : domain->children)
-                    for (const Element::Attribute& a : limit.attributes)
-                        if (a.name.size() == 1 && a.value != "default") return true;
+        {
+            const Element* domain = e.find_child("simulationdomain");
+            if (domain == nullptr) continue;
+            for (const Element& limit : domain->children)
+                if (std::any_of(limit.attributes.begin(), limit.attributes.end(), is_given))
+                    return true;
+        }
         return false;
     }
 

@@ -1,15 +1,15 @@
 #include "boolean/arrangement.h"
 
+#include "boolean/cluster_cut.h"
 #include "boolean/contacts.h"
-#include "boolean/plane_cut_up.h"
 
+#include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "core/predicates.h"
 #include "meshes/point_grid.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <unordered_map>
 
@@ -17,8 +17,6 @@ namespace fppg
 {
 namespace
 {
-
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b)
 {
@@ -30,27 +28,6 @@ double squared(const Vec3& v)
     return dot(v, v);
 }
 
-class Groups
-{
-public:
-    explicit Groups(std::size_t n) : above_(n) { std::iota(above_.begin(), above_.end(), 0U); }
-    std::uint32_t find(std::uint32_t i)
-    {
-        while (above_[i] != i) i = above_[i] = above_[above_[i]];
-        return i;
-    }
-    /// The smaller index stands for both.
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = find(a);
-        b = find(b);
-        if (a != b) above_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> above_;
-};
-
 /// A straight line between two vertices: a piece of a side, or of the line where two facets meet.
 struct Piece
 {
@@ -59,23 +36,6 @@ struct Piece
     /// The two facets of a line that is no side of either; else no_index.
     std::array<std::uint32_t, 2> facets{no_index, no_index};
     std::vector<std::uint32_t> inner; ///< vertices on it, in order after split_pieces()
-};
-
-/// Facets that are cut up in one plane: one facet, or all that overlap.
-struct Cluster
-{
-    std::vector<std::uint32_t> facets;
-    std::vector<std::uint32_t> lines;  ///< pieces that are no side of a member
-    std::vector<std::uint32_t> points; ///< vertices inside members
-    int axis_u = 0;                    ///< coordinates that stand for the plane
-    int axis_v = 1;
-};
-
-struct CutUp
-{
-    std::vector<ArrangedFacet> facets;
-    std::vector<Pair> joined; ///< vertices that fall into one place of the plane
-    std::uint64_t lost = 0;
 };
 
 class Arranger
@@ -357,42 +317,51 @@ private:
         parallel_for(
             clusters_.size(), threads_,
             [&](std::size_t i) { found[i] = crossings_in(clusters_[i]); }, 16);
-        std::unordered_map<std::uint64_t, std::vector<std::pair<std::uint32_t, std::uint32_t>>>
-            triples;
-        std::unordered_map<std::uint64_t, std::uint32_t> doubles;
-        for (const auto& list : found)
-            for (const LineCrossing& x : list)
-            {
-                std::array<std::uint32_t, 4> four{pieces_[x.a].facets[0], pieces_[x.a].facets[1],
-                                                  pieces_[x.b].facets[0], pieces_[x.b].facets[1]};
-                std::sort(four.begin(), four.end());
-                const auto end = std::unique(four.begin(), four.end());
-                const auto fresh = static_cast<std::uint32_t>(set_.vertices.size());
-                std::uint32_t v = fresh;
-                const bool is_triple = end - four.begin() == 3 && four[2] != no_index;
-                if (is_triple)
-                {
-                    auto& known = triples[key_of(four[0], four[1])];
-                    const auto it = std::find_if(known.begin(), known.end(),
-                                                 [&](const auto& k) { return k.first == four[2]; });
-                    if (it != known.end())
-                        v = it->second;
-                    else
-                        known.emplace_back(four[2], fresh);
-                }
-                else
-                    v = doubles.try_emplace(key_of(x.a, x.b), fresh).first->second;
-                if (v == fresh) set_.vertices.push_back(x.position);
-                pieces_[x.a].inner.push_back(v);
-                pieces_[x.b].inner.push_back(v);
-                if (!is_triple) continue;
-                for (const auto& [f, g] :
-                     {Pair(four[0], four[1]), Pair(four[0], four[2]), Pair(four[1], four[2])})
-                    if (const auto third = of_facets_.find(key_of(f, g)); third != of_facets_.end())
-                        for (const std::uint32_t p : third->second)
-                            if (p != x.a && p != x.b && lies_along(p, v))
-                                pieces_[p].inner.push_back(v);
-            }
+        KnownCrossings known;
+        for (const std::vector<LineCrossing>& list : found)
+            for (const LineCrossing& x : list) cross(x, known);
+    }
+
+    struct KnownCrossings
+    {
+        /// By the two smaller of three facets the third one, and the vertex where they meet.
+        std::unordered_map<std::uint64_t, std::vector<Pair>> of_three;
+        std::unordered_map<std::uint64_t, std::uint32_t> of_two; ///< by pieces
+    };
+
+    void cross(const LineCrossing& x, KnownCrossings& known)
+    {
+        std::array<std::uint32_t, 4> four{pieces_[x.a].facets[0], pieces_[x.a].facets[1],
+                                          pieces_[x.b].facets[0], pieces_[x.b].facets[1]};
+        std::sort(four.begin(), four.end());
+        const auto end = std::unique(four.begin(), four.end());
+        const auto fresh = static_cast<std::uint32_t>(set_.vertices.size());
+        std::uint32_t v = fresh;
+        const bool is_triple = end - four.begin() == 3 && four[2] != no_index;
+        if (is_triple)
+        {
+            std::vector<Pair>& thirds = known.of_three[key_of(four[0], four[1])];
+            const auto it = std::find_if(thirds.begin(), thirds.end(),
+                                         [&](const Pair& k) { return k.first == four[2]; });
+            if (it != thirds.end())
+                v = it->second;
+            else
+                thirds.emplace_back(four[2], fresh);
+        }
+        else
+            v = known.of_two.try_emplace(key_of(x.a, x.b), fresh).first->second;
+        if (v == fresh) set_.vertices.push_back(x.position);
+        pieces_[x.a].inner.push_back(v);
+        pieces_[x.b].inner.push_back(v);
+        if (!is_triple) return;
+        for (const auto& [f, g] :
+             {Pair(four[0], four[1]), Pair(four[0], four[2]), Pair(four[1], four[2])})
+        {
+            const auto line = of_facets_.find(key_of(f, g));
+            if (line == of_facets_.end()) continue;
+            for (const std::uint32_t p : line->second)
+                if (p != x.a && p != x.b && lies_along(p, v)) pieces_[p].inner.push_back(v);
+        }
     }
 
     bool lies_along(std::uint32_t p, std::uint32_t v) const
@@ -570,9 +539,8 @@ private:
         return kept;
     }
 
-    CutUp cut_up_cluster(const Cluster& c) const
+    CutUp cut_up_one(const Cluster& c) const
     {
-        CutUp out;
         std::vector<std::vector<Pair>> outlines;
         std::vector<Pair> lines;
         for (const std::uint32_t f : c.facets)
@@ -583,6 +551,7 @@ private:
         }
         if (c.facets.size() == 1 && lines.size() == 3 && c.lines.empty() && c.points.empty())
         {
+            CutUp out;
             const std::uint32_t f = c.facets[0];
             std::array<std::uint32_t, 3> corners = set_.facets[f];
             for (std::uint32_t& v : corners) v = place_[v];
@@ -592,112 +561,19 @@ private:
         for (const std::uint32_t p : c.lines)
             for_each_part(
                 p, [&](std::uint32_t u, std::uint32_t v) { lines.push_back(std::minmax(u, v)); });
-        std::sort(lines.begin(), lines.end());
-        lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-        std::vector<std::uint32_t> used = c.points;
-        for (const auto& [u, v] : lines)
-        {
-            used.push_back(u);
-            used.push_back(v);
-        }
-        std::sort(used.begin(), used.end());
-        used.erase(std::unique(used.begin(), used.end()), used.end());
-        std::vector<PlanePoint> points;
-        for (const std::uint32_t v : used)
-            points.push_back({set_.vertices[v][c.axis_u], set_.vertices[v][c.axis_v]});
-        const auto local = [&](std::uint32_t v)
-        {
-            return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) -
-                                              used.begin());
-        };
-        PlaneTriangulation cut(std::move(points));
-        for (std::uint32_t i = 0; i < used.size(); ++i)
-            if (cut.place_of(i) != i) out.joined.emplace_back(used[i], used[cut.place_of(i)]);
-        // Outlines first: they keep neighbours side to side.
-        for (const auto& o : outlines)
-            for (const auto& [u, v] : o)
-                out.lost += cut.add_constraint(local(u), local(v)) ? 0U : 1U;
-        for (const auto& [u, v] : lines)
-            out.lost += cut.add_constraint(local(u), local(v)) ? 0U : 1U;
-
-        const auto& triangles = cut.triangles();
-        std::vector<std::pair<Pair, std::uint32_t>> sides;
-        sides.reserve(3 * triangles.size());
-        for (std::uint32_t t = 0; t < triangles.size(); ++t)
-            for (std::size_t s = 0; s < 3; ++s)
-                sides.push_back({{triangles[t].corners[s], triangles[t].corners[(s + 1) % 3]}, t});
-        std::sort(sides.begin(), sides.end());
-        const auto triangle_at = [&](std::uint32_t a, std::uint32_t b)
-        {
-            const auto at = std::lower_bound(sides.begin(), sides.end(),
-                                             std::pair<Pair, std::uint32_t>({a, b}, 0));
-            return at != sides.end() && at->first == Pair(a, b) ? at->second : no_index;
-        };
-        std::vector<std::uint32_t> mark(triangles.size(), no_index);
-        for (std::uint32_t m = 0; m < c.facets.size(); ++m)
-        {
-            const std::uint32_t f = c.facets[m];
-            const auto corners = set_.corners(f);
-            const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
-            const bool is_turned = n[3 - c.axis_u - c.axis_v] < 0;
-            std::vector<Pair> limits; // sides that the flood does not pass, both ways
-            std::vector<std::uint32_t> stack;
-            for (const auto& [u, v] : outlines[m])
-            {
-                const std::uint32_t a = cut.place_of(local(u)), b = cut.place_of(local(v));
-                if (a == b) continue;
-                limits.emplace_back(a, b);
-                limits.emplace_back(b, a);
-            }
-            std::sort(limits.begin(), limits.end());
-            const auto visit = [&](std::uint32_t t)
-            {
-                if (t == no_index || mark[t] == m) return;
-                mark[t] = m;
-                stack.push_back(t);
-            };
-            for (const auto& [u, v] : outlines[m])
-            {
-                const std::uint32_t a = cut.place_of(local(u)), b = cut.place_of(local(v));
-                if (a != b) visit(is_turned ? triangle_at(b, a) : triangle_at(a, b));
-            }
-            while (!stack.empty())
-            {
-                const std::uint32_t t = stack.back();
-                stack.pop_back();
-                const auto& tri = triangles[t];
-                if (std::any_of(tri.corners.begin(), tri.corners.end(),
-                                [&](std::uint32_t v) { return v >= cut.first_outer(); }))
-                {
-                    ++out.lost; // the outline has a gap
-                    continue;
-                }
-                ArrangedFacet piece;
-                piece.part = set_.part[f];
-                piece.facet = f - set_.first_facet[piece.part];
-                for (std::size_t k = 0; k < 3; ++k)
-                    piece.corners[is_turned ? 2 - k : k] = used[tri.corners[k]];
-                out.facets.push_back(piece);
-                for (std::size_t s = 0; s < 3; ++s)
-                    if (tri.neighbours[s] != no_index &&
-                        !std::binary_search(limits.begin(), limits.end(),
-                                            Pair(tri.corners[s], tri.corners[(s + 1) % 3])))
-                        visit(tri.neighbours[s]);
-            }
-        }
-        return out;
+        return cut_up_cluster(set_, c, outlines, std::move(lines));
     }
 
     Arrangement cut_up()
     {
         std::vector<CutUp> cuts(clusters_.size());
         parallel_for(
-            clusters_.size(), threads_,
-            [&](std::size_t i) { cuts[i] = cut_up_cluster(clusters_[i]); }, 8);
+            clusters_.size(), threads_, [&](std::size_t i) { cuts[i] = cut_up_one(clusters_[i]); },
+            8);
         Arrangement out;
         out.crossing_pairs = crossing_pairs_;
         out.coplanar_pairs = coplanar_pairs_;
-        Groups joined(set_.vertices.size());
+        DisjointSet joined(set_.vertices.size());
         for (std::uint32_t v = 0; v < place_.size(); ++v) joined.join(v, place_[v]);
         for (const CutUp& c : cuts)
         {
@@ -731,7 +607,7 @@ private:
     double reach_;
     int threads_;
     MeshSet set_;
-    Groups facet_groups_;
+    DisjointSet facet_groups_;
     std::vector<std::vector<std::uint32_t>> on_side_; ///< per side, sorted along it
     std::vector<std::vector<std::uint32_t>> side_pieces_;
     std::vector<Pair> in_facet_; ///< facet, vertex

@@ -11,8 +11,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::uint32_t none = 0xFFFFFFFF;
-
 /// The order in which points are added: rows of a coarse grid, every second one backwards, so that
 /// each lies near the one before.
 std::vector<std::uint32_t> walking_order(const std::vector<PlanePoint>& points, double x0,
@@ -275,97 +273,114 @@ PlaneTriangulation::Side PlaneTriangulation::find_side(std::uint32_t a, std::uin
     return {none, 0};
 }
 
+bool PlaneTriangulation::fix(std::uint32_t a, std::uint32_t b)
+{
+    const Side one = find_side(a, b);
+    const Side two = find_side(b, a);
+    if (one.triangle != none) triangles_[one.triangle].is_fixed[one.side] = 1;
+    if (two.triangle != none) triangles_[two.triangle].is_fixed[two.side] = 1;
+    return one.triangle != none || two.triangle != none;
+}
+
+PlaneTriangulation::Way PlaneTriangulation::way_from(std::uint32_t a, std::uint32_t b) const
+{
+    const auto lies_ahead = [&](std::uint32_t v)
+    {
+        const double dx = points_[b].x - points_[a].x, dy = points_[b].y - points_[a].y;
+        return (points_[v].x - points_[a].x) * dx + (points_[v].y - points_[a].y) * dy > 0;
+    };
+    Way way;
+    const std::uint32_t first = at_[a];
+    std::uint32_t t = first;
+    do
+    {
+        const std::uint32_t s = side_of(t, a);
+        const std::uint32_t r = triangles_[t].corners[(s + 1) % 3],
+                            l = triangles_[t].corners[(s + 2) % 3];
+        const int right = turn(a, b, r), left = turn(a, b, l);
+        if (right == 0 && lies_ahead(r)) way.point = r;
+        if (right < 0 && left > 0) way.triangle = t;
+        if (way.point != none || way.triangle != none) break;
+        t = triangles_[t].neighbours[(s + 2) % 3];
+    } while (t != first && t != none);
+    return way;
+}
+
+bool PlaneTriangulation::list_crossed(std::uint32_t a, std::uint32_t b, std::uint32_t t,
+                                      Crossed& out) const
+{
+    out.end = b;
+    std::uint32_t s = (side_of(t, a) + 1) % 3;
+    for (std::size_t step = 0; step <= triangles_.size(); ++step)
+    {
+        const Triangle& tri = triangles_[t];
+        if (tri.is_fixed[s] != 0) return false;
+        out.sides.emplace_back(tri.corners[s], tri.corners[(s + 1) % 3]);
+        const std::uint32_t u = tri.neighbours[s];
+        if (u == none) return false;
+        const std::uint32_t k = side_of(u, tri.corners[(s + 1) % 3]);
+        const std::uint32_t far = triangles_[u].corners[(k + 2) % 3];
+        if (far == b) break;
+        const int side = turn(a, b, far);
+        if (side == 0)
+        {
+            out.end = far;
+            break;
+        }
+        // Side k runs from right to left seen from u: the one behind `far` comes next.
+        s = side > 0 ? (k + 1) % 3 : (k + 2) % 3;
+        t = u;
+    }
+    return true;
+}
+
+bool PlaneTriangulation::flip_crossed(std::uint32_t a, Crossed crossed)
+{
+    const std::uint32_t end = crossed.end;
+    auto& sides = crossed.sides;
+    std::size_t tries = 0;
+    const std::size_t limit = 64 * sides.size() * sides.size() + 4096;
+    for (std::size_t i = 0; i < sides.size() && tries < limit; ++i, ++tries)
+    {
+        const auto [p, q] = sides[i];
+        const Side at = find_side(p, q);
+        if (at.triangle == none) continue;
+        const Triangle& tri = triangles_[at.triangle];
+        const std::uint32_t c = tri.corners[(at.side + 2) % 3];
+        const std::uint32_t u = tri.neighbours[at.side];
+        if (u == none) return false;
+        const std::uint32_t d = triangles_[u].corners[(side_of(u, q) + 2) % 3];
+        if (turn(c, p, d) <= 0 || turn(d, q, c) <= 0)
+        {
+            sides.emplace_back(p, q); // not convex: after the others
+            continue;
+        }
+        flip(at.triangle, at.side);
+        const bool crosses_still =
+            c != a && c != end && d != a && d != end && turn(a, end, c) * turn(a, end, d) < 0;
+        if (crosses_still) sides.emplace_back(c, d);
+    }
+    return true;
+}
+
 bool PlaneTriangulation::add_constraint(std::uint32_t a, std::uint32_t b)
 {
     a = place_[a];
     b = place_[b];
     while (a != b)
     {
-        const auto fix = [&](std::uint32_t from, std::uint32_t to)
-        {
-            const Side one = find_side(from, to);
-            const Side two = find_side(to, from);
-            if (one.triangle != none) triangles_[one.triangle].is_fixed[one.side] = 1;
-            if (two.triangle != none) triangles_[two.triangle].is_fixed[two.side] = 1;
-            return one.triangle != none || two.triangle != none;
-        };
         if (fix(a, b)) return true;
-        // The triangle at a through whose far side the way to b leads, or a point on the way.
-        std::uint32_t t = at_[a];
-        std::uint32_t start = none;
-        std::uint32_t through = none;
-        const std::uint32_t first = t;
-        const auto lies_ahead = [&](std::uint32_t v)
+        const Way way = way_from(a, b);
+        if (way.point != none)
         {
-            const double dx = points_[b].x - points_[a].x, dy = points_[b].y - points_[a].y;
-            return (points_[v].x - points_[a].x) * dx + (points_[v].y - points_[a].y) * dy > 0;
-        };
-        do
-        {
-            const std::uint32_t s = side_of(t, a);
-            const std::uint32_t r = triangles_[t].corners[(s + 1) % 3],
-                                l = triangles_[t].corners[(s + 2) % 3];
-            const int right = turn(a, b, r), left = turn(a, b, l);
-            if (right == 0 && lies_ahead(r)) through = r;
-            if (right < 0 && left > 0) start = t;
-            if (through != none || start != none) break;
-            t = triangles_[t].neighbours[(s + 2) % 3];
-        } while (t != first && t != none);
-        if (through != none)
-        {
-            if (!fix(a, through)) return false;
-            a = through;
+            if (!fix(a, way.point)) return false;
+            a = way.point;
             continue;
         }
-        if (start == none) return false;
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed;
-        std::uint32_t end = b;
-        t = start;
-        std::uint32_t s = (side_of(t, a) + 1) % 3;
-        for (std::size_t step = 0; step <= triangles_.size(); ++step)
-        {
-            const Triangle& tri = triangles_[t];
-            if (tri.is_fixed[s] != 0) return false;
-            crossed.emplace_back(tri.corners[s], tri.corners[(s + 1) % 3]);
-            const std::uint32_t u = tri.neighbours[s];
-            if (u == none) return false;
-            const std::uint32_t k = side_of(u, tri.corners[(s + 1) % 3]);
-            const std::uint32_t far = triangles_[u].corners[(k + 2) % 3];
-            if (far == b) break;
-            const int side = turn(a, b, far);
-            if (side == 0)
-            {
-                end = far;
-                break;
-            }
-            // Side k runs from right to left seen from u: the one behind `far` comes next.
-            s = side > 0 ? (k + 1) % 3 : (k + 2) % 3;
-            t = u;
-        }
-        std::vector<Side> made;
-        std::size_t tries = 0;
-        const std::size_t limit = 64 * crossed.size() * crossed.size() + 4096;
-        for (std::size_t i = 0; i < crossed.size() && tries < limit; ++i, ++tries)
-        {
-            const auto [p, q] = crossed[i];
-            const Side at = find_side(p, q);
-            if (at.triangle == none) continue;
-            const Triangle& tri = triangles_[at.triangle];
-            const std::uint32_t c = tri.corners[(at.side + 2) % 3];
-            const std::uint32_t u = tri.neighbours[at.side];
-            if (u == none) return false;
-            const std::uint32_t d = triangles_[u].corners[(side_of(u, q) + 2) % 3];
-            if (turn(c, p, d) <= 0 || turn(d, q, c) <= 0)
-            {
-                crossed.emplace_back(p, q); // not convex: after the others
-                continue;
-            }
-            flip(at.triangle, at.side);
-            const bool crosses_still =
-                c != a && c != end && d != a && d != end && turn(a, end, c) * turn(a, end, d) < 0;
-            if (crosses_still) crossed.emplace_back(c, d);
-        }
-        if (!fix(a, end)) return false;
+        Crossed crossed;
+        if (way.triangle == none || !list_crossed(a, b, way.triangle, crossed)) return false;
+        const std::uint32_t end = crossed.end;
+        if (!flip_crossed(a, std::move(crossed)) || !fix(a, end)) return false;
         a = end;
     }
     return true;

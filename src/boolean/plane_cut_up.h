@@ -48,12 +48,34 @@ public:
     std::uint32_t first_outer() const { return first_outer_; }
 
 private:
+    static constexpr std::uint32_t none = UINT32_MAX; ///< no point, no triangle
     struct Side
     {
         std::uint32_t triangle;
         std::uint32_t side;
     };
 
+    /// Where the way from a point to another leads first: to a point on it, or through a triangle.
+    struct Way
+    {
+        std::uint32_t point = none;
+        std::uint32_t triangle = none;
+    };
+    /// Sides, from right to left, that the way from a point to `end` crosses.
+    struct Crossed
+    {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
+        std::uint32_t end = none;
+    };
+
+    /// Fixes the side from a to b; false if there is none.
+    bool fix(std::uint32_t a, std::uint32_t b);
+    Way way_from(std::uint32_t a, std::uint32_t b) const;
+    /// The sides from a through triangle t on to b, or to a point before it. False where one is
+    /// fixed.
+    bool list_crossed(std::uint32_t a, std::uint32_t b, std::uint32_t t, Crossed& out) const;
+    /// Flips sides until there is one from a to the end.
+    bool flip_crossed(std::uint32_t a, Crossed crossed);
     int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
     bool is_in_circle(const Triangle& t, std::uint32_t p) const;
     std::uint32_t locate(std::uint32_t p) const;

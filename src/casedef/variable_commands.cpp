@@ -30,6 +30,13 @@ void VariableCommands::assign(const std::string& command, const std::string& nam
         variables_.set_text(name, text);
 }
 
+void VariableCommands::print(const Element& e, std::vector<std::string>& printed) const
+{
+    for (const Element::Attribute& a : e.attributes)
+        for (const Variable& v : variables_.all())
+            if (v.name == a.name) printed.push_back(Variables::describe(v));
+}
+
 bool VariableCommands::run(const Element& e, std::vector<std::string>& printed)
 {
     static const std::set<std::string> assignments{"newvar",    "newvarcte",    "setvar",
@@ -48,10 +55,7 @@ bool VariableCommands::run(const Element& e, std::vector<std::string>& printed)
         {
             for (const Element::Attribute& a : e.attributes)
                 if (Variables::is_variable_attribute(a.name)) assign(e.name, a.name, a.value);
-            if (!read_.flag_or(e, "_print", false)) return true;
-            for (const Element::Attribute& a : e.attributes)
-                for (const Variable& v : variables_.all())
-                    if (v.name == a.name) printed.push_back(Variables::describe(v));
+            if (read_.flag_or(e, "_print", false)) print(e, printed);
         }
         else
             return false;

@@ -30,6 +30,8 @@ public:
     void require_all_overrides_used() const;
 
 private:
+    /// Appends the values of the variables that an element assigns.
+    void print(const Element& e, std::vector<std::string>& printed) const;
     void assign(const std::string& command, const std::string& name, const std::string& value);
 
     Variables& variables_;

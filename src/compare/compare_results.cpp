@@ -9,7 +9,6 @@
 #include "compare/value_differences.h"
 #include "core/parallel.h"
 #include "files/particle_source.h"
-#include "files/thinned_cloud.h"
 #include "files/typical_distance.h"
 #include "meshes/mesh_query.h"
 
@@ -157,7 +156,7 @@ public:
         {
             const CellGrid a(frame_, files_[0], slab, options.threads);
             const CellGrid b(frame_, files_[1], slab, options.threads);
-            const Partners partners = pair_particles(a, files_[0], b, files_[1], out_.same_place_m,
+            const Partners partners = pair_particles({a, files_[0]}, {b, files_[1]}, out_.same_place_m,
                                                      frame_.dp, options.threads);
             tally_columns(a, total,
                           [&](std::size_t c, Tally& tally)
@@ -583,20 +582,6 @@ Comparison compare_results(const std::string& name_a, const std::string& name_b,
     catch (const Error& error)
     {
         throw CompareError(error.what());
-    }
-}
-
-std::array<ParticleCloud, 2> clouds_for_picture(const Comparison& comparison, std::size_t most)
-{
-    const ParticleSource a(comparison.files[0].path);
-    const ParticleSource b(comparison.files[1].path);
-    // Cubes of the same size in both, so that the pictures can be compared.
-    for (std::uint64_t step = 1;; ++step)
-    {
-        auto of_a = one_of_every_cube(a, comparison.files[0].bounds.min, comparison.dp, step, most);
-        if (!of_a) continue;
-        auto of_b = one_of_every_cube(b, comparison.files[1].bounds.min, comparison.dp, step, most);
-        if (of_b) return {std::move(*of_a), std::move(*of_b)};
     }
 }
 

@@ -54,12 +54,20 @@ struct Rule
     }
 };
 
+/// Particles of a result, and the partners that they have so far.
+struct Side
+{
+    const CellGrid& grid;
+    const std::vector<std::uint32_t>& partners;
+};
+
 /// For every particle of `home` without partner, the one of `other` that fits best.
 template <typename RankOf>
-void find_best(const CellGrid& home, const std::vector<std::uint32_t>& partners,
-               const CellGrid& other, const std::vector<std::uint32_t>& other_partners,
-               std::vector<std::uint32_t>& best, const RankOf& rank_of, int threads)
+void find_best(const Side& home_side, const Side& other_side, std::vector<std::uint32_t>& best,
+               const RankOf& rank_of, int threads)
 {
+    const auto& [home, partners] = home_side;
+    const auto& [other, other_partners] = other_side;
     const auto search = [&](std::uint32_t i, const CellGrid::Stretch* stretches, std::size_t n)
     {
         best[i] = no_partner;
@@ -82,15 +90,15 @@ void find_best(const CellGrid& home, const std::vector<std::uint32_t>& partners,
 
 } // namespace
 
-Partners pair_particles(const CellGrid& a, const FileIndex& file_a, const CellGrid& b,
-                        const FileIndex& file_b, double same_place, double reach, int threads)
+Partners pair_particles(const GridOfFile& a, const GridOfFile& b, double same_place, double reach,
+                        int threads)
 {
-    const Rule rule{&file_a.source(), &file_b.source(),
-                    file_a.source().has_ids() && file_b.source().has_ids(), same_place * same_place,
-                    reach * reach};
+    const Rule rule{&a.file.source(), &b.file.source(),
+                    a.file.source().has_ids() && b.file.source().has_ids(),
+                    same_place * same_place, reach * reach};
     Partners out;
-    out.of_a.assign(a.particles().size(), no_partner);
-    out.of_b.assign(b.particles().size(), no_partner);
+    out.of_a.assign(a.grid.particles().size(), no_partner);
+    out.of_b.assign(b.grid.particles().size(), no_partner);
     std::vector<std::uint32_t> best_of_a(out.of_a.size());
     std::vector<std::uint32_t> best_of_b(out.of_b.size());
     const auto from_a = [&](const SlabParticle& p, const SlabParticle& q)
@@ -99,8 +107,10 @@ Partners pair_particles(const CellGrid& a, const FileIndex& file_a, const CellGr
     { return rule.rank(q, p); };
     for (int round = 0; round < rounds; ++round)
     {
-        find_best(a, out.of_a, b, out.of_b, best_of_a, from_a, threads);
-        find_best(b, out.of_b, a, out.of_a, best_of_b, from_b, threads);
+        const Side side_a{a.grid, out.of_a};
+        const Side side_b{b.grid, out.of_b};
+        find_best(side_a, side_b, best_of_a, from_a, threads);
+        find_best(side_b, side_a, best_of_b, from_b, threads);
         std::atomic<bool> is_settled = true;
         parallel_for(
             out.of_a.size(), threads,

@@ -10,6 +10,13 @@ namespace fppg
 
 inline constexpr std::uint32_t no_partner = UINT32_MAX;
 
+/// Particles of a file, of one slab, sorted into cells.
+struct GridOfFile
+{
+    const CellGrid& grid;
+    const FileIndex& file;
+};
+
 /// Places in the grid of the other file, or no_partner.
 struct Partners
 {
@@ -22,7 +29,7 @@ struct Partners
 ///
 /// same_place  metres
 /// reach       metres, how far a particle may have moved; at most a cell
-Partners pair_particles(const CellGrid& a, const FileIndex& file_a, const CellGrid& b,
-                        const FileIndex& file_b, double same_place, double reach, int threads);
+Partners pair_particles(const GridOfFile& a, const GridOfFile& b, double same_place, double reach,
+                        int threads);
 
 } // namespace fppg

@@ -185,6 +185,21 @@ void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes
     write_file(file, "UnstructuredGrid", piece, appended);
 }
 
+namespace
+{
+
+/// A facet of a binary STL file.
+void append_facet(std::string& facets, const std::array<Vec3, 3>& corners)
+{
+    Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (const double length = norm(normal); length > 0) normal = normal / length;
+    for (const Vec3& v : {normal, corners[0], corners[1], corners[2]})
+        for (int axis = 0; axis < 3; ++axis) append(facets, static_cast<float>(v[axis]));
+    append(facets, std::uint16_t{0});
+}
+
+} // namespace
+
 std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons>& shapes)
 {
     std::string facets;
@@ -193,15 +208,9 @@ std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons
         for (const std::vector<std::uint32_t>& polygon : shape.polygons)
             for (std::size_t i = 2; i < polygon.size(); ++i)
             {
-                const std::array<Vec3, 3> corners{shape.vertices[polygon[0]],
-                                                  shape.vertices[polygon[i - 1]],
-                                                  shape.vertices[polygon[i]]};
-                Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-                if (const double length = norm(normal); length > 0) normal = normal / length;
-                for (const Vec3& v : {normal, corners[0], corners[1], corners[2]})
-                    for (int axis = 0; axis < 3; ++axis)
-                        append(facets, static_cast<float>(v[axis]));
-                append(facets, std::uint16_t{0});
+                append_facet(facets,
+                             {shape.vertices[polygon[0]], shape.vertices[polygon[i - 1]],
+                              shape.vertices[polygon[i]]});
                 ++n;
             }
     if (n > std::numeric_limits<std::uint32_t>::max())

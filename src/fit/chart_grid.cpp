@@ -26,11 +26,20 @@ struct Near
     std::uint32_t* index;
 };
 
+/// The points of a block.
+struct BlockArrays
+{
+    const float* x;
+    const float* y;
+    const float* z;
+    const std::uint32_t* index;
+};
+
 /// Points of a block (sixteen of them) that are near, to be put behind the `count` found.
-std::size_t take_near_plain(const float* xs, const float* ys, const float* zs,
-                            const std::uint32_t* indices, const std::array<float, 4>& search,
+std::size_t take_near_plain(const BlockArrays& block, const std::array<float, 4>& search,
                             const Near& near, std::size_t count)
 {
+    const auto [xs, ys, zs, indices] = block;
     for (std::size_t n = 0; n < 16; ++n)
     {
         const float x = xs[n] - search[0];
@@ -48,11 +57,10 @@ std::size_t take_near_plain(const float* xs, const float* ys, const float* zs,
 
 #if defined(__x86_64__)
 
-FPPG_AVX2 std::size_t take_near_avx2(const float* xs, const float* ys, const float* zs,
-                                     const std::uint32_t* indices,
-                                     const std::array<float, 4>& search, const Near& near,
-                                     std::size_t count)
+FPPG_AVX2 std::size_t take_near_avx2(const BlockArrays& block, const std::array<float, 4>& search,
+                                     const Near& near, std::size_t count)
 {
+    const auto [xs, ys, zs, indices] = block;
     for (std::size_t n = 0; n < 16; n += lane_count)
     {
         const __m256 x = _mm256_sub_ps(_mm256_loadu_ps(xs + n), _mm256_set1_ps(search[0]));
@@ -215,6 +223,7 @@ void ChartGrid::find_near(const Vec3& place, double radius, NearPoints& near) co
     const std::array<std::int64_t, 3> high{cell_of(p.x + radius), cell_of(p.y + radius),
                                            cell_of(p.z + radius)};
     std::size_t count = 0;
+    // Nested because the cells around a place are walked along three axes.
     for (auto i = low[0]; i <= high[0]; ++i)
         for (auto j = low[1]; j <= high[1]; ++j)
             for (auto k = low[2]; k <= high[2]; ++k)
@@ -223,7 +232,7 @@ void ChartGrid::find_near(const Vec3& place, double radius, NearPoints& near) co
                     near.reserve(count + Block::capacity);
                     const Block& block = blocks_[b];
                     count = take_near(
-                        block.x.data(), block.y.data(), block.z.data(), block.index.data(), search,
+                        {block.x.data(), block.y.data(), block.z.data(), block.index.data()}, search,
                         {near.x.data(), near.y.data(), near.z.data(), near.index.data()}, count);
                 }
     near.reserve(count);

@@ -1,6 +1,7 @@
 #include "fit/charts.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace fppg
 {
@@ -104,11 +105,52 @@ std::uint64_t Charts::key_of(const Vec3& point) const
                     floor_of(point.z / cell_));
 }
 
+namespace
+{
+
+/// The cells of this side that a facet and its surroundings reach into, in pairs per axis.
+CellRange cells_around(const WorkFacet& facet, double clearance, double cell)
+{
+    CellRange range{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto [low, high] = std::minmax(
+            {facet.corners[0][axis], facet.corners[1][axis], facet.corners[2][axis]});
+        const auto at = static_cast<std::size_t>(2 * axis);
+        range[at] = floor_of((low - clearance) / cell);
+        range[at + 1] = floor_of((high + clearance) / cell);
+    }
+    return range;
+}
+
+} // namespace
+
+void Charts::mark_cells_of(std::uint32_t chart, const WorkFacet& facet, const CellRange& range,
+                           double slab)
+{
+    // Nested because the cells around a facet are walked along three axes.
+    for (auto i = range[0]; i <= range[1]; ++i)
+        for (auto j = range[2]; j <= range[3]; ++j)
+            for (auto k = range[4]; k <= range[5]; ++k)
+            {
+                const Vec3 middle{(static_cast<double>(i) + 0.5) * cell_,
+                                  (static_cast<double>(j) + 0.5) * cell_,
+                                  (static_cast<double>(k) + 0.5) * cell_};
+                if (std::abs(dot(middle - facet.corners[0], facet.normal)) > slab) continue;
+                const std::uint32_t cell = cells_.find_or_add(cell_key(i, j, k));
+                if (cell == charts_of_cell_.size()) charts_of_cell_.emplace_back();
+                auto& charts = charts_of_cell_[cell];
+                if (charts.empty() || charts.back() != chart) charts.push_back(chart);
+            }
+}
+
 void Charts::mark_cells(const WorkMesh& mesh, double dp)
 {
     const double clearance = cell_clearance * dp;
+    const Vec3 margin{clearance, clearance, clearance};
     const double slab = clearance + 0.8660254 * cell_;
-    std::array<std::int64_t, 6> last{};
+    constexpr double any_distance = std::numeric_limits<double>::infinity();
+    CellRange last{};
     boxes_.resize(size());
     for (std::uint32_t chart = 0; chart < size(); ++chart)
     {
@@ -116,43 +158,20 @@ void Charts::mark_cells(const WorkMesh& mesh, double dp)
         for (const std::uint32_t f : facets(chart))
         {
             const WorkFacet& facet = mesh.facets[f];
-            const Vec3 margin{clearance, clearance, clearance};
             for (const Vec3& corner : facet.corners)
             {
                 boxes_[chart].add(corner - margin);
                 boxes_[chart].add(corner + margin);
             }
-            std::array<std::int64_t, 6> range{};
-            for (int axis = 0; axis < 3; ++axis)
-            {
-                const auto [low, high] = std::minmax(
-                    {facet.corners[0][axis], facet.corners[1][axis], facet.corners[2][axis]});
-                const auto at = static_cast<std::size_t>(2 * axis);
-                range[at] = floor_of((low - clearance) / cell_);
-                range[at + 1] = floor_of((high + clearance) / cell_);
-            }
+            const CellRange range = cells_around(facet, clearance, cell_);
             const bool is_small =
                 (range[1] - range[0] + 1) * (range[3] - range[2] + 1) * (range[5] - range[4] + 1) <=
                 8;
             // Facets smaller than a cell come in rows with the same range.
             if (is_small && !is_first && range == last) continue;
             is_first = false;
-            last = is_small ? range : std::array<std::int64_t, 6>{0, -1, 0, -1, 0, -1};
-            for (auto i = range[0]; i <= range[1]; ++i)
-                for (auto j = range[2]; j <= range[3]; ++j)
-                    for (auto k = range[4]; k <= range[5]; ++k)
-                    {
-                        const Vec3 middle{(static_cast<double>(i) + 0.5) * cell_,
-                                          (static_cast<double>(j) + 0.5) * cell_,
-                                          (static_cast<double>(k) + 0.5) * cell_};
-                        if (!is_small &&
-                            std::abs(dot(middle - facet.corners[0], facet.normal)) > slab)
-                            continue;
-                        const std::uint32_t cell = cells_.find_or_add(cell_key(i, j, k));
-                        if (cell == charts_of_cell_.size()) charts_of_cell_.emplace_back();
-                        auto& charts = charts_of_cell_[cell];
-                        if (charts.empty() || charts.back() != chart) charts.push_back(chart);
-                    }
+            last = is_small ? range : CellRange{0, -1, 0, -1, 0, -1};
+            mark_cells_of(chart, facet, range, is_small ? any_distance : slab);
         }
     }
 }

@@ -11,6 +11,9 @@ namespace fppg
 /// Sides of facets that a work mesh to be cut into charts leaves whole, in dp.
 inline constexpr double longest_chart_side = 48;
 
+/// Cells from the first to the last along x, y and z.
+using CellRange = std::array<std::int64_t, 6>;
+
 /// A mesh cut into charts: connected facets between borders, of no more than about one size; parts
 /// narrower than half a dp share charts of crumbs, so that a heap of them stays a few charts. How
 /// it is cut depends on the mesh and dp alone, so charts that do not come near one another can be
@@ -44,6 +47,9 @@ public:
 private:
     void cut(const WorkMesh& mesh, double dp);
     void mark_cells(const WorkMesh& mesh, double dp);
+    /// Notes a chart in the cells of a range no farther than `slab` from the facet's plane.
+    void mark_cells_of(std::uint32_t chart, const WorkFacet& facet, const CellRange& range,
+                       double slab);
     void make_waves();
     std::uint64_t key_of(const Vec3& point) const;
 

@@ -10,7 +10,14 @@ namespace fppg
 namespace
 {
 
-constexpr double row_distance = 0.93; // dp
+// Lengths in dp.
+constexpr double row_distance = 0.93;
+/// Along a row: a triangular lattice of one particle a dp^2 has rows 0.93 dp apart and particles
+/// 1.075 dp apart in them. With the dp of the line's own particles, the front that goes on from the
+/// row holds 7 % too many.
+constexpr double row_spacing = 1.075;
+/// Beside shorter lines the places between the line's own particles are better.
+constexpr double shortest_row = 6;
 
 /// The edges of one line in order, with the length of the line up to each.
 struct Course
@@ -54,6 +61,7 @@ public:
     /// places  lengths along the course of the particles on it, ascending
     void lay(const Course& course, const std::vector<double>& places, bool is_closed)
     {
+        if (course.lengths.back() > shortest_row * dp_) return lay_evenly(course, is_closed);
         for (std::size_t i = 0; i + 1 < places.size(); ++i)
             lay_beside(course, 0.5 * (places[i] + places[i + 1]));
         if (!is_closed || places.empty()) return;
@@ -79,6 +87,17 @@ private:
         std::uint32_t edge;
         Vec3 point;
     };
+
+    /// A row of an open line ends one row away from the lines across its ends.
+    void lay_evenly(const Course& course, bool is_closed)
+    {
+        const double away = is_closed ? 0 : row_distance * dp_;
+        const double length = course.lengths.back() - 2 * away;
+        // A gap rather too narrow than too wide: one too wide makes holes all along the front.
+        const int gaps = static_cast<int>(length / (row_spacing * dp_) + 0.6);
+        for (int i = 0; i < gaps + (is_closed ? 0 : 1); ++i)
+            lay_beside(course, away + length * i / gaps);
+    }
 
     void lay_beside(const Course& course, double length)
     {

@@ -134,6 +134,7 @@ public:
         const auto [x0, x1] = range(p.x);
         const auto [y0, y1] = range(p.y);
         const auto [z0, z1] = range(p.z);
+        // Nested because the cells around a place are walked along three axes.
         for (auto i = x0; i <= x1; ++i)
             for (auto j = y0; j <= y1; ++j)
                 for (auto k = z0; k <= z1; ++k)

@@ -59,87 +59,131 @@ SmoothParts smooth_parts(const SurfaceMesh& mesh, const Features& features)
     return parts;
 }
 
+/// Finds the particles of the sheet that goes.
+class SheetChoice
+{
+public:
+    SheetChoice(const SurfaceMesh& mesh, const Features& features, const OneSheetOptions& options,
+                const SurfaceParticles& particles, int threads)
+        : mesh_(mesh),
+          options_(options),
+          particles_(particles),
+          threads_(threads),
+          parts_(smooth_parts(mesh, features)),
+          is_taken_(particles.positions.size(), 0),
+          winner_(particles.positions.size(), no_index)
+    {
+    }
+
+    /// Per particle whether it goes.
+    std::vector<char> run()
+    {
+        take_behind_others();
+        std::vector<char> goes = find_rims();
+        for (std::size_t i = 0; i < goes.size(); ++i) goes[i] = goes[i] || is_taken_[i];
+        return goes;
+    }
+
+private:
+    std::uint32_t part_of(std::size_t i) const { return parts_.of_facet[particles_.facets[i]]; }
+    const Vec3& normal_of(std::size_t i) const { return mesh_.normals[particles_.facets[i]]; }
+
+    bool gives_way(std::size_t i, std::size_t j) const
+    {
+        const std::uint32_t a = part_of(i), b = part_of(j);
+        if (a == b) return dot(normal_of(i), staying_side) < dot(normal_of(j), staying_side);
+        return std::tuple(parts_.areas[a], b) < std::tuple(parts_.areas[b], a);
+    }
+
+    /// Whether j stands behind i, through the plate, and not farther than it is thick.
+    bool is_behind(std::size_t i, std::uint32_t j, double squared) const
+    {
+        if (particles_.kinds[j] != FitKind::Surface || dot(normal_of(i), normal_of(j)) > -0.5)
+            return false;
+        const double dp = options_.dp;
+        const double depth =
+            dot(particles_.positions[i] - particles_.positions[j], normal_of(i));
+        return depth > 0 && depth < options_.thickness * dp && squared - depth * depth <= dp * dp;
+    }
+
+    void take_behind_others()
+    {
+        const double reach = reach_dp * options_.dp;
+        PointGrid grid(reach, is_taken_.size());
+        for (const Vec3& p : particles_.positions) grid.add(p);
+        parallel_for(
+            is_taken_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (particles_.kinds[i] != FitKind::Surface) return;
+                grid.for_each_near(particles_.positions[i], reach,
+                                   [&](std::uint32_t j, double squared)
+                                   {
+                                       if (!is_behind(i, j, squared) || !gives_way(i, j)) return;
+                                       is_taken_[i] = 1;
+                                       winner_[i] = std::min(winner_[i], part_of(j));
+                                   });
+            },
+            1024);
+    }
+
+    /// Rims and narrow sides: what is near a taken particle and near the sheet that stays, but not
+    /// on it.
+    std::vector<char> find_rims() const
+    {
+        const std::size_t n = is_taken_.size();
+        const double dp = options_.dp;
+        std::vector<char> is_rim(n, 0);
+        std::vector<char> is_winner(parts_.areas.size(), 0);
+        PointGrid taken(rim_reach_dp * dp, 64);
+        for (std::size_t i = 0; i < n; ++i)
+        {
+            if (!is_taken_[i]) continue;
+            is_winner[winner_[i]] = 1;
+            taken.add(particles_.positions[i]);
+        }
+        TriangleSoup sheet;
+        for (std::size_t f = 0; f < mesh_.facets.size(); ++f)
+            if (is_winner[parts_.of_facet[f]])
+                for (const std::uint32_t v : mesh_.facets[f])
+                    sheet.vertices.push_back(mesh_.vertices[v]);
+        if (sheet.vertices.empty()) return is_rim;
+        const MeshQuery query(std::move(sheet), threads_);
+        parallel_for(
+            n, threads_,
+            [&](std::size_t i)
+            {
+                const Vec3& p = particles_.positions[i];
+                if (is_taken_[i] || !taken.has_nearer(p, rim_reach_dp * dp)) return;
+                const double distance = query.closest_point(p).distance;
+                is_rim[i] = distance > 1e-6 * dp && distance < dp;
+            },
+            1024);
+        return is_rim;
+    }
+
+    const SurfaceMesh& mesh_;
+    const OneSheetOptions& options_;
+    const SurfaceParticles& particles_;
+    int threads_;
+    SmoothParts parts_;
+    std::vector<char> is_taken_;
+    std::vector<std::uint32_t> winner_; ///< the part that a taken particle gave way to
+};
+
 } // namespace
 
 SurfaceParticles keep_one_sheet(const SurfaceMesh& mesh, const Features& features,
                                 const OneSheetOptions& options, SurfaceParticles& particles,
                                 int threads)
 {
-    const double dp = options.dp;
-    const std::size_t n = particles.positions.size();
-    const SmoothParts parts = smooth_parts(mesh, features);
-    const auto part_of = [&](std::size_t i) { return parts.of_facet[particles.facets[i]]; };
-    const auto side_of = [&](std::size_t i)
-    { return dot(mesh.normals[particles.facets[i]], staying_side); };
-    const auto gives_way = [&](std::size_t i, std::size_t j)
-    {
-        const std::uint32_t a = part_of(i), b = part_of(j);
-        if (a == b) return side_of(i) < side_of(j);
-        return std::tuple(parts.areas[a], b) < std::tuple(parts.areas[b], a);
-    };
-    PointGrid grid(reach_dp * dp, n);
-    for (const Vec3& p : particles.positions) grid.add(p);
-
-    std::vector<char> is_taken(n, 0);
-    std::vector<std::uint32_t> stays(n, no_index); ///< the part that a taken particle gave way to
-    parallel_for(
-        n, threads,
-        [&](std::size_t i)
-        {
-            if (particles.kinds[i] != FitKind::Surface) return;
-            const Vec3& normal = mesh.normals[particles.facets[i]];
-            grid.for_each_near(particles.positions[i], reach_dp * dp,
-                               [&](std::uint32_t j, double squared)
-                               {
-                                   if (particles.kinds[j] != FitKind::Surface ||
-                                       dot(normal, mesh.normals[particles.facets[j]]) > -0.5)
-                                       return;
-                                   // Behind this particle, through the plate, and not farther than
-                                   // it is thick.
-                                   const double depth =
-                                       dot(particles.positions[i] - particles.positions[j], normal);
-                                   if (depth <= 0 || depth >= options.thickness * dp ||
-                                       squared - depth * depth > dp * dp)
-                                       return;
-                                   if (!gives_way(i, j)) return;
-                                   is_taken[i] = 1;
-                                   stays[i] = std::min(stays[i], part_of(j));
-                               });
-        },
-        1024);
-
-    // Rims and narrow sides: what is near a taken particle and near the sheet that stays, but not
-    // on it.
-    std::vector<char> is_winner(parts.areas.size(), 0);
-    PointGrid taken(rim_reach_dp * dp, 64);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-        if (!is_taken[i]) continue;
-        is_winner[stays[i]] = 1;
-        taken.add(particles.positions[i]);
-    }
-    TriangleSoup sheet;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        if (is_winner[parts.of_facet[f]])
-            for (const std::uint32_t v : mesh.facets[f]) sheet.vertices.push_back(mesh.vertices[v]);
-    if (sheet.vertices.empty()) return {};
-    const MeshQuery query(std::move(sheet), threads);
-    std::vector<char> is_rim(n, 0);
-    parallel_for(
-        n, threads,
-        [&](std::size_t i)
-        {
-            if (is_taken[i] || !taken.has_nearer(particles.positions[i], rim_reach_dp * dp)) return;
-            const double distance = query.closest_point(particles.positions[i]).distance;
-            is_rim[i] = distance > 1e-6 * dp && distance < dp;
-        },
-        1024);
-
+    const std::vector<char> goes =
+        SheetChoice(mesh, features, options, particles, threads).run();
     SurfaceParticles out;
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < goes.size(); ++i)
     {
-        if (is_taken[i] || is_rim[i])
+        if (goes[i])
         {
             out.positions.push_back(particles.positions[i]);
             out.kinds.push_back(particles.kinds[i]);

@@ -70,7 +70,8 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
         }
     }
     if (const auto* shape = std::get_if<Shape>(&op.what);
-        shape != nullptr && is_body(*shape, state.mode) && size.smallest > 0 && size.smallest < grid.dp * (1 - 1e-9))
+        shape != nullptr && is_body(*shape, state.mode) && size.smallest > 0 &&
+        size.smallest < grid.dp * (1 - 1e-9))
         warn(
             op.source, Kind::Thin,
             fmt::format("the body is {:g} m thick, less than dp = {:g} m, so its particles are as "

@@ -2,10 +2,10 @@
 
 #include "fppg/error.h"
 
-#include "shapes/plane_shapes.h"
-#include "shapes/planes.h"
 #include "nodes/snap.h"
 #include "shapes/figures.h"
+#include "shapes/plane_shapes.h"
+#include "shapes/planes.h"
 #include "shapes/polygon_cut.h"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 // Points, lines and what planes bound.
 #include "lattice/paint_free.h"
 #include "lattice/painting.h"
-#include "shapes/plane_shapes.h"
-#include "shapes/solids.h"
 #include "nodes/snap.h"
 #include "shapes/figures.h"
+#include "shapes/plane_shapes.h"
+#include "shapes/solids.h"
 
 #include <utility>
 #include <vector>

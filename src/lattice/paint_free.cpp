@@ -4,9 +4,9 @@
 
 #include "lattice/draw_pattern.h"
 #include "lattice/free_points.h"
-#include "shapes/solids.h"
 #include "shapes/figures.h"
 #include "shapes/free_parts.h"
+#include "shapes/solids.h"
 
 #include <fmt/format.h>
 

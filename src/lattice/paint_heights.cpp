@@ -1,10 +1,10 @@
 // Tables of heights.
 #include "lattice/paint_free.h"
 #include "lattice/paint_mesh.h"
-#include "shapes/plane_shapes.h"
 #include "nodes/snap.h"
 #include "shapes/file_polygons.h"
 #include "shapes/free_parts.h"
+#include "shapes/plane_shapes.h"
 
 namespace fppg
 {

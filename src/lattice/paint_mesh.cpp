@@ -8,12 +8,12 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_free.h"
-#include "shapes/plane_shapes.h"
 #include "meshes/mesh_library.h"
 #include "nodes/snap.h"
 #include "scene/surfaces.h"
 #include "shapes/file_polygons.h"
 #include "shapes/free_parts.h"
+#include "shapes/plane_shapes.h"
 
 #include <fmt/format.h>
 

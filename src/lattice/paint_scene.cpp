@@ -55,9 +55,9 @@ void paint_kind(Painting& painting, const Brush& brush, const Kind& kind)
     if constexpr (requires { fppg::paint(painting, brush, kind); })
         fppg::paint(painting, brush, kind);
     else if (brush.state->off_lattice)
-        throw CaseError(painting.def.file, brush.source->line,
-                        fmt::format("<{}>: is not possible with setfrdrawmode",
-                                    brush.source->command));
+        throw CaseError(
+            painting.def.file, brush.source->line,
+            fmt::format("<{}>: is not possible with setfrdrawmode", brush.source->command));
     else
         painting.canvas.paint(brush, kinds::nodes_of(kind, *brush.state, painting.grid()));
 }

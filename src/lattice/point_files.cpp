@@ -93,20 +93,21 @@ Spans water_of(std::uint32_t x, const std::vector<const std::vector<std::uint32_
     constexpr unsigned all_sides = 63;
     const LatticeGrid& grid = field.grid;
     std::vector<WaterNode> nodes;
+    const auto add_around = [&](const Vec3& point)
+    {
+        const Node nearest = snap(point, grid);
+        for (std::int64_t y = nearest.y - 2; y <= nearest.y + 2; ++y)
+            for (std::int64_t z = nearest.z - 2; z <= nearest.z + 2; ++z)
+            {
+                const Node n{x, y, z};
+                const Vec3 away = point - position(n, grid);
+                if (norm(away) > water_reach * grid.dp || !is_inside(n, grid)) continue;
+                nodes.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
+                                 sides_of(away, gravity, grid.dp)});
+            }
+    };
     for (const std::vector<std::uint32_t>* bucket : near)
-        for (const std::uint32_t i : *bucket)
-        {
-            const Node nearest = snap(points[i], grid);
-            for (std::int64_t y = nearest.y - 2; y <= nearest.y + 2; ++y)
-                for (std::int64_t z = nearest.z - 2; z <= nearest.z + 2; ++z)
-                {
-                    const Node n{x, y, z};
-                    const Vec3 away = points[i] - position(n, grid);
-                    if (norm(away) > water_reach * grid.dp || !is_inside(n, grid)) continue;
-                    nodes.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
-                                     sides_of(away, gravity, grid.dp)});
-                }
-        }
+        for (const std::uint32_t i : *bucket) add_around(points[i]);
     std::sort(nodes.begin(), nodes.end());
     Spans spans;
     for (auto n = nodes.begin(); n != nodes.end();)

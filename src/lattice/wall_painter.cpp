@@ -17,6 +17,10 @@ namespace
 
 /// Later fitted bodies cut the particles of earlier ones within this distance of their surface, dp.
 constexpr double cut_distance_dp = 0.5;
+/// Mark of a particle that a later body cuts although its place is not inside it.
+constexpr char touched = 2;
+/// Deeper in a later body than this a place is inside it, dp.
+constexpr double touching_dp = 1e-6;
 /// Particles this near to a cut one are held in place, dp.
 constexpr double held_distance_dp = 2;
 
@@ -156,9 +160,10 @@ void WallPainter::cut_by(const FittedDraw& draw)
         {
             const Vec3& p = positions[i];
             if (is_cut_[i] || !is_near(p)) return;
-            if (query->closest_point(p).distance < reach ||
-                (draw.body.is_solid && is_inside_mesh(*query, p)))
-                is_cut_[i] = 1;
+            const double distance = query->closest_point(p).distance;
+            const bool is_inside = draw.body.is_solid && is_inside_mesh(*query, p);
+            if (distance < reach || is_inside)
+                is_cut_[i] = is_inside && distance > touching_dp * field_->grid.dp ? 1 : touched;
         },
         1024);
 }
@@ -218,6 +223,30 @@ double WallPainter::filled_share(const Hollow& hollow) const
     return all > 0 ? static_cast<double>(filled) / static_cast<double>(all) : 0;
 }
 
+/// What touches a body takes particles of its wall, but nothing of its volume: the others of the
+/// wall stand for it.
+void WallPainter::hand_over_shares()
+{
+    struct Counts
+    {
+        double kept = 0, touched = 0;
+    };
+    std::vector<Counts> counts(field_->walls.bodies.size());
+    for (std::size_t i = 0; i < is_cut_.size(); ++i)
+    {
+        Counts& of_body = counts[field_->walls.particles.bodies[i]];
+        if (is_cut_[i] == 0) ++of_body.kept;
+        if (is_cut_[i] == touched) ++of_body.touched;
+    }
+    for (std::size_t b = 0; b < counts.size(); ++b)
+    {
+        if (counts[b].kept == 0 || counts[b].touched == 0) continue;
+        FittedBody& body = field_->walls.bodies[b];
+        body.figures.kept = counts[b].kept / (counts[b].kept + counts[b].touched);
+        body.settle_share(field_->grid.dp);
+    }
+}
+
 void WallPainter::finish()
 {
     for (const Hollow& hollow : hollows_)
@@ -229,6 +258,7 @@ void WallPainter::finish()
     hollows_.clear();
     FittedWalls& walls = field_->walls;
     WallParticles& all = walls.particles;
+    hand_over_shares();
     for (std::size_t i = 0; i < all.size(); ++i)
     {
         if (!is_cut_[i]) continue;

@@ -50,6 +50,7 @@ private:
     };
 
     double filled_share(const Hollow& hollow) const;
+    void hand_over_shares();
     void cut_by(const FittedDraw& draw);
     void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
 

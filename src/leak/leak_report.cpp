@@ -112,88 +112,132 @@ std::string to_json(const LeakReport& report)
     return root.text(1) + "\n";
 }
 
-std::string to_svg(const LeakReport& report)
+namespace
 {
-    constexpr double width = 760;
-    constexpr double height = 380;
-    constexpr double left = 70;
-    constexpr double right = 20;
-    constexpr double top = 46;
-    constexpr double bottom = 50;
+
+/// A plot of counts over time as SVG.
+class CountPlot
+{
+public:
     struct Line
     {
         const char* name;
         const char* colour;
         std::function<std::uint64_t(const LeakInstant&)> value;
     };
-    std::vector<Line> lines{{"inside solids", "#c44e4a", [](const auto& at) { return at.inside; }}};
+
+    CountPlot(const std::vector<LeakInstant>& instants, std::vector<Line> lines)
+        : instants_(instants), lines_(std::move(lines))
+    {
+        for (const LeakInstant& at : instants_)
+        {
+            time_end_ = std::max(time_end_, at.time);
+            for (const Line& line : lines_)
+                most_ = std::max(most_, static_cast<double>(line.value(at)));
+        }
+        if (!(time_end_ > 0)) time_end_ = 1;
+        count_tick_ = std::max(1.0, tick_of(most_));
+        count_end_ = std::ceil(most_ / count_tick_) * count_tick_;
+    }
+
+    std::string svg()
+    {
+        svg_ = fmt::format(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" "
+            "viewBox=\"0 0 {0:g} {1:g}\" font-family=\"sans-serif\" font-size=\"13\">\n"
+            "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"white\"/>\n",
+            width, height);
+        draw_axes();
+        double legend = left;
+        for (const Line& line : lines_)
+        {
+            draw_line(line, legend);
+            legend += 220;
+        }
+        return std::move(svg_) + "</svg>\n";
+    }
+
+private:
+    double x_of(double t) const { return left + (width - left - right) * t / time_end_; }
+    double y_of(double n) const
+    {
+        return height - bottom - (height - top - bottom) * n / count_end_;
+    }
+
+    void text_at(double x, double y, const char* anchor, const std::string& text)
+    {
+        svg_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x,
+                            y, anchor, text);
+    }
+
+    void rule(double x0, double y0, double x1, double y1)
+    {
+        svg_ += fmt::format(
+            "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" "
+            "stroke=\"#dddddd\"/>\n",
+            x0, y0, x1, y1);
+    }
+
+    void draw_axes()
+    {
+        for (int i = 0; i * count_tick_ <= count_end_ * (1 + 1e-9); ++i)
+        {
+            const double y = y_of(i * count_tick_);
+            rule(left, y, width - right, y);
+            text_at(left - 8, y + 4, "end", fmt::format("{:g}", i * count_tick_));
+        }
+        const double time_tick = tick_of(time_end_);
+        for (int i = 0; i * time_tick <= time_end_ * (1 + 1e-9); ++i)
+        {
+            const double x = x_of(i * time_tick);
+            rule(x, top, x, height - bottom);
+            text_at(x, height - bottom + 18, "middle", fmt::format("{:g}", i * time_tick));
+        }
+        text_at(0.5 * (left + width - right), height - 12, "middle", "time [s]");
+    }
+
+    void draw_line(const Line& line, double legend)
+    {
+        std::string points;
+        for (const LeakInstant& at : instants_)
+            points += fmt::format("{:.1f},{:.1f} ", x_of(at.time),
+                                  y_of(static_cast<double>(line.value(at))));
+        svg_ += fmt::format(
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", points,
+            line.colour);
+        svg_ += fmt::format(
+            "<rect x=\"{:.1f}\" y=\"16\" width=\"18\" height=\"4\" fill=\"{}\"/>\n", legend,
+            line.colour);
+        text_at(legend + 24, 23, "start", line.name);
+    }
+
+    static constexpr double width = 760;
+    static constexpr double height = 380;
+    static constexpr double left = 70;
+    static constexpr double right = 20;
+    static constexpr double top = 46;
+    static constexpr double bottom = 50;
+    const std::vector<LeakInstant>& instants_;
+    std::vector<Line> lines_;
+    double time_end_ = 0;
+    double most_ = 1;
+    double count_tick_ = 1;
+    double count_end_ = 1;
+    std::string svg_;
+};
+
+} // namespace
+
+std::string to_svg(const LeakReport& report)
+{
+    std::vector<CountPlot::Line> lines{
+        {"inside solids", "#c44e4a", [](const auto& at) { return at.inside; }}};
     if (report.has_housing)
         lines.push_back({"outside the housing", "#3e89ca",
                          [](const auto& at) { return at.outside.value_or(0); }});
     lines.push_back(
         {"taken out by the solver", "#807a72", [](const auto& at) { return at.excluded; }});
-
-    double time_end = 0;
-    double most = 1;
-    for (const LeakInstant& at : report.instants)
-    {
-        time_end = std::max(time_end, at.time);
-        for (const Line& line : lines) most = std::max(most, static_cast<double>(line.value(at)));
-    }
-    if (!(time_end > 0)) time_end = 1;
-    const double count_tick = std::max(1.0, tick_of(most));
-    const double time_tick = tick_of(time_end);
-    const double count_end = std::ceil(most / count_tick) * count_tick;
-    const auto x_of = [&](double t) { return left + (width - left - right) * t / time_end; };
-    const auto y_of = [&](double n)
-    { return height - bottom - (height - top - bottom) * n / count_end; };
-
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" "
-        "viewBox=\"0 0 {0:g} {1:g}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-        "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"white\"/>\n",
-        width, height);
-    const auto text_at = [&](double x, double y, const char* anchor, const std::string& text)
-    {
-        svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y,
-                           anchor, text);
-    };
-    const auto rule = [&](double x0, double y0, double x1, double y1)
-    {
-        svg += fmt::format(
-            "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" "
-            "stroke=\"#dddddd\"/>\n",
-            x0, y0, x1, y1);
-    };
-    for (int i = 0; i * count_tick <= count_end * (1 + 1e-9); ++i)
-    {
-        const double y = y_of(i * count_tick);
-        rule(left, y, width - right, y);
-        text_at(left - 8, y + 4, "end", fmt::format("{:g}", i * count_tick));
-    }
-    for (int i = 0; i * time_tick <= time_end * (1 + 1e-9); ++i)
-    {
-        const double x = x_of(i * time_tick);
-        rule(x, top, x, height - bottom);
-        text_at(x, height - bottom + 18, "middle", fmt::format("{:g}", i * time_tick));
-    }
-    text_at(0.5 * (left + width - right), height - 12, "middle", "time [s]");
-    double legend = left;
-    for (const Line& line : lines)
-    {
-        std::string points;
-        for (const LeakInstant& at : report.instants)
-            points += fmt::format("{:.1f},{:.1f} ", x_of(at.time),
-                                  y_of(static_cast<double>(line.value(at))));
-        svg += fmt::format(
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", points,
-            line.colour);
-        svg += fmt::format("<rect x=\"{:.1f}\" y=\"16\" width=\"18\" height=\"4\" fill=\"{}\"/>\n",
-                           legend, line.colour);
-        text_at(legend + 24, 23, "start", line.name);
-        legend += 220;
-    }
-    return svg + "</svg>\n";
+    return CountPlot(report.instants, std::move(lines)).svg();
 }
 
 } // namespace fppg

@@ -170,24 +170,17 @@ NodeRange range_of(const Box3& bounds, const LatticeGrid& grid, int axis)
             static_cast<std::uint32_t>(std::clamp(end, 0.0, n))};
 }
 
-} // namespace
-
-InsideVote vote_inside(const TriangleSoup& soup, const LatticeGrid& grid, int threads)
+/// What lines along the three axes say about the nodes of all slabs.
+Opinions ask_along_axes(const TriangleSoup& soup, const LatticeGrid& grid, int threads,
+                        double& overlap)
 {
-    InsideVote vote;
     const std::size_t slabs = grid.n[0];
-    Box3 bounds;
-    for (const Vec3& p : soup.vertices) bounds.add(p);
-    if (bounds.is_empty()) return vote;
-    NodeRange ranges[3];
-    for (int axis = 0; axis < 3; ++axis) ranges[axis] = range_of(bounds, grid, axis);
-
     Opinions opinions;
     opinions.mute_y.resize(slabs);
     opinions.mute_z.resize(slabs);
     {
         const ColumnCuts cuts = cut_along(2, soup, grid, threads);
-        vote.overlap = cuts.overlap;
+        overlap = cuts.overlap;
         opinions.by_axis[2] = along_z(cuts.inside, slabs, threads);
         for (const auto& [x, y] : cuts.unbalanced) opinions.mute_z[x].push_back(y);
     }
@@ -201,7 +194,105 @@ InsideVote vote_inside(const TriangleSoup& soup, const LatticeGrid& grid, int th
         opinions.by_axis[1] = along_y(cuts.inside, slabs, threads);
         for (const auto& [z, x] : cuts.unbalanced) opinions.mute_y[x].push_back(z);
     }
+    return opinions;
+}
 
+/// The vote about the nodes of one slab.
+class SlabVote
+{
+public:
+    SlabVote(const Opinions& opinions, const WindingTree& tree, const LatticeGrid& grid,
+             std::size_t x)
+        : opinions_(opinions),
+          tree_(tree),
+          grid_(grid),
+          x_(x),
+          along_x_(opinions.by_axis[0][x]),
+          along_y_(opinions.by_axis[1][x]),
+          along_z_(opinions.by_axis[2][x])
+    {
+    }
+
+    /// ranges  nodes along the axes beyond which nothing is inside
+    /// returns the nodes that are inside
+    Toggles run(const NodeRange* ranges)
+    {
+        std::vector<Key> changed;
+        for (const Key node : open_nodes(ranges))
+            if (is_inside(node) != is_in(along_z_, node)) changed.push_back(node);
+        return exclusive_or(along_z_, set_of(changed));
+    }
+
+    std::uint64_t disputed() const { return disputed_; }
+
+private:
+    /// Nodes about which the lines may not agree, or one of them says nothing.
+    std::vector<Key> open_nodes(const NodeRange* ranges) const
+    {
+        std::vector<Key> nodes;
+        append_nodes(exclusive_or(along_x_, along_y_), nodes);
+        append_nodes(exclusive_or(along_x_, along_z_), nodes);
+        if (x_ >= ranges[0].begin && x_ < ranges[0].end)
+        {
+            nodes.insert(nodes.end(), opinions_.mute_x.begin(), opinions_.mute_x.end());
+            for (const std::uint32_t z : opinions_.mute_y[x_])
+                for (std::uint32_t y = ranges[1].begin; y < ranges[1].end; ++y)
+                    nodes.push_back(key_of(y, z));
+            for (const std::uint32_t y : opinions_.mute_z[x_])
+                for (std::uint32_t z = ranges[2].begin; z < ranges[2].end; ++z)
+                    nodes.push_back(key_of(y, z));
+        }
+        std::sort(nodes.begin(), nodes.end());
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        return nodes;
+    }
+
+    bool is_inside(Key node)
+    {
+        const auto y = static_cast<std::uint32_t>(node >> 32);
+        const auto z = static_cast<std::uint32_t>(node);
+        const auto& mute_x = opinions_.mute_x;
+        const auto& mute_y = opinions_.mute_y[x_];
+        const auto& mute_z = opinions_.mute_z[x_];
+        int votes = 0, ayes = 0;
+        const auto count = [&](bool is_mute, bool says_inside)
+        {
+            if (is_mute) return;
+            ++votes;
+            ayes += says_inside ? 1 : 0;
+        };
+        count(std::binary_search(mute_x.begin(), mute_x.end(), node), is_in(along_x_, node));
+        count(std::binary_search(mute_y.begin(), mute_y.end(), z), is_in(along_y_, node));
+        count(std::binary_search(mute_z.begin(), mute_z.end(), y), is_in(along_z_, node));
+        if (votes >= 2 && (ayes == 0 || ayes == votes)) return ayes > 0;
+        ++disputed_;
+        const Vec3 at{grid_.origin.x + static_cast<double>(x_) * grid_.dp,
+                      grid_.origin.y + y * grid_.dp, grid_.origin.z + z * grid_.dp};
+        return tree_.winding_number(at) > 0.5;
+    }
+
+    const Opinions& opinions_;
+    const WindingTree& tree_;
+    const LatticeGrid& grid_;
+    std::size_t x_;
+    const Toggles& along_x_;
+    const Toggles& along_y_;
+    const Toggles& along_z_;
+    std::uint64_t disputed_ = 0;
+};
+
+} // namespace
+
+InsideVote vote_inside(const TriangleSoup& soup, const LatticeGrid& grid, int threads)
+{
+    InsideVote vote;
+    const std::size_t slabs = grid.n[0];
+    Box3 bounds;
+    for (const Vec3& p : soup.vertices) bounds.add(p);
+    if (bounds.is_empty()) return vote;
+    NodeRange ranges[3];
+    for (int axis = 0; axis < 3; ++axis) ranges[axis] = range_of(bounds, grid, axis);
+    Opinions opinions = ask_along_axes(soup, grid, threads, vote.overlap);
     const WindingTree tree(soup);
     vote.inside.slabs.resize(slabs);
     std::vector<std::uint64_t> disputed(slabs, 0);
@@ -209,60 +300,14 @@ InsideVote vote_inside(const TriangleSoup& soup, const LatticeGrid& grid, int th
         slabs, threads,
         [&](std::size_t x)
         {
-            const Toggles& a = opinions.by_axis[0][x];
-            const Toggles& b = opinions.by_axis[1][x];
-            Toggles& c = opinions.by_axis[2][x];
-            const auto& mute_y = opinions.mute_y[x];
-            const auto& mute_z = opinions.mute_z[x];
-            std::vector<Key> nodes;
-            append_nodes(exclusive_or(a, b), nodes);
-            append_nodes(exclusive_or(a, c), nodes);
-            if (x >= ranges[0].begin && x < ranges[0].end)
-            {
-                nodes.insert(nodes.end(), opinions.mute_x.begin(), opinions.mute_x.end());
-                for (const std::uint32_t z : mute_y)
-                    for (std::uint32_t y = ranges[1].begin; y < ranges[1].end; ++y)
-                        nodes.push_back(key_of(y, z));
-                for (const std::uint32_t y : mute_z)
-                    for (std::uint32_t z = ranges[2].begin; z < ranges[2].end; ++z)
-                        nodes.push_back(key_of(y, z));
-            }
-            std::sort(nodes.begin(), nodes.end());
-            nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-
-            std::vector<Key> changed;
-            for (const Key node : nodes)
-            {
-                const auto y = static_cast<std::uint32_t>(node >> 32);
-                const auto z = static_cast<std::uint32_t>(node);
-                const bool was_inside = is_in(c, node);
-                int votes = 0, ayes = 0;
-                const auto count = [&](bool is_mute, bool is_inside)
-                {
-                    if (is_mute) return;
-                    ++votes;
-                    ayes += is_inside ? 1 : 0;
-                };
-                count(std::binary_search(opinions.mute_x.begin(), opinions.mute_x.end(), node),
-                      is_in(a, node));
-                count(std::binary_search(mute_y.begin(), mute_y.end(), z), is_in(b, node));
-                count(std::binary_search(mute_z.begin(), mute_z.end(), y), was_inside);
-                bool is_inside = ayes > 0;
-                if (votes < 2 || (ayes > 0 && ayes < votes))
-                {
-                    const Vec3 at{grid.origin.x + static_cast<double>(x) * grid.dp,
-                                  grid.origin.y + y * grid.dp, grid.origin.z + z * grid.dp};
-                    is_inside = tree.winding_number(at) > 0.5;
-                    ++disputed[x];
-                }
-                if (is_inside != was_inside) changed.push_back(node);
-            }
-            c = exclusive_or(c, set_of(changed));
-            for (std::size_t i = 0; i < c.size(); i += 2)
-                vote.inside.slabs[x].push_back({static_cast<std::uint32_t>(c[i] >> 32),
-                                                static_cast<std::uint32_t>(c[i]),
-                                                static_cast<std::uint32_t>(c[i + 1])});
-            c = {};
+            SlabVote slab(opinions, tree, grid, x);
+            const Toggles inside = slab.run(ranges);
+            disputed[x] = slab.disputed();
+            for (std::size_t i = 0; i < inside.size(); i += 2)
+                vote.inside.slabs[x].push_back({static_cast<std::uint32_t>(inside[i] >> 32),
+                                                static_cast<std::uint32_t>(inside[i]),
+                                                static_cast<std::uint32_t>(inside[i + 1])});
+            opinions.by_axis[2][x] = {};
         });
     for (const std::uint64_t count : disputed) vote.disputed += count;
     return vote;

@@ -42,6 +42,7 @@ public:
     {
         const std::int64_t i1 = index_of(p.x + radius), j1 = index_of(p.y + radius),
                            k1 = index_of(p.z + radius);
+        // Nested because the cells around a place are walked along three axes.
         for (std::int64_t k = index_of(p.z - radius); k <= k1; ++k)
             for (std::int64_t j = index_of(p.y - radius); j <= j1; ++j)
                 for (std::int64_t i = index_of(p.x - radius); i <= i1; ++i)

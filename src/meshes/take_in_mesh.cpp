@@ -20,11 +20,11 @@
 namespace fppg
 {
 
-SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
-                         MeshReport& report)
+namespace
 {
-    report = {};
-    report.facets_read = soup.size();
+
+void check_input(const TriangleSoup& soup)
+{
     if (soup.size() >= no_index / 3)
         throw GeometryError(fmt::format("a mesh of {} facets is too large, expected fewer than {}",
                                         soup.size(), no_index / 3));
@@ -32,7 +32,102 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
         if (!is_finite(soup.vertices[i]))
             throw GeometryError(
                 fmt::format("facet {} has a coordinate that is not finite", i / 3 + 1));
+}
 
+/// Where the warnings say that something was found first.
+struct FirstPlaces
+{
+    Vec3 junction;
+    Vec3 flipped;
+};
+
+/// Splits facets at vertices inside their edges.
+void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report, FirstPlaces& places)
+{
+    const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
+    if (junctions.empty()) return;
+    places.junction = mesh.vertices[junctions.front().vertex];
+    report.t_junctions = junctions.size();
+    split_at(junctions, mesh);
+    const std::size_t copies = report.duplicate_facets;
+    build_edges(mesh, threads);
+    drop_copies(mesh, threads, report);
+    report.duplicate_facets = copies; // these are pieces of facets, not of the file
+}
+
+void sum_up(const SurfaceMesh& mesh, const std::vector<char>& is_turned, MeshReport& report,
+            FirstPlaces& places)
+{
+    for (const Facet& facet : mesh.facets)
+        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
+    const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
+    for (std::size_t f = mesh.facets.size(); f-- > 0;)
+    {
+        report.volume += volume_times_six(mesh, f, middle) / 6;
+        report.area += mesh.areas[f];
+        if (is_turned[f] == 0) continue;
+        ++report.flipped_facets;
+        places.flipped = mesh.vertices[mesh.facets[f][0]];
+    }
+}
+
+void warn_of_repairs(const FirstPlaces& places, MeshReport& report)
+{
+    const auto warn = [&](bool is_so, const auto& text)
+    {
+        if (is_so) report.warnings.push_back(text());
+    };
+    warn(report.joined_corners > 0,
+         [&]
+         {
+             return fmt::format(
+                 "The facets do not meet: {} within {:.3g} m of another, joined with it.",
+                 counted(report.joined_corners, "corner lies", "corners lie"),
+                 report.joined_within);
+         });
+    warn(report.degenerate_facets > 0,
+         [&]
+         {
+             return fmt::format("{} without area but for rounding, left out.",
+                                counted(report.degenerate_facets, "facet is", "facets are"));
+         });
+    warn(report.duplicate_facets > 0,
+         [&]
+         {
+             return fmt::format(
+                 "{} of another, left out.",
+                 counted(report.duplicate_facets, "facet is a copy", "facets are copies"));
+         });
+    warn(report.inner_wall_facets > 0,
+         [&]
+         {
+             return fmt::format("{} facets are walls between two bodies that touch, left out.",
+                                report.inner_wall_facets);
+         });
+    warn(report.t_junctions > 0,
+         [&]
+         {
+             return fmt::format(
+                 "{} inside an edge of another facet, the first {}; these facets are split there.",
+                 counted(report.t_junctions, "vertex lies", "vertices lie"), near(places.junction));
+         });
+    warn(report.flipped_facets > 0,
+         [&]
+         {
+             return fmt::format("{} inwards, the first {}; turned.",
+                                counted(report.flipped_facets, "facet looks", "facets look"),
+                                near(places.flipped));
+         });
+}
+
+} // namespace
+
+SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
+                         MeshReport& report)
+{
+    report = {};
+    report.facets_read = soup.size();
+    check_input(soup);
     SurfaceMesh mesh;
     weld_equal(soup, threads, mesh);
     if (options.weld_distance > 0) weld_near(options.weld_distance, {}, mesh);
@@ -49,60 +144,13 @@ SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& opti
     drop_copies(mesh, threads, report);
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);
-    const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
-    Vec3 junction_at;
-    if (!junctions.empty())
-    {
-        junction_at = mesh.vertices[junctions.front().vertex];
-        report.t_junctions = junctions.size();
-        split_at(junctions, mesh);
-        const std::size_t copies = report.duplicate_facets;
-        build_edges(mesh, threads);
-        drop_copies(mesh, threads, report);
-        report.duplicate_facets = copies; // these are pieces of facets, not of the file
-    }
+    FirstPlaces places;
+    split_at_junctions(mesh, threads, report, places);
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
     turn_outwards(mesh, report.shells, threads, is_turned);
     measure_facets(mesh, threads);
-
-    for (const Facet& facet : mesh.facets)
-        for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
-    const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
-    std::size_t first_turned = 0;
-    for (std::size_t f = mesh.facets.size(); f-- > 0;)
-    {
-        report.volume += volume_times_six(mesh, f, middle) / 6;
-        report.area += mesh.areas[f];
-        if (is_turned[f] == 0) continue;
-        ++report.flipped_facets;
-        first_turned = f;
-    }
-
-    if (report.joined_corners > 0)
-        report.warnings.push_back(fmt::format(
-            "The facets do not meet: {} within {:.3g} m of another, joined with it.",
-            counted(report.joined_corners, "corner lies", "corners lie"), report.joined_within));
-    if (report.degenerate_facets > 0)
-        report.warnings.push_back(
-            fmt::format("{} without area but for rounding, left out.",
-                        counted(report.degenerate_facets, "facet is", "facets are")));
-    if (report.duplicate_facets > 0)
-        report.warnings.push_back(
-            fmt::format("{} of another, left out.",
-                        counted(report.duplicate_facets, "facet is a copy", "facets are copies")));
-    if (report.inner_wall_facets > 0)
-        report.warnings.push_back(
-            fmt::format("{} facets are walls between two bodies that touch, left out.",
-                        report.inner_wall_facets));
-    if (report.t_junctions > 0)
-        report.warnings.push_back(fmt::format(
-            "{} inside an edge of another facet, the first {}; these facets are split there.",
-            counted(report.t_junctions, "vertex lies", "vertices lie"), near(junction_at)));
-    if (report.flipped_facets > 0)
-        report.warnings.push_back(
-            fmt::format("{} inwards, the first {}; turned.",
-                        counted(report.flipped_facets, "facet looks", "facets look"),
-                        near(mesh.vertices[mesh.facets[first_turned][0]])));
+    sum_up(mesh, is_turned, report, places);
+    warn_of_repairs(places, report);
     judge_edges(mesh, report);
     if (options.count_self_intersections)
     {

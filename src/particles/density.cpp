@@ -1,6 +1,7 @@
 #include "particles/density.h"
 
 #include "core/parallel.h"
+#include "particles/depths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,298 +10,6 @@ namespace fppg
 {
 namespace
 {
-
-/// How a node counts for the depth of the fluid below it.
-enum class Medium : std::uint8_t
-{
-    None,
-    Water, ///< fluid or floating
-    Wall,  ///< fixed or moving
-};
-
-class DepthMeter
-{
-public:
-    DepthMeter(const RunField& field, const std::vector<ParticleType>& type_of_mk)
-        : field_(field), type_of_mk_(type_of_mk)
-    {
-    }
-
-    Medium medium(std::uint16_t mk) const
-    {
-        const ParticleType type = type_of_mk_[mk];
-        return type == ParticleType::Fluid || type == ParticleType::Floating ? Medium::Water
-                                                                             : Medium::Wall;
-    }
-
-    /// For every run of a slab the steps from its highest node to the top of its column.
-    std::vector<std::uint32_t> depths_along_z(std::size_t x) const
-    {
-        const std::vector<Run>& runs = field_.slabs[x];
-        std::vector<std::uint32_t> depth(runs.size(), 0);
-        for (std::size_t i = runs.size(); i-- > 0;)
-        {
-            if (medium(runs[i].mk) != Medium::Water || i + 1 == runs.size()) continue;
-            const Run& above = runs[i + 1];
-            if (above.y != runs[i].y || above.z_begin != runs[i].z_end) continue;
-            depth[i] =
-                medium(above.mk) == Medium::Wall ? 1 : depth[i + 1] + (above.z_end - above.z_begin);
-        }
-        return depth;
-    }
-
-private:
-    const RunField& field_;
-    const std::vector<ParticleType>& type_of_mk_;
-};
-
-/// Whether a node counts for hswl: also one that a particle off the lattice hides, as it does in
-/// GenCase, but none in the zone of a fitted wall.
-bool counts_for_hswl(const RunField& field, const Run& run)
-{
-    return field.walls.bodies.empty() || !run.is_covered;
-}
-
-/// The node of water that gives a particle off the lattice its depth.
-struct Host
-{
-    static constexpr std::uint32_t none = 0xFFFFFFFF;
-    std::uint32_t slab = none;
-    std::uint32_t run = 0;   ///< index in the slab
-    std::uint32_t below = 0; ///< steps from the run's highest node down to the node
-    Vec3 offset;             ///< from the particle to the node, in steps
-};
-
-class HostFinder
-{
-public:
-    HostFinder(const RunField& field, const DepthMeter& meter) : field_(field), meter_(meter) {}
-
-    Host find(const Vec3& p) const
-    {
-        const LatticeGrid& grid = field_.grid;
-        const Vec3 q = (p - grid.origin) / grid.dp;
-        std::array<std::int64_t, 3> nearest{};
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            const auto k = static_cast<std::size_t>(axis);
-            nearest[k] = std::clamp<std::int64_t>(std::llround(q[axis]), 0,
-                                                  static_cast<std::int64_t>(grid.n[k]) - 1);
-        }
-        Best best;
-        search_column(nearest[0], nearest[1], q, best);
-        for (int ring = 1; ring <= reach; ++ring)
-        {
-            // Columns of this ring are at least so far away.
-            const double gap = ring - 0.5;
-            if (best.distance <= gap * gap) break;
-            for (std::int64_t dx = -ring; dx <= ring; ++dx)
-                for (std::int64_t dy = -ring; dy <= ring; ++dy)
-                    if (std::max(std::abs(dx), std::abs(dy)) == ring)
-                        search_column(nearest[0] + dx, nearest[1] + dy, q, best);
-        }
-        return best.host;
-    }
-
-private:
-    static constexpr int reach = 4; ///< steps
-    struct Best
-    {
-        double distance = double{reach} * reach; ///< squared, in steps
-        Host host;
-    };
-
-    void search_column(std::int64_t x, std::int64_t y, const Vec3& q, Best& best) const
-    {
-        if (x < 0 || y < 0 || x >= static_cast<std::int64_t>(field_.slabs.size())) return;
-        const std::vector<Run>& runs = field_.slabs[static_cast<std::size_t>(x)];
-        const double dx = static_cast<double>(x) - q.x;
-        const double dy = static_cast<double>(y) - q.y;
-        auto run = std::lower_bound(runs.begin(), runs.end(), y,
-                                    [](const Run& r, std::int64_t v) { return r.y < v; });
-        for (; run != runs.end() && run->y == y; ++run)
-        {
-            if (run->z_begin - q.z > reach) return;
-            if (q.z - run->z_end > reach || meter_.medium(run->mk) != Medium::Water) continue;
-            const double node = std::clamp(std::round(q.z), static_cast<double>(run->z_begin),
-                                           static_cast<double>(run->z_end - 1));
-            const double dz = node - q.z;
-            const double distance = dx * dx + dy * dy + dz * dz;
-            if (distance >= best.distance) continue;
-            best.distance = distance;
-            best.host = {static_cast<std::uint32_t>(x),
-                         static_cast<std::uint32_t>(run - runs.begin()),
-                         run->z_end - 1 - static_cast<std::uint32_t>(node),
-                         {dx, dy, dz}};
-        }
-    }
-
-    const RunField& field_;
-    const DepthMeter& meter_;
-};
-
-/// Calls body(run index in the slab, block, run index in the block) for all runs of particles, slab
-/// by slab. Blocks hold their runs in the order of the slabs, so one cursor a block is enough.
-class BlockCursor
-{
-public:
-    explicit BlockCursor(CaseParticles& particles)
-        : particles_(particles), next_(particles.blocks.size(), 0)
-    {
-        block_of_mk_.assign(65536, 0);
-        for (std::size_t b = 0; b < particles.blocks.size(); ++b)
-            block_of_mk_[particles.blocks[b].mk] = b;
-    }
-
-    template <typename Body>
-    void visit(const std::vector<Run>& runs, const Body& body)
-    {
-        for (std::size_t i = 0; i < runs.size(); ++i)
-        {
-            if (runs[i].is_covered) continue;
-            const std::size_t b = block_of_mk_[runs[i].mk];
-            body(i, particles_.blocks[b], next_[b]++);
-        }
-    }
-
-private:
-    CaseParticles& particles_;
-    std::vector<std::size_t> next_;
-    std::vector<std::size_t> block_of_mk_;
-};
-
-/// Steps in the + direction of x and of y for every node of one slab's water runs.
-struct SlabSteps
-{
-    std::vector<std::size_t> begin; ///< per run, first entry of its nodes
-    std::vector<std::uint32_t> x;
-    std::vector<std::uint32_t> y;
-};
-
-/// For the nodes of `run` the value that the neighbour runs [first, last) give: 0 where there is
-/// none, 1 below a wall, the neighbour's own + 1 in water.
-template <typename NeighbourValue>
-void steps_to_neighbour(const Run& run, const Run* first, const Run* last,
-                        const NeighbourValue& value_of, std::uint32_t* out)
-{
-    std::fill(out, out + (run.z_end - run.z_begin), 0u);
-    for (const Run* n = first; n != last && n->z_begin < run.z_end; ++n)
-    {
-        const std::uint32_t begin = std::max(run.z_begin, n->z_begin);
-        const std::uint32_t end = std::min(run.z_end, n->z_end);
-        for (std::uint32_t z = begin; z < end; ++z) out[z - run.z_begin] = value_of(*n, z);
-    }
-}
-
-const Run* row_begin(const std::vector<Run>& runs, std::uint32_t y)
-{
-    const auto it = std::lower_bound(runs.begin(), runs.end(), y,
-                                     [](const Run& r, std::uint32_t v) { return r.y < v; });
-    return runs.data() + (it - runs.begin());
-}
-
-/// Depths when gravity is not along z: one value a water node, slab by slab from the last x on.
-class TiltedDepths
-{
-public:
-    TiltedDepths(const CaseDef& def, const RunField& field, const DepthMeter& meter)
-        : field_(field),
-          meter_(meter),
-          gravity_(def.constants.gravity),
-          dp_(def.grid.dp),
-          g_(norm(gravity_))
-    {
-    }
-
-    /// What is known of one slab.
-    struct Slab
-    {
-        std::size_t x = 0;
-        SlabSteps steps;
-        std::vector<std::uint32_t> top; ///< per run, from its highest node
-    };
-
-    /// Calls body(slab, run index, node in the run, depth) for the water nodes of every slab, last
-    /// slab first, and after_slab(slab) behind each.
-    template <typename Body, typename AfterSlab>
-    void for_each(const Body& body, const AfterSlab& after_slab)
-    {
-        Slab slab;
-        for (std::size_t x = field_.slabs.size(); x-- > 0;)
-        {
-            const std::vector<Run>& runs = field_.slabs[x];
-            slab.steps = count(x, slab.steps);
-            slab.x = x;
-            slab.top = meter_.depths_along_z(x);
-            for (std::size_t i = 0; i < runs.size(); ++i)
-            {
-                if (meter_.medium(runs[i].mk) != Medium::Water) continue;
-                const std::uint32_t n = runs[i].z_end - runs[i].z_begin;
-                for (std::uint32_t k = 0; k < n; ++k) body(x, i, k, depth(slab, i, n - 1 - k, {}));
-            }
-            after_slab(slab);
-        }
-    }
-
-    /// The depth `below` steps under the highest node of a run, and `offset` steps towards the
-    /// smaller coordinates from there.
-    double depth(const Slab& slab, std::size_t run, std::uint32_t below, const Vec3& offset) const
-    {
-        const Run& r = field_.slabs[slab.x][run];
-        const std::size_t at = slab.steps.begin[run] + (r.z_end - r.z_begin - 1 - below);
-        const double dx = std::max(slab.steps.x[at] + offset.x, 0.0) * dp_ * gravity_.x;
-        const double dy = std::max(slab.steps.y[at] + offset.y, 0.0) * dp_ * gravity_.y;
-        const double dz = std::max(slab.top[run] + below + offset.z, 0.0) * dp_ * gravity_.z;
-        return std::sqrt(dx * dx + dy * dy + dz * dz) / g_;
-    }
-
-private:
-    SlabSteps count(std::size_t x, const SlabSteps& next) const
-    {
-        const std::vector<Run>& runs = field_.slabs[x];
-        SlabSteps steps;
-        std::size_t nodes = 0;
-        for (const Run& r : runs)
-        {
-            steps.begin.push_back(nodes);
-            nodes += r.z_end - r.z_begin;
-        }
-        steps.x.assign(nodes, 0);
-        steps.y.assign(nodes, 0);
-        const std::vector<Run> none;
-        const std::vector<Run>& beyond = x + 1 < field_.slabs.size() ? field_.slabs[x + 1] : none;
-        const auto value = [this](const std::vector<Run>& of, const SlabSteps& known,
-                                  const std::vector<std::uint32_t>& values)
-        {
-            return [this, &of, &known, &values](const Run& n, std::uint32_t z) -> std::uint32_t
-            {
-                if (meter_.medium(n.mk) == Medium::Wall) return 1;
-                return values[known.begin[static_cast<std::size_t>(&n - of.data())] +
-                              (z - n.z_begin)] +
-                       1;
-            };
-        };
-        for (std::size_t i = runs.size(); i-- > 0;)
-        {
-            if (meter_.medium(runs[i].mk) != Medium::Water) continue;
-            if (gravity_.x != 0)
-                steps_to_neighbour(runs[i], row_begin(beyond, runs[i].y),
-                                   row_begin(beyond, runs[i].y + 1), value(beyond, next, next.x),
-                                   steps.x.data() + steps.begin[i]);
-            if (gravity_.y != 0)
-                steps_to_neighbour(runs[i], row_begin(runs, runs[i].y + 1),
-                                   row_begin(runs, runs[i].y + 2), value(runs, steps, steps.y),
-                                   steps.y.data() + steps.begin[i]);
-        }
-        return steps;
-    }
-
-    const RunField& field_;
-    const DepthMeter& meter_;
-    Vec3 gravity_;
-    double dp_;
-    double g_;
-};
 
 void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
 {
@@ -312,340 +21,296 @@ void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
     constants.b = c.b.value_or(constants.speed_sound * constants.speed_sound * c.rhop0 / c.gamma);
 }
 
-/// Depths, in metres, of the particles off the lattice that are water.
-class FreeDepths
+/// Computes what compute_densities() says: depths, then hswl and what follows from it, then
+/// densities.
+class Densities
 {
 public:
-    FreeDepths(const RunField& field, const DepthMeter& meter,
-               const std::vector<std::uint64_t>& free_begin, const CaseParticles& particles,
-               int threads)
-        : blocks_(particles.blocks), free_begin_(free_begin)
+    Densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
+              int threads)
+        : def_(water.def),
+          field_(water.field),
+          type_of_mk_(water.type_of_mk),
+          particles_(particles),
+          constants_(constants),
+          threads_(threads),
+          meter_(field_, type_of_mk_),
+          g_(norm(def_.constants.gravity)),
+          is_vertical_(def_.constants.gravity.x == 0 && def_.constants.gravity.y == 0),
+          by_height_(def_.constants.rhop_gradient == 3),
+          top_(field_.slabs.size()),
+          free_(field_, meter_, water.free_begin, particles, threads)
     {
-        for (std::size_t b = 0; b < blocks_.size(); ++b)
-            if (blocks_[b].type == ParticleType::Fluid || blocks_[b].type == ParticleType::Floating)
-            {
-                // Blocks are sorted by type, so all of water stand together.
-                if (hosts_.empty()) first_ = free_begin[b];
-                hosts_.resize(free_begin[b + 1] - first_);
-            }
-        depths_.assign(hosts_.size(), 0);
-        of_nodes_.assign(hosts_.size(), 0);
-        const HostFinder finder(field, meter);
+    }
+
+    void compute()
+    {
         parallel_for(
-            hosts_.size(), threads,
-            [&](std::size_t i) { hosts_[i] = finder.find(particles.free.positions[first_ + i]); },
-            1024);
-    }
-
-    bool is_empty() const { return hosts_.empty(); }
-    std::uint64_t first() const { return first_; }
-    double depth(std::uint64_t particle) const { return depths_[particle - first_]; }
-    /// The largest depth of the nodes that the particles are nearest to.
-    double deepest() const
-    {
-        return of_nodes_.empty() ? 0 : *std::max_element(of_nodes_.begin(), of_nodes_.end());
-    }
-
-    void measure_along_z(const std::vector<std::vector<std::uint32_t>>& top, double dp)
-    {
-        for (std::size_t i = 0; i < hosts_.size(); ++i)
-        {
-            const Host& h = hosts_[i];
-            if (h.slab == Host::none) continue;
-            const double steps = top[h.slab][h.run] + h.below;
-            depths_[i] = std::max(steps + h.offset.z, 0.0) * dp;
-            of_nodes_[i] = steps * dp;
-        }
-    }
-
-    /// Sorts the particles by slab, so that measure() finds those of one.
-    void sort_by_slab(std::size_t slabs)
-    {
-        slab_begin_.assign(slabs + 1, 0);
-        for (const Host& h : hosts_)
-            if (h.slab != Host::none) ++slab_begin_[h.slab + 1];
-        for (std::size_t x = 0; x < slabs; ++x) slab_begin_[x + 1] += slab_begin_[x];
-        by_slab_.resize(slab_begin_[slabs]);
-        std::vector<std::uint64_t> next(slab_begin_.begin(), slab_begin_.end() - 1);
-        for (std::size_t i = 0; i < hosts_.size(); ++i)
-            if (hosts_[i].slab != Host::none)
-                by_slab_[next[hosts_[i].slab]++] = static_cast<std::uint32_t>(i);
-    }
-    void measure(const TiltedDepths& tilted, const TiltedDepths::Slab& slab)
-    {
-        for (std::uint64_t k = slab_begin_[slab.x]; k < slab_begin_[slab.x + 1]; ++k)
-        {
-            const Host& h = hosts_[by_slab_[k]];
-            depths_[by_slab_[k]] = tilted.depth(slab, h.run, h.below, h.offset);
-            of_nodes_[by_slab_[k]] = tilted.depth(slab, h.run, h.below, {});
-        }
-    }
-
-    /// Calls body(particle, block) for those of the fluid.
-    template <typename Body>
-    void for_each_of_fluid(const Body& body) const
-    {
-        for (std::size_t b = 0; b < blocks_.size(); ++b)
-            if (blocks_[b].type == ParticleType::Fluid)
-                for (std::uint64_t i = free_begin_[b]; i < free_begin_[b + 1]; ++i)
-                    body(i, blocks_[b]);
+            top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
+        measure_nodes();
+        measure_free();
+        constants_.hswl = hswl();
+        set_speeds(def_, g_, constants_);
+        const ConstantsDef& c = def_.constants;
+        is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
+        const auto rhop0 = static_cast<float>(c.rhop0);
+        std::fill(particles_.free.rhop.begin(), particles_.free.rhop.end(), rhop0);
+        if (particles_.n_fluid == 0) return;
+        if (is_uniform_ || (is_vertical_ && (!by_height_ || c.gravity.z < 0)))
+            set_by_steps();
+        else
+            set_one_by_one();
+        if (!is_uniform_) set_free();
     }
 
 private:
-    const std::vector<ParticleBlock>& blocks_;
-    const std::vector<std::uint64_t>& free_begin_;
-    std::uint64_t first_ = 0;
-    std::vector<Host> hosts_;
-    std::vector<double> depths_;
-    std::vector<double> of_nodes_;
-    std::vector<std::uint64_t> slab_begin_;
-    std::vector<std::uint32_t> by_slab_;
-};
-
-/// What the nodes of water reach to.
-struct WaterLimits
-{
-    // Of s = -position . gravity / g over the fluid, for rhopgradient 3.
-    double s_max = -std::numeric_limits<double>::infinity();
-    double s_min = std::numeric_limits<double>::infinity();
-    std::uint32_t z_max = 0;   ///< of the fluid
-    std::uint32_t deepest = 0; ///< steps, fluid and floating, vertical gravity
-
-    void add(double s)
+    /// Height over the origin against gravity.
+    double height(const Vec3& p) const
     {
-        s_max = std::max(s_max, s);
-        s_min = std::min(s_min, s);
+        const Vec3& gravity = def_.constants.gravity;
+        return -(p.x * gravity.x + p.y * gravity.y + p.z * gravity.z) / g_;
     }
-    void add(const WaterLimits& other)
+    double height(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
-        s_max = std::max(s_max, other.s_max);
-        s_min = std::min(s_min, other.s_min);
-        z_max = std::max(z_max, other.z_max);
-        deepest = std::max(deepest, other.deepest);
+        const Vec3& origin = def_.grid.origin;
+        const double dp = def_.grid.dp;
+        return height(
+            {origin.x + static_cast<std::uint32_t>(x) * dp, origin.y + y * dp, origin.z + z * dp});
     }
-};
 
-} // namespace
+    /// The density at a depth.
+    float rhop(double depth) const
+    {
+        const ConstantsDef& c = def_.constants;
+        if (is_uniform_) return static_cast<float>(c.rhop0);
+        return static_cast<float>(c.rhop0 *
+                                  std::pow(1 + c.rhop0 * g_ * depth / constants_.b, 1 / c.gamma));
+    }
 
-void compute_densities(const CaseDef& def, const RunField& field,
-                       const std::vector<ParticleType>& type_of_mk,
-                       const std::vector<std::uint64_t>& free_begin, CaseParticles& particles,
-                       CaseConstants& constants, int threads)
-{
-    const ConstantsDef& c = def.constants;
-    const double g = norm(c.gravity);
-    const double dp = def.grid.dp;
-    const DepthMeter meter(field, type_of_mk);
-    const bool is_vertical = c.gravity.x == 0 && c.gravity.y == 0;
-    const bool by_height = c.rhop_gradient == 3;
+    /// GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.
+    bool is_plain(const ParticleBlock& block) const
+    {
+        const std::vector<std::uint16_t>& mks = field_.walls.free_mks;
+        return !def_.hydrostatic_off_lattice &&
+               std::binary_search(mks.begin(), mks.end(), block.mk);
+    }
 
-    std::vector<std::vector<std::uint32_t>> top(field.slabs.size());
-    parallel_for(
-        field.slabs.size(), threads, [&](std::size_t x) { top[x] = meter.depths_along_z(x); }, 16);
-
-    const auto height = [&](double x, double y, double z)
-    { return -(x * c.gravity.x + y * c.gravity.y + z * c.gravity.z) / g; };
-    const auto place = [&](int axis, std::uint32_t i) { return def.grid.origin[axis] + i * dp; };
-    std::vector<WaterLimits> of_slab(field.slabs.size());
-    parallel_for(
-        field.slabs.size(), threads,
-        [&](std::size_t x)
+    void measure_slab(std::size_t x, WaterLimits& w) const
+    {
+        for (std::size_t i = 0; i < field_.slabs[x].size(); ++i)
         {
-            WaterLimits& w = of_slab[x];
-            for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
-            {
-                const Run& r = field.slabs[x][i];
-                if (meter.medium(r.mk) != Medium::Water) continue;
-                if (counts_for_hswl(field, r))
-                    w.deepest = std::max(w.deepest, top[x][i] + (r.z_end - r.z_begin - 1));
-                if (r.is_covered) continue;
-                if (type_of_mk[r.mk] != ParticleType::Fluid) continue;
-                w.z_max = std::max(w.z_max, r.z_end - 1);
-                if (g > 0 && by_height)
-                    for (const std::uint32_t z : {r.z_begin, r.z_end - 1})
-                        w.add(height(place(0, static_cast<std::uint32_t>(x)), place(1, r.y),
-                                     place(2, z)));
-            }
-        },
-        16);
-    WaterLimits water;
-    for (const WaterLimits& w : of_slab) water.add(w);
-    const std::uint32_t z_max = water.z_max;
-    const std::uint32_t deepest = water.deepest;
-    double s_max = water.s_max;
-    double s_min = water.s_min;
-
-    FreeDepths free(field, meter, free_begin, particles, threads);
-    double excess = 0; // height of the highest particle off the lattice above the highest node
-    if (g > 0 && by_height)
-    {
-        const double of_nodes = s_max;
-        free.for_each_of_fluid(
-            [&](std::uint64_t i, const ParticleBlock&)
-            {
-                const Vec3& p = particles.free.positions[i];
-                s_max = std::max(s_max, height(p.x, p.y, p.z));
-                s_min = std::min(s_min, height(p.x, p.y, p.z));
-            });
-        // Where GenCase v5.4.354 has several zones, the surface of the first is that of all.
-        if (def.main_surface && particles.n_fluid > 0) s_max = *def.main_surface;
-        if (std::isfinite(of_nodes)) excess = s_max - of_nodes;
-        if (std::isfinite(s_max)) constants.surface = s_max;
+            const Run& r = field_.slabs[x][i];
+            if (meter_.medium(r.mk) != Medium::Water) continue;
+            if (counts_for_hswl(field_, r))
+                w.deepest = std::max(w.deepest, top_[x][i] + (r.z_end - r.z_begin - 1));
+            if (r.is_covered || type_of_mk_[r.mk] != ParticleType::Fluid) continue;
+            w.z_max = std::max(w.z_max, r.z_end - 1);
+            if (g_ > 0 && by_height_)
+                for (const std::uint32_t z : {r.z_begin, r.z_end - 1}) w.add(height(x, r.y, z));
+        }
     }
-    else if (g > 0 && is_vertical)
-        free.measure_along_z(top, dp);
-    else if (g > 0)
-        free.sort_by_slab(field.slabs.size());
 
-    if (c.hswl)
-        constants.hswl = *c.hswl;
-    else if (def.main_hswl)
-        constants.hswl = *def.main_hswl;
-    else if (particles.n_fluid == 0 || g == 0)
-        constants.hswl = 0;
-    else if (by_height)
-        constants.hswl = s_max - s_min;
-    else if (is_vertical)
-        constants.hswl = std::max(deepest * dp, free.deepest());
-    else
+    void measure_nodes()
     {
+        std::vector<WaterLimits> of_slab(field_.slabs.size());
+        parallel_for(
+            of_slab.size(), threads_, [&](std::size_t x) { measure_slab(x, of_slab[x]); }, 16);
+        for (const WaterLimits& w : of_slab) water_.add(w);
+    }
+
+    void measure_free()
+    {
+        if (!(g_ > 0)) return;
+        if (!by_height_)
+        {
+            if (is_vertical_)
+                free_.measure_along_z(top_, def_.grid.dp);
+            else
+                free_.sort_by_slab(field_.slabs.size());
+            return;
+        }
+        const double of_nodes = water_.s_max;
+        free_.for_each_of_fluid([&](std::uint64_t i, const ParticleBlock&)
+                                { water_.add(height(particles_.free.positions[i])); });
+        // Where GenCase v5.4.354 has several zones, the surface of the first is that of all.
+        if (def_.main_surface && particles_.n_fluid > 0) water_.s_max = *def_.main_surface;
+        if (std::isfinite(of_nodes)) excess_ = water_.s_max - of_nodes;
+        if (std::isfinite(water_.s_max)) constants_.surface = water_.s_max;
+    }
+
+    double hswl()
+    {
+        if (def_.constants.hswl) return *def_.constants.hswl;
+        if (def_.main_hswl) return *def_.main_hswl;
+        if (particles_.n_fluid == 0 || g_ == 0) return 0;
+        if (by_height_) return water_.s_max - water_.s_min;
+        if (is_vertical_) return std::max(water_.deepest * def_.grid.dp, free_.deepest());
         double most = 0;
-        TiltedDepths tilted(def, field, meter);
+        TiltedDepths tilted(def_, field_, meter_);
         tilted.for_each(
             [&](std::size_t x, std::size_t i, std::uint32_t, double d)
             {
-                if (counts_for_hswl(field, field.slabs[x][i])) most = std::max(most, d);
+                if (counts_for_hswl(field_, field_.slabs[x][i])) most = std::max(most, d);
             },
-            [&](const TiltedDepths::Slab& slab) { free.measure(tilted, slab); });
-        constants.hswl = std::max(most, free.deepest());
+            [&](const TiltedDepths::Slab& slab) { free_.measure(tilted, slab); });
+        return std::max(most, free_.deepest());
     }
-    set_speeds(def, g, constants);
 
-    const bool is_uniform = c.rhop_gradient == 1 || g == 0 || constants.b == 0;
-    const auto rhop = [&](double d)
+    /// The largest depth in steps of a run of fluid, after the depths of runs are set.
+    std::uint32_t count_steps()
     {
-        return is_uniform ? static_cast<float>(c.rhop0)
-                          : static_cast<float>(
-                                c.rhop0 * std::pow(1 + c.rhop0 * g * d / constants.b, 1 / c.gamma));
-    };
-    std::fill(particles.free.rhop.begin(), particles.free.rhop.end(), static_cast<float>(c.rhop0));
-    if (particles.n_fluid == 0) return;
-    // GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.
-    const std::vector<std::uint16_t> none;
-    const std::vector<std::uint16_t>& plain_mks =
-        def.hydrostatic_off_lattice ? none : field.walls.free_mks;
-    const auto is_plain = [&](const ParticleBlock& block)
-    { return std::binary_search(plain_mks.begin(), plain_mks.end(), block.mk); };
-    const auto set_free = [&]
-    {
-        if (is_uniform) return;
-        free.for_each_of_fluid(
-            [&](std::uint64_t i, const ParticleBlock& block)
-            {
-                if (is_plain(block)) return;
-                const Vec3& p = particles.free.positions[i];
-                particles.free.rhop[i] =
-                    rhop(by_height ? s_max - height(p.x, p.y, p.z) : free.depth(i));
-            });
-    };
+        std::uint32_t most = 0;
+        if (is_uniform_)
+        {
+            for (const ParticleBlock& block : particles_.blocks)
+                if (block.type == ParticleType::Fluid)
+                    for (const ParticleRun& run : block.runs) most = std::max(most, run.count - 1);
+            return most;
+        }
+        BlockCursor cursor(particles_);
+        for (std::size_t x = 0; x < field_.slabs.size(); ++x)
+            cursor.visit(field_.slabs[x],
+                         [&](std::size_t i, ParticleBlock& block, std::size_t at)
+                         {
+                             if (block.type != ParticleType::Fluid) return;
+                             ParticleRun& run = block.runs[at];
+                             run.depth =
+                                 by_height_ ? water_.z_max - (run.z + run.count - 1) : top_[x][i];
+                             most = std::max(most, run.depth + run.count - 1);
+                         });
+        return most;
+    }
 
-    // Their runs stand behind all depths, where the density is rhop0.
-    const auto add_plain_runs = [&]
+    /// Runs of plain fluid stand behind all depths, where the density is rhop0.
+    void add_plain_runs()
     {
-        const auto behind = static_cast<std::uint32_t>(particles.rhop_of_depth.size());
+        const auto behind = static_cast<std::uint32_t>(particles_.rhop_of_depth.size());
         std::uint32_t longest = 0;
-        for (ParticleBlock& block : particles.blocks)
+        for (ParticleBlock& block : particles_.blocks)
             if (block.type == ParticleType::Fluid && is_plain(block))
                 for (ParticleRun& run : block.runs)
                 {
                     run.depth = behind;
                     longest = std::max(longest, run.count);
                 }
-        particles.rhop_of_depth.resize(std::size_t{behind} + longest, static_cast<float>(c.rhop0));
-    };
+        particles_.rhop_of_depth.resize(std::size_t{behind} + longest,
+                                        static_cast<float>(def_.constants.rhop0));
+    }
 
-    BlockCursor cursor(particles);
-    const bool is_by_steps = is_uniform || (is_vertical && (!by_height || c.gravity.z < 0));
-    std::vector<std::vector<std::size_t>> run_of(is_by_steps ? 0 : field.slabs.size());
-    std::uint32_t most_steps = 0;
-    for (std::size_t x = 0; x < field.slabs.size() && !is_uniform; ++x)
+    /// One value a step of depth.
+    void set_by_steps()
     {
-        if (!is_by_steps) run_of[x].resize(field.slabs[x].size());
-        cursor.visit(field.slabs[x],
-                     [&](std::size_t i, ParticleBlock& block, std::size_t at)
+        const std::uint32_t most = count_steps();
+        particles_.rhop_of_depth.resize(static_cast<std::size_t>(most) + 1);
+        for (std::uint32_t s = 0; s <= most; ++s)
+        {
+            const double step = s * def_.grid.dp * def_.constants.gravity.z;
+            particles_.rhop_of_depth[s] =
+                rhop(is_uniform_ ? 0 : std::sqrt(step * step) / g_ + excess_);
+        }
+        if (!is_uniform_) add_plain_runs();
+    }
+
+    /// Of every node run of particles, where its first one stands in the fluid's order of ids; none
+    /// for other particles and for plain fluid.
+    std::vector<std::vector<std::uint64_t>> first_of_runs()
+    {
+        const std::uint64_t first_fluid = particles_.np - particles_.n_fluid;
+        std::vector<std::vector<std::uint64_t>> of_block(particles_.blocks.size());
+        for (std::size_t b = 0; b < particles_.blocks.size(); ++b)
+        {
+            const ParticleBlock& block = particles_.blocks[b];
+            std::uint64_t at = block.begin - first_fluid;
+            if (block.type != ParticleType::Fluid || is_plain(block)) continue;
+            for (const ParticleRun& run : block.runs)
+            {
+                of_block[b].push_back(at);
+                at += run.count;
+            }
+        }
+        std::vector<std::vector<std::uint64_t>> out(field_.slabs.size());
+        BlockCursor cursor(particles_);
+        for (std::size_t x = 0; x < out.size(); ++x)
+        {
+            out[x].assign(field_.slabs[x].size(), no_particle);
+            cursor.visit(field_.slabs[x],
+                         [&](std::size_t i, const ParticleBlock& block, std::size_t at)
+                         {
+                             const auto b =
+                                 static_cast<std::size_t>(&block - particles_.blocks.data());
+                             if (!of_block[b].empty()) out[x][i] = of_block[b][at];
+                         });
+        }
+        return out;
+    }
+
+    /// One value a particle.
+    void set_one_by_one()
+    {
+        const std::vector<std::vector<std::uint64_t>> first = first_of_runs();
+        particles_.rhop.assign(particles_.n_fluid, static_cast<float>(def_.constants.rhop0));
+        if (!by_height_)
+        {
+            TiltedDepths tilted(def_, field_, meter_);
+            tilted.for_each(
+                [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
+                {
+                    if (first[x][i] != no_particle) particles_.rhop[first[x][i] + k] = rhop(d);
+                },
+                [&](const TiltedDepths::Slab& slab) { free_.measure(tilted, slab); });
+            return;
+        }
+        parallel_for(first.size(), threads_,
+                     [&](std::size_t x)
                      {
-                         if (!is_by_steps) run_of[x][i] = at;
-                         if (block.type != ParticleType::Fluid || !is_by_steps) return;
-                         ParticleRun& run = block.runs[at];
-                         run.depth = by_height ? z_max - (run.z + run.count - 1) : top[x][i];
-                         most_steps = std::max(most_steps, run.depth + run.count - 1);
+                         for (std::size_t i = 0; i < first[x].size(); ++i)
+                         {
+                             if (first[x][i] == no_particle) continue;
+                             const Run& r = field_.slabs[x][i];
+                             for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
+                                 particles_.rhop[first[x][i] + (z - r.z_begin)] =
+                                     rhop(water_.s_max - height(x, r.y, z));
+                         }
                      });
     }
-    if (is_uniform)
+
+    /// Of the particles off the lattice.
+    void set_free()
     {
-        for (const ParticleBlock& block : particles.blocks)
-            if (block.type == ParticleType::Fluid)
-                for (const ParticleRun& run : block.runs)
-                    most_steps = std::max(most_steps, run.count - 1);
-    }
-    if (is_by_steps)
-    {
-        particles.rhop_of_depth.resize(static_cast<std::size_t>(most_steps) + 1);
-        for (std::uint32_t s = 0; s <= most_steps; ++s)
-        {
-            const double step = s * dp * c.gravity.z;
-            particles.rhop_of_depth[s] = rhop(is_uniform ? 0 : std::sqrt(step * step) / g + excess);
-        }
-        if (!is_uniform) add_plain_runs();
-        set_free();
-        return;
+        free_.for_each_of_fluid(
+            [&](std::uint64_t i, const ParticleBlock& block)
+            {
+                if (is_plain(block)) return;
+                const Vec3& p = particles_.free.positions[i];
+                particles_.free.rhop[i] =
+                    rhop(by_height_ ? water_.s_max - height(p) : free_.depth(i));
+            });
     }
 
-    // One value a particle: where each run's first particle stands in the fluid's id order.
-    const std::uint64_t first_fluid = particles.np - particles.n_fluid;
-    std::vector<std::size_t> block_of_mk(65536, 0);
-    std::vector<std::vector<std::uint64_t>> run_begin(particles.blocks.size());
-    for (std::size_t b = 0; b < particles.blocks.size(); ++b)
-    {
-        const ParticleBlock& block = particles.blocks[b];
-        block_of_mk[block.mk] = b;
-        if (block.type != ParticleType::Fluid) continue;
-        std::uint64_t at = block.begin - first_fluid;
-        for (const ParticleRun& run : block.runs)
-        {
-            run_begin[b].push_back(at);
-            at += run.count;
-        }
-    }
-    particles.rhop.assign(particles.n_fluid, static_cast<float>(c.rhop0));
-    const auto set = [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
-    {
-        if (field.slabs[x][i].is_covered) return;
-        const std::size_t b = block_of_mk[field.slabs[x][i].mk];
-        if (particles.blocks[b].type == ParticleType::Fluid && !is_plain(particles.blocks[b]))
-            particles.rhop[run_begin[b][run_of[x][i]] + k] = rhop(d);
-    };
-    if (!by_height)
-    {
-        TiltedDepths tilted(def, field, meter);
-        tilted.for_each(set, [&](const TiltedDepths::Slab& slab) { free.measure(tilted, slab); });
-        set_free();
-        return;
-    }
-    parallel_for(field.slabs.size(), threads,
-                 [&](std::size_t x)
-                 {
-                     for (std::size_t i = 0; i < field.slabs[x].size(); ++i)
-                     {
-                         const Run& r = field.slabs[x][i];
-                         if (type_of_mk[r.mk] != ParticleType::Fluid || r.is_covered) continue;
-                         for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
-                             set(x, i, z - r.z_begin,
-                                 s_max - height(place(0, static_cast<std::uint32_t>(x)),
-                                                place(1, r.y), place(2, z)));
-                     }
-                 });
-    set_free();
+    static constexpr std::uint64_t no_particle = UINT64_MAX;
+    const CaseDef& def_;
+    const RunField& field_;
+    const std::vector<ParticleType>& type_of_mk_;
+    CaseParticles& particles_;
+    CaseConstants& constants_;
+    int threads_;
+    DepthMeter meter_;
+    double g_;
+    bool is_vertical_; ///< gravity is along z, or there is none
+    bool by_height_;   ///< rhopgradient 3
+    bool is_uniform_ = false;
+    std::vector<std::vector<std::uint32_t>> top_; ///< per run, steps from its highest node
+    WaterLimits water_;
+    double excess_ = 0; ///< height of the highest particle off the lattice over the highest node
+    FreeDepths free_;
+};
+
+} // namespace
+
+void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
+                       int threads)
+{
+    Densities(water, particles, constants, threads).compute();
 }
 
 } // namespace fppg

@@ -157,6 +157,28 @@ FreeParticles sort_free_particles(const FittedWalls& walls,
     return out;
 }
 
+namespace
+{
+
+/// The first of nodes [low, high) that comes behind a particle; `high` if none does.
+template <typename KeyOfNode>
+std::uint32_t first_behind(const PositionOrder::Key& particle, const KeyOfNode& node,
+                           std::uint32_t low, std::uint32_t high)
+{
+    if (!(particle < node(high - 1))) return high;
+    while (low < high)
+    {
+        const std::uint32_t middle = low + (high - low) / 2;
+        if (particle < node(middle))
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return high;
+}
+
+} // namespace
+
 void merge_free_particles(CaseParticles& particles, ParticleBlock& block,
                           const PositionOrder& order, std::uint64_t begin, std::uint64_t end)
 {
@@ -178,24 +200,11 @@ void merge_free_particles(CaseParticles& particles, ParticleBlock& block,
         {
             const PositionOrder::Key first = node(done);
             while (next < end && order.key(positions[next]) < first) merged.add_free(next++);
-            // The nodes before the next particle off the lattice.
-            std::uint32_t low = done + 1;
-            std::uint32_t high = run.count;
-            if (next < end)
-            {
-                const PositionOrder::Key limit = order.key(positions[next]);
-                if (!(limit < node(run.count - 1))) low = high;
-                while (low < high)
-                {
-                    const std::uint32_t middle = low + (high - low) / 2;
-                    if (limit < node(middle))
-                        high = middle;
-                    else
-                        low = middle + 1;
-                }
-            }
-            merged.add_nodes(run, done, high);
-            done = high;
+            const std::uint32_t before =
+                next < end ? first_behind(order.key(positions[next]), node, done + 1, run.count)
+                           : run.count;
+            merged.add_nodes(run, done, before);
+            done = before;
         }
     }
     while (next < end) merged.add_free(next++);

@@ -54,7 +54,7 @@ public:
         sort_free();
         set_limits();
         set_constants(constants);
-        compute_densities(def_, field_, type_of_mk_, free_begin_, out_, constants, threads_);
+        compute_densities({def_, field_, type_of_mk_, free_begin_}, out_, constants, threads_);
         orient_blocks();
         merge_free();
         list_free_points();

@@ -66,6 +66,7 @@ public:
         }
         std::sort(cores.begin(), cores.end());
         cores.erase(std::unique(cores.begin(), cores.end()), cores.end());
+        // Nested because the blocks around one are walked along three axes.
         for (const auto& c : cores)
             for (std::int64_t x = c[0] - reach; x <= c[0] + reach; ++x)
                 for (std::int64_t y = c[1] - reach; y <= c[1] + reach; ++y)

@@ -17,17 +17,25 @@ constexpr float push_strength = 4;
 constexpr float least_distance = 1e-4f;
 constexpr float no_neighbour = 1e30f;
 
-FPPG_LANES void compute_rows(const NeighbourList& list, std::size_t begin, std::size_t end,
-                             const PointArrays& points, const SurfaceForces& of,
+/// Rows [begin, end) of a list.
+struct Rows
+{
+    const NeighbourList& list;
+    std::size_t begin;
+    std::size_t end;
+};
+
+FPPG_LANES void compute_rows(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
                              PointArrays& forces, std::vector<float>& nearest_squared)
 {
+    const NeighbourList& list = rows.list;
     const float* xs = points.x.data();
     const float* ys = points.y.data();
     const float* zs = points.z.data();
     const float half_inverse_h = of.half_inverse_h();
     const float factor = of.factor();
     const Lanes none{};
-    for (std::size_t row = begin; row < end; ++row)
+    for (std::size_t row = rows.begin; row < rows.end; ++row)
     {
         const auto neighbours = list.neighbours(row);
         const std::uint32_t i = list.point(row);
@@ -54,18 +62,16 @@ FPPG_LANES void compute_rows(const NeighbourList& list, std::size_t begin, std::
     }
 }
 
-void compute_plain(const NeighbourList& list, std::size_t begin, std::size_t end,
-                   const PointArrays& points, const SurfaceForces& of, PointArrays& forces,
-                   std::vector<float>& nearest_squared)
+void compute_plain(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
+                   PointArrays& forces, std::vector<float>& nearest_squared)
 {
-    compute_rows(list, begin, end, points, of, forces, nearest_squared);
+    compute_rows(rows, points, of, forces, nearest_squared);
 }
 
-FPPG_AVX2 void compute_avx2(const NeighbourList& list, std::size_t begin, std::size_t end,
-                            const PointArrays& points, const SurfaceForces& of, PointArrays& forces,
-                            std::vector<float>& nearest_squared)
+FPPG_AVX2 void compute_avx2(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
+                            PointArrays& forces, std::vector<float>& nearest_squared)
 {
-    compute_rows(list, begin, end, points, of, forces, nearest_squared);
+    compute_rows(rows, points, of, forces, nearest_squared);
 }
 
 } // namespace
@@ -76,7 +82,7 @@ void SurfaceForces::compute(const NeighbourList& list, std::size_t begin, std::s
                             const PointArrays& points, PointArrays& forces,
                             std::vector<float>& nearest_squared) const
 {
-    (is_avx2_there() ? compute_avx2 : compute_plain)(list, begin, end, points, *this, forces,
+    (is_avx2_there() ? compute_avx2 : compute_plain)({list, begin, end}, points, *this, forces,
                                                      nearest_squared);
 }
 
@@ -89,6 +95,7 @@ double stiffest_mode(double h)
     const int rows = static_cast<int>(std::ceil(2 * h / height)) + 1;
     const double unit = 2 * std::numbers::pi / samples;
     double largest = 0;
+    // Nested because every wave vector of a plane is summed over every neighbour in it.
     for (int p = 0; p < samples; ++p)
         for (int q = 0; q < samples; ++q)
         {

@@ -320,10 +320,19 @@ void trace(const Panel& panel, RTCScene scene, const Vec3f (&from)[8], PixelSum 
     }
 }
 
-/// Draws a tile of a panel; x, y of its first pixel within the panel.
-void draw_tile(const Panel& panel, RTCScene scene, const RenderOptions& options, int panel_x,
-               int panel_width, int tile_x, int tile_y, Image& image)
+/// A tile of a panel.
+struct Tile
 {
+    int panel_x = 0; ///< first pixel of the panel in the picture
+    int panel_width = 0;
+    int x = 0; ///< first pixel of the tile in the panel
+    int y = 0;
+};
+
+void draw_tile(const Panel& panel, RTCScene scene, const RenderOptions& options, const Tile& tile,
+               Image& image)
+{
+    const auto [panel_x, panel_width, tile_x, tile_y] = tile;
     const int s = options.samples;
     const int width = std::min(tile_size, panel_width - tile_x);
     const int height = std::min(tile_size, options.height - tile_y);
@@ -412,8 +421,10 @@ Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOpt
                      [&](std::size_t tile)
                      {
                          const int t = static_cast<int>(tile);
-                         draw_tile(panel, scene.handle(), options, c * panel_width, panel_width,
-                                   t % tiles_x * tile_size, t / tiles_x * tile_size, image);
+                         draw_tile(panel, scene.handle(), options,
+                                   {c * panel_width, panel_width, t % tiles_x * tile_size,
+                                    t / tiles_x * tile_size},
+                                   image);
                      });
     }
     for (int c = 1; c < n_panels; ++c)

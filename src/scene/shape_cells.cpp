@@ -53,8 +53,8 @@ std::vector<ShapeCell> shape_cells(const Scene& scene, const DrawOp& op, bool sn
     MeshFile cut;
     ShapeContext context{state, def.grid, nullptr, snapped && !state.off_lattice};
     if (const auto* file = shape_as<MeshFileOp>(op))
-        context.mesh = &scene.meshes->read_drawn(op.source, *file,
-                                                 {def.case_pos_min, def.case_pos_max}, cut);
+        context.mesh =
+            &scene.meshes->read_drawn(op.source, *file, {def.case_pos_min, def.case_pos_max}, cut);
     std::vector<ShapeCell> cells = cells_of(std::get<Shape>(op.what), context);
     if (!state.clips.empty())
         for (ShapeCell& cell : cells)

@@ -23,8 +23,9 @@ std::vector<ShapeMesh> surfaces_of(const MeshFileOp& file, const ShapeContext& c
 {
     assert(context.mesh != nullptr);
     if (context.state.mk_next_auto)
-        throw GeometryError("setmknextauto draws a mesh file part by part, which body-fitted "
-                            "particles cannot follow; switch one of the two off");
+        throw GeometryError(
+            "setmknextauto draws a mesh file part by part, which body-fitted "
+            "particles cannot follow; switch one of the two off");
     const TriangleSoup& source = context.mesh->soup;
     ShapeMesh mesh;
     mesh.is_solid = file.autofill || file.fill_inside || file.advanced;

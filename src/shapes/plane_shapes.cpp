@@ -1,7 +1,7 @@
 #include "shapes/plane_shapes.h"
 
-#include "shapes/planes.h"
 #include "shapes/figures.h"
+#include "shapes/planes.h"
 
 #include <algorithm>
 #include <limits>
@@ -279,6 +279,106 @@ SlabRegion points_region(const std::vector<Vec3>& points, const LatticeGrid& gri
     return region;
 }
 
+namespace
+{
+
+/// The nodes near a segment between two nodes, in one slab.
+class SegmentNodes
+{
+public:
+    SegmentNodes(const std::pair<Node, Node>& segment, const LatticeGrid& grid, double width_dp,
+                 std::uint32_t slab)
+        : from_(segment.first),
+          grid_(grid),
+          slab_(slab),
+          box_(box_of(segment.first, segment.second, grid)),
+          a_(position(segment.first, grid)),
+          b_(position(segment.second, grid)),
+          length_(norm(b_ - a_)),
+          limit_(width_dp * grid.dp),
+          reach_(static_cast<std::int64_t>(std::ceil(width_dp * 1.8)) + 1),
+          along_{static_cast<double>(segment.second.x - segment.first.x),
+                 static_cast<double>(segment.second.y - segment.first.y),
+                 static_cast<double>(segment.second.z - segment.first.z)}
+    {
+    }
+
+    /// Where the slab's plane, or in it the row, meets the line: nodes in reach lie within `reach`
+    /// of it along the other axes, the line's steepest axis being walked.
+    void list(Spans& out) const
+    {
+        const double steepest =
+            std::max({std::fabs(along_.x), std::fabs(along_.y), std::fabs(along_.z)});
+        if (std::fabs(along_.x) == steepest)
+            list_in(around(share(slab_, from_.x, along_.x)), out);
+        else if (std::fabs(along_.y) == steepest)
+            for (std::int64_t y = box_.begin[1]; y < box_.end[1]; ++y)
+            {
+                Rectangle near = around(share(y, from_.y, along_.y));
+                near.y0 = near.y1 = y;
+                list_in(near, out);
+            }
+        else
+            for (std::int64_t z = box_.begin[2]; z < box_.end[2]; ++z)
+            {
+                Rectangle near = around(share(z, from_.z, along_.z));
+                near.z0 = near.z1 = z;
+                list_in(near, out);
+            }
+    }
+
+private:
+    /// Rows and heights, the last ones included.
+    struct Rectangle
+    {
+        std::int64_t y0, y1, z0, z1;
+    };
+
+    static double share(std::int64_t at, std::int64_t from, double along)
+    {
+        return (static_cast<double>(at) - static_cast<double>(from)) / along;
+    }
+
+    Rectangle around(double t) const
+    {
+        const auto y =
+            static_cast<std::int64_t>(std::floor(static_cast<double>(from_.y) + t * along_.y));
+        const auto z =
+            static_cast<std::int64_t>(std::floor(static_cast<double>(from_.z) + t * along_.z));
+        return {std::max(y - reach_, box_.begin[1]), std::min(y + reach_ + 1, box_.end[1] - 1),
+                std::max(z - reach_, box_.begin[2]), std::min(z + reach_ + 1, box_.end[2] - 1)};
+    }
+
+    void list_in(const Rectangle& near, Spans& out) const
+    {
+        for (std::int64_t y = near.y0; y <= near.y1; ++y)
+            for (std::int64_t z = near.z0; z <= near.z1; ++z)
+                if (holds(y, z)) out.push_back(one_node(y, z));
+    }
+
+    bool holds(std::int64_t y, std::int64_t z) const
+    {
+        const Vec3 p{grid_.origin.x + static_cast<double>(slab_) * grid_.dp,
+                     grid_.origin.y + static_cast<double>(y) * grid_.dp,
+                     grid_.origin.z + static_cast<double>(z) * grid_.dp};
+        const double area = norm(cross(a_ - p, b_ - p)) / 2;
+        return 2 * area / length_ < limit_;
+    }
+
+    Node from_;
+    const LatticeGrid& grid_;
+    std::uint32_t slab_;
+    NodeBox box_;
+    Vec3 a_;
+    Vec3 b_;
+    double length_;
+    double limit_;
+    std::int64_t reach_;
+    Vec3 along_;
+};
+
+} // namespace
+
 SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, const LatticeGrid& grid,
                         double width_dp)
 {
@@ -296,85 +396,13 @@ SlabRegion lines_region(const std::vector<std::pair<Node, Node>>& segments, cons
     region.x_end = index->x_end();
     region.emit = [shared, index, grid, width_dp](std::uint32_t slab, Spans& out)
     {
-        index->for_each(
-            slab,
-            [&](std::uint32_t item)
-            {
-                const auto& from = (*shared)[item].first;
-                const auto& to = (*shared)[item].second;
-                if (from == to) return;
-                const NodeBox box = box_of(from, to, grid);
-                const Vec3 a = position(from, grid);
-                const Vec3 b = position(to, grid);
-                const double length = norm(b - a);
-                const double limit = width_dp * grid.dp;
-                const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-                const auto holds = [&](std::int64_t y, std::int64_t z)
-                {
-                    const Vec3 p{x, grid.origin.y + static_cast<double>(y) * grid.dp,
-                                 grid.origin.z + static_cast<double>(z) * grid.dp};
-                    const double area = norm(cross(a - p, b - p)) / 2;
-                    return 2 * area / length < limit;
-                };
-                // Where the slab's plane, or in it the row, meets the line: nodes in reach lie
-                // within `reach` of it along the other axes, the line's steepest axis being walked.
-                const double dx = static_cast<double>(to.x - from.x);
-                const double dy = static_cast<double>(to.y - from.y);
-                const double dz = static_cast<double>(to.z - from.z);
-                const double steepest = std::max({std::fabs(dx), std::fabs(dy), std::fabs(dz)});
-                const auto reach = static_cast<std::int64_t>(std::ceil(width_dp * 1.8)) + 1;
-                const auto around = [&](double t, std::int64_t& y0, std::int64_t& y1,
-                                        std::int64_t& z0, std::int64_t& z1)
-                {
-                    const auto y =
-                        static_cast<std::int64_t>(std::floor(static_cast<double>(from.y) + t * dy));
-                    const auto z =
-                        static_cast<std::int64_t>(std::floor(static_cast<double>(from.z) + t * dz));
-                    y0 = std::max(y - reach, box.begin[1]);
-                    y1 = std::min(y + reach + 1, box.end[1] - 1);
-                    z0 = std::max(z - reach, box.begin[2]);
-                    z1 = std::min(z + reach + 1, box.end[2] - 1);
-                };
-                const auto test_all =
-                    [&](std::int64_t y0, std::int64_t y1, std::int64_t z0, std::int64_t z1)
-                {
-                    for (std::int64_t y = y0; y <= y1; ++y)
-                        for (std::int64_t z = z0; z <= z1; ++z)
-                            if (holds(y, z)) out.push_back(one_node(y, z));
-                };
-                std::int64_t y0 = 0;
-                std::int64_t y1 = 0;
-                std::int64_t z0 = 0;
-                std::int64_t z1 = 0;
-                if (std::fabs(dx) == steepest)
-                {
-                    around((static_cast<double>(slab) - static_cast<double>(from.x)) / dx, y0, y1,
-                           z0, z1);
-                    test_all(y0, y1, z0, z1);
-                }
-                else if (std::fabs(dy) == steepest)
-                {
-                    for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
-                    {
-                        std::int64_t unused0 = 0;
-                        std::int64_t unused1 = 0;
-                        around((static_cast<double>(y) - static_cast<double>(from.y)) / dy, unused0,
-                               unused1, z0, z1);
-                        test_all(y, y, z0, z1);
-                    }
-                }
-                else
-                {
-                    for (std::int64_t z = box.begin[2]; z < box.end[2]; ++z)
-                    {
-                        std::int64_t unused0 = 0;
-                        std::int64_t unused1 = 0;
-                        around((static_cast<double>(z) - static_cast<double>(from.z)) / dz, y0, y1,
-                               unused0, unused1);
-                        test_all(y0, y1, z, z);
-                    }
-                }
-            });
+        index->for_each(slab,
+                        [&](std::uint32_t item)
+                        {
+                            const std::pair<Node, Node>& segment = (*shared)[item];
+                            if (segment.first == segment.second) return;
+                            SegmentNodes(segment, grid, width_dp, slab).list(out);
+                        });
     };
     return region;
 }

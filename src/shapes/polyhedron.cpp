@@ -164,8 +164,9 @@ std::vector<ShapeMesh> surfaces_of(const FigureOp& figure, const ShapeContext& c
     ShapeMesh mesh;
     mesh.is_solid = context.may_fill() && figure.solid != SolidKind::None;
     if (figure.part_count > 0 && mesh.is_solid)
-        throw GeometryError("setmknextauto draws the inside of this shape part by part, which "
-                            "body-fitted particles cannot follow; switch one of the two off");
+        throw GeometryError(
+            "setmknextauto draws the inside of this shape part by part, which "
+            "body-fitted particles cannot follow; switch one of the two off");
     // Hidden faces help to tell the outside of what is seen.
     const TriangleSoup hull = soup_of(figure, figure.faces);
     const bool is_turned = is_closed(hull) && volume_of(hull) < 0;

@@ -25,9 +25,15 @@ double ShapeContext::rounded(double radius) const
 
 bool has_surface(const Shape& shape)
 {
-    return std::visit([](const auto& kind)
-                      { return requires(const ShapeContext& c) { kinds::surfaces_of(kind, c); }; },
-                      shape);
+    return std::visit(
+        [](const auto& kind)
+        {
+            return requires(const ShapeContext& c)
+            {
+                kinds::surfaces_of(kind, c);
+            };
+        },
+        shape);
 }
 
 bool has_cells(const Shape& shape)

@@ -6,8 +6,7 @@
 namespace fppg
 {
 
-std::vector<ShapeMesh> shape_meshes(const DrawOp& op, const MeshFile* file,
-                                    const LatticeGrid& grid)
+std::vector<ShapeMesh> shape_meshes(const DrawOp& op, const MeshFile* file, const LatticeGrid& grid)
 {
     const auto* shape = std::get_if<Shape>(&op.what);
     if (shape == nullptr) return {};

@@ -1,7 +1,7 @@
 #include "shapes/solids.h"
 
-#include "shapes/planes.h"
 #include "shapes/figures.h"
+#include "shapes/planes.h"
 #include "shapes/polygon_cut.h"
 
 #include <algorithm>

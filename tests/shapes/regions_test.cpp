@@ -2,11 +2,11 @@
 // asked node by node.
 
 #include "helpers/dense_grid.h"
+#include "shapes/kinds.h"
 #include "shapes/plane_shapes.h"
 #include "shapes/planes.h"
-#include "shapes/kinds.h"
-#include "shapes/solids.h"
 #include "shapes/polygon_cut.h"
+#include "shapes/solids.h"
 
 #include <gtest/gtest.h>
 

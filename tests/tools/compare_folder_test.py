@@ -72,6 +72,13 @@ class CompareFolder(unittest.TestCase):
         self.assertTrue(lines[-1].endswith("; 1 run in fppg only"), table)
 
     @needs_program
+    def test_a_case_without_particles_is_compared_too(self):
+        self.write("nothing_Def.xml", CASE.format(""))
+        code, table = self.run_tool(self.folder)
+        self.assertEqual(code, 0, table)
+        self.assertRegex(table.splitlines()[1], r"^nothing_Def.xml +0 +0 +0 +same +same +same +- +same +")
+
+    @needs_program
     def test_a_list_gives_options_and_json_all_numbers(self):
         self.write("box_Def.xml", CASE.format(BOX))
         listed = self.write("list.txt", "# mine\nbox_Def.xml\t-dp:0.05\n")

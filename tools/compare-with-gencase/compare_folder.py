@@ -125,6 +125,8 @@ def far_rows(ours, theirs, tolerance):
     """How many rows of two arrays differ, and by how much at most; None where they cannot be compared."""
     if ours is None or theirs is None or ours.shape != theirs.shape:
         return None
+    if not len(theirs):
+        return 0, 0.0
     a, b = (v.astype(float).reshape(len(v), -1) for v in (ours, theirs))
     with np.errstate(invalid="ignore"):
         error = np.where(np.isnan(a) & np.isnan(b), 0, np.abs(a - b))

@@ -1,0 +1,194 @@
+#include "app/case_stages.h"
+
+#include "fppg/error.h"
+#include "fppg/normals.h"
+#include "fppg/read_shapes.h"
+#include "fppg/relax_walls.h"
+
+#include "app/fit_check.h"
+#include "app/floating_log.h"
+#include "app/motion_check.h"
+#include "app/particle_log.h"
+#include "app/relax_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+namespace fppg
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+void enter_zone(MadeCase& made)
+{
+    if (!made.def.vres.is_active()) return;
+    const bool are_plain = std::all_of(made.def.vres.zones.begin(), made.def.vres.zones.end(),
+                                       [](const VresZone& zone) { return zone.inner.is_plain; });
+    if (made.field.walls.volume.size() > 0 && (!are_plain || !made.def.point_files.empty()))
+        throw CaseError(made.def.file, made.def.vres.zones[0].line,
+                        "<vres>: turned regions of other resolution together with particles "
+                        "off the lattice (<setfrdrawmode>), and any with point files, are not "
+                        "supported yet");
+    clip_to_zone(made.def.vres, made.def.zone, made.field);
+}
+
+LatticeProgress draw_progress()
+{
+    return [](std::size_t done, std::size_t all)
+    {
+        StageBar::show(static_cast<double>(done) / static_cast<double>(all),
+                       fmt::format("{} of {}", done, all));
+    };
+}
+
+/// The polygons that norgeometry asks for: those of a shape file of this run, or of a file that
+/// stands in the folder of the output, where GenCase looks for it, or beside the definition.
+std::vector<ShapePolygons> normal_geometry(const RunState& run, const MadeCase& made)
+{
+    if (!made.def.normals.geometry) return {};
+    const GeometryNormals& geometry = *made.def.normals.geometry;
+    for (const ShapeFile& shape_file : made.shape_files)
+        if (made.def.case_name + shape_file.name == geometry.file) return shape_file.shapes;
+    const fs::path beside = fs::path(run.options.input).parent_path() / geometry.file;
+    const fs::path in_output = fs::path(run.options.output).parent_path() / geometry.file;
+    std::error_code ignored;
+    for (const fs::path& path : {in_output, beside})
+        if (fs::exists(path, ignored)) return read_shapes_vtk(path.string());
+    std::vector<std::string> names;
+    for (const ShapeFile& shape_file : made.shape_files)
+        names.push_back(made.def.case_name + shape_file.name);
+    throw IoError(fmt::format(
+        "{}:{}: <geometryfile file=\"{}\">: no such shape file; this case writes {}, and "
+        "neither {} nor {} exists",
+        made.def.file, geometry.line, geometry.file,
+        names.empty() ? "none (<shapeout> does)" : fmt::format("{}", fmt::join(names, ", ")),
+        in_output.string(), beside.string()));
+}
+
+} // namespace
+
+void read_definition(RunState& run, std::size_t zone, const VresDef* vres, MadeCase& made)
+{
+    run.stage("LoadXMLInit",
+              [&]
+              {
+                  CaseOptions of_zone = case_options(run.options);
+                  of_zone.vres = vres;
+                  of_zone.zone = zone;
+                  of_zone.meshes = std::move(made.scene.meshes);
+                  made = {};
+                  made.def = read_case(run.options.input + ".xml", of_zone);
+                  made.scene = make_scene(made.def);
+                  made.output = made.def.vres.is_active() ? zone_name(run.options.output, zone)
+                                                          : run.options.output;
+                  if (made.def.vres.is_active())
+                      run.log.line(fmt::format("VResolution: zone {} of {}", zone,
+                                               made.def.vres.zones.size()));
+                  run.log.line(fmt::format("Total operations: {}", made.def.ops.size()));
+              });
+}
+
+void draw(RunState& run, MadeCase& made)
+{
+    run.stage("Draw",
+              [&]
+              {
+                  const LatticeGrid& grid = made.def.grid;
+                  run.log.line("List of available variables: " + made.def.variables_log);
+                  run.log.line();
+                  run.log.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})",
+                                           made.def.case_pos_min.x, made.def.case_pos_min.y,
+                                           made.def.case_pos_min.z, made.def.case_pos_max.x,
+                                           made.def.case_pos_max.y, made.def.case_pos_max.z));
+                  run.log.line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
+                  run.log.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1,
+                                           grid.n[1] - 1, grid.n[2] - 1));
+                  for (const std::string& line : made.def.list_log) run.log.line(line);
+                  LatticeReport report;
+                  made.mesh_files.clear();
+                  made.field = draw_scene(made.scene, run.threads, draw_progress(), report);
+                  enter_zone(made);
+                  made.mesh_files = std::move(report.mesh_files);
+                  for (const std::string& line : report.log) run.log.line(line);
+                  made.node_files = std::move(report.node_files);
+                  for (std::string& w : made.def.warnings) run.diagnose(std::move(w));
+                  for (std::string& w : report.warnings) run.diagnose(std::move(w));
+                  run.log.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
+                                           report.triangles_ignored));
+              });
+}
+
+void relax(RunState& run, MadeCase& made)
+{
+    if (made.field.walls.bodies.empty()) return;
+    log_fitted_walls(made.field, run.log);
+    if (relaxes(made.def, made.field))
+        run.stage("Relax",
+                  [&]
+                  {
+                      RelaxOutcome done =
+                          run_relaxation(made.def, made.field, made.output, run.threads, run.log);
+                      made.relax_history = std::move(done.history);
+                      for (std::string& w : done.warnings) run.warn(std::move(w));
+                  });
+    for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))
+        run.warn(fmt::format("{}: {}", made.def.file, w));
+}
+
+void add_points(RunState& run, MadeCase& made)
+{
+    if (made.def.point_files.empty()) return;
+    LatticeReport report;
+    add_point_files(made.scene, made.field, report);
+    std::move(report.mesh_files.begin(), report.mesh_files.end(),
+              std::back_inserter(made.mesh_files));
+    for (const std::string& line : report.log) run.log.line(line);
+    for (std::string& w : report.warnings) run.warn(std::move(w));
+}
+
+void prepare_particles(RunState& run, MadeCase& made)
+{
+    run.stage("PreparePoints",
+              [&]
+              {
+                  std::vector<std::string> warnings;
+                  made.particles =
+                      make_particles(made.def, made.field, run.threads, made.constants, warnings);
+                  log_particles(made.def, made.particles, made.constants, run.log);
+                  for (std::string& w :
+                       settle_floatings(made.scene, made.field.walls, made.particles, run.log))
+                      run.warn(std::move(w));
+                  for (std::string& w : warnings) run.warn(std::move(w));
+                  for (std::string& w : check_motion(made.def, made.particles))
+                      run.diagnose(std::move(w));
+              });
+    if (run.options.strict && !run.diagnostics.empty())
+        throw CaseError(
+            fmt::format("-strict: {} warning{} count as errors, nothing is "
+                        "written:\n  {}",
+                        run.diagnostics.size(), run.diagnostics.size() == 1 ? "" : "s",
+                        fmt::join(run.diagnostics, "\n  ")));
+}
+
+void make_normals(RunState& run, MadeCase& made)
+{
+    made.shape_files = collect_shape_files(made.scene);
+    if (!made.def.normals.is_active) return;
+    run.stage("Normals",
+              [&]
+              {
+                  NormalsReport report;
+                  made.particles.bound_normals = compute_normals(
+                      made.def, made.particles, normal_geometry(run, made), run.threads, report);
+                  made.normal_shapes = std::move(report.shapes);
+                  for (const std::string& line : report.log) run.log.line(line);
+                  for (std::string& w : report.warnings) run.warn(std::move(w));
+              });
+}
+
+} // namespace fppg

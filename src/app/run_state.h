@@ -1,0 +1,75 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/files.h"
+#include "fppg/lattice.h"
+#include "fppg/particles.h"
+#include "fppg/scene.h"
+
+#include "app/command_line.h"
+#include "app/result_files.h"
+#include "app/run_log.h"
+#include "app/stage_bar.h"
+#include "app/stopwatch.h"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// What all stages of a run share.
+struct RunState
+{
+    DropInOptions options;
+    int threads = 1;
+    RunLog log;
+    ResultFiles files;
+    std::vector<std::string> warnings;
+    std::vector<std::string> diagnostics; ///< those that -strict takes for errors
+
+    void warn(std::string text)
+    {
+        log.warning(text);
+        warnings.push_back(std::move(text));
+    }
+    /// A warning where GenCase says nothing; with -strict an error.
+    void diagnose(std::string text)
+    {
+        diagnostics.push_back(text);
+        warn(std::move(text));
+    }
+
+    /// Runs a stage and writes into the log when it begins and how long it took.
+    template <typename Body>
+    void stage(const char* name, const Body& body)
+    {
+        const Stopwatch time;
+        log.begin_stage(name);
+        {
+            const StageBar bar(name, log.style() == LogStyle::Text);
+            body();
+        }
+        log.end_stage(name, time.seconds());
+    }
+};
+
+/// A case, or one zone of it, on its way from the definition to the files.
+struct MadeCase
+{
+    std::string output; ///< of its files, without the endings
+    CaseDef def;
+    Scene scene; ///< of def
+    RunField field;
+    std::vector<NodeFile> node_files;
+    std::vector<MeshFileUse> mesh_files;
+    std::string relax_history; ///< CSV
+    CaseParticles particles;
+    CaseConstants constants;
+    std::vector<ShapeFile> shape_files;
+    std::vector<ShapePolygons> normal_shapes; ///< that the normals were taken from
+};
+
+} // namespace fppg
