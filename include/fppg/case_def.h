@@ -62,6 +62,7 @@ struct DrawConstants
     double cylinder_cover = 0.6;
     int sphere_sides = 24;
     int cylinder_sides = 24;
+    bool operator==(const DrawConstants&) const = default;
 };
 
 /// Keeps the nodes x with (x - point) . normal <= 0 (rule C1).
@@ -69,6 +70,7 @@ struct ClipPlane
 {
     Vec3 point;
     Vec3 normal;
+    bool operator==(const ClipPlane&) const = default;
 };
 
 /// A `<pattern>`: which nodes a draw with `setpattern` paints. Rules found by experiment with
@@ -94,6 +96,7 @@ struct ShapeMode
     bool actual = true;                            ///< as drawn
     bool snapped = false;                          ///< with vertices on the lattice
     std::array<bool, 3> kinds{false, true, false}; ///< void, bound, fluid
+    bool operator==(const ShapeMode&) const = default;
 };
 
 /// Everything that a draw inherits from the commands before it.
@@ -113,6 +116,7 @@ struct DrawState
     bool normal_invert = false;     ///< setnormalinvert
     bool mk_next_auto = false;      ///< setmknextauto: every part drawn takes the next mk
     Transform matrix;               ///< the current matrix where off_lattice, else none
+    bool operator==(const DrawState&) const = default;
 };
 
 /// Where a draw stands in the definition, for messages.

@@ -74,7 +74,7 @@ public:
 
         PatternTable patterns;
         if (const Element* e = casedef.find_child("patterns")) patterns = read_patterns(*e, read_);
-        ProgramRunner program(def_, commands_, read_, std::move(patterns));
+        Program program(def_, commands_, read_, std::move(patterns));
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
         evaluate_execution(def_.execution, read_);

@@ -6,11 +6,18 @@
 #include "casedef/patterns.h"
 #include "casedef/variable_commands.h"
 
+#include <array>
 #include <map>
+#include <optional>
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace fppg
 {
+
+/// More points than any command has.
+inline constexpr std::size_t many_points = 100'000'000;
 
 /// Executes the commands of a case into draw operations.
 ///
@@ -32,47 +39,33 @@ namespace fppg
 /// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is
 /// no
 ///   bound one; setmknextfluid likewise
-class ProgramRunner
+///
+/// Commands are functions of a program and their element (command_table.h); what several of them
+/// need is here.
+struct Program
 {
-public:
     /// patterns  by their names in small letters
-    ProgramRunner(CaseDef& def, VariableCommands& variables, const AttributeReader& read,
-                  PatternTable patterns);
+    Program(CaseDef& case_def, VariableCommands& variable_commands, const AttributeReader& reader,
+            PatternTable named_patterns);
 
     /// Runs `<mainlist>` of `<commands>`; fills ops, list_log and warnings of the case.
     void run(const Element& commands);
-
-private:
     void run_list(const Element& list, const std::string& name);
-    void run_command(const Element& e);
+    /// Stops lists without an end.
     void count_command(const Element& e);
-    /// throws CaseError for an element that the command does not have, or has once only
-    void check_children(const Element& e) const;
-    bool run_state_command(const Element& e);
-    bool run_transform(const Element& e);
-    bool run_clip(const Element& e);
-    bool run_flow_command(const Element& e);
-    bool run_draw(const Element& e);
-    bool run_fill_or_redraw(const Element& e);
 
     MkValue mk_value(const Element& e, MkKind kind, int mk_type) const;
     void set_mk(const Element& e, MkKind kind, int mk_type);
     void add_clip(const ClipPlane& plane);
     /// Puts the clips where the current matrix moves them.
     void place_clips();
-    void put_clips(const Transform& matrix);
+    void put_clips(const Transform& map);
+
+    /// Adds a command of the case with the current state: under setmknextauto part by part.
     void add(const Element& e, Command what);
     void add_whole(const Element& e, Command what);
-    bool has_quads_move_clips(const FigureOp& figure) const;
-    /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a
-    /// solid box, meets the plane of a 2D case, and then puts it back, with all clips: particles
-    /// there are clipped by the clips as written, and all that comes later by those under the
-    /// matrix, a quad in the plane too (17 shapes of one case; a quad that does not meet the plane
-    /// counts).
-    void add_between_clips(const Element& e, FigureOp figure);
-    /// Under setmknextauto: every part is drawn with the mk after that of the part before.
-    void add_in_parts(const Element& e, Shape shape);
-    void add_figure_in_parts(const Element& e, FigureOp figure);
+    /// Under the current matrix.
+    void add_figure(const Element& e, FigureOp figure);
     /// Goes on to the next mk, which must exist even where nothing is drawn with it, as for
     /// GenCase.
     void take_next_mk(const Element& e);
@@ -84,7 +77,7 @@ private:
     /// drawn with the mk that comes next, which stays (30 draws of STL, PLY and VTK files in every
     /// mode, on and off the lattice, in GenCase v5.4.354 and where it can v5.0, none different).
     std::uint32_t count_file_parts(const Element& e, const MeshFileOp& op) const;
-    void add_figure(const Element& e, FigureOp figure);
+
     std::vector<Vec3> points_of(const Element& e, std::size_t at_least, std::size_t at_most) const;
     std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,
                                          std::size_t at_most) const;
@@ -93,11 +86,11 @@ private:
     BoxRegion limit_box_of(const Element& e, bool with_limits) const;
     /// The same under the current matrix.
     BoxLimits limits_of(const Element& e, bool with_limits) const;
-    /// throws CaseError where it is missing
-    bool flag_of(const Element& e, std::string_view name) const;
     /// Keeps the box of a fill or redraw for its picture. What resetdraw has forgotten stays until
     /// the command comes again.
     void keep_picture(const Element& e, bool with_limits, std::optional<Vec3> seed);
+    /// throws CaseError where it is missing
+    bool flag_of(const Element& e, std::string_view name) const;
     /// One number of `layers vdp`.
     struct Layer
     {
@@ -115,12 +108,10 @@ private:
     /// throws CaseError for a layer without a radius
     void check_layers(const Element& e, double radius, const std::vector<Layer>& layers) const;
     std::vector<int> mask_of(const Element& e) const;
-    FillFilter fill_filter(const Element& e, const std::string& words) const;
     std::optional<std::uint16_t> absolute_mk(const Element& e, const char* attribute,
                                              MkKind kind) const;
     /// Fails where an attribute names no mk of this kind.
     void check_mk(const Element& e, const char* attribute, MkKind kind) const;
-    MkFilter near_filter(const Element& e, const char* type, const char* mk) const;
     /// Sides by words, in the order of BoxSide; solid stands for all of them, whatever else is
     /// there.
     struct BoxSides
@@ -129,41 +120,47 @@ private:
         bool is_solid = false;
     };
     BoxSides box_sides(const Element& e, const Element& list) const;
-    void draw_box(const Element& e);
-    void draw_wave(const Element& e);
-    void draw_mesh_file(const Element& e);
-    void draw_vtm_file(const Element& e, MeshFileOp op);
-    void draw_bathymetry(const Element& e);
-    Transform file_transform(const Element& e) const;
-    void read_depth(const Element& e, MeshFileOp& op) const;
-    void shape_out(const Element& e);
-    void cells_out(const Element& e);
 
-    CaseDef& def_;
-    VariableCommands& variables_;
-    const AttributeReader& read_;
-    PatternTable patterns_;
-    std::map<std::string, const Element*> lists_;
-    DrawState state_;
-    std::shared_ptr<const DrawState> shared_state_; ///< of state_, empty after a change
-    Transform matrix_;
-    std::vector<ClipPlane> defined_clips_; ///< as written
-    Transform clip_matrix_;                ///< of the last transform that found a clip
+    CaseDef& def;
+    VariableCommands& variables;
+    const AttributeReader& read;
+    PatternTable patterns;
+    std::map<std::string, const Element*> lists;
+    DrawState state;
+    std::shared_ptr<const DrawState> shared_state; ///< of the last draw
+    Transform matrix;
+    std::vector<ClipPlane> defined_clips; ///< as written
+    Transform clip_matrix;                ///< of the last transform that found a clip
     /// Where `drawlineto` begins, before the matrix: at first and after `resetdraw` <pointmin>,
     /// then the last place of setlinebegin, drawline, drawlines, drawlineto (14 cases in GenCase
     /// v5.0).
-    Vec3 line_begin_;
-    std::vector<DrawState> saved_states_; ///< without mks, pattern, constants, clips
-    std::vector<Transform> saved_matrices_;
+    Vec3 line_begin;
+    std::vector<DrawState> saved_states; ///< without mks, pattern, constants, clips
+    std::vector<Transform> saved_matrices;
     /// mk, mk_back, pattern
     std::vector<std::tuple<MkValue, std::optional<MkValue>, std::shared_ptr<const DrawPattern>>>
-        saved_mks_;
-    /// Whether a warning named an mk that GenCase v5.4 refuses.
-    bool is_large_mk_known_ = false;
-    std::vector<DrawConstants> saved_constants_;
-    int depth_ = 0;
-    std::size_t commands_run_ = 0;
-    std::size_t pictures_forgotten_ = 0; ///< so many pictures are older than the last resetdraw
+        saved_mks;
+    std::vector<DrawConstants> saved_constants;
+    bool is_large_mk_known = false;     ///< a warning named an mk that GenCase v5.4 refuses
+    std::size_t pictures_forgotten = 0; ///< so many pictures are older than the last resetdraw
+    int list_depth = 0;
+    std::size_t commands_run = 0;
+
+private:
+    void run_command(const Element& e);
+    bool has_quads_move_clips(const FigureOp& figure) const;
+    /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a
+    /// solid box, meets the plane of a 2D case, and then puts it back, with all clips: particles
+    /// there are clipped by the clips as written, and all that comes later by those under the
+    /// matrix, a quad in the plane too (17 shapes of one case; a quad that does not meet the plane
+    /// counts).
+    void add_between_clips(const Element& e, FigureOp figure);
+    /// Under setmknextauto: every part is drawn with the mk after that of the part before.
+    void add_in_parts(const Element& e, Shape shape);
+    void add_figure_in_parts(const Element& e, FigureOp figure);
 };
+
+/// A clip under a matrix.
+ClipPlane placed_clip(const ClipPlane& plane, const Transform& map);
 
 } // namespace fppg

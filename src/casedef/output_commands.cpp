@@ -1,0 +1,53 @@
+// Commands that write files of shapes and nodes.
+#include "casedef/command_table.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace fppg::commands
+{
+
+void cells_out(Program& p, const Element& e)
+{
+    CellsOutOp op;
+    op.file = p.read.text(e, "file");
+    for (const char* name : {"mkbound", "mkfluid"})
+    {
+        if (e.find_attribute(name) == nullptr) continue;
+        const int number = p.read.integer(e, name, 0, 65000, false);
+        const bool is_bound = name == std::string_view("mkbound");
+        op.mk = static_cast<std::uint16_t>(
+            number + (is_bound ? p.def.mk_bound_first : p.def.mk_fluid_first));
+        op.suffix = fmt::format("_{}{}", name, number);
+        break; // mkbound comes first, as with GenCase
+    }
+    p.add_whole(e, std::move(op));
+}
+
+void shape_out(Program& p, const Element& e)
+{
+    std::string format = p.read.text_or(e, "format", "vtk");
+    for (char& c : format) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    ShapeOutOp op;
+    op.file = p.read.text(e, "file");
+    if (format == "vtp")
+        op.format = ShapeFormat::Vtp;
+    else if (format == "vtu")
+        op.format = ShapeFormat::Vtu;
+    else if (format == "stl")
+        op.format = ShapeFormat::Stl;
+    else if (format != "vtk")
+        p.read.fail(e, fmt::format("format=\"{}\" is invalid, expected vtk, vtp, vtu or stl",
+                                   p.read.text(e, "format")));
+    op.normal_dp = p.read.number_or(e, "savenormal", 0);
+    op.reset = p.read.plain_flag_or(e, "reset", true);
+    p.add(e, std::move(op));
+}
+
+void points_mk_out(Program& p, const Element& e)
+{
+    p.add_whole(e, PointsMkOutOp{p.read.text(e, "file")});
+}
+
+} // namespace fppg::commands

@@ -1,0 +1,123 @@
+#include "meshes/mesh_formats.h"
+
+#include "fppg/error.h"
+#include "fppg/shapes.h"
+
+#include "core/file_map.h"
+#include "meshes/readers.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fppg
+{
+
+namespace
+{
+
+/// A kind of mesh files.
+struct MeshFormatRow
+{
+    MeshFormat format;
+    std::string_view name;    ///< of `<drawfileNAME>`; empty: other commands draw it
+    std::string_view endings; ///< of its files, in small letters, separated by blanks
+    MeshFile (*read)(const std::string& path, const MeshReading& reading, int threads);
+};
+
+/// Reads a file by points and the cells that name them.
+template <IndexedMesh (*Read)(std::string_view, const std::string&)>
+MeshFile read_with(const std::string& path, const MeshReading& reading, int threads)
+{
+    const FileMap file(path);
+    if (file.bytes().empty()) throw GeometryError(path + ": is empty");
+    return build_mesh(Read(file.bytes(), path), reading.shapes, path, threads);
+}
+
+IndexedMesh read_vtk(std::string_view bytes, const std::string& path)
+{
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+    if (first != std::string_view::npos && bytes[first] == '<') return read_vtk_xml(bytes, path);
+    return read_vtk_legacy(bytes, path);
+}
+
+MeshFile read_stl_file(const std::string& path, const MeshReading&, int threads)
+{
+    return read_stl(path, threads);
+}
+
+MeshFile read_heights(const std::string& path, const MeshReading& reading, int threads)
+{
+    return build_mesh(read_bathymetry_file(path, *reading.bathymetry, threads), reading.shapes,
+                      path, threads);
+}
+
+/// All formats; the first one is that of files whose ending is not known.
+constexpr auto table = std::to_array<MeshFormatRow>({
+    {MeshFormat::Stl, "stl", "stl", read_stl_file},
+    {MeshFormat::Ply, "ply", "ply", read_with<read_ply>},
+    {MeshFormat::Vtk, "vtk", "vtk vtp vtu", read_with<read_vtk>},
+    {MeshFormat::CsvBathymetry, "csv", "csv", read_with<read_csv_bathymetry>},
+    {MeshFormat::Bathymetry, "", "", read_heights},
+});
+
+bool has_word(std::string_view words, std::string_view wanted)
+{
+    while (!words.empty())
+    {
+        const std::size_t end = std::min(words.find(' '), words.size());
+        if (words.substr(0, end) == wanted) return true;
+        words.remove_prefix(std::min(end + 1, words.size()));
+    }
+    return false;
+}
+
+} // namespace
+
+std::optional<MeshFormat> mesh_format_named(std::string_view name)
+{
+    for (const MeshFormatRow& row : table)
+        if (!row.name.empty() && row.name == name) return row.format;
+    return std::nullopt;
+}
+
+std::string mesh_file_endings()
+{
+    std::string out;
+    for (const MeshFormatRow& row : table)
+        for (std::size_t i = 0; i < row.endings.size();)
+        {
+            const std::size_t end = std::min(row.endings.find(' ', i), row.endings.size());
+            out += (out.empty() ? "." : ", .") + std::string(row.endings.substr(i, end - i));
+            i = end + 1;
+        }
+    return out;
+}
+
+MeshFormat mesh_format_of(const std::string& path)
+{
+    const std::size_t dot = path.rfind('.');
+    std::string ending = dot == std::string::npos ? "" : path.substr(dot + 1);
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c)
+                   { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+    for (const MeshFormatRow& row : table)
+        if (has_word(row.endings, ending)) return row.format;
+    return table[0].format;
+}
+
+IndexedMesh read_bathymetry_file(const std::string& path, const BathymetryGrid& grid, int threads)
+{
+    const FileMap file(path);
+    if (file.bytes().empty()) throw GeometryError(path + ": is empty");
+    return read_bathymetry(file.bytes(), path, grid, threads);
+}
+
+MeshFile read_mesh_file(const std::string& path, const MeshReading& reading, int threads)
+{
+    const auto* row =
+        std::find_if(table.begin(), table.end(),
+                     [&](const MeshFormatRow& r) { return r.format == reading.format; });
+    return row->read(path, reading, threads);
+}
+
+} // namespace fppg
