@@ -46,8 +46,7 @@ std::optional<ExactBody> body_of(const DrawOp& op, const Scene& scene, std::stri
     const auto* sphere = shape_as<SphereOp>(op);
     const auto* cylinder = shape_as<CylinderOp>(op);
     if ((sphere != nullptr && !sphere->layers_dp.empty()) ||
-        (cylinder != nullptr && !(cylinder->layers.empty() && cylinder->is_visible[0] &&
-                                  cylinder->is_visible[1] && cylinder->is_visible[2])))
+        (cylinder != nullptr && (!cylinder->layers.empty() || cylinder->is_masked)))
     {
         why_not = "it is drawn by layers or a part of a closed shape only";
         return std::nullopt;

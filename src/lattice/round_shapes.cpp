@@ -177,8 +177,6 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
         std::vector<Piece> pieces;
     };
     std::vector<Body> bodies;
-    const bool all_visible =
-        cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
     const auto add_faces = [&](Body& body, double radius)
     {
         if (cylinder.is_visible[2])
@@ -195,8 +193,8 @@ SlabRegion cylinder_region(const CylinderOp& cylinder, const DrawState& state,
     if (cylinder.layers.empty())
     {
         Body body{snap(cylinder.p0, grid), snap(cylinder.p1, grid), {}};
-        if (state.mode != DrawMode::Solid || !all_visible) add_faces(body, cylinder.radius);
-        if (state.mode != DrawMode::Face && all_visible)
+        if (state.mode != DrawMode::Solid || cylinder.is_masked) add_faces(body, cylinder.radius);
+        if (state.mode != DrawMode::Face && !cylinder.is_masked)
             body.pieces.push_back({-1, cylinder.radius, false});
         bodies.push_back(body);
     }

@@ -173,8 +173,7 @@ private:
             meshes_.push_back(cylinder_mesh(layer.p0, layer.p1, layer.radius, op.is_visible, dp_));
         if (!op.layers.empty()) return;
         meshes_.push_back(cylinder_mesh(op.p0, op.p1, op.radius, op.is_visible, dp_));
-        meshes_.back().is_solid =
-            may_fill() && op.is_visible[0] && op.is_visible[1] && op.is_visible[2];
+        meshes_.back().is_solid = may_fill() && !op.is_masked;
     }
 
     void draw(const EllipsoidOp& op)
