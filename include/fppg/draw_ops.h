@@ -203,6 +203,9 @@ struct CylinderOp
     double radius = 0;
     std::array<bool, 3> is_visible{true, true, true};
     std::vector<CylinderLayer> layers; ///< instead of the cylinder
+    /// Any mask but 0 leaves the inside empty and draws faces in every mode, also where it hides
+    /// none (mask_beyond_faces).
+    bool is_masked = false;
 };
 
 /// `drawellipsoid`: nodes by the sum of their distances to two foci; `radius` is that sum (R3).

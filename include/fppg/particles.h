@@ -26,11 +26,24 @@ enum class ParticleType : std::uint8_t
 /// block says otherwise; or `count` consecutive particles off the lattice.
 struct ParticleRun
 {
-    /// As x: the run is of particles off the lattice, from index y + z * 2^32 of
-    /// CaseParticles::free on. They follow one another upwards whatever the block says.
-    static constexpr std::uint32_t off_lattice = 0xFFFFFFFF;
-    bool is_free() const { return x == off_lattice; }
-    std::uint64_t free_begin() const { return y | static_cast<std::uint64_t>(z) << 32U; }
+    /// A run of particles off the lattice, from this index of CaseParticles::free on. They follow
+    /// one another upwards whatever the block says.
+    static ParticleRun of_free(std::uint64_t begin, std::uint32_t count)
+    {
+        ParticleRun run;
+        run.count = count;
+        run.is_off_lattice = true;
+        run.set_free_begin(begin);
+        return run;
+    }
+    bool is_free() const { return is_off_lattice; }
+    /// Of a run of particles off the lattice, which needs no node: x and y hold it.
+    std::uint64_t free_begin() const { return x | static_cast<std::uint64_t>(y) << 32U; }
+    void set_free_begin(std::uint64_t begin)
+    {
+        x = static_cast<std::uint32_t>(begin);
+        y = static_cast<std::uint32_t>(begin >> 32U);
+    }
 
     std::uint32_t x = 0;
     std::uint32_t y = 0;
@@ -38,6 +51,7 @@ struct ParticleRun
     std::uint32_t count = 0;
     /// Fluid only: steps of dp from the run's highest node up to the top of its water column.
     std::uint32_t depth = 0;
+    bool is_off_lattice = false;
 };
 
 /// Leaves values that are made without a value unwritten, so that the threads which fill them bring

@@ -6,10 +6,10 @@
 #include "fppg/relax_walls.h"
 
 #include "app/fit_check.h"
-#include "app/floating_log.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
+#include "app/settle_floatings.h"
 
 #include <fmt/format.h>
 
@@ -160,9 +160,10 @@ void prepare_particles(RunState& run, MadeCase& made)
                   made.particles =
                       make_particles(made.def, made.field, run.threads, made.constants, warnings);
                   log_particles(made.def, made.particles, made.constants, run.log);
-                  for (std::string& w :
-                       settle_floatings(made.scene, made.field.walls, made.particles, run.log))
-                      run.warn(std::move(w));
+                  const SettledFloatings floatings =
+                      settle_floatings(made.scene, made.field.walls, made.particles);
+                  log_floatings(floatings, run.log);
+                  for (const std::string& w : floatings.warnings) run.warn(w);
                   for (std::string& w : warnings) run.warn(std::move(w));
                   for (std::string& w : check_motion(made.def, made.particles))
                       run.diagnose(std::move(w));

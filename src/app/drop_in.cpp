@@ -57,7 +57,8 @@ void make_case(RunState& run, const VresDef* vres, std::vector<ZoneSummary>& zon
     prepare_particles(run, made);
     make_normals(run, made);
     save_result(run, made);
-    zones.push_back(summary_of_zone(made.def, made.particles, made.constants));
+    if (made.def.vres.is_active())
+        zones.push_back(summary_of_zone(made.def, made.particles, made.constants));
 }
 
 /// Each zone of a case with `<vres>` is a case of its own.

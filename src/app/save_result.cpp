@@ -156,6 +156,7 @@ std::vector<VtkOutEntry> save_shapes(RunState& run, const MadeCase& made)
         vtk_out.push_back({fs::path(made.output + shape_file.name).filename().string(),
                            format_ranges(mk), format_ranges(mk_bound), format_ranges(mk_fluid)});
     }
+    return vtk_out;
 }
 
 std::vector<ParticleType> types_of(const CaseParticles& particles)

@@ -2,10 +2,10 @@
 
 #include "boolean/cluster_cut.h"
 #include "boolean/contacts.h"
+#include "boolean/line_crossings.h"
 
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
-#include "core/predicates.h"
 #include "meshes/point_grid.h"
 
 #include <algorithm>
@@ -27,16 +27,6 @@ double squared(const Vec3& v)
 {
     return dot(v, v);
 }
-
-/// A straight line between two vertices: a piece of a side, or of the line where two facets meet.
-struct Piece
-{
-    std::uint32_t from = 0;
-    std::uint32_t to = 0;
-    /// The two facets of a line that is no side of either; else no_index.
-    std::array<std::uint32_t, 2> facets{no_index, no_index};
-    std::vector<std::uint32_t> inner; ///< vertices on it, in order after split_pieces()
-};
 
 class Arranger
 {
@@ -244,69 +234,12 @@ private:
         return all;
     }
 
-    int turn(const Cluster& c, std::uint32_t a, std::uint32_t b, std::uint32_t p) const
-    {
-        const auto& v = set_.vertices;
-        return orient2d(v[a][c.axis_u], v[a][c.axis_v], v[b][c.axis_u], v[b][c.axis_v],
-                        v[p][c.axis_u], v[p][c.axis_v]);
-    }
-
-    /// A crossing of two pieces inside both.
-    struct LineCrossing
-    {
-        std::uint32_t a = 0;
-        std::uint32_t b = 0;
-        Vec3 position;
-    };
-
     std::vector<LineCrossing> crossings_in(const Cluster& c) const
     {
-        std::vector<LineCrossing> found;
-        if (c.lines.empty() && c.facets.size() == 1) return found;
+        if (c.lines.empty() && c.facets.size() == 1) return {};
         // Of one facet only lines can cross; of several their sides as well.
-        const std::vector<std::uint32_t> all = c.facets.size() == 1 ? c.lines : pieces_of(c);
-        struct Range
-        {
-            double low_u, high_u, low_v, high_v;
-            std::uint32_t piece;
-        };
-        std::vector<Range> ranges;
-        for (const std::uint32_t p : all)
-        {
-            const Vec3 &a = set_.vertices[pieces_[p].from], &b = set_.vertices[pieces_[p].to];
-            ranges.push_back(
-                {std::min(a[c.axis_u], b[c.axis_u]), std::max(a[c.axis_u], b[c.axis_u]),
-                 std::min(a[c.axis_v], b[c.axis_v]), std::max(a[c.axis_v], b[c.axis_v]), p});
-        }
-        std::sort(ranges.begin(), ranges.end(),
-                  [](const Range& a, const Range& b)
-                  { return a.low_u != b.low_u ? a.low_u < b.low_u : a.piece < b.piece; });
-        for (std::size_t i = 0; i < ranges.size(); ++i)
-            for (std::size_t j = i + 1; j < ranges.size() && ranges[j].low_u <= ranges[i].high_u;
-                 ++j)
-            {
-                if (ranges[j].low_v > ranges[i].high_v || ranges[j].high_v < ranges[i].low_v)
-                    continue;
-                const std::uint32_t pa = std::min(ranges[i].piece, ranges[j].piece);
-                const std::uint32_t pb = std::max(ranges[i].piece, ranges[j].piece);
-                const Piece &a = pieces_[pa], &b = pieces_[pb];
-                if (a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to) continue;
-                if (turn(c, a.from, a.to, b.from) * turn(c, a.from, a.to, b.to) >= 0) continue;
-                if (turn(c, b.from, b.to, a.from) * turn(c, b.from, b.to, a.to) >= 0) continue;
-                const auto& v = set_.vertices;
-                const Vec3 along = v[a.to] - v[a.from], other = v[b.to] - v[b.from],
-                           away = v[b.from] - v[a.from];
-                const double det =
-                    along[c.axis_u] * other[c.axis_v] - along[c.axis_v] * other[c.axis_u];
-                const double t =
-                    (away[c.axis_u] * other[c.axis_v] - away[c.axis_v] * other[c.axis_u]) / det;
-                found.push_back(
-                    {pa, pb, v[a.from] + std::clamp(std::isfinite(t) ? t : 0.5, 0.0, 1.0) * along});
-            }
-        std::sort(found.begin(), found.end(),
-                  [](const LineCrossing& a, const LineCrossing& b)
-                  { return Pair(a.a, a.b) < Pair(b.a, b.b); });
-        return found;
+        const LinesInPlane lines{set_.vertices, pieces_, c.axis_u, c.axis_v};
+        return find_crossings(lines, c.facets.size() == 1 ? c.lines : pieces_of(c));
     }
 
     /// Lines that cross inside a facet get a common vertex. The line of two facets meets a third
@@ -319,7 +252,7 @@ private:
             [&](std::size_t i) { found[i] = crossings_in(clusters_[i]); }, 16);
         KnownCrossings known;
         for (const std::vector<LineCrossing>& list : found)
-            for (const LineCrossing& x : list) cross(x, known);
+            for (const LineCrossing& x : list) add_crossing(x, known);
     }
 
     struct KnownCrossings
@@ -329,7 +262,7 @@ private:
         std::unordered_map<std::uint64_t, std::uint32_t> of_two; ///< by pieces
     };
 
-    void cross(const LineCrossing& x, KnownCrossings& known)
+    void add_crossing(const LineCrossing& x, KnownCrossings& known)
     {
         std::array<std::uint32_t, 4> four{pieces_[x.a].facets[0], pieces_[x.a].facets[1],
                                           pieces_[x.b].facets[0], pieces_[x.b].facets[1]};

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/expression.h"
+#include "core/letters.h"
 
 #include <fmt/format.h>
 
@@ -161,9 +162,7 @@ bool AttributeReader::plain_flag_or(const Element& e, std::string_view name, boo
 {
     const std::string* value = e.find_attribute(name);
     if (value == nullptr) return otherwise;
-    std::string lower;
-    for (const char c : trimmed(*value))
-        lower += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    const std::string lower = lower_case(trimmed(*value));
     if (lower == "true" || lower == "1") return true;
     if (lower == "false" || lower == "0") return false;
     fail(e, fmt::format("attribute {}=\"{}\" is not a valid boolean, expected true or false", name,

@@ -1,5 +1,6 @@
 // Commands that fill and redraw.
 #include "casedef/command_table.h"
+#include "core/letters.h"
 #include "shapes/figures.h"
 
 #include <fmt/format.h>
@@ -30,10 +31,10 @@ FillFilter fill_filter(const Program& p, const Element& e, const std::string& wo
         p.check_mk(e, "mkfluid", MkKind::Fluid);
     return filter;
 }
+
 MkFilter near_filter(const Program& p, const Element& e, const char* type, const char* mk)
 {
-    std::string word = p.read.text(e, type);
-    for (char& c : word) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    const std::string word = lower_case(p.read.text(e, type));
     MkFilter filter;
     if (word == "void")
         filter.kind = MkKind::Void;

@@ -2,6 +2,7 @@
 
 #include "core/binary_items.h"
 #include "core/file_map.h"
+#include "core/letters.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -34,14 +35,6 @@ std::string wrong_steps(const MeshValues& mesh)
                 return "describes a mesh whose axes are not at right angles";
     }
     return {};
-}
-
-std::string lower_case(std::string_view text)
-{
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
 }
 
 class TextReader

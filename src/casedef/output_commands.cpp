@@ -1,6 +1,8 @@
 // Commands that write files of shapes and nodes.
 #include "casedef/command_table.h"
 
+#include "core/letters.h"
+
 #include <fmt/format.h>
 
 #include <string_view>
@@ -27,8 +29,7 @@ void cells_out(Program& p, const Element& e)
 
 void shape_out(Program& p, const Element& e)
 {
-    std::string format = p.read.text_or(e, "format", "vtk");
-    for (char& c : format) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    const std::string format = lower_case(p.read.text_or(e, "format", "vtk"));
     ShapeOutOp op;
     op.file = p.read.text(e, "file");
     if (format == "vtp")

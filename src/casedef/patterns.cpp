@@ -1,5 +1,7 @@
 #include "casedef/patterns.h"
 
+#include "core/letters.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +35,7 @@ std::vector<char> cells_of(const Element& e, std::uint64_t n, const AttributeRea
                                      cells.size(), n));
         return cells;
     }
-    for (const char c : small_letters(text))
+    for (const char c : lower_case(text))
     {
         const std::size_t digit = std::string_view("0123456789abcdef").find(c);
         if (digit == std::string_view::npos)
@@ -76,12 +78,6 @@ DrawPattern read_pattern(const Element& e, const AttributeReader& read)
 
 } // namespace
 
-std::string small_letters(std::string text)
-{
-    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    return text;
-}
-
 PatternTable read_patterns(const Element& patterns, const AttributeReader& read)
 {
     PatternTable out;
@@ -90,7 +86,7 @@ PatternTable read_patterns(const Element& patterns, const AttributeReader& read)
         if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
         if (e.name != "pattern") read.fail(e, "is not known in <patterns>, expected pattern");
         const std::string& name = read.text(e, "name");
-        if (!out.emplace(small_letters(name), std::make_shared<DrawPattern>(read_pattern(e, read)))
+        if (!out.emplace(lower_case(name), std::make_shared<DrawPattern>(read_pattern(e, read)))
                  .second)
             read.fail(e, fmt::format("there is another pattern named '{}', with or without "
                                      "capitals",

@@ -14,9 +14,6 @@ namespace fppg
 /// Patterns by their names in small letters.
 using PatternTable = std::map<std::string, std::shared_ptr<const DrawPattern>>;
 
-/// The letters A to Z of a name made small: names of patterns count without their case.
-std::string small_letters(std::string text);
-
 /// Reads `<patterns>`, whether they are used or not. The cells are given as X and - (x too) or as a
 /// hexadecimal number, most significant bit first, of as many digits as are needed; bits that are
 /// left over are dropped (found by experiment with GenCase v5.4.354).

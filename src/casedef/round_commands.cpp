@@ -87,7 +87,9 @@ void draw_cylinder(Program& p, const Element& e)
     const double radius = p.radius_of(e);
     const std::vector<Program::Layer> layers = p.layers_of(e);
     CylinderOp op{p.matrix(points[0]), p.matrix(points[1]), radius, {true, true, true}, {}};
-    for (const int face : p.mask_of(e))
+    const std::vector<int> hidden = p.mask_of(e);
+    op.is_masked = !hidden.empty();
+    for (const int face : hidden)
         if (face >= 1 && face <= 3) op.is_visible[static_cast<std::size_t>(face - 1)] = false;
     // On the lattice such a layer draws no tube.
     if (p.state.off_lattice && op.is_visible[2]) p.check_layers(e, radius, layers);

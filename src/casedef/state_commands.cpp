@@ -1,6 +1,7 @@
 // Commands that change the state of the draws: mk, modes, constants.
 #include "casedef/command_table.h"
 #include "casedef/patterns.h"
+#include "core/letters.h"
 
 #include <fmt/format.h>
 
@@ -185,7 +186,7 @@ void clear_mk_back(Program& p, const Element&)
 
 void set_pattern(Program& p, const Element& e)
 {
-    const auto found = p.patterns.find(small_letters(p.read.text(e, "name")));
+    const auto found = p.patterns.find(lower_case(p.read.text(e, "name")));
     if (found == p.patterns.end())
         p.read.fail(
             e, fmt::format("there is no pattern named '{}' in <patterns>", p.read.text(e, "name")));

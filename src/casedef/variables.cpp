@@ -1,5 +1,7 @@
 #include "casedef/variables.h"
 
+#include "core/letters.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,14 +19,6 @@ bool is_name_character(char c)
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-std::string to_lower(std::string_view text)
-{
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return lower;
-}
-
 void check_name(std::string_view name)
 {
     constexpr std::array reserved{"all", "none", "true", "false", "e"};
@@ -33,7 +27,7 @@ void check_name(std::string_view name)
         throw ExpressionError(0, fmt::format("'{}' is no name of a variable; expected letters, "
                                              "digits and _",
                                              name));
-    if (std::find(reserved.begin(), reserved.end(), to_lower(name)) != reserved.end())
+    if (std::find(reserved.begin(), reserved.end(), lower_case(name)) != reserved.end())
         throw ExpressionError(
             0, fmt::format("the name '{}' cannot be used for a variable; all, none, true, false "
                            "and e are reserved",
@@ -238,7 +232,7 @@ void Variables::choose_exported(std::string_view patterns)
     for (const std::string& entry : entries)
     {
         const bool needs_variable =
-            !entry.starts_with('-') && !is_pattern(entry) && to_lower(entry) != "all";
+            !entry.starts_with('-') && !is_pattern(entry) && lower_case(entry) != "all";
         if (needs_variable && !find_entry(entry))
             throw ExpressionError(0, fmt::format("the variable '{}' is not defined", entry));
     }
@@ -252,7 +246,7 @@ void Variables::choose_exported(std::string_view patterns)
     {
         const bool takes_out = entry.starts_with('-');
         if (takes_out) entry.remove_prefix(1);
-        const bool is_all = to_lower(entry) == "all";
+        const bool is_all = lower_case(entry) == "all";
         for (const Variable& variable : variables_)
         {
             if (!is_all && !matches(entry, variable.name)) continue;

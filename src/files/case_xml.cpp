@@ -17,13 +17,13 @@
 // Numbers are the shortest text that reads back exactly, where GenCase keeps six to eleven digits:
 // the solver compares data2dposy with the number in Case.bi4 and refuses a rounded one.
 
+#include "core/letters.h"
 #include "files/case_motion.h"
 #include "files/vres_xml.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <map>
 #include <set>
@@ -69,12 +69,6 @@ Element value_tag(std::string name, double value)
     return tag(std::move(name), {{"value", number(value)}});
 }
 
-std::string lower(std::string text)
-{
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
 // ---- execution of the definition ----
 
 /// Keys that v5.4.354 marks, whatever their case; it marks all that begin with DomainFixed or
@@ -82,7 +76,7 @@ std::string lower(std::string text)
 bool is_deprecated(const std::string& key)
 {
     static const std::set<std::string> keys{"deltasph", "partsoutmax", "incz", "posdouble"};
-    const std::string name = lower(key);
+    const std::string name = lower_case(key);
     return keys.contains(name) || name.starts_with("domainfixed") ||
            name.starts_with("domainparticles");
 }

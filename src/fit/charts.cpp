@@ -114,8 +114,8 @@ CellRange cells_around(const WorkFacet& facet, double clearance, double cell)
     CellRange range{};
     for (int axis = 0; axis < 3; ++axis)
     {
-        const auto [low, high] = std::minmax(
-            {facet.corners[0][axis], facet.corners[1][axis], facet.corners[2][axis]});
+        const auto [low, high] =
+            std::minmax({facet.corners[0][axis], facet.corners[1][axis], facet.corners[2][axis]});
         const auto at = static_cast<std::size_t>(2 * axis);
         range[at] = floor_of((low - clearance) / cell);
         range[at + 1] = floor_of((high + clearance) / cell);

@@ -101,8 +101,7 @@ private:
         if (particles_.kinds[j] != FitKind::Surface || dot(normal_of(i), normal_of(j)) > -0.5)
             return false;
         const double dp = options_.dp;
-        const double depth =
-            dot(particles_.positions[i] - particles_.positions[j], normal_of(i));
+        const double depth = dot(particles_.positions[i] - particles_.positions[j], normal_of(i));
         return depth > 0 && depth < options_.thickness * dp && squared - depth * depth <= dp * dp;
     }
 
@@ -177,8 +176,7 @@ SurfaceParticles keep_one_sheet(const SurfaceMesh& mesh, const Features& feature
                                 const OneSheetOptions& options, SurfaceParticles& particles,
                                 int threads)
 {
-    const std::vector<char> goes =
-        SheetChoice(mesh, features, options, particles, threads).run();
+    const std::vector<char> goes = SheetChoice(mesh, features, options, particles, threads).run();
     SurfaceParticles out;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < goes.size(); ++i)

@@ -9,6 +9,7 @@
 #include "meshes/inside_by_vote.h"
 #include "meshes/mesh_query.h"
 #include "meshes/winding_tree.h"
+#include "nodes/spans.h"
 
 #include <algorithm>
 #include <cmath>
@@ -279,28 +280,6 @@ void append_node(std::vector<Span>& spans, std::uint32_t y, std::uint32_t z)
         spans.push_back({y, z, z + 1});
 }
 
-/// Spans less a sorted list of nodes.
-std::vector<Span> without(const std::vector<Span>& spans, const std::vector<Span>& gone)
-{
-    std::vector<Span> result;
-    std::size_t j = 0;
-    for (const Span& s : spans)
-    {
-        while (j < gone.size() &&
-               (gone[j].y < s.y || (gone[j].y == s.y && gone[j].z_end <= s.z_begin)))
-            ++j;
-        std::uint32_t from = s.z_begin;
-        for (std::size_t k = j; k < gone.size() && gone[k].y == s.y && gone[k].z_begin < s.z_end;
-             ++k)
-        {
-            if (gone[k].z_begin > from) result.push_back({s.y, from, gone[k].z_begin});
-            from = std::max(from, gone[k].z_end);
-        }
-        if (from < s.z_end) result.push_back({s.y, from, s.z_end});
-    }
-    return result;
-}
-
 std::uint64_t count_nodes(const std::vector<Span>& spans)
 {
     std::uint64_t count = 0;
@@ -323,16 +302,6 @@ std::vector<Span> clip(const std::vector<Span>& spans, const WideGrid& wide,
                           static_cast<std::uint32_t>(end)});
     }
     return result;
-}
-
-/// Takes the empty slabs at both ends away.
-void trim(SpanSet& set)
-{
-    std::size_t begin = 0;
-    while (begin < set.slabs.size() && set.slabs[begin].empty()) ++begin;
-    while (set.slabs.size() > begin && set.slabs.back().empty()) set.slabs.pop_back();
-    set.slabs.erase(set.slabs.begin(), set.slabs.begin() + static_cast<std::ptrdiff_t>(begin));
-    set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(begin);
 }
 
 void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
@@ -363,6 +332,184 @@ void warn(const ClosedPart& part, const MeshReport& report, double area, double 
             zone.disputed_nodes));
 }
 
+/// Finds the zone of one wall.
+class ZoneFinder
+{
+public:
+    ZoneFinder(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
+               const WallZoneOptions& options, int threads)
+        : mesh_(mesh),
+          report_(report),
+          grid_(grid),
+          options_(options),
+          threads_(threads),
+          // The nodes of a solid stop a fill themselves.
+          within_(options.is_solid ? least_distance : half_dp),
+          beyond_(half_dp + 1)
+    {
+    }
+
+    WallZone run()
+    {
+        part_ = find_closed_part(mesh_);
+        const Wall wall =
+            grid_.is_2d ? section_of(mesh_, part_, grid_.origin.y) : whole_surface(mesh_, part_);
+        if (wall.soup.size() == 0) return {};
+        wide_ = widen(grid_, report_.bounds);
+        near_ = find_near_nodes(wall.soup, wide_.grid, threads_);
+        measure(wall);
+        if (zone_.has_inside)
+            find_inside(wall);
+        else
+            zone_.body_volume = 0;
+        choose_clearances();
+        take_nodes();
+        double area = 0;
+        for (const double a : mesh_.areas) area += a;
+        warn(part_, report_, area, overlap_, zone_);
+        return std::move(zone_);
+    }
+
+private:
+    void measure(const Wall& wall)
+    {
+        zone_.sheet_facets = part_.sheet_facets;
+        const double depth = grid_.is_2d ? grid_.dp : 1;
+        for (std::size_t i = 0; i < wall.sizes.size(); ++i)
+        {
+            zone_.area += depth * wall.sizes[i];
+            if (wall.is_bounding[i] == 0) zone_.sheet_area += depth * wall.sizes[i];
+        }
+        zone_.body_volume = grid_.is_2d ? wall.section_area * grid_.dp : part_.volume;
+        zone_.has_inside = part_.volume > 0 && zone_.body_volume > 0;
+    }
+
+    void find_inside(const Wall& wall)
+    {
+        InsideVote vote;
+        if (part_.is_exact)
+        {
+            ColumnOptions column_options;
+            column_options.measures_overlap = true;
+            ColumnCuts cuts = cut_columns(part_.soup, wide_.grid, column_options, threads_);
+            vote.inside = std::move(cuts.inside);
+            vote.overlap = cuts.overlap;
+        }
+        else
+            vote = vote_inside(part_.soup, wide_.grid, threads_);
+        zone_.disputed_nodes = vote.disputed;
+        overlap_ = vote.overlap;
+        if (overlap_ != 0 && part_.is_exact && !grid_.is_2d)
+            overlap_ = measure_overlap(part_.soup, threads_);
+        zone_.body_volume -= overlap_;
+        if (overlap_ != 0 || zone_.sheet_facets > 0)
+            zone_.wall_share_inside =
+                share_inside(wall, part_.soup, part_.is_exact, grid_.dp, threads_);
+        inside_ = std::move(vote.inside);
+    }
+
+    const std::vector<Span>& inside_of(std::size_t x) const
+    {
+        static const std::vector<Span> nothing;
+        const bool has_slab = x >= inside_.x_begin && x - inside_.x_begin < inside_.slabs.size();
+        return has_slab ? inside_.slabs[x - inside_.x_begin] : nothing;
+    }
+
+    std::uint32_t hash_of(std::size_t x, const NearNode& node) const
+    {
+        return spread(static_cast<std::int64_t>(x) + wide_.offset[0], node.y + wide_.offset[1],
+                      node.z + wide_.offset[2]);
+    }
+
+    /// How near to the wall nodes are left out on both sides: as given, or so that the particles
+    /// and the nodes that stay stand for the volume of the body.
+    void choose_clearances()
+    {
+        if (options_.clearance_dp)
+        {
+            // Nodes at 0.5 dp inside are in the zone as well: no volume asks for them.
+            const auto distance = static_cast<std::uint32_t>(
+                std::floor(*options_.clearance_dp * distance_units + 0.5));
+            within_.leave_out_below(std::max(distance, half_dp + 1));
+            beyond_.leave_out_below(distance);
+            return;
+        }
+        if (!zone_.has_inside) return;
+        std::uint64_t in_body = 0;
+        for (std::size_t x = 0; x < near_.size(); ++x)
+        {
+            in_body += count_nodes(inside_of(x));
+            for_each_near_node(
+                near_[x], inside_of(x),
+                [&](const NearNode& node, bool is_inside)
+                { (is_inside ? within_ : beyond_).add(node.distance, hash_of(x, node)); });
+        }
+        const auto particles = static_cast<double>(options_.wall_particles);
+        const double cells = zone_.body_volume / dp3();
+        const auto nodes = static_cast<double>(in_body);
+        within_.leave_out(nodes - (cells - particles * zone_.wall_share_inside));
+        beyond_.leave_out(cells + particles * (1 - zone_.wall_share_inside) - nodes);
+    }
+
+    void take_nodes()
+    {
+        std::vector<std::uint64_t> kept(near_.size(), 0);
+        zone_.volume.slabs.resize(grid_.n[0]);
+        zone_.zone.slabs.resize(grid_.n[0]);
+        parallel_for(near_.size(), threads_,
+                     [&](std::size_t x)
+                     {
+                         const std::vector<Span> left_out = left_out_of(x);
+                         const std::vector<Span> volume = subtract(inside_of(x), left_out);
+                         kept[x] = count_nodes(volume);
+                         const std::int64_t slab = static_cast<std::int64_t>(x) + wide_.offset[0];
+                         if (slab < 0 || slab >= grid_.n[0]) return;
+                         const auto s = static_cast<std::size_t>(slab);
+                         zone_.volume.slabs[s] = clip(volume, wide_, grid_);
+                         zone_.zone.slabs[s] = clip(left_out, wide_, grid_);
+                     });
+        trim(zone_.volume);
+        trim(zone_.zone);
+        zone_.clearance_inside_dp = within_.clearance();
+        zone_.clearance_outside_dp = beyond_.clearance();
+        if (!zone_.has_inside) return;
+        for (const std::uint64_t count : kept) zone_.nodes += count;
+        const double wall_cells =
+            static_cast<double>(options_.wall_particles) * zone_.wall_share_inside;
+        zone_.volume_error =
+            (static_cast<double>(zone_.nodes) + wall_cells) * dp3() / zone_.body_volume - 1;
+    }
+
+    std::vector<Span> left_out_of(std::size_t x) const
+    {
+        std::vector<Span> out;
+        for_each_near_node(near_[x], inside_of(x),
+                           [&](const NearNode& node, bool is_inside)
+                           {
+                               const Side& side = is_inside ? within_ : beyond_;
+                               if (side.is_left_out(node.distance, hash_of(x, node)))
+                                   append_node(out, node.y, node.z);
+                           });
+        return out;
+    }
+
+    double dp3() const { return grid_.dp * grid_.dp * grid_.dp; }
+
+    const SurfaceMesh& mesh_;
+    const MeshReport& report_;
+    const LatticeGrid& grid_;
+    const WallZoneOptions& options_;
+    int threads_;
+    Side within_;
+    Side beyond_;
+    ClosedPart part_;
+    WideGrid wide_;
+    std::vector<std::vector<NearNode>> near_; ///< per slab of the wide grid
+    SpanSet inside_;
+    double overlap_ = 0; ///< cubic metres
+    WallZone zone_;
+};
+
 } // namespace
 
 WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
@@ -371,127 +518,7 @@ WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const Latt
     if (options.clearance_dp && !(*options.clearance_dp >= 0.5 && *options.clearance_dp <= 1.0))
         throw GeometryError(
             fmt::format("a clearance of {:.6g} dp, expected 0.5 to 1", *options.clearance_dp));
-    WallZone zone;
-    const ClosedPart part = find_closed_part(mesh);
-    const Wall wall =
-        grid.is_2d ? section_of(mesh, part, grid.origin.y) : whole_surface(mesh, part);
-    if (wall.soup.size() == 0) return zone;
-    const WideGrid wide = widen(grid, report.bounds);
-    const auto near = find_near_nodes(wall.soup, wide.grid, threads);
-
-    const double dp3 = grid.dp * grid.dp * grid.dp;
-    zone.sheet_facets = part.sheet_facets;
-    const double depth = grid.is_2d ? grid.dp : 1;
-    for (std::size_t i = 0; i < wall.sizes.size(); ++i)
-    {
-        zone.area += depth * wall.sizes[i];
-        if (wall.is_bounding[i] == 0) zone.sheet_area += depth * wall.sizes[i];
-    }
-    zone.body_volume = grid.is_2d ? wall.section_area * grid.dp : part.volume;
-    zone.has_inside = part.volume > 0 && zone.body_volume > 0;
-    SpanSet inside;
-    double overlap = 0;
-    if (zone.has_inside)
-    {
-        InsideVote vote;
-        if (part.is_exact)
-        {
-            ColumnOptions column_options;
-            column_options.measures_overlap = true;
-            ColumnCuts cuts = cut_columns(part.soup, wide.grid, column_options, threads);
-            vote.inside = std::move(cuts.inside);
-            vote.overlap = cuts.overlap;
-        }
-        else
-            vote = vote_inside(part.soup, wide.grid, threads);
-        zone.disputed_nodes = vote.disputed;
-        overlap = vote.overlap;
-        if (overlap != 0 && part.is_exact && !grid.is_2d)
-            overlap = measure_overlap(part.soup, threads);
-        zone.body_volume -= overlap;
-        if (overlap != 0 || zone.sheet_facets > 0)
-            zone.wall_share_inside = share_inside(wall, part.soup, part.is_exact, grid.dp, threads);
-        inside = std::move(vote.inside);
-    }
-    else
-        zone.body_volume = 0;
-    const std::vector<Span> nothing;
-    const auto inside_of = [&](std::size_t x) -> const std::vector<Span>&
-    {
-        const bool has_slab = x >= inside.x_begin && x - inside.x_begin < inside.slabs.size();
-        return has_slab ? inside.slabs[x - inside.x_begin] : nothing;
-    };
-    const auto hash_of = [&](std::size_t x, const NearNode& node)
-    {
-        return spread(static_cast<std::int64_t>(x) + wide.offset[0], node.y + wide.offset[1],
-                      node.z + wide.offset[2]);
-    };
-
-    // The nodes of a solid stop a fill themselves.
-    Side within(options.is_solid ? least_distance : half_dp), beyond(half_dp + 1);
-    if (options.clearance_dp)
-    {
-        // Nodes at 0.5 dp inside are in the zone as well: no volume asks for them.
-        const auto distance =
-            static_cast<std::uint32_t>(std::floor(*options.clearance_dp * distance_units + 0.5));
-        within.leave_out_below(std::max(distance, half_dp + 1));
-        beyond.leave_out_below(distance);
-    }
-    else if (zone.has_inside)
-    {
-        std::uint64_t in_body = 0;
-        for (std::size_t x = 0; x < near.size(); ++x)
-        {
-            in_body += count_nodes(inside_of(x));
-            for_each_near_node(
-                near[x], inside_of(x),
-                [&](const NearNode& node, bool is_inside)
-                { (is_inside ? within : beyond).add(node.distance, hash_of(x, node)); });
-        }
-        const auto particles = static_cast<double>(options.wall_particles);
-        const double cells = zone.body_volume / dp3;
-        const auto nodes = static_cast<double>(in_body);
-        within.leave_out(nodes - (cells - particles * zone.wall_share_inside));
-        beyond.leave_out(cells + particles * (1 - zone.wall_share_inside) - nodes);
-    }
-
-    std::vector<std::uint64_t> kept(near.size(), 0);
-    zone.volume.slabs.resize(grid.n[0]);
-    zone.zone.slabs.resize(grid.n[0]);
-    parallel_for(near.size(), threads,
-                 [&](std::size_t x)
-                 {
-                     std::vector<Span> left_out;
-                     for_each_near_node(near[x], inside_of(x),
-                                        [&](const NearNode& node, bool is_inside)
-                                        {
-                                            const Side& side = is_inside ? within : beyond;
-                                            if (side.is_left_out(node.distance, hash_of(x, node)))
-                                                append_node(left_out, node.y, node.z);
-                                        });
-                     const std::vector<Span> volume = without(inside_of(x), left_out);
-                     kept[x] = count_nodes(volume);
-                     const std::int64_t slab = static_cast<std::int64_t>(x) + wide.offset[0];
-                     if (slab < 0 || slab >= grid.n[0]) return;
-                     zone.volume.slabs[static_cast<std::size_t>(slab)] = clip(volume, wide, grid);
-                     zone.zone.slabs[static_cast<std::size_t>(slab)] = clip(left_out, wide, grid);
-                 });
-    trim(zone.volume);
-    trim(zone.zone);
-    zone.clearance_inside_dp = within.clearance();
-    zone.clearance_outside_dp = beyond.clearance();
-    if (zone.has_inside)
-    {
-        for (const std::uint64_t count : kept) zone.nodes += count;
-        const double wall_cells =
-            static_cast<double>(options.wall_particles) * zone.wall_share_inside;
-        zone.volume_error =
-            (static_cast<double>(zone.nodes) + wall_cells) * dp3 / zone.body_volume - 1;
-    }
-    double area = 0;
-    for (const double a : mesh.areas) area += a;
-    warn(part, report, area, overlap, zone);
-    return zone;
+    return ZoneFinder(mesh, report, grid, options, threads).run();
 }
 
 } // namespace fppg

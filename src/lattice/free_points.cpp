@@ -291,9 +291,7 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
 
 bool fills_free_cylinder(const CylinderOp& op, DrawMode mode)
 {
-    return mode != DrawMode::Face && op.layers.empty() &&
-           std::all_of(op.is_visible.begin(), op.is_visible.end(),
-                       [](bool visible) { return visible; });
+    return mode != DrawMode::Face && op.layers.empty() && !op.is_masked;
 }
 
 std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp)

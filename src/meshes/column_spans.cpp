@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "meshes/column_cut.h"
+#include "nodes/spans.h"
 
 namespace fppg
 {
@@ -279,22 +280,6 @@ SlabRange slabs_of(const Vec3* corners, const LatticeGrid& grid)
     while (range.begin < range.end && x.at(range.begin) < x_low) ++range.begin;
     while (range.begin < range.end && x.at(range.end - 1) > x_high) --range.end;
     return range;
-}
-
-/// Takes the empty slabs at both ends away.
-void trim(SpanSet& set)
-{
-    const auto is_filled = [](const std::vector<Span>& slab) { return !slab.empty(); };
-    const auto first = std::find_if(set.slabs.begin(), set.slabs.end(), is_filled);
-    if (first == set.slabs.end())
-    {
-        set = {};
-        return;
-    }
-    const auto last = std::find_if(set.slabs.rbegin(), set.slabs.rend(), is_filled).base();
-    set.x_begin += static_cast<std::uint32_t>(first - set.slabs.begin());
-    set.slabs.erase(last, set.slabs.end());
-    set.slabs.erase(set.slabs.begin(), first);
 }
 
 } // namespace

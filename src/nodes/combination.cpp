@@ -36,15 +36,6 @@ Spans evaluate_slab(const BooleanNode& node, const std::vector<SpanSet>& sets, s
     return out;
 }
 
-void trim(SpanSet& set)
-{
-    std::size_t begin = 0;
-    while (begin < set.slabs.size() && set.slabs[begin].empty()) ++begin;
-    while (set.slabs.size() > begin && set.slabs.back().empty()) set.slabs.pop_back();
-    set.slabs.erase(set.slabs.begin(), set.slabs.begin() + static_cast<std::ptrdiff_t>(begin));
-    set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(set.x_begin + begin);
-}
-
 void mark_staying(const BooleanNode& node, bool stays, std::vector<char>& out)
 {
     if (node.op == BooleanOp::Part)

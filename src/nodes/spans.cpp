@@ -118,6 +118,15 @@ Spans subtract(const Spans& a, const Spans& b)
     return out;
 }
 
+void trim(SpanSet& set)
+{
+    std::size_t begin = 0;
+    while (begin < set.slabs.size() && set.slabs[begin].empty()) ++begin;
+    while (set.slabs.size() > begin && set.slabs.back().empty()) set.slabs.pop_back();
+    set.slabs.erase(set.slabs.begin(), set.slabs.begin() + static_cast<std::ptrdiff_t>(begin));
+    set.x_begin = set.slabs.empty() ? 0 : static_cast<std::uint32_t>(set.x_begin + begin);
+}
+
 Spans clip_to_box(const Spans& spans, const NodeBox& box)
 {
     Spans out;

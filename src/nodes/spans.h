@@ -33,6 +33,8 @@ void sort_and_join(Spans& spans);
 Spans unite(const Spans& a, const Spans& b);
 Spans intersect(const Spans& a, const Spans& b);
 Spans subtract(const Spans& a, const Spans& b);
+/// Takes the empty slabs at both ends away.
+void trim(SpanSet& set);
 /// The part inside the y and z limits of a box.
 Spans clip_to_box(const Spans& spans, const NodeBox& box);
 /// The nodes of a box that are not in `spans`; one span a column where nothing is drawn.

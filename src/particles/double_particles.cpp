@@ -39,7 +39,7 @@ public:
             }
             if (doubles) continue;
             runs.push_back(r);
-            if (r.is_free()) set_begin(runs.back(), free_.size() - r.count);
+            if (r.is_free()) runs.back().set_free_begin(free_.size() - r.count);
         }
         if (doubles) add_runs(runs, free_begin);
         block.runs = std::move(runs);
@@ -113,23 +113,14 @@ private:
         }
     }
 
-    static void set_begin(ParticleRun& run, std::uint64_t begin)
-    {
-        run.y = static_cast<std::uint32_t>(begin);
-        run.z = static_cast<std::uint32_t>(begin >> 32U);
-    }
-
     void add_runs(ParticleRuns& runs, std::uint64_t begin) const
     {
         while (begin < free_.size())
         {
-            ParticleRun run;
-            run.x = ParticleRun::off_lattice;
-            set_begin(run, begin);
-            run.count = static_cast<std::uint32_t>(
+            const auto count = static_cast<std::uint32_t>(
                 std::min<std::uint64_t>(free_.size() - begin, 1U << 30U));
-            begin += run.count;
-            runs.push_back(run);
+            runs.push_back(ParticleRun::of_free(begin, count));
+            begin += count;
         }
     }
 

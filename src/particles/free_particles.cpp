@@ -46,8 +46,7 @@ public:
         if (!runs_.empty() && runs_.back().is_free())
             ++runs_.back().count;
         else
-            runs_.push_back({ParticleRun::off_lattice, static_cast<std::uint32_t>(index),
-                             static_cast<std::uint32_t>(index >> 32U), 1, 0});
+            runs_.push_back(ParticleRun::of_free(index, 1));
     }
     ParticleRuns take() { return std::move(runs_); }
 

@@ -1,10 +1,11 @@
 #include "fppg/relax_walls.h"
 
 #include "core/parallel.h"
-#include "fit/wall_section.h"
-#include "meshes/mesh_query.h"
 #include "meshes/point_grid.h"
 #include "meshes/round_surface.h"
+#include "relax/all_walls.h"
+#include "relax/near_blocks.h"
+#include "relax/regions.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -30,180 +30,6 @@ constexpr double reach_of_sides_dp = 1.5;
 constexpr int surface_iterations = 100;
 constexpr int volume_iterations = 30;
 constexpr std::size_t runs_a_chunk = 256;
-
-struct NodeIndex
-{
-    std::uint32_t x = 0;
-    std::uint32_t y = 0;
-    std::uint32_t z = 0;
-    bool operator==(const NodeIndex&) const = default;
-};
-
-Vec3 place_of(const NodeIndex& n, const LatticeGrid& grid)
-{
-    return {grid.origin.x + n.x * grid.dp, grid.origin.y + n.y * grid.dp,
-            grid.origin.z + n.z * grid.dp};
-}
-
-/// Blocks of the lattice, a few nodes a side, that have a wall particle in or beside them.
-class NearBlocks
-{
-public:
-    /// side   of a block, nodes
-    /// reach  how many blocks beyond that of the particle count
-    NearBlocks(const std::vector<Vec3>& points, const LatticeGrid& grid, std::uint32_t side,
-               int reach)
-        : side_(side)
-    {
-        std::vector<std::array<std::int64_t, 3>> cores;
-        for (const Vec3& p : points)
-        {
-            std::array<std::int64_t, 3> block{};
-            for (int axis = 0; axis < 3; ++axis)
-                block[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(
-                    std::floor((p[axis] - grid.origin[axis]) / grid.dp / side));
-            if (cores.empty() || cores.back() != block) cores.push_back(block);
-        }
-        std::sort(cores.begin(), cores.end());
-        cores.erase(std::unique(cores.begin(), cores.end()), cores.end());
-        // Nested because the blocks around one are walked along three axes.
-        for (const auto& c : cores)
-            for (std::int64_t x = c[0] - reach; x <= c[0] + reach; ++x)
-                for (std::int64_t y = c[1] - reach; y <= c[1] + reach; ++y)
-                    for (std::int64_t z = c[2] - reach; z <= c[2] + reach; ++z)
-                        if (x >= 0 && y >= 0 && z >= 0) keys_.push_back(key(x, y, z));
-        std::sort(keys_.begin(), keys_.end());
-        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-    }
-
-    /// Calls visit(z begin, z end) for the stretches of a column that lie in blocks.
-    template <typename Visit>
-    void for_each_stretch(std::uint32_t x, const Run& run, const Visit& visit) const
-    {
-        const auto first = key(x / side_, run.y / side_, run.z_begin / side_);
-        for (auto at = std::lower_bound(keys_.begin(), keys_.end(), first); at != keys_.end(); ++at)
-        {
-            if (*at >> 21 != first >> 21) break;
-            const auto begin = static_cast<std::uint32_t>(*at & 0x1FFFFF) * side_;
-            if (begin >= run.z_end) break;
-            visit(std::max(begin, run.z_begin), std::min(begin + side_, run.z_end));
-        }
-    }
-
-private:
-    static std::uint64_t key(std::uint64_t x, std::uint64_t y, std::uint64_t z)
-    {
-        return x << 42 | y << 21 | z;
-    }
-    template <typename A>
-    static std::uint64_t key(A x, A y, A z)
-    {
-        return key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
-                   static_cast<std::uint64_t>(z));
-    }
-
-    std::uint32_t side_;
-    std::vector<std::uint64_t> keys_;
-};
-
-/// The walls of all bodies as one: their facets, or in 2D the lines where they meet the plane.
-class AllWalls
-{
-public:
-    struct Closest
-    {
-        Vec3 point;
-        double distance = 0; ///< metres
-        std::size_t body = 0;
-        bool is_outside = false; ///< on the side where the facet looks
-    };
-
-    AllWalls(const std::vector<FittedBody>& bodies, const LatticeGrid& grid, int threads)
-    {
-        TriangleSoup soup;
-        for (const FittedBody& body : bodies)
-        {
-            first_.push_back(normals_.size());
-            WallSection section;
-            if (grid.is_2d) section = wall_section(body.mesh, grid.origin.y);
-            const TriangleSoup of_body = grid.is_2d ? section.soup : soup_of(body.mesh);
-            soup.vertices.insert(soup.vertices.end(), of_body.vertices.begin(),
-                                 of_body.vertices.end());
-            const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
-            normals_.insert(normals_.end(), normals.begin(), normals.end());
-        }
-        if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
-    }
-
-    bool is_empty() const { return !query_; }
-    Closest closest(const Vec3& p) const
-    {
-        const ClosestPoint near = query_->closest_point(p);
-        const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
-        return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
-                dot(p - near.point, normals_[near.facet]) > 0};
-    }
-    Vec3 closest_point(const Vec3& p, double within) const
-    {
-        return query_->closest_point(p, within).point;
-    }
-
-private:
-    std::vector<std::size_t> first_; ///< facet or line of each body
-    std::vector<Vec3> normals_;      ///< of all facets or lines
-    std::optional<MeshQuery> query_;
-};
-
-/// Nodes of a set of mks that are relaxed together.
-struct Region
-{
-    std::string what;
-    std::vector<double> band; ///< per mk, in dp; 0: not of the region
-    std::vector<char> beside; ///< per mk: not of the region, but its nodes push
-    bool is_solid = false;
-    double h_dp = 1;
-    std::optional<int> iterations;
-};
-
-/// The mks of solid bodies, those of one body together; ascending by the first of each.
-std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies)
-{
-    std::vector<std::uint16_t> first_of(65536, 0); // 0: no solid
-    const auto find = [&first_of](std::uint16_t mk)
-    {
-        while (first_of[mk] != mk) mk = first_of[mk];
-        return mk;
-    };
-    const auto join = [&](std::uint16_t a, std::uint16_t b)
-    {
-        for (const std::uint16_t mk : {a, b})
-            if (first_of[mk] == 0) first_of[mk] = mk;
-        a = find(a);
-        b = find(b);
-        first_of[std::max(a, b)] = std::min(a, b);
-    };
-    for (const FittedBody& body : bodies)
-    {
-        if (!body.is_solid) continue;
-        join(body.mk, body.mk);
-        std::set<std::uint16_t> of_parts(body.facet_mk.begin(), body.facet_mk.end());
-        for (const std::uint16_t mk : of_parts) join(body.mk, mk);
-    }
-    std::vector<std::vector<std::uint16_t>> out;
-    std::vector<std::size_t> group(65536, 0);
-    for (std::uint32_t mk = 1; mk < 65536; ++mk)
-    {
-        if (first_of[mk] == 0) continue;
-        const std::uint16_t first = find(static_cast<std::uint16_t>(mk));
-        if (first == mk)
-        {
-            group[mk] = out.size();
-            out.emplace_back();
-        }
-        out[group[first]].push_back(static_cast<std::uint16_t>(mk));
-    }
-    return out;
-}
 
 /// A run of the field and its slab.
 struct SlabRun
@@ -277,20 +103,6 @@ private:
         WallParticles out;
         for (std::size_t i = 0; i < all.size(); ++i)
             if ((is_meant[all.bodies[i]] != 0) == meant) out.append(all, i);
-        return out;
-    }
-
-    /// Puts two sets together again by body.
-    static WallParticles join(const WallParticles& a, const WallParticles& b)
-    {
-        WallParticles out;
-        std::size_t i = 0;
-        std::size_t j = 0;
-        while (i < a.size() || j < b.size())
-            if (j == b.size() || (i < a.size() && a.bodies[i] < b.bodies[j]))
-                out.append(a, i++);
-            else
-                out.append(b, j++);
         return out;
     }
 
@@ -477,12 +289,6 @@ private:
                                                          field_.grid, side, reach);
         return *place->second;
     }
-
-    struct Mover
-    {
-        NodeIndex node;
-        std::uint16_t mk = 0;
-    };
 
     /// The nodes of a region that move, in the order of its runs.
     std::vector<Mover> find_movers(const Region& region, const std::vector<SlabRun>& runs,
@@ -732,36 +538,6 @@ private:
             if (!stays[i]) left[movers[i].node.x].push_back(movers[i]);
         parallel_for(field_.slabs.size(), threads_,
                      [&](std::size_t x) { cover(field_.slabs[x], left[x]); });
-    }
-
-    /// Covers nodes, sorted by (y, z).
-    static void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes)
-    {
-        if (nodes.empty()) return;
-        std::vector<Run> out;
-        const auto append_run = [&](const Run& run)
-        {
-            if (run.z_begin >= run.z_end) return;
-            if (!out.empty() && out.back().y == run.y && out.back().mk == run.mk &&
-                out.back().is_covered == run.is_covered && out.back().z_end == run.z_begin)
-                out.back().z_end = run.z_end;
-            else
-                out.push_back(run);
-        };
-        auto node = nodes.begin();
-        for (const Run& run : runs)
-        {
-            std::uint32_t from = run.z_begin;
-            for (; node != nodes.end() && node->node.y == run.y && node->node.z < run.z_end; ++node)
-            {
-                const std::uint32_t z = node->node.z;
-                append_run({run.y, from, z, run.mk, run.is_covered});
-                append_run({run.y, z, z + 1, run.mk, true});
-                from = z + 1;
-            }
-            append_run({run.y, from, run.z_end, run.mk, run.is_covered});
-        }
-        runs = std::move(out);
     }
 
     const CaseDef& def_;

@@ -141,11 +141,6 @@ ShapeMesh cylinder_mesh(const CylinderLayer& cylinder, const std::array<bool, 3>
     return out;
 }
 
-bool has_all_faces(const CylinderOp& cylinder)
-{
-    return cylinder.is_visible[0] && cylinder.is_visible[1] && cylinder.is_visible[2];
-}
-
 /// One way for a node to be taken.
 struct Piece
 {
@@ -225,11 +220,10 @@ std::vector<Body> bodies_of(const CylinderOp& cylinder, const DrawState& state,
         add_faces(cylinder, layer.radius, grid.dp, add(layer.p0, layer.p1).pieces);
     if (cylinder.layers.empty())
     {
-        const bool all_visible = has_all_faces(cylinder);
         std::vector<Piece>& pieces = add(cylinder.p0, cylinder.p1).pieces;
-        if (state.mode != DrawMode::Solid || !all_visible)
+        if (state.mode != DrawMode::Solid || cylinder.is_masked)
             add_faces(cylinder, cylinder.radius, grid.dp, pieces);
-        if (state.mode != DrawMode::Face && all_visible)
+        if (state.mode != DrawMode::Face && !cylinder.is_masked)
             pieces.push_back({-1, cylinder.radius, false});
     }
     for (Body& body : bodies) measure(body, widths, grid);
@@ -450,7 +444,7 @@ std::vector<ShapeMesh> surfaces_of(const CylinderOp& cylinder, const ShapeContex
     if (!out.empty()) return out;
     out.push_back(cylinder_mesh({cylinder.p0, cylinder.p1, cylinder.radius}, cylinder.is_visible,
                                 context.grid.dp));
-    out.back().is_solid = context.may_fill() && has_all_faces(cylinder);
+    out.back().is_solid = context.may_fill() && !cylinder.is_masked;
     return out;
 }
 
@@ -497,7 +491,7 @@ std::optional<ExactBody> body_of(const CylinderOp& cylinder, const ShapeContext&
     const Vec3 along = cylinder.p1 - cylinder.p0;
     const double length = norm(along);
     const double r = cylinder.radius;
-    if (!cylinder.layers.empty() || !has_all_faces(cylinder))
+    if (!cylinder.layers.empty() || cylinder.is_masked)
         why_not = "it is drawn by layers or a part of a closed shape only";
     else if (!(length > 0))
         why_not = "its cylinder has no length";

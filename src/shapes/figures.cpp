@@ -342,11 +342,9 @@ bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp)
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
 {
     for (const int number : numbers)
-    {
-        if (number < 1 || number > static_cast<int>(figure.faces.size())) continue;
-        figure.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
-        figure.solid = SolidKind::None;
-    }
+        if (number >= 1 && number <= static_cast<int>(figure.faces.size()))
+            figure.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
+    if (!numbers.empty()) figure.solid = SolidKind::None;
 }
 
 void cut_faces(FigureOp& figure)

@@ -90,7 +90,8 @@ QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp);
 /// on quads of one and two dp, two dps).
 bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp);
 
-/// Hides faces of a figure and with that switches its filling off; numbers from 1 (rule S10).
+/// Hides faces of a figure, numbers from 1; any number switches its filling off, also one that
+/// names no face (rule S10).
 void hide_faces(FigureOp& figure, const std::vector<int>& numbers);
 
 /// The region of `fillprism`: strictly behind the planes through three snapped corners of each

@@ -1,5 +1,7 @@
 #include "upgrade/edited_text.h"
 
+#include "core/letters.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -28,12 +30,6 @@ std::string one_line(const std::string& text)
     }
     if (out.ends_with(' ')) out.pop_back();
     return out;
-}
-
-std::string lower(std::string text)
-{
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
 }
 
 } // namespace
@@ -129,13 +125,13 @@ std::optional<double> literal_number(const std::string& value)
 
 bool is_true(const std::string& value)
 {
-    return value == "1" || lower(value) == "true";
+    return value == "1" || lower_case(value) == "true";
 }
 
 bool is_switched_on(const TextNode& node)
 {
     const TextAttribute* active = node.find_attribute("active");
-    return active == nullptr || (active->value != "0" && lower(active->value) != "false");
+    return active == nullptr || (active->value != "0" && lower_case(active->value) != "false");
 }
 
 std::vector<const TextNode*> active_children(const TextNode& node, std::string_view name)

@@ -125,10 +125,9 @@ inline CaseParticles walled_particles()
 {
     CaseParticles particles = small_particles();
     std::vector<ParticleBlock> blocks = std::move(particles.blocks);
-    constexpr std::uint32_t off = ParticleRun::off_lattice;
-    blocks[1].runs = {{3, 0, 1, 1, 0}, {off, 0, 0, 2, 0}, {3, 0, 2, 1, 0}};
+    blocks[1].runs = {{3, 0, 1, 1, 0}, ParticleRun::of_free(0, 2), {3, 0, 2, 1, 0}};
     blocks[1].count += 2;
-    blocks[4].runs.push_back({off, 2, 0, 3, 0});
+    blocks[4].runs.push_back(ParticleRun::of_free(2, 3));
     blocks[4].count += 3;
     particles = make_particles(std::move(blocks));
     particles.has_walls = true;

@@ -177,9 +177,8 @@ TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)
     std::vector<ParticleBlock> blocks = particles.blocks;
     for (std::uint32_t block = 0; block < 2; ++block)
     {
-        blocks[block].runs.insert(
-            blocks[block].runs.begin() + 40,
-            ParticleRun{ParticleRun::off_lattice, block * 50000, 0, 50000, 0});
+        blocks[block].runs.insert(blocks[block].runs.begin() + 40,
+                                  ParticleRun::of_free(block * 50000, 50000));
         blocks[block].count += 50000;
     }
     particles = make_particles(std::move(blocks));

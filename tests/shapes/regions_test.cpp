@@ -393,6 +393,7 @@ TEST(CylinderRegion, HasTheNodesByTheirPlaceAlongAndAcrossTheAxis)
         cylinder.is_visible = {true, true, true};
         if (i % 4 == 0) cylinder.is_visible = {dice.coin(), dice.coin(), dice.coin()};
         const bool all_visible = cylinder.is_visible == std::array<bool, 3>{true, true, true};
+        cylinder.is_masked = !all_visible;
         const Vec3 a = position(from, grid);
         const Vec3 b = position(to, grid);
         const Vec3 axis = b - a;

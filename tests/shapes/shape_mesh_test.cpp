@@ -271,7 +271,7 @@ TEST(ShapeMeshes, RoundShapesAreSolidUnlessInFaceMode)
             EXPECT_NE(shapes[0].round, nullptr);
             EXPECT_TRUE(taken(shapes[0]).report.is_watertight);
         }
-    EXPECT_FALSE(meshes(CylinderOp{{}, {0, 0, 1}, r, {true, false, true}, {}})[0].is_solid);
+    EXPECT_FALSE(meshes(CylinderOp{{}, {0, 0, 1}, r, {true, false, true}, {}, true})[0].is_solid);
 }
 
 TEST(ShapeMeshes, LayersAreShellsAroundTheShape)

@@ -42,6 +42,13 @@ set(app_may_see upgrade leak batch report compare render walls lattice fit boole
     particles nodes core)
 set(main_may_see app)
 
+# Public headers with functions of a stage: only who may see its folder includes them.
+set(fit_headers fit one_sheet section wall_zone)
+set(boolean_headers boolean)
+set(relax_headers relax relax_volume relax_walls)
+set(compare_headers compare)
+set(render_headers render)
+
 # Third parties that few folders wrap for all others.
 set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
 # The case definition, and mesh files whose numbers are too many to pass through a tree.
@@ -65,6 +72,15 @@ function(check_file file folder)
       elseif(NOT seen STREQUAL "fppg" AND NOT seen STREQUAL folder
              AND NOT seen IN_LIST ${folder}_may_see)
         list(APPEND found "${file}: ${folder} may not include ${seen}/")
+      endif()
+      if(seen STREQUAL "fppg" AND NOT folder STREQUAL "include")
+        string(REGEX REPLACE ".*fppg/([a-z_]+)\\.h.*" "\\1" header "${line}")
+        foreach(owner fit boolean relax compare render)
+          if(header IN_LIST ${owner}_headers AND NOT folder STREQUAL owner
+             AND NOT owner IN_LIST ${folder}_may_see)
+            list(APPEND found "${file}: ${folder} may not include fppg/${header}.h of ${owner}")
+          endif()
+        endforeach()
       endif()
     elseif(line MATCHES "include[ \t]+\"" AND NOT line MATCHES "include[ \t]+\"tinyxml2")
       list(APPEND found "${file}: name the folder of the header: ${line}")

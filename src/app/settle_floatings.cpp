@@ -1,10 +1,9 @@
-#include "app/floating_log.h"
+#include "app/settle_floatings.h"
 
 #include "fppg/error.h"
 
 #include "app/fit_check.h"
 #include "particles/initials.h"
-#include "scene/exact_body.h"
 
 #include <fmt/format.h>
 
@@ -147,59 +146,81 @@ const FloatingDef* definition_of(const CaseDef& def, std::uint16_t mkbound)
     return found == def.floatings.rend() ? nullptr : &*found;
 }
 
+/// A body with the mass and inertia of its shape, but for what its definition gives.
+FloatingBody exact_floating(const FloatingBody& body, const FloatingDef& f, const ExactBody& shape,
+                            const Transform& map)
+{
+    FloatingBody out = body;
+    out.mass_body = f.mass_body ? *f.mass_body : f.rhop_body.value_or(0) * shape.volume;
+    const double density = out.mass_body / shape.volume;
+    std::array<Vec3, 3> inertia = turned(shape.inertia, map);
+    for (Vec3& row : inertia)
+        for (int j = 0; j < 3; ++j) row[j] = row[j] == 0 ? 0 : row[j] * density;
+    const Vec3 center = map(shape.center);
+    out.center = f.center ? *f.center : center;
+    out.inertia =
+        f.inertia ? *f.inertia : inertia_about(inertia, out.mass_body, center - out.center);
+    if (f.distribute_mass) out.mass_part *= out.mass_body / body.mass_body;
+    return out;
+}
+
 } // namespace
 
-std::vector<std::string> settle_floatings(const Scene& scene, const FittedWalls& walls,
-                                          CaseParticles& particles, RunLog& log)
+SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
+                                  CaseParticles& particles)
 {
     const CaseDef& def = *scene.def;
-    if (particles.floatings.empty()) return {};
     const ExactFloatings& exact = def.exact_floatings;
+    SettledFloatings out;
     MassCheck check(def, particles, walls);
-    log.line("Floating bodies:");
     for (FloatingBody& body : particles.floatings)
     {
         const ParticleBlock& block = particles.blocks[body.block];
         const FloatingDef* f = definition_of(def, block.mk_type);
-        log.line(fmt::format("  mkbound {}: {} (particles)", block.mk_type, text_of(body)));
+        SettledFloating& settled = out.bodies.emplace_back();
+        settled.mkbound = block.mk_type;
+        settled.of_particles = body;
         const bool is_wanted =
             exact.all || std::find(exact.mk.begin(), exact.mk.end(), block.mk) != exact.mk.end();
-        std::string why_not;
-        const std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
+        const std::optional<ExactBody> shape = exact_body(scene, block.mk, settled.why_not);
         if (!shape || f == nullptr)
         {
-            log.line(fmt::format("    there is no single closed shape of it: {}", why_not));
             if (is_wanted)
                 throw CaseError(def.file, exact.line,
                                 fmt::format("<floatings exact=\"true\">: mkbound {} has no exact "
                                             "mass and inertia: {}; expected one closed shape",
-                                            block.mk_type, why_not));
+                                            block.mk_type, settled.why_not));
             if (f != nullptr) check.note(body, *f, check.section_of(block));
             continue;
         }
-        FloatingBody true_body = body;
-        true_body.mass_body =
-            f->mass_body ? *f->mass_body : f->rhop_body.value_or(0) * shape->volume;
-        const double density = true_body.mass_body / shape->volume;
-        const Transform map = motion_of(block);
-        std::array<Vec3, 3> inertia = turned(shape->inertia, map);
-        for (Vec3& row : inertia)
-            for (int j = 0; j < 3; ++j) row[j] = row[j] == 0 ? 0 : row[j] * density;
-        const Vec3 center = map(shape->center);
-        true_body.center = f->center ? *f->center : center;
-        true_body.inertia =
-            f->inertia ? *f->inertia
-                       : inertia_about(inertia, true_body.mass_body, center - true_body.center);
-        if (f->distribute_mass) true_body.mass_part *= true_body.mass_body / body.mass_body;
-        log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", shape->shape, shape->volume,
-                             text_of(true_body), is_wanted ? " (taken)" : ""));
+        settled.shape = shape;
+        settled.exact = exact_floating(body, *f, *shape, motion_of(block));
+        settled.is_exact_taken = is_wanted;
         if (is_wanted)
-            body = true_body;
+            body = settled.exact;
         else
             check.note(body, *f, {shape->shape, shape->volume});
     }
+    out.warnings = check.warnings();
+    return out;
+}
+
+void log_floatings(const SettledFloatings& floatings, RunLog& log)
+{
+    if (floatings.bodies.empty()) return;
+    log.line("Floating bodies:");
+    for (const SettledFloating& body : floatings.bodies)
+    {
+        log.line(
+            fmt::format("  mkbound {}: {} (particles)", body.mkbound, text_of(body.of_particles)));
+        if (body.shape)
+            log.line(fmt::format("    exact, {}: volume {:.9g} m^3, {}{}", body.shape->shape,
+                                 body.shape->volume, text_of(body.exact),
+                                 body.is_exact_taken ? " (taken)" : ""));
+        else
+            log.line(fmt::format("    there is no single closed shape of it: {}", body.why_not));
+    }
     log.line();
-    return check.warnings();
 }
 
 } // namespace fppg

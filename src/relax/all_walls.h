@@ -1,0 +1,66 @@
+#pragma once
+
+#include "fppg/fitted_walls.h"
+#include "fppg/lattice.h"
+
+#include "fit/wall_section.h"
+#include "meshes/mesh_query.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace fppg
+{
+
+/// The walls of all bodies as one: their facets, or in 2D the lines where they meet the plane.
+class AllWalls
+{
+public:
+    struct Closest
+    {
+        Vec3 point;
+        double distance = 0; ///< metres
+        std::size_t body = 0;
+        bool is_outside = false; ///< on the side where the facet looks
+    };
+
+    AllWalls(const std::vector<FittedBody>& bodies, const LatticeGrid& grid, int threads)
+    {
+        TriangleSoup soup;
+        for (const FittedBody& body : bodies)
+        {
+            first_.push_back(normals_.size());
+            WallSection section;
+            if (grid.is_2d) section = wall_section(body.mesh, grid.origin.y);
+            const TriangleSoup of_body = grid.is_2d ? section.soup : soup_of(body.mesh);
+            soup.vertices.insert(soup.vertices.end(), of_body.vertices.begin(),
+                                 of_body.vertices.end());
+            const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
+            normals_.insert(normals_.end(), normals.begin(), normals.end());
+        }
+        if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
+    }
+
+    bool is_empty() const { return !query_; }
+    Closest closest(const Vec3& p) const
+    {
+        const ClosestPoint near = query_->closest_point(p);
+        const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
+        return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
+                dot(p - near.point, normals_[near.facet]) > 0};
+    }
+    Vec3 closest_point(const Vec3& p, double within) const
+    {
+        return query_->closest_point(p, within).point;
+    }
+
+private:
+    std::vector<std::size_t> first_; ///< facet or line of each body
+    std::vector<Vec3> normals_;      ///< of all facets or lines
+    std::optional<MeshQuery> query_;
+};
+
+} // namespace fppg

@@ -1,0 +1,91 @@
+#include "relax/regions.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace fppg
+{
+
+std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies)
+{
+    std::vector<std::uint16_t> first_of(65536, 0); // 0: no solid
+    const auto find = [&first_of](std::uint16_t mk)
+    {
+        while (first_of[mk] != mk) mk = first_of[mk];
+        return mk;
+    };
+    const auto join = [&](std::uint16_t a, std::uint16_t b)
+    {
+        for (const std::uint16_t mk : {a, b})
+            if (first_of[mk] == 0) first_of[mk] = mk;
+        a = find(a);
+        b = find(b);
+        first_of[std::max(a, b)] = std::min(a, b);
+    };
+    for (const FittedBody& body : bodies)
+    {
+        if (!body.is_solid) continue;
+        join(body.mk, body.mk);
+        std::set<std::uint16_t> of_parts(body.facet_mk.begin(), body.facet_mk.end());
+        for (const std::uint16_t mk : of_parts) join(body.mk, mk);
+    }
+    std::vector<std::vector<std::uint16_t>> out;
+    std::vector<std::size_t> group(65536, 0);
+    for (std::uint32_t mk = 1; mk < 65536; ++mk)
+    {
+        if (first_of[mk] == 0) continue;
+        const std::uint16_t first = find(static_cast<std::uint16_t>(mk));
+        if (first == mk)
+        {
+            group[mk] = out.size();
+            out.emplace_back();
+        }
+        out[group[first]].push_back(static_cast<std::uint16_t>(mk));
+    }
+    return out;
+}
+
+void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes)
+{
+    if (nodes.empty()) return;
+    std::vector<Run> out;
+    const auto append_run = [&](const Run& run)
+    {
+        if (run.z_begin >= run.z_end) return;
+        if (!out.empty() && out.back().y == run.y && out.back().mk == run.mk &&
+            out.back().is_covered == run.is_covered && out.back().z_end == run.z_begin)
+            out.back().z_end = run.z_end;
+        else
+            out.push_back(run);
+    };
+    auto node = nodes.begin();
+    for (const Run& run : runs)
+    {
+        std::uint32_t from = run.z_begin;
+        for (; node != nodes.end() && node->node.y == run.y && node->node.z < run.z_end; ++node)
+        {
+            const std::uint32_t z = node->node.z;
+            append_run({run.y, from, z, run.mk, run.is_covered});
+            append_run({run.y, z, z + 1, run.mk, true});
+            from = z + 1;
+        }
+        append_run({run.y, from, run.z_end, run.mk, run.is_covered});
+    }
+    runs = std::move(out);
+}
+
+WallParticles join(const WallParticles& a, const WallParticles& b)
+{
+    WallParticles out;
+    std::size_t i = 0;
+    std::size_t j = 0;
+    while (i < a.size() || j < b.size())
+        if (j == b.size() || (i < a.size() && a.bodies[i] < b.bodies[j]))
+            out.append(a, i++);
+        else
+            out.append(b, j++);
+    return out;
+}
+
+} // namespace fppg
