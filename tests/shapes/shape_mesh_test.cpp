@@ -19,6 +19,13 @@ namespace
 constexpr double pi = std::numbers::pi;
 constexpr double dp = 0.01;
 
+LatticeGrid grid()
+{
+    LatticeGrid out;
+    out.dp = dp;
+    return out;
+}
+
 DrawOp op_of(const Command& what, DrawMode mode = DrawMode::Solid, bool normal_invert = false)
 {
     DrawState state;
@@ -33,7 +40,7 @@ DrawOp op_of(const Command& what, DrawMode mode = DrawMode::Solid, bool normal_i
 std::vector<ShapeMesh> meshes(const Command& what, DrawMode mode = DrawMode::Solid,
                               bool normal_invert = false)
 {
-    return shape_meshes(op_of(what, mode, normal_invert), nullptr, dp);
+    return shape_meshes(op_of(what, mode, normal_invert), nullptr, grid());
 }
 
 struct Taken
@@ -291,10 +298,11 @@ TEST(ShapeMeshes, AFileIsMovedAndStaysOutward)
     MeshFileOp op;
     op.transform = translation({1, 2, 3}) * rotation({0, 1, 1}, 0.5) * scaling({1, 1, -2});
     op.autofill = true;
-    const TriangleSoup cube = test::box({0, 0, 0}, {1, 1, 1});
-    expect_solid(shape_meshes(op_of(op), &cube, dp), 2);
+    MeshFile cube;
+    cube.soup = test::box({0, 0, 0}, {1, 1, 1});
+    expect_solid(shape_meshes(op_of(op), &cube, grid()), 2);
     op.autofill = false;
-    const auto shell = shape_meshes(op_of(op, DrawMode::Face), &cube, dp);
+    const auto shell = shape_meshes(op_of(op, DrawMode::Face), &cube, grid());
     EXPECT_FALSE(shell[0].is_solid);
     EXPECT_EQ(shell[0].round, RoundShape::None);
 }
