@@ -156,8 +156,8 @@ public:
         {
             const CellGrid a(frame_, files_[0], slab, options.threads);
             const CellGrid b(frame_, files_[1], slab, options.threads);
-            const Partners partners = pair_particles({a, files_[0]}, {b, files_[1]}, out_.same_place_m,
-                                                     frame_.dp, options.threads);
+            const Partners partners = pair_particles({a, files_[0]}, {b, files_[1]},
+                                                     out_.same_place_m, frame_.dp, options.threads);
             tally_columns(a, total,
                           [&](std::size_t c, Tally& tally)
                           { count_pairs(a, c, b, partners, tally); });

@@ -94,8 +94,8 @@ Partners pair_particles(const GridOfFile& a, const GridOfFile& b, double same_pl
                         int threads)
 {
     const Rule rule{&a.file.source(), &b.file.source(),
-                    a.file.source().has_ids() && b.file.source().has_ids(),
-                    same_place * same_place, reach * reach};
+                    a.file.source().has_ids() && b.file.source().has_ids(), same_place * same_place,
+                    reach * reach};
     Partners out;
     out.of_a.assign(a.grid.particles().size(), no_partner);
     out.of_b.assign(b.grid.particles().size(), no_partner);

@@ -208,9 +208,8 @@ std::uint64_t write_shapes_stl(OutputFile& file, const std::vector<ShapePolygons
         for (const std::vector<std::uint32_t>& polygon : shape.polygons)
             for (std::size_t i = 2; i < polygon.size(); ++i)
             {
-                append_facet(facets,
-                             {shape.vertices[polygon[0]], shape.vertices[polygon[i - 1]],
-                              shape.vertices[polygon[i]]});
+                append_facet(facets, {shape.vertices[polygon[0]], shape.vertices[polygon[i - 1]],
+                                      shape.vertices[polygon[i]]});
                 ++n;
             }
     if (n > std::numeric_limits<std::uint32_t>::max())

@@ -232,8 +232,9 @@ void ChartGrid::find_near(const Vec3& place, double radius, NearPoints& near) co
                     near.reserve(count + Block::capacity);
                     const Block& block = blocks_[b];
                     count = take_near(
-                        {block.x.data(), block.y.data(), block.z.data(), block.index.data()}, search,
-                        {near.x.data(), near.y.data(), near.z.data(), near.index.data()}, count);
+                        {block.x.data(), block.y.data(), block.z.data(), block.index.data()},
+                        search, {near.x.data(), near.y.data(), near.z.data(), near.index.data()},
+                        count);
                 }
     near.reserve(count);
     near.count = count;

@@ -166,8 +166,8 @@ private:
 
     void text_at(double x, double y, const char* anchor, const std::string& text)
     {
-        svg_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x,
-                            y, anchor, text);
+        svg_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y,
+                            anchor, text);
     }
 
     void rule(double x0, double y0, double x1, double y1)
@@ -205,9 +205,8 @@ private:
         svg_ += fmt::format(
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", points,
             line.colour);
-        svg_ += fmt::format(
-            "<rect x=\"{:.1f}\" y=\"16\" width=\"18\" height=\"4\" fill=\"{}\"/>\n", legend,
-            line.colour);
+        svg_ += fmt::format("<rect x=\"{:.1f}\" y=\"16\" width=\"18\" height=\"4\" fill=\"{}\"/>\n",
+                            legend, line.colour);
         text_at(legend + 24, 23, "start", line.name);
     }
 

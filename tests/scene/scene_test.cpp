@@ -7,8 +7,8 @@
 #include "batch/estimate.h"
 #include "batch/wall_geometry.h"
 #include "helpers/case_text.h"
-#include "scene/exact_body.h"
 #include "meshes/mesh_library.h"
+#include "scene/exact_body.h"
 
 #include <gtest/gtest.h>
 
