@@ -62,7 +62,7 @@ struct BooleanMesh
 /// - What crosses itself within one part stays as it is, as it does without a combination.
 /// - The inside of a part with faults is that of inside_by_vote(): by the winding number.
 ///
-/// parts    meshes as take_in_mesh() made them; facets look outwards
+/// parts    meshes as repair_mesh() made them; facets look outwards
 /// threads  number of threads; the result does not depend on it
 /// throws   GeometryError that names a part which bounds no volume and may not be a sheet, or an
 ///          operand that is missing. A result without any facet is no error
@@ -75,7 +75,7 @@ BooleanMesh boolean_mesh(const std::vector<BooleanPart>& parts, const BooleanNod
 /// The nodes inside a part or on it: those of inside_spans() for a mesh without fault, else those
 /// of inside_by_vote(). None for a part without an inside.
 ///
-/// mesh  as take_in_mesh() made it
+/// mesh  as repair_mesh() made it
 SpanSet solid_nodes(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads);
 
 } // namespace fppg

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fppg/box_picture.h"
 #include "fppg/combination.h"
+#include "fppg/debug_box.h"
 #include "fppg/draw_ops.h"
 #include "fppg/element.h"
 #include "fppg/fit.h"
@@ -192,7 +192,7 @@ struct CaseDef
     std::vector<MkOrient> mk_orients;
 
     std::vector<DrawOp> ops; ///< in order of execution
-    std::vector<BoxPicture> box_pictures;
+    std::vector<DebugBox> debug_boxes;
     std::shared_ptr<MeshLibrary> meshes; ///< that reading needed; null: none is read yet
     std::vector<std::string> list_log; ///< what GenCase prints while it draws: "> MAIN" and printf
 

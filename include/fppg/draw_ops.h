@@ -133,10 +133,10 @@ struct LinesOp
     std::vector<std::pair<Vec3, Vec3>> segments;
 };
 
-/// A polygon of a figure.
-struct FigureFace
+/// A polygon of a polyhedron.
+struct PolyhedronFace
 {
-    std::vector<std::uint32_t> vertices; ///< three or more indices into FigureOp::vertices
+    std::vector<std::uint32_t> vertices; ///< three or more indices into PolyhedronOp::vertices
     bool is_visible = true;              ///< false: hidden by mask or boxfill
     /// Empty: the polygon is cut into triangles (0, 1, 2), (0, 2, 3), ... (rule P5). Else these
     /// vertices are the polygon that is cut by least perimeter, and cut_offset leads from each to
@@ -147,7 +147,7 @@ struct FigureFace
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// How the inside of a figure is found.
+/// How the inside of a polyhedron is found.
 enum class SolidKind : std::uint8_t
 {
     None,    ///< an open surface: nothing is filled
@@ -157,18 +157,19 @@ enum class SolidKind : std::uint8_t
     Faces,   ///< strictly behind all faces
 };
 
-/// Everything that is bounded by planes: triangles, quads, strips, fans, polygons, figures, boxes,
-/// prisms, pyramids, extrusions. In solid and full mode the inside is filled (rules S1 to S4).
-struct FigureOp
+/// Everything that is bounded by planes: triangles, quads, strips, fans, polygons, polyhedra,
+/// boxes, prisms, pyramids, extrusions. In solid and full mode the inside is filled (rules S1 to
+/// S4).
+struct PolyhedronOp
 {
     std::vector<Vec3> vertices; ///< after all transforms, not snapped
-    std::vector<FigureFace> faces;
+    std::vector<PolyhedronFace> faces;
     SolidKind solid = SolidKind::None;
     std::vector<std::uint32_t> solid_vertices; ///< indices into `vertices`
 
-    /// setmknextauto draws a figure part by part, each with its own mk: the one to draw, and how
-    /// many there are. Parts are, in this order, those of the inside, then the triangles or quads
-    /// of the faces.
+    /// setmknextauto draws a polyhedron part by part, each with its own mk: the one to draw, and
+    /// how many there are. Parts are, in this order, those of the inside, then the triangles or
+    /// quads of the faces.
     std::uint32_t part = 0;
     std::uint32_t part_count = 0; ///< 0: all at once
 };
@@ -279,8 +280,8 @@ struct BoxRegion
     Vec3 corner1;
 };
 
-/// A box, or one that a map turns or slants, as a figure.
-using BoxLimits = std::variant<BoxRegion, FigureOp>;
+/// A box, or one that a map turns or slants, as a polyhedron.
+using BoxLimits = std::variant<BoxRegion, PolyhedronOp>;
 
 /// `fillpoint`, `fillvoidpoint`, `fillbox`, `fillfigure`, `fillprism`: a 6-connected flood.
 struct FillOp
@@ -375,8 +376,8 @@ struct PointsMkOutOp
 };
 
 /// What a draw puts into the domain.
-using Shape = std::variant<PointsOp, LinesOp, FigureOp, SphereOp, CylinderOp, EllipsoidOp, SolidOp,
-                           MeshFileOp, WaveOp>;
+using Shape = std::variant<PointsOp, LinesOp, PolyhedronOp, SphereOp, CylinderOp, EllipsoidOp,
+                           SolidOp, MeshFileOp, WaveOp>;
 /// What changes nodes that are there.
 using Edit = std::variant<FillOp, CavityFillOp, RedrawOp, RedrawNearOp>;
 /// Whether an edit gives nodes another mk where they are.

@@ -53,7 +53,7 @@ struct SurfaceParticles
 /// touches is mapped to the surface point nearest to its node; points within 0.001 dp of another
 /// count once. They may lie as near one another as they come.
 ///
-/// mesh, features, feature_particles  belong together, as take_in_mesh(), find_features() and
+/// mesh, features, feature_particles  belong together, as repair_mesh(), find_features() and
 ///                                    place_feature_particles() made them
 /// threads  number of threads; the result does not depend on it
 /// throws   GeometryError for Cell when the mesh has no facet or spans more than 2^30 dp

@@ -28,7 +28,7 @@ struct ShapeMesh
 
 /// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
 /// cut off counts as if it were there. SI units; in 2D areas are lengths times dp.
-struct FitFigures
+struct FitMeasures
 {
     /// Of its surface, and of a strip of half a dp beyond open rims, where particles stand on the
     /// rim.
@@ -65,19 +65,19 @@ struct FittedBody
     /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: in a filled body so much that
     /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
-    FitFigures figures;
+    FitMeasures measures;
 
-    /// Settles the share by the figures.
+    /// Settles the share by the measures.
     ///
     /// dp  metres
     void settle_share(double dp)
     {
-        share = 1 / figures.kept;
-        if (figures.filled <= 0 || figures.wall_particles <= 0) return;
+        share = 1 / measures.kept;
+        if (measures.filled <= 0 || measures.wall_particles <= 0) return;
         const double of_wall =
-            std::max(0.0, figures.volume + figures.sheet_volume - figures.node_volume);
-        const double of_filled = of_wall / (figures.wall_particles * dp * dp * dp);
-        share = (1 + figures.filled * (of_filled - 1)) / figures.kept;
+            std::max(0.0, measures.volume + measures.sheet_volume - measures.node_volume);
+        const double of_filled = of_wall / (measures.wall_particles * dp * dp * dp);
+        share = (1 + measures.filled * (of_filled - 1)) / measures.kept;
     }
 };
 
@@ -163,13 +163,16 @@ struct FittedWalls
     WallParticles second_sheets;
 
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
-    std::vector<std::uint16_t> free_mks;
+    std::vector<std::uint16_t> off_lattice_mks;
 
     /// Nodes of the fluid of point files are covered.
     bool has_point_water = false;
 
     /// Whether nodes may be covered.
-    bool has_zones() const { return !bodies.empty() || !free_mks.empty() || has_point_water; }
+    bool has_zones() const
+    {
+        return !bodies.empty() || !off_lattice_mks.empty() || has_point_water;
+    }
 };
 
 } // namespace fppg

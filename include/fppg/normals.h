@@ -99,8 +99,8 @@ struct NormalsReport
 /// surface, zero where there is none.
 ///
 /// A particle that a fit put on a surface has no distance to it. It gets the exact normal of the
-/// surface there (FreeParticles::normals), 0.01 dp long, towards the side to which the faces of
-/// norgeometry look that pass within 0.5 dp of it; where there are none, what norgeometry finds,
+/// surface there (OffLatticeParticles::normals), 0.01 dp long, towards the side to which the faces
+/// of norgeometry look that pass within 0.5 dp of it; where there are none, what norgeometry finds,
 /// and outwards where no entry gives it a direction.
 ///
 /// def        its `normals` are active

@@ -36,9 +36,8 @@ struct ParticleRun
         run.set_free_begin(begin);
         return run;
     }
-    bool is_free() const { return is_off_lattice; }
     /// Of a run of particles off the lattice, which needs no node: x and y hold it.
-    std::uint64_t free_begin() const { return x | static_cast<std::uint64_t>(y) << 32U; }
+    std::uint64_t off_lattice_begin() const { return x | static_cast<std::uint64_t>(y) << 32U; }
     void set_free_begin(std::uint64_t begin)
     {
         x = static_cast<std::uint32_t>(begin);
@@ -96,7 +95,7 @@ struct ParticleBlock
 };
 
 /// Particles off the lattice before `<initials>`, in id order, one entry each in all arrays.
-struct FreeParticles
+struct OffLatticeParticles
 {
     std::vector<Vec3> positions;
     std::vector<FitKind> kinds;
@@ -148,7 +147,7 @@ struct CaseConstants
 };
 
 /// Particles as `_FreePt.vtk` shows them, one entry each in all arrays.
-struct FreePoints
+struct OffLatticePoints
 {
     std::vector<Vec3> positions;
     std::vector<std::uint16_t> mk;
@@ -163,7 +162,7 @@ struct CaseParticles
 {
     LatticeGrid grid;
     std::vector<ParticleBlock> blocks;
-    FreeParticles free;
+    OffLatticeParticles free;
     bool has_walls = false; ///< the case has fitted walls: pictures show kind, normal, distance
     std::uint64_t np = 0;
     std::uint64_t n_fixed = 0;
@@ -187,7 +186,7 @@ struct CaseParticles
 
     /// All particles of the mks that have one of `setfrdrawmode`, those on nodes too, by mk, in an
     /// mk in id order; before `<lattice>` and `<initials>`.
-    FreePoints free_points;
+    OffLatticePoints off_lattice_points;
 };
 
 struct CaseDef;

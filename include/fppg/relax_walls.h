@@ -70,7 +70,7 @@ bool relaxes(const CaseDef& def, const RunField& field);
 /// In 2D the surface particles stay, they stand evenly along their section already; volumes and
 /// fluid move in their plane, beside the lines in which it meets the walls.
 ///
-/// observe   may be empty; what it throws is passed on and leaves the field in a state of no use
+/// observe   may be empty; what it throws is passed on and leaves the field in an unspecified state
 /// snapshot  may be empty; the same
 /// threads   number of threads; the result does not depend on it
 /// throws    GeometryError for options out of range

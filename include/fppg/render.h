@@ -62,7 +62,7 @@ struct RenderOptions
     std::vector<CutPlane> cuts;     ///< all must hold
     std::vector<std::uint16_t> mks; ///< only these; empty: all
     double radius_dp = 0.5;         ///< of a sphere, dp of its case; above 0
-    int samples = 2;                ///< rays a pixel along each axis, 1 to 8
+    int samples = 2;                ///< rays per pixel along each axis, 1 to 8
 };
 
 /// Reads a view: iso, front, back, left, right, top, bottom, or "azimuth,elevation" in degrees.

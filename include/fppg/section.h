@@ -46,7 +46,7 @@ struct SectionParticles
 /// around chains without any, particles stand evenly, at no more than dp and as near dp as the
 /// length allows: every point of the section has one within 0.5 dp along it.
 ///
-/// mesh     as take_in_mesh() made it
+/// mesh     as repair_mesh() made it
 /// returns  chains in the order of their first facets, those shorter than 1e-6 dp left out;
 ///          none where the plane misses the mesh
 /// throws   GeometryError for a dp that is not positive or so small that more than 2^32 - 2

@@ -86,7 +86,7 @@ SpanSet inside_spans(const TriangleSoup& soup, const LatticeGrid& grid, int thre
 /// is taken. All other nodes are disputed: they are inside where the generalised winding number
 /// (the solid angle of all facets over 4 pi) is above one half.
 ///
-/// soup      facets counter-clockwise from outside, as take_in_mesh() turns them; never flipped
+/// soup      facets counter-clockwise from outside, as repair_mesh() turns them; never flipped
 /// disputed  set to the number of nodes that the winding number decided
 /// threads   number of threads; the result does not depend on it
 /// returns   grid.n[0] slabs from 0; none for an empty soup

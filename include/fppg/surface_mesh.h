@@ -91,8 +91,8 @@ struct MeshIntakeOptions
 /// throws   GeometryError when no facet is left, or a coordinate is not finite
 /// cost     O(n log n)
 /// source   edge-face map of the FPPG paper, "Feature extraction and feature line particles"
-SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
-                         MeshReport& report);
+SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
+                        MeshReport& report);
 
 /// The facets with their corners written out, in the same order.
 TriangleSoup soup_of(const SurfaceMesh& mesh);

@@ -59,8 +59,8 @@ struct BatchCall
 bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
 {
     SubcommandLine app(
-        "Runs many cases side by side, and again with other values of variables. Options behind "
-        "-- are handed to every run, such as -- -save:all -fit.",
+        "Runs many cases side by side, and again with other values of variables. Options after -- "
+        "are passed to every run, such as -- -save:all -fit.",
         "fppg batch");
     app.add_option("SOURCE", call.source,
                    "a folder, searched for *_Def.xml, or a file that lists them, or one definition")
@@ -79,21 +79,20 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
            "GB that runs side by side may need by their estimates (default: 80 % of what is "
            "free)")
         .positive();
-    auto dry_run = app.add_flag(
-        "--dry-run", call.dry_run,
-        "run and write nothing: say which definitions would be refused, and why, as far as reading "
-        "them and looking for their mesh files tells");
+    auto dry_run = app.add_flag("--dry-run", call.dry_run,
+                                "only read the definitions and look for their mesh files; say "
+                                "which would be refused, and why");
     app.add_flag("--resume", call.resumes,
                  "leave out runs that are done and whose inputs have not changed")
         .excludes(dry_run);
     app.add_flag("--no-pictures", call.no_pictures, "do not draw the particles");
     app.add_flag("--quiet", call.quiet, "say nothing but errors");
-    app.add_flag("--log-json", call.log_json, "a JSON object a line instead of text");
+    app.add_flag("--log-json", call.log_json, "one JSON object per line instead of text");
     auto slurm = app.add_flag("--slurm", call.slurm,
                               "run nothing, write scripts for a Slurm job array into --out");
     slurm.excludes(dry_run);
-    app.add_flag("--submit", call.submit, "hand them in with sbatch").needs(slurm);
-    app.add_option("--plan", call.plan, "parallel: run nothing, print a command a run")
+    app.add_flag("--submit", call.submit, "submit them with sbatch").needs(slurm);
+    app.add_option("--plan", call.plan, "parallel: run nothing, print one command per run")
         .one_of({"parallel"})
         .excludes(slurm)
         .excludes(dry_run);
@@ -115,7 +114,7 @@ void check_run_options(const std::vector<std::string>& options)
     const DropInOptions parsed = parse_command_line(words);
     if (parsed.action != DropInOptions::Action::Run || parsed.output != "Case_Def")
         throw UsageError(
-            "behind -- are options of runs expected, such as -save:all; fppg --help lists them");
+            "expected options of runs after --, such as -save:all; fppg --help lists them");
 }
 
 class BatchCommand
@@ -315,7 +314,7 @@ private:
         if (!call_.submit)
         {
             if (!call_.quiet)
-                fmt::print("{} runs; look at {}/batch.sbatch, then hand it in by {}\n",
+                fmt::print("{} runs; look at {}/batch.sbatch, then submit it with {}\n",
                            plan_.runs.size(), out_, script);
             return 0;
         }

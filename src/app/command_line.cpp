@@ -63,7 +63,7 @@ void choose_formats(const std::string& list, DropInOptions& options)
                 word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
-        if (all || word == "vtkfreept") options.save_free_points = on;
+        if (all || word == "vtkfreept") options.save_off_lattice_points = on;
         if (all || word == "vtkall") options.save_all = on;
         if (all || word == "vtkbound") options.save_bound = on;
         if (all || word == "vtkfluid") options.save_fluid = on;
@@ -141,8 +141,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     else if (name == "-debug")
         options.debug = number_of<int>(name, value, "a debug level");
     else
-        throw UsageError(fmt::format("the option {} is unknown; {} lists what there is", argument,
-                                     "fppg --help"));
+        throw UsageError(
+            fmt::format("the option {} is unknown; {} lists all options", argument, "fppg --help"));
 }
 
 std::string file_name(const std::string& path)
@@ -177,7 +177,7 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
         options.action != DropInOptions::Action::Clean)
         return options;
     if (names.empty())
-        throw UsageError("the name of the case definition is missing; fppg --help shows the form");
+        throw UsageError("the name of the case definition is missing; see fppg --help");
     if (names.size() > 2)
         throw UsageError(fmt::format(
             "\"{}\" is one name too many, expected a definition and an output name", names[2]));
@@ -213,9 +213,10 @@ std::string help_text()
         "  fppg report RESULT...                a page with pictures, histograms and a 3-D view\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
-        "  fppg leak CASE PART_FILES            counts fluid where none can be in the solver's "
-        "output\n"
-        "  fppg estimate DEFINITION             particles, memory and time of a case beforehand\n"
+        "  fppg leak CASE PART_FILES            fluid inside solids or outside a housing, in the "
+        "solver's output\n"
+        "  fppg estimate DEFINITION             particles, memory and time of a case, before it is "
+        "run\n"
         "  fppg batch FOLDER                    many cases side by side; fppg batch --help\n"
         "  fppg upgrade DEFINITION              old definitions in the forms of v5.4\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
@@ -233,9 +234,11 @@ std::string help_text()
         "                         mks that <fppg> in the definition names keep their settings\n"
         "  -fit:raw               the same without relaxation\n"
         "  -fit:off               no body-fitted walls, whatever <fppg> says\n"
-        "  -strict                warnings where GenCase says nothing are errors (exit code 3)\n"
+        "  -strict                warnings about what GenCase accepts in silence are errors (exit "
+        "code 3)\n"
         "  -quiet                 print warnings and errors only; OUTPUT.out holds all\n"
-        "  -log-json              print a JSON object a line: stages, warnings, counts, errors\n"
+        "  -log-json              print one JSON object per line: stages, warnings, counts, "
+        "errors\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
         "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
         "each:\n"

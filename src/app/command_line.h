@@ -34,7 +34,7 @@ struct DropInOptions
     int debug = 0;
     bool save_bi4 = true;
     bool save_cells = true;
-    bool save_free_points = true; ///< of setfrdrawmode, where there are any
+    bool save_off_lattice_points = true; ///< of setfrdrawmode, where there are any
     bool save_all = false;
     bool save_bound = false;
     bool save_fluid = false;

@@ -28,7 +28,7 @@ constexpr const char* changes[] = {"missing", "extra", "moved", "another mk"};
 constexpr std::size_t most_in_picture = 1500000;
 constexpr std::size_t most_changed = 200000;
 /// In grids, and mapped of the files.
-constexpr std::uint64_t bytes_a_particle = 160;
+constexpr std::uint64_t bytes_per_particle = 160;
 
 struct CompareCall
 {
@@ -81,7 +81,8 @@ bool read_arguments(std::vector<std::string> arguments, CompareCall& call)
     app.add_option("--memory", call.memory_mib, "MiB for particles; files of any size are compared")
         .range(1.0, 1e9)
         .shows_default();
-    app.add_flag("--quiet", call.is_quiet, "print nothing: the exit code tells");
+    app.add_flag("--quiet", call.is_quiet,
+                 "print nothing; the exit code says whether they are equal");
     app.add_option("--threads", options.threads,
                    "default 0: what the machine or its scheduler allows")
         .range(0, 4096);
@@ -90,7 +91,7 @@ bool read_arguments(std::vector<std::string> arguments, CompareCall& call)
     if (!app.read(arguments)) return false;
     if (options.threads == 0) options.threads = default_threads();
     options.particles_at_once = std::max<std::uint64_t>(
-        1, static_cast<std::uint64_t>(call.memory_mib * (1 << 20)) / bytes_a_particle);
+        1, static_cast<std::uint64_t>(call.memory_mib * (1 << 20)) / bytes_per_particle);
     if (!call.html.empty()) options.changed_at_most = most_changed;
     return true;
 }

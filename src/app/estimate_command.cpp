@@ -35,9 +35,7 @@ int run_estimate(const std::vector<std::string>& arguments)
     const bool as_json = std::erase(of_run, "--json") > 0;
     DropInOptions run = parse_command_line(of_run);
     if (run.action != DropInOptions::Action::Run || run.input != run.output)
-        throw UsageError(
-            "expected the name of one case definition; fppg estimate --help shows "
-            "the form");
+        throw UsageError("expected the name of one case definition; see fppg estimate --help");
     if (run.input.ends_with(".xml")) run.input.resize(run.input.size() - 4);
     run.output = run.input;
     EstimateOptions options;

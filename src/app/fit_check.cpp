@@ -61,13 +61,12 @@ public:
     {
         std::vector<std::string> out;
         for (const auto& [why, group] : counts_)
-            out.push_back(
-                fmt::format("particles on fitted surfaces are more or fewer than one a "
-                            "dp^2, {}: {}.",
-                            why, group.text("mk")));
+            out.push_back(fmt::format(
+                "particles on fitted surfaces are more or fewer than one per dp^2, {}: {}.", why,
+                group.text("mk")));
         for (const auto& [why, group] : volumes_)
             out.push_back(
-                fmt::format("fitted particles do not make up the volume of their solids, "
+                fmt::format("fitted particles do not have the volume of their solids, "
                             "{}: {}.",
                             why, group.text("mk")));
         return out;
@@ -77,34 +76,34 @@ private:
     std::string count_of(std::size_t b)
     {
         const FittedBody& body = walls_.bodies[b];
-        const FitFigures& figures = body.figures;
-        const double expected = figures.area / (dp_ * dp_);
+        const FitMeasures& measures = body.measures;
+        const double expected = measures.area / (dp_ * dp_);
         if (!(expected > 0)) return {};
-        const double share = figures.wall_particles / expected - 1;
+        const double share = measures.wall_particles / expected - 1;
         if (is_off(share))
             counts_[why_count(b, expected, share)].add(
                 body.mk, share,
                 fmt::format("<{}> of line {} has {:.0f} particles on {:.4g} {}, {:.0f} would be "
-                            "one a dp^2",
-                            body.name, body.line, figures.wall_particles, figures.area / depth_,
+                            "one per dp^2",
+                            body.name, body.line, measures.wall_particles, measures.area / depth_,
                             area_unit_, expected));
-        return fmt::format(" {:.0f} particles on {:.4g} {}, {} of one a dp^2;",
-                           figures.wall_particles, figures.area / depth_, area_unit_,
+        return fmt::format(" {:.0f} particles on {:.4g} {}, {} of one per dp^2;",
+                           measures.wall_particles, measures.area / depth_, area_unit_,
                            percent(share));
     }
 
     std::string volume_of(std::size_t b)
     {
         const FittedBody& body = walls_.bodies[b];
-        const FitFigures& figures = body.figures;
-        if (!(figures.volume > 0)) return " no volume";
-        if (!body.is_solid || figures.filled < nearly_all)
-            return fmt::format(" {:.4g} {}, not filled by its draw", figures.volume / depth_,
+        const FitMeasures& measures = body.measures;
+        if (!(measures.volume > 0)) return " no volume";
+        if (!body.is_solid || measures.filled < nearly_all)
+            return fmt::format(" {:.4g} {}, not filled by its draw", measures.volume / depth_,
                                size_unit_);
-        const double got = figures.node_volume + figures.wall_volume;
-        const double share = got / figures.volume - 1;
+        const double got = measures.node_volume + measures.wall_volume;
+        const double share = got / measures.volume - 1;
         const std::string both =
-            fmt::format("{:.4g} of {:.4g} {}", got / depth_, figures.volume / depth_, size_unit_);
+            fmt::format("{:.4g} of {:.4g} {}", got / depth_, measures.volume / depth_, size_unit_);
         if (is_off(share))
             volumes_[why_volume(body)].add(
                 body.mk, share, fmt::format("<{}> of line {} has {}", body.name, body.line, both));
@@ -115,7 +114,7 @@ private:
     {
         const FitSettings* settings = fit_settings(settings_, walls_.bodies[b].mk);
         if (settings != nullptr && settings->density == FitDensity::Cell)
-            return "as density=\"cell\" asks for one a cell";
+            return "as density=\"cell\" asks for one per cell";
         if (expected < small_surface) return "as they are small against dp";
         const std::array<std::uint64_t, 4>& kinds = of_kind_[b];
         const auto on_edges = static_cast<double>(kinds[0] + kinds[1]);
@@ -128,11 +127,12 @@ private:
     std::string why_volume(const FittedBody& body) const
     {
         const FitSettings* settings = fit_settings(settings_, body.mk);
-        const FitFigures& figures = body.figures;
+        const FitMeasures& measures = body.measures;
         if (settings != nullptr && settings->clearance_dp)
             return fmt::format("as clearance=\"{:g}\" is given", *settings->clearance_dp);
-        const double thickness = 2 * figures.volume / ((figures.area + figures.second_sheet) * dp_);
-        if (thickness < thin_dp && figures.second_sheet > 0)
+        const double thickness =
+            2 * measures.volume / ((measures.area + measures.second_sheet) * dp_);
+        if (thickness < thin_dp && measures.second_sheet > 0)
             return "as they are thinner than dp and a sheet counts as if dp thick";
         if (thickness < thin_dp)
             return "as they are thinner than 2 dp and both of their sides have particles";

@@ -206,7 +206,7 @@ Inspection inspect_mesh(const InspectOptions& options)
                 fmt::format("has no surface, only {} points and {} lines, which a case draws on "
                             "the lattice",
                             found.points, found.polylines));
-        const SurfaceMesh mesh = take_in_mesh(
+        const SurfaceMesh mesh = repair_mesh(
             file.soup, {.weld_distance = options.weld_distance, .count_self_intersections = true},
             options.threads, found.report);
         found.facets = mesh.facets.size();

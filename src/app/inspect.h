@@ -59,7 +59,7 @@ struct Inspection
 /// Reads, takes in and measures a mesh file of any kind that mesh_format_of() knows; a CSV file is
 /// a table of heights.
 ///
-/// throws  IoError, GeometryError as read_mesh_file() and take_in_mesh(), and for a file without a
+/// throws  IoError, GeometryError as read_mesh_file() and repair_mesh(), and for a file without a
 ///         surface; the text names the file
 Inspection inspect_mesh(const InspectOptions& options);
 

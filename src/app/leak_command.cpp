@@ -65,7 +65,7 @@ bool read_arguments(const std::vector<std::string>& arguments, LeakCall& call)
                    "Case_Def.xml, where the meshes are not beside Case.xml");
     app.add_option("--evars", evars, "as -evars: of the generation, A=1:B=2");
     app.add_option("--tolerance", call.options.tolerance_dp,
-                   "inside is what is deeper than this, dp")
+                   "a particle is inside when it is deeper than this, dp")
         .not_negative()
         .shows_default();
     app.add_option("--threads", call.options.threads,

@@ -213,7 +213,7 @@ private:
         for (const ParticleRun& run : block.runs)
         {
             if (run.count == 0) continue;
-            const std::uint32_t step = run.is_free() ? 1 : std::max(1U, run.count - 1);
+            const std::uint32_t step = run.is_off_lattice ? 1 : std::max(1U, run.count - 1);
             for (std::uint32_t k = 0; k < run.count; k += step)
                 box.add(map(place_in_run(particles_, block, run, k)));
         }

@@ -75,7 +75,7 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
                          c.speed_system ? "fixed" : "automatic"));
     log.line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
                          c.speed_sound ? "fixed" : "automatic"));
-    const std::vector<ParticleType>& free = particles.free_points.types;
+    const std::vector<ParticleType>& free = particles.off_lattice_points.types;
     if (std::find(free.begin(), free.end(), ParticleType::Fluid) != free.end())
         log.line(def.hydrostatic_off_lattice
                      ? "Density of fluid of <setfrdrawmode>: hydrostatic (<offlattice>)"

@@ -72,10 +72,10 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
                              body.name, body.line, body.mk, counts[b][0], counts[b][1],
                              counts[b][2]));
-        if (body.figures.filled > 0)
+        if (body.measures.filled > 0)
             log.line(fmt::format(
                 "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",
-                body.figures.volume, body.figures.area + body.figures.second_sheet,
+                body.measures.volume, body.measures.area + body.measures.second_sheet,
                 body.clearance_inside / dp, body.clearance_outside / dp));
     }
     log.line();
@@ -115,12 +115,12 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
     relax_walls(def, field, threads, observe, report, snapshot);
     for (const RelaxedPart& part : report.parts) log_relaxed(part, log);
     if (snapshots > 0)
-        log.line(fmt::format("{}_Relax_*.vtk: {} pictures of the relaxation", output, snapshots));
+        log.line(fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", output, snapshots));
     for (const std::string& w : report.warnings)
         done.warnings.push_back(fmt::format("{}:{}", def.file, w));
     if (report.is_stopped)
         done.warnings.emplace_back(
-            "The relaxation was stopped by the user; the files hold what it had reached.");
+            "The relaxation was stopped by the user; the files hold the particles of that moment.");
     return done;
 }
 

@@ -121,7 +121,7 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_option("--center", center, "X,Y,Z in the middle of the picture");
     app.add_option("--size", size, "in pixels (default 1600x1200)");
     app.add_option("--radius", options.radius_dp, "of the spheres, in dp (default 0.5)");
-    app.add_option("--samples", options.samples, "rays a pixel along each axis (default 2)");
+    app.add_option("--samples", options.samples, "rays per pixel along each axis (default 2)");
     app.add_flag("--palette", call.has_palette, "256 colours, for a smaller file");
     app.add_option("--threads", call.threads,
                    "default 0: what the machine or its scheduler allows");

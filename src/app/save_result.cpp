@@ -3,7 +3,7 @@
 #include "fppg/error.h"
 #include "fppg/version.h"
 
-#include "app/debug_pictures.h"
+#include "app/debug_vtk.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -197,9 +197,9 @@ void save_field(RunState& run, const MadeCase& made)
         write(run, made, "_MkCells.vtk", "",
               [&](OutputFile& f)
               { write_cells_vtk(f, made.field, types_of(made.particles), run.threads); });
-    if (options.save_free_points && !made.particles.free_points.mk.empty())
+    if (options.save_off_lattice_points && !made.particles.off_lattice_points.mk.empty())
         write(run, made, "_FreePt.vtk", "",
-              [&](OutputFile& f) { write_free_points_vtk(f, made.particles.free_points); });
+              [&](OutputFile& f) { write_free_points_vtk(f, made.particles.off_lattice_points); });
     if (options.save_relaxation && !made.relax_history.empty())
         write(run, made, "_Relax.csv", "", [&](OutputFile& f) { f.append(made.relax_history); });
     if (options.save_features && !made.field.walls.bodies.empty())
@@ -256,11 +256,11 @@ void save_result(RunState& run, MadeCase& made)
                   made.shape_files.clear();
                   save_node_files(run, made);
                   made.node_files.clear();
-                  for (const DebugPicture& picture : debug_pictures(made.def, run.threads))
+                  for (const DebugVtk& picture : debug_vtk(made.def, run.threads))
                       write(run, made, picture.name, "", picture.write);
                   save_field(run, made);
                   made.field = {};
-                  made.particles.free_points = {};
+                  made.particles.off_lattice_points = {};
                   save_particles(run, made, origin);
                   keep_overwritten_definition(run, made);
                   write(run, made, ".xml", "",

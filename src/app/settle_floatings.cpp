@@ -41,7 +41,7 @@ public:
             if (body.mk != block.mk) continue;
             if (!shape.name.empty()) return {};
             shape = {fmt::format("<{}> of line {}", body.name, body.line),
-                     body.figures.volume / def_.grid.dp};
+                     body.measures.volume / def_.grid.dp};
         }
         return shape;
     }
@@ -85,7 +85,7 @@ private:
     {
         return std::none_of(walls_.bodies.begin(), walls_.bodies.end(),
                             [&](const FittedBody& body)
-                            { return body.mk == mk && body.figures.filled > 0.98; });
+                            { return body.mk == mk && body.measures.filled > 0.98; });
     }
 
     /// Whether a block has particles of a fitted wall.
@@ -95,9 +95,10 @@ private:
         return std::any_of(block.runs.begin(), block.runs.end(),
                            [&](const ParticleRun& run)
                            {
-                               if (!run.is_free()) return false;
-                               const auto first = particles_.free.kinds.begin() +
-                                                  static_cast<std::ptrdiff_t>(run.free_begin());
+                               if (!run.is_off_lattice) return false;
+                               const auto first =
+                                   particles_.free.kinds.begin() +
+                                   static_cast<std::ptrdiff_t>(run.off_lattice_begin());
                                return std::any_of(first, first + run.count, is_of_wall);
                            });
     }

@@ -74,12 +74,12 @@ void write_templates(const std::string& folder, bool overwrite)
 int run_templates(const std::vector<std::string>& arguments)
 {
     SubcommandLine app(
-        "Writes case templates, one a feature, the files that they read and a schema that checks "
+        "Writes case templates, one per feature, the files that they read and a schema that checks "
         "cases",
         "fppg templates");
     std::string folder;
     bool overwrite = false;
-    app.add_option("folder", folder, "where to, made where it is missing").required();
+    app.add_option("folder", folder, "target folder; created if it is missing").required();
     app.add_flag("--overwrite", overwrite, "replace files that exist and differ");
     if (!app.read(arguments)) return 0;
     write_templates(folder, overwrite);

@@ -98,7 +98,7 @@ void upgrade(const std::string& name, const UpgradeCall& call)
         write_text(file.string(), upgraded.text);
         std::error_code ignored;
         fs::permissions(file, permissions, ignored);
-        fmt::print("; written, the file of before is {}\n", copy);
+        fmt::print("; written; the old file is {}\n", copy);
     }
     else
         fmt::print("; nothing is written, --in-place or -o FILE does\n");
@@ -109,7 +109,7 @@ void upgrade(const std::string& name, const UpgradeCall& call)
 int run_upgrade(const std::vector<std::string>& arguments)
 {
     SubcommandLine app(
-        "Tells what changes when a case definition is written in the forms of DualSPHysics v5.4, a "
+        "Lists what changes when a case definition is written in the forms of DualSPHysics v5.4, a "
         "line for each change, and writes it with -o or --in-place. Particles, normals and what "
         "v5.4's solver does stay the same; comments and all else in the file stay too. Notes name "
         "what a person has to decide.",
@@ -120,16 +120,15 @@ int run_upgrade(const std::vector<std::string>& arguments)
     const auto output =
         app.add_option("-o,--output", call.output, "a new file for the upgraded definition");
     app.add_flag("--in-place", call.in_place,
-                 "write the definition itself; the one of before is kept as .bak, or .bak2, ...")
+                 "write the definition itself; the old one is kept as .bak, or .bak2, ...")
         .excludes(output);
     if (!app.read(arguments)) return 0;
     if (!call.output.empty() && call.definitions.size() > 1)
         throw UsageError("-o is for one definition; --in-place takes several");
     if (!call.output.empty() && fs::exists(fs::symlink_status(call.output)))
-        throw IoError(
-            fmt::format("{}: is there already, and an older file is not written over; "
-                        "give another name, or --in-place",
-                        call.output));
+        throw IoError(fmt::format(
+            "{}: exists already and is not overwritten; give another name, or --in-place",
+            call.output));
     for (const std::string& definition : call.definitions) upgrade(definition, call);
     return 0;
 }

@@ -36,7 +36,7 @@ std::string program_path()
     std::error_code error;
     const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error)
-        throw IoError(fmt::format("cannot tell the path of this program: {}", error.message()));
+        throw IoError(fmt::format("cannot find the path of this program: {}", error.message()));
     return path.string();
 }
 

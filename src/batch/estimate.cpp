@@ -160,7 +160,7 @@ private:
         if (shape.soup.size() == 0) return count;
         const double dp = def_.grid.dp;
         MeshReport report;
-        const SurfaceMesh mesh = take_in_mesh(shape.soup, {}, options_.threads, report);
+        const SurfaceMesh mesh = repair_mesh(shape.soup, {}, options_.threads, report);
         const Features features =
             find_features(mesh, {.angle_deg = settings.feature_angle_deg, .dp = dp});
         double length = 0;
@@ -284,9 +284,9 @@ private:
         if (options_.saves_all) out_.output_bytes += np * vtk;
         if (options_.saves_parts) out_.output_bytes += np * vtk;
 
-        out_.memory_bytes = rates.base_bytes + rates.bytes_a_thread * options_.threads +
-                            rates.bytes_a_run * static_cast<double>(runs_) +
-                            rates.bytes_a_triangle * static_cast<double>(out_.triangles) +
+        out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
+                            rates.bytes_per_run * static_cast<double>(runs_) +
+                            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
                             rates.bytes_a_wall_particle * walls +
                             rates.bytes_a_relaxed_particle * relaxed_;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;

@@ -126,7 +126,7 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
     write_script(
         at / "batch.sbatch",
         fmt::format("#!/bin/sh\n"
-                    "# {} runs, one a task; plan.json beside this file says which. The longest is "
+                    "# {} runs, one per task; plan.json in this folder lists them. The longest is "
                     "estimated at {:.0f} s.\n"
                     "# Site settings (partition, account, time) can be added here or given to "
                     "sbatch.\n"
@@ -155,7 +155,7 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
     write_script(
         at / "submit.sh",
         fmt::format("#!/bin/sh\n"
-                    "# Hands in the job array, and the summary behind it; arguments go to both, "
+                    "# Submits the job array, and the summary after it; arguments go to both, "
                     "such as -p short.\n"
                     "set -e\n"
                     "id=$(sbatch --parsable \"$@\" {})\n"

@@ -9,9 +9,9 @@ namespace fppg
 struct Rates
 {
     double base_bytes = 8e6;               ///< of the program itself
-    double bytes_a_thread = 2e6;           ///< pieces of files being filled
-    double bytes_a_run = 100;              ///< of nodes in a column: while drawn, as particles
-    double bytes_a_triangle = 600;         ///< of mesh files, with the trees to search them
+    double bytes_per_thread = 2e6;         ///< pieces of files being filled
+    double bytes_per_run = 100;            ///< of nodes in a column: while drawn, as particles
+    double bytes_per_triangle = 600;       ///< of mesh files, with the trees to search them
     double bytes_a_wall_particle = 600;    ///< off the lattice, placed
     double bytes_a_relaxed_particle = 500; ///< besides, with the band around it
 

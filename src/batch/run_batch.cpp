@@ -356,7 +356,7 @@ private:
                     record.exit_code > 128
                         ? fmt::format("ended by signal {}{}", record.exit_code - 128,
                                       record.exit_code == 137 ? ", perhaps for want of memory" : "")
-                        : fmt::format("ended with exit code {}; {} holds what it said",
+                        : fmt::format("ended with exit code {}; {} holds its output",
                                       record.exit_code, job.log());
         }
         else

@@ -35,7 +35,7 @@ public:
     {
         const std::string* value = e.find_attribute(name);
         if (value == nullptr) return otherwise;
-        // An empty number is 0 elsewhere, as with GenCase; here it is a slip.
+        // An empty number is 0 elsewhere, as with GenCase; here it is a mistake.
         if (value->find_first_not_of(" \t\r\n") == std::string::npos)
             read_.fail(e, fmt::format("attribute {}=\"\" is empty, expected {}", name, expected));
         const double number = read_.number(e, name);

@@ -102,7 +102,7 @@ public:
         if (!def_.fit.is_empty() &&
             (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))
             read_.fail(casedef,
-                       "<lattice> with two particles a node is not possible together with "
+                       "<lattice> with two particles per node is not possible together with "
                        "body-fitted walls, expected bound=\"1\" and fluid=\"1\", or no -fit and no "
                        "<bodyfitted>");
         if (vres != nullptr) check_vres(*vres);

@@ -1,7 +1,7 @@
 // Commands that set clips.
 #include "casedef/command_table.h"
 #include "casedef/transforms.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Commands that draw points, lines and what planes bound.
 #include "casedef/command_table.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 
@@ -57,7 +57,7 @@ void draw_lines(Program& p, const Element& e)
 
 void draw_triangle(Program& p, const Element& e)
 {
-    FigureOp op;
+    PolyhedronOp op;
     op.vertices = p.transformed_points(e, 3, 3);
     op.faces.push_back({{0, 1, 2}, true, {}, 0, {}});
     p.add(e, std::move(op));
@@ -65,7 +65,7 @@ void draw_triangle(Program& p, const Element& e)
 
 void draw_quadri(Program& p, const Element& e)
 {
-    FigureOp op;
+    PolyhedronOp op;
     op.vertices = p.transformed_points(e, 4, 4);
     op.faces.push_back({{0, 1, 2, 3}, true, {}, 0, {}});
     p.add(e, std::move(op));
@@ -83,21 +83,21 @@ void draw_triangles_fan(Program& p, const Element& e)
 
 void draw_polygon(Program& p, const Element& e)
 {
-    FigureOp op = make_polygon(p.points_of(e, 3, many_points));
+    PolyhedronOp op = make_polygon(p.points_of(e, 3, many_points));
     cut_faces(op);
-    p.add_figure(e, std::move(op));
+    p.add_polyhedron(e, std::move(op));
 }
 
 void draw_triangles(Program& p, const Element& e)
 {
-    p.add_figure(e, p.figure_of(e));
+    p.add_polyhedron(e, p.polyhedron_of(e));
 }
 
 void draw_figure(Program& p, const Element& e)
 {
-    FigureOp op = p.figure_of(e);
+    PolyhedronOp op = p.polyhedron_of(e);
     op.solid = SolidKind::Faces;
-    p.add_figure(e, std::move(op));
+    p.add_polyhedron(e, std::move(op));
 }
 
 void draw_box(Program& p, const Element& e)
@@ -116,10 +116,10 @@ void draw_box(Program& p, const Element& e)
     if (is_solid && !layers.empty()) layers.erase(layers.begin() + 1, layers.end());
     std::vector<double> layers_dp;
     for (const Program::Layer& layer : layers) layers_dp.push_back(layer.dp);
-    std::vector<FigureOp> figures =
+    std::vector<PolyhedronOp> polyhedra =
         make_box(corner, size, sides, is_solid, layers_dp, p.def.grid.dp);
-    for (std::size_t i = 0; i < figures.size(); ++i)
-        p.add_layer(e, std::move(figures[i]), layers.empty() || layers[i].is_shown);
+    for (std::size_t i = 0; i < polyhedra.size(); ++i)
+        p.add_layer(e, std::move(polyhedra[i]), layers.empty() || layers[i].is_shown);
     if (p.state.mk_next_auto && leaves_one_out) p.take_next_mk(e);
 }
 
@@ -129,27 +129,27 @@ void draw_prism(Program& p, const Element& e)
     if (points.size() % 2 != 0)
         p.read.fail(e, fmt::format("has {} points, expected as many for the bottom as for the top",
                                    points.size()));
-    FigureOp op = make_prism(points);
+    PolyhedronOp op = make_prism(points);
     cut_faces(op);
     hide_faces(op, p.mask_of(e));
-    p.add_figure(e, std::move(op));
+    p.add_polyhedron(e, std::move(op));
 }
 
 void draw_beach(Program& p, const Element& e)
 {
-    FigureOp op = make_beach(p.read.points(e));
+    PolyhedronOp op = make_beach(p.read.points(e));
     if (op.vertices.size() < 6)
         p.read.fail(e, fmt::format("has {} points, expected at least 3", op.vertices.size() / 2));
     cut_faces(op);
     hide_faces(op, p.mask_of(e));
-    p.add_figure(e, std::move(op));
+    p.add_polyhedron(e, std::move(op));
 }
 
 void draw_pyramid(Program& p, const Element& e)
 {
-    FigureOp op = make_pyramid(p.points_of(e, 4, many_points));
+    PolyhedronOp op = make_pyramid(p.points_of(e, 4, many_points));
     hide_faces(op, p.mask_of(e));
-    p.add_figure(e, std::move(op));
+    p.add_polyhedron(e, std::move(op));
 }
 
 void draw_extrude(Program& p, const Element& e)
@@ -164,7 +164,7 @@ void draw_extrude(Program& p, const Element& e)
             make_extrusion(shifted_polyline(points, extrude, is_closed, layer.dp * p.def.grid.dp),
                            extrude, is_closed),
             layer.is_shown);
-    if (layers.empty()) p.add_figure(e, make_extrusion(points, extrude, is_closed));
+    if (layers.empty()) p.add_polyhedron(e, make_extrusion(points, extrude, is_closed));
 }
 
 } // namespace fppg::commands

@@ -1,7 +1,7 @@
 // Commands that fill and redraw.
 #include "casedef/command_table.h"
 #include "core/letters.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 
@@ -113,16 +113,16 @@ void fill_void_point(Program& p, const Element& e)
 
 void fill_box(Program& p, const Element& e)
 {
-    p.keep_picture(e, p.state.box_limit_full, p.matrix(p.read.vec3(e)));
+    p.keep_debug_box(e, p.state.box_limit_full, p.matrix(p.read.vec3(e)));
     fill(p, e, modes_of(p, e), p.limits_of(e, p.state.box_limit_full));
 }
 
 void fill_figure(Program& p, const Element& e)
 {
-    FigureOp figure = p.figure_of(e);
-    figure.solid = SolidKind::Faces;
-    transform_figure(figure, p.matrix);
-    fill(p, e, modes_of(p, e), std::move(figure));
+    PolyhedronOp polyhedron = p.polyhedron_of(e);
+    polyhedron.solid = SolidKind::Faces;
+    transform_polyhedron(polyhedron, p.matrix);
+    fill(p, e, modes_of(p, e), std::move(polyhedron));
 }
 
 void fill_prism(Program& p, const Element& e)
@@ -141,7 +141,7 @@ void redraw_box(Program& p, const Element& e)
     // Without an mk it is for void nodes alone (seen with GenCase v5.4).
     if (op.filters.empty()) op.filters.push_back({MkKind::Void, std::nullopt});
     op.region = p.limits_of(e, false);
-    p.keep_picture(e, false, std::nullopt);
+    p.keep_debug_box(e, false, std::nullopt);
     p.add(e, std::move(op));
 }
 
@@ -154,7 +154,7 @@ void redraw_near_box(Program& p, const Element& e)
 {
     RedrawNearOp op = redraw_near_of(p, e);
     op.region = p.limits_of(e, p.state.box_limit_full);
-    p.keep_picture(e, p.state.box_limit_full, std::nullopt);
+    p.keep_debug_box(e, p.state.box_limit_full, std::nullopt);
     p.add(e, std::move(op));
 }
 

@@ -136,7 +136,7 @@ private:
         for (const Element& c : e.children)
         {
             if (is_remark(c)) continue;
-            if (has_relax) read_.fail(c, "stands twice in <bodyfitted>, expected once at most");
+            if (has_relax) read_.fail(c, "is given twice in <bodyfitted>, expected once at most");
             has_relax = true;
             s.relax = relax_of(c);
         }
@@ -383,7 +383,7 @@ void refuse_stray_blocks(const Element& e, const AttributeReader& read)
     {
         if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
         if (c.name == "fppg" && e.name != "casedef")
-            read.fail(c, fmt::format("stands in <{}>, expected directly in <casedef>", e.name));
+            read.fail(c, fmt::format("is in <{}>, expected directly in <casedef>", e.name));
         if (c.name != "fppg") refuse_stray_blocks(c, read);
     }
 }

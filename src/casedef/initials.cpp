@@ -193,7 +193,7 @@ private:
                                                               : wants_vector ? "Vel"
                                                                              : "VelDir");
         if (data.is_vector != wants_vector)
-            read_.fail(file, fmt::format("the file holds {} a node, expected {}",
+            read_.fail(file, fmt::format("the file holds {} per node, expected {}",
                                          data.is_vector ? "three numbers" : "one number",
                                          wants_vector ? "three (magnitude is false)" : "one"));
         MeshValues mesh = data.mesh;

@@ -2,9 +2,9 @@
 
 #include "casedef/command_table.h"
 #include "meshes/mesh_library.h"
-#include "shapes/figures.h"
 #include "shapes/file_polygons.h"
-#include "shapes/free_parts.h"
+#include "shapes/off_lattice_parts.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 
@@ -98,7 +98,7 @@ void Program::run_command(const Element& e)
 {
     const CommandRow* row = find_command(e.name);
     if (row == nullptr)
-        read.fail(e, "is not a command, see the templates for what can stand in a list");
+        read.fail(e, "is not a command, see the templates for the commands of a list");
     if (!read.is_active(e)) return;
     count_command(e);
     check_children(*row, e, read);
@@ -109,11 +109,11 @@ void Program::run_command(const Element& e)
 void Program::add(const Element& e, Command what)
 {
     auto* shape = std::get_if<Shape>(&what);
-    auto* figure = shape != nullptr ? std::get_if<FigureOp>(shape) : nullptr;
+    auto* polyhedron = shape != nullptr ? std::get_if<PolyhedronOp>(shape) : nullptr;
     if (shape != nullptr && state.mk_next_auto)
         add_in_parts(e, std::move(*shape));
-    else if (figure != nullptr && has_quads_move_clips(*figure))
-        add_between_clips(e, std::move(*figure));
+    else if (polyhedron != nullptr && has_quads_move_clips(*polyhedron))
+        add_between_clips(e, std::move(*polyhedron));
     else
         add_whole(e, std::move(what));
 }
@@ -165,51 +165,53 @@ void Program::take_next_mk(const Element& e)
                                  state.mk.mk_type, count - 1));
 }
 
-bool Program::has_quads_move_clips(const FigureOp& figure) const
+bool Program::has_quads_move_clips(const PolyhedronOp& polyhedron) const
 {
     return state.off_lattice && def.grid.is_2d && !defined_clips.empty() &&
-           (state.mode != DrawMode::Wire || figure.solid == SolidKind::Box);
+           (state.mode != DrawMode::Wire || polyhedron.solid == SolidKind::Box);
 }
 
-void Program::add_between_clips(const Element& e, FigureOp figure)
+void Program::add_between_clips(const Element& e, PolyhedronOp polyhedron)
 {
-    const std::vector<FreePart> parts = free_parts(figure, state.mode, matrix, def.grid);
-    figure.part_count = static_cast<std::uint32_t>(parts.size());
-    for (figure.part = 0; figure.part < figure.part_count; ++figure.part)
+    const std::vector<OffLatticePart> parts =
+        off_lattice_parts(polyhedron, state.mode, matrix, def.grid);
+    polyhedron.part_count = static_cast<std::uint32_t>(parts.size());
+    for (polyhedron.part = 0; polyhedron.part < polyhedron.part_count; ++polyhedron.part)
     {
-        const FreePart& part = parts[figure.part];
+        const OffLatticePart& part = parts[polyhedron.part];
         if (part.is_section)
             put_clips({});
         else if (part.ends_quad)
             place_clips();
-        add_whole(e, figure);
+        add_whole(e, polyhedron);
         if (part.ends_quad) place_clips();
         if (state.mk_next_auto) take_next_mk(e);
     }
 }
 
-void Program::add_figure_in_parts(const Element& e, FigureOp figure)
+void Program::add_polyhedron_in_parts(const Element& e, PolyhedronOp polyhedron)
 {
-    if (has_quads_move_clips(figure))
+    if (has_quads_move_clips(polyhedron))
     {
-        add_between_clips(e, std::move(figure));
+        add_between_clips(e, std::move(polyhedron));
         return;
     }
-    figure.part_count = state.off_lattice ? count_free_parts(figure, state.mode, def.grid)
-                                          : count_parts(figure, state.mode);
-    const std::optional<std::uint32_t> between = part_between(figure, state.mode);
-    for (figure.part = 0; figure.part < figure.part_count; ++figure.part)
+    polyhedron.part_count = state.off_lattice
+                                ? count_off_lattice_parts(polyhedron, state.mode, def.grid)
+                                : count_parts(polyhedron, state.mode);
+    const std::optional<std::uint32_t> between = part_between(polyhedron, state.mode);
+    for (polyhedron.part = 0; polyhedron.part < polyhedron.part_count; ++polyhedron.part)
     {
-        add_whole(e, figure);
-        if (figure.part != between) take_next_mk(e);
+        add_whole(e, polyhedron);
+        if (polyhedron.part != between) take_next_mk(e);
     }
 }
 
 void Program::add_in_parts(const Element& e, Shape shape)
 {
-    if (auto* figure = std::get_if<FigureOp>(&shape))
+    if (auto* polyhedron = std::get_if<PolyhedronOp>(&shape))
     {
-        add_figure_in_parts(e, std::move(*figure));
+        add_polyhedron_in_parts(e, std::move(*polyhedron));
         return;
     }
     if (const auto* lines = std::get_if<LinesOp>(&shape))

@@ -65,7 +65,7 @@ struct Program
     void add(const Element& e, Command what);
     void add_whole(const Element& e, Command what);
     /// Under the current matrix.
-    void add_figure(const Element& e, FigureOp figure);
+    void add_polyhedron(const Element& e, PolyhedronOp polyhedron);
     /// Goes on to the next mk, which must exist even where nothing is drawn with it, as for
     /// GenCase.
     void take_next_mk(const Element& e);
@@ -81,14 +81,14 @@ struct Program
     std::vector<Vec3> points_of(const Element& e, std::size_t at_least, std::size_t at_most) const;
     std::vector<Vec3> transformed_points(const Element& e, std::size_t at_least,
                                          std::size_t at_most) const;
-    FigureOp figure_of(const Element& e) const;
+    PolyhedronOp polyhedron_of(const Element& e) const;
     BoxRegion box_of(const Element& e) const;
     BoxRegion limit_box_of(const Element& e, bool with_limits) const;
     /// The same under the current matrix.
     BoxLimits limits_of(const Element& e, bool with_limits) const;
     /// Keeps the box of a fill or redraw for its picture. What resetdraw has forgotten stays until
     /// the command comes again.
-    void keep_picture(const Element& e, bool with_limits, std::optional<Vec3> seed);
+    void keep_debug_box(const Element& e, bool with_limits, std::optional<Vec3> seed);
     /// throws CaseError where it is missing
     bool flag_of(const Element& e, std::string_view name) const;
     /// One number of `layers vdp`.
@@ -99,8 +99,8 @@ struct Program
     };
     /// The outermost first.
     std::vector<Layer> layers_of(const Element& e) const;
-    /// A figure that stands for a layer.
-    void add_layer(const Element& e, FigureOp figure, bool is_shown);
+    /// A polyhedron that stands for a layer.
+    void add_layer(const Element& e, PolyhedronOp polyhedron, bool is_shown);
     /// throws CaseError where it is not above 0
     double radius_of(const Element& e) const;
     /// The box around a cube that the matrix has moved.
@@ -150,16 +150,16 @@ struct Program
 
 private:
     void run_command(const Element& e);
-    bool has_quads_move_clips(const FigureOp& figure) const;
+    bool has_quads_move_clips(const PolyhedronOp& polyhedron) const;
     /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a
     /// solid box, meets the plane of a 2D case, and then puts it back, with all clips: particles
     /// there are clipped by the clips as written, and all that comes later by those under the
     /// matrix, a quad in the plane too (17 shapes of one case; a quad that does not meet the plane
     /// counts).
-    void add_between_clips(const Element& e, FigureOp figure);
+    void add_between_clips(const Element& e, PolyhedronOp polyhedron);
     /// Under setmknextauto: every part is drawn with the mk after that of the part before.
     void add_in_parts(const Element& e, Shape shape);
-    void add_figure_in_parts(const Element& e, FigureOp figure);
+    void add_polyhedron_in_parts(const Element& e, PolyhedronOp polyhedron);
 };
 
 /// A clip under a matrix.

@@ -1,6 +1,6 @@
 // What commands read of their elements.
 #include "casedef/program.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 
@@ -12,17 +12,17 @@
 namespace fppg
 {
 
-void Program::add_figure(const Element& e, FigureOp figure)
+void Program::add_polyhedron(const Element& e, PolyhedronOp polyhedron)
 {
-    transform_figure(figure, matrix);
-    add(e, std::move(figure));
+    transform_polyhedron(polyhedron, matrix);
+    add(e, std::move(polyhedron));
 }
 
-void Program::add_layer(const Element& e, FigureOp figure, bool is_shown)
+void Program::add_layer(const Element& e, PolyhedronOp polyhedron, bool is_shown)
 {
     const bool draw_shapes = state.draw_shapes;
     state.draw_shapes = draw_shapes && is_shown;
-    add_figure(e, std::move(figure));
+    add_polyhedron(e, std::move(polyhedron));
     state.draw_shapes = draw_shapes;
 }
 
@@ -49,20 +49,20 @@ std::vector<Vec3> Program::transformed_points(const Element& e, std::size_t at_l
     return points;
 }
 
-FigureOp Program::figure_of(const Element& e) const
+PolyhedronOp Program::polyhedron_of(const Element& e) const
 {
-    FigureOp figure;
-    figure.vertices = read.points(read.child(e, "points"));
+    PolyhedronOp polyhedron;
+    polyhedron.vertices = read.points(read.child(e, "points"));
     for (const Element& t : read.child(e, "triangles").children)
     {
         if (t.kind != Element::Kind::Tag || t.name != "triangle") continue;
-        FigureFace face;
+        PolyhedronFace face;
         for (const char* axis : {"x", "y", "z"})
             face.vertices.push_back(static_cast<std::uint32_t>(
-                read.integer(t, axis, 0, static_cast<int>(figure.vertices.size()) - 1, true)));
-        figure.faces.push_back(std::move(face));
+                read.integer(t, axis, 0, static_cast<int>(polyhedron.vertices.size()) - 1, true)));
+        polyhedron.faces.push_back(std::move(face));
     }
-    return figure;
+    return polyhedron;
 }
 
 BoxRegion Program::box_of(const Element& e) const
@@ -92,16 +92,16 @@ BoxRegion Program::limit_box_of(const Element& e, bool with_limits) const
     return box;
 }
 
-void Program::keep_picture(const Element& e, bool with_limits, std::optional<Vec3> seed)
+void Program::keep_debug_box(const Element& e, bool with_limits, std::optional<Vec3> seed)
 {
-    std::vector<BoxPicture>& pictures = def.box_pictures;
+    std::vector<DebugBox>& pictures = def.debug_boxes;
     const auto forgotten_end = pictures.begin() + static_cast<std::ptrdiff_t>(pictures_forgotten);
     const auto kept = std::remove_if(pictures.begin(), forgotten_end,
-                                     [&](const BoxPicture& p) { return p.command == e.name; });
+                                     [&](const DebugBox& p) { return p.command == e.name; });
     pictures_forgotten = static_cast<std::size_t>(kept - pictures.begin());
     pictures.erase(kept, forgotten_end);
     const BoxRegion box = limit_box_of(e, with_limits);
-    BoxPicture picture;
+    DebugBox picture;
     picture.command = e.name;
     picture.mk = state.mk.kind == MkKind::Void ? 0 : state.mk.mk;
     picture.seed = seed;

@@ -1,6 +1,6 @@
 // Commands that draw spheres, cylinders, ellipsoids and waves.
 #include "casedef/command_table.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 #include "shapes/solid_shape.h"
 
 #include <fmt/format.h>
@@ -55,8 +55,9 @@ void draw_sphere(Program& p, const Element& e)
         // The wire of a sphere is that of the solid box around it, turned and scaled with it
         // (24 of 24 spheres in GenCase v5.4, 7 matrices in v5.0).
         const Vec3 reach{radius, radius, radius};
-        p.add_figure(e, make_box(center - reach, 2 * reach, {true, true, true, true, true, true},
-                                 true, {}, p.def.grid.dp)[0]);
+        p.add_polyhedron(
+            e, make_box(center - reach, 2 * reach, {true, true, true, true, true, true}, true, {},
+                        p.def.grid.dp)[0]);
         // Its box leaves one mk out, off the lattice none, and the sphere one more.
         if (p.state.mk_next_auto)
             for (int i = p.state.off_lattice ? 1 : 0; i < 2; ++i) p.take_next_mk(e);

@@ -220,7 +220,7 @@ void load_state(Program& p, const Element& e)
 void reset_draw(Program& p, const Element& e)
 {
     p.add(e, ResetOp{});
-    p.pictures_forgotten = p.def.box_pictures.size();
+    p.pictures_forgotten = p.def.debug_boxes.size();
     p.line_begin = p.def.case_pos_min;
     auto pattern = std::move(p.state.pattern);
     p.state = {};

@@ -179,7 +179,7 @@ private:
             if (attribute.name != "active" && attribute.name != "comment" &&
                 !attribute.name.starts_with('_'))
                 def_.warnings.push_back(
-                    fmt::format("{}:{}: <bufferbox>: attribute '{}' is not heeded, as in GenCase; "
+                    fmt::format("{}:{}: <bufferbox>: attribute '{}' has no effect, as in GenCase; "
                                 "active=\"#...\" takes an expression.",
                                 def_.file, e.line, attribute.name));
         VresZone zone;

@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr int rounds = 4;
-constexpr std::size_t columns_a_chunk = 16;
+constexpr std::size_t columns_per_chunk = 16;
 
 /// How well two particles fit; less is better. No two pairs are alike, and a pair has the same
 /// rank from both sides.
@@ -85,7 +85,7 @@ void find_best(const Side& home_side, const Side& other_side, std::vector<std::u
     };
     parallel_for(
         home.columns(), threads,
-        [&](std::size_t c) { home.for_each_in_column(c, other, 1, search); }, columns_a_chunk);
+        [&](std::size_t c) { home.for_each_in_column(c, other, 1, search); }, columns_per_chunk);
 }
 
 } // namespace

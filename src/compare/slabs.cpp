@@ -23,7 +23,7 @@ constexpr std::size_t blocks_held = 32;
 template <typename Body>
 void for_each_block(const ParticleSource& source, int threads, const Body& body)
 {
-    constexpr std::size_t size = FileIndex::particles_a_block;
+    constexpr std::size_t size = FileIndex::particles_per_block;
     const std::size_t n = source.size();
     parallel_for((n + size - 1) / size, threads,
                  [&](std::size_t block)
@@ -57,7 +57,7 @@ CompareFrame frame_around(const Box3& bounds, double dp)
 
 FileIndex::FileIndex(const ParticleSource& source, int threads)
     : source_(&source),
-      boxes_((source.size() + particles_a_block - 1) / particles_a_block),
+      boxes_((source.size() + particles_per_block - 1) / particles_per_block),
       counts_(65536),
       types_(65536, -1)
 {
@@ -173,8 +173,8 @@ CellGrid::CellGrid(const CompareFrame& frame, const FileIndex& file, const Slab&
             blocks.push_back(static_cast<std::uint32_t>(block));
     const auto for_each_particle = [&](std::size_t which, const auto& body)
     {
-        const std::size_t begin = blocks[which] * FileIndex::particles_a_block;
-        const std::size_t end = std::min(source.size(), begin + FileIndex::particles_a_block);
+        const std::size_t begin = blocks[which] * FileIndex::particles_per_block;
+        const std::size_t end = std::min(source.size(), begin + FileIndex::particles_per_block);
         for (std::size_t i = begin; i < end; ++i)
         {
             const Vec3 p = source.position(i);

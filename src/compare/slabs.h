@@ -41,7 +41,7 @@ inline bool is_in_plane(const Box3& bounds, double dp)
 class FileIndex
 {
 public:
-    static constexpr std::size_t particles_a_block = 32768;
+    static constexpr std::size_t particles_per_block = 32768;
 
     /// throws  CompareError for a particle that is not at a finite place; as ParticleSource::mk()
     FileIndex(const ParticleSource& source, int threads);

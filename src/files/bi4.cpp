@@ -40,7 +40,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::uint64_t max_particles = 4294967294U;
 /// 28 bytes of Posd and Rhop and 4 of Idp a particle: one MiB.
-constexpr std::uint64_t particles_a_piece = 32768;
+constexpr std::uint64_t particles_per_piece = 32768;
 
 enum class Bi4Type : std::int32_t
 {
@@ -373,7 +373,7 @@ void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConst
         file.write_at(layout.normals.data, particles.bound_normals.data(),
                       particles.bound_normals.size() * 12);
 
-    const ParticleStream stream(particles, 0, particles.np, particles_a_piece);
+    const ParticleStream stream(particles, 0, particles.np, particles_per_piece);
     const auto rhop0 = static_cast<float>(constants.rhop0);
     parallel_for(stream.pieces(), threads,
                  [&](std::size_t piece)

@@ -88,10 +88,10 @@ template <typename Put>
 void for_each_position(const CaseParticles& particles, const ParticleSegment& segment,
                        const Put& put)
 {
-    if (segment.run->is_free())
+    if (segment.run->is_off_lattice)
     {
         const Vec3* p =
-            particles.free.positions.data() + segment.run->free_begin() + segment.offset;
+            particles.free.positions.data() + segment.run->off_lattice_begin() + segment.offset;
         for (std::int64_t k = 0; k < segment.count; ++k) put(k, p[k].x, p[k].y, p[k].z);
         return;
     }
@@ -113,10 +113,10 @@ void for_each_density(const CaseParticles& particles, float rhop0, const Particl
                       const Put& put)
 {
     const std::uint32_t count = segment.count;
-    if (segment.run->is_free())
+    if (segment.run->is_off_lattice)
     {
         const float* values =
-            particles.free.rhop.data() + segment.run->free_begin() + segment.offset;
+            particles.free.rhop.data() + segment.run->off_lattice_begin() + segment.offset;
         for (std::uint32_t k = 0; k < count; ++k) put(k, values[k]);
         return;
     }

@@ -18,7 +18,7 @@ namespace
 {
 
 /// 27 bytes a particle, 12 more with velocities, 16 with normals and 20 with walls: one MiB or two.
-constexpr std::uint64_t particles_a_piece = 32768;
+constexpr std::uint64_t particles_per_piece = 32768;
 constexpr std::uint64_t max_particles = 2147483647U;
 
 /// A part of the file: a line or more of text, then `width` bytes a particle.
@@ -111,7 +111,7 @@ struct PieceBuffer
           type(mk8 + 2 * n)
     {
     }
-    static std::size_t bytes_a_particle(const Contents& has)
+    static std::size_t bytes_per_particle(const Contents& has)
     {
         return std::size_t{12 + 8 + 4 + 4 + 2 + 1} + (has.vel_and_rhop ? 12 : 0) +
                (has.normals ? 16 : 0) + (has.walls ? 20 : 0);
@@ -172,11 +172,11 @@ void fill_normals(const PieceBuffer& buffer, const CaseParticles& particles, std
 }
 
 /// Kind, normal and distance.
-void fill_walls(const PieceBuffer& buffer, std::size_t at, const FreeParticles& free,
+void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParticles& free,
                 const ParticleSegment& segment)
 {
     const ParticleRun& run = *segment.run;
-    if (!run.is_free())
+    if (!run.is_off_lattice)
     {
         std::fill_n(buffer.kind + at, segment.count,
                     big_endian(static_cast<std::uint32_t>(FitKind::Volume)));
@@ -188,7 +188,7 @@ void fill_walls(const PieceBuffer& buffer, std::size_t at, const FreeParticles& 
     turn.offset = {};
     for (std::size_t k = 0; k < segment.count; ++k)
     {
-        const std::size_t from = run.free_begin() + segment.offset + k;
+        const std::size_t from = run.off_lattice_begin() + segment.offset + k;
         buffer.kind[at + k] = big_endian(static_cast<std::uint32_t>(free.kinds[from]));
         const std::array<float, 3>& n = free.normals[from];
         const Vec3 normal = turn({n[0], n[1], n[2]});
@@ -233,7 +233,8 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
     const std::size_t count = stream.end(piece) - begin;
     const std::uint64_t place = begin - stream.first();
     const Contents& has = layout.has;
-    const PieceBuffer buffer(piece_buffer(count * PieceBuffer::bytes_a_particle(has)), count, has);
+    const PieceBuffer buffer(piece_buffer(count * PieceBuffer::bytes_per_particle(has)), count,
+                             has);
     for (std::size_t k = 0; k < count; ++k)
     {
         buffer.vertices[2 * k] = big_endian(std::uint32_t{1});
@@ -299,7 +300,7 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
         file.write_at(part->data - part->text.size(), part->text.data(), part->text.size());
     file.write_at(layout.size - 1, "\n", 1);
 
-    const ParticleStream stream(particles, first, last, particles_a_piece);
+    const ParticleStream stream(particles, first, last, particles_per_piece);
     const auto rhop0 = static_cast<float>(constants.rhop0);
     parallel_for(stream.pieces(), threads,
                  [&](std::size_t piece)

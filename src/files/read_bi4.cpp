@@ -12,7 +12,7 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t particles_a_chunk = 65536;
+constexpr std::size_t particles_per_chunk = 65536;
 
 template <typename T>
 void copy_positions(std::string_view data, std::vector<Vec3>& positions, int threads)
@@ -23,7 +23,7 @@ void copy_positions(std::string_view data, std::vector<Vec3>& positions, int thr
         std::memcpy(p, data.data() + i * sizeof p, sizeof p);
         positions[i] = {p[0], p[1], p[2]};
     };
-    parallel_for(positions.size(), threads, copy, particles_a_chunk);
+    parallel_for(positions.size(), threads, copy, particles_per_chunk);
 }
 
 } // namespace

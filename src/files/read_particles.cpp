@@ -18,7 +18,7 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t particles_a_chunk = 65536;
+constexpr std::size_t particles_per_chunk = 65536;
 
 bool is_file(const std::string& path)
 {
@@ -48,7 +48,7 @@ void set_mk_and_type(const CaseFacts& facts, const std::string& xml,
         cloud.mk[i] = range->mk;
         cloud.type[i] = static_cast<std::uint8_t>(range->type);
     };
-    parallel_for(idp.size(), threads, set, particles_a_chunk);
+    parallel_for(idp.size(), threads, set, particles_per_chunk);
 }
 
 double guess_dp(const std::vector<Vec3>& positions, int threads)
@@ -73,7 +73,7 @@ ParticleCloud read_case(const std::string& stem, int threads)
     return cloud;
 }
 
-ParticleCloud read_picture(const std::string& path, int threads)
+ParticleCloud read_particles_vtk(const std::string& path, int threads)
 {
     ParticleCloud cloud;
     cloud.file = path;
@@ -95,13 +95,13 @@ ParticleCloud read_particles(const std::string& name, bool has_kind_first, int t
     const bool is_one_file = stem.has_value() || name.ends_with(".vtk");
     if (is_one_file && !is_file(name))
         throw IoError(fmt::format("cannot read '{}': there is no such file", name));
-    if (name.ends_with(".vtk")) return read_picture(name, threads);
+    if (name.ends_with(".vtk")) return read_particles_vtk(name, threads);
     if (!stem) stem = name;
     const std::string picture = *stem + "_All.vtk";
     if (has_kind_first && !name.ends_with(".bi4") && is_file(picture))
-        return read_picture(picture, threads);
+        return read_particles_vtk(picture, threads);
     if (is_file(*stem + ".bi4")) return read_case(*stem, threads);
-    if (is_file(picture)) return read_picture(picture, threads);
+    if (is_file(picture)) return read_particles_vtk(picture, threads);
     throw IoError(
         fmt::format("cannot read the case '{}': there is neither '{}.bi4' nor '{}_All.vtk'", *stem,
                     *stem, *stem));

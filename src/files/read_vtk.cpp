@@ -14,7 +14,7 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t particles_a_chunk = 65536;
+constexpr std::size_t particles_per_chunk = 65536;
 
 template <typename Integer>
 void copy_integers(const VtkWalk& walk, const char* name, const VtkArray& array, std::size_t n,
@@ -30,7 +30,7 @@ void copy_integers(const VtkWalk& walk, const char* name, const VtkArray& array,
             walk.fail(fmt::format("array {} has {} at point {}", name, value, i));
         out[i] = static_cast<Integer>(value);
     };
-    parallel_for(n, threads, copy, particles_a_chunk);
+    parallel_for(n, threads, copy, particles_per_chunk);
 }
 
 void copy_floats(const VtkWalk& walk, std::size_t n, ParticleCloud& cloud, int threads)
@@ -46,7 +46,7 @@ void copy_floats(const VtkWalk& walk, std::size_t n, ParticleCloud& cloud, int t
             const char* place = normal.data.data() + 12 * i;
             cloud.normals[i] = {float_at(place), float_at(place + 4), float_at(place + 8)};
         };
-        parallel_for(n, threads, copy, particles_a_chunk);
+        parallel_for(n, threads, copy, particles_per_chunk);
     }
     if (!walk.distance.type.empty())
     {
@@ -54,7 +54,7 @@ void copy_floats(const VtkWalk& walk, std::size_t n, ParticleCloud& cloud, int t
         cloud.distances.resize(n);
         const auto copy = [&](std::size_t i)
         { cloud.distances[i] = float_at(walk.distance.data.data() + 4 * i); };
-        parallel_for(n, threads, copy, particles_a_chunk);
+        parallel_for(n, threads, copy, particles_per_chunk);
     }
 }
 
@@ -82,7 +82,7 @@ void read_particles_vtk(const std::string& path, ParticleCloud& cloud, int threa
                           : static_cast<double>(float_at(data + 4 * place));
         }
     };
-    parallel_for(n, threads, copy, particles_a_chunk);
+    parallel_for(n, threads, copy, particles_per_chunk);
     copy_integers(walk, "Mk", walk.mk, n, cloud.mk, threads);
     if (!walk.type.type.empty()) copy_integers(walk, "Type", walk.type, n, cloud.type, threads);
     if (!walk.kind.type.empty()) copy_integers(walk, "Kind", walk.kind, n, cloud.kind, threads);

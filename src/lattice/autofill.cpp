@@ -6,7 +6,7 @@
 #include "lattice/limits.h"
 #include "lattice/paint_mesh.h"
 #include "scene/surfaces.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 
-#include "lattice/free_painter.h"
+#include "lattice/off_lattice_painter.h"
 #include "lattice/wall_painter.h"
 
 #include <atomic>
@@ -66,7 +66,7 @@ private:
     int threads_;
     RunField field_;
     WallPainter walls_;
-    FreePainter free_;
+    OffLatticePainter free_;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t run_limit_;
 };

@@ -21,7 +21,7 @@ constexpr std::size_t gaps_warned_of = 5;
 /// Ways out up to so much wider than what is closed anyway are looked for.
 constexpr int widest_leak_nodes = 12;
 /// Of all sets of spans that are held at the same time, a column of the box.
-constexpr double bytes_a_column = 160;
+constexpr double bytes_per_column = 160;
 
 std::string text(const Vec3& p)
 {
@@ -77,14 +77,14 @@ private:
         return (level - dot(field_.grid.origin, op_.up)) / field_.grid.dp;
     }
 
-    double litres_a_node() const
+    double litres_per_node() const
     {
         const double dp = field_.grid.dp;
         return 1000 * dp * dp * (field_.grid.is_2d ? 1 : dp);
     }
     double litres(std::uint64_t nodes) const
     {
-        return static_cast<double>(nodes) * litres_a_node();
+        return static_cast<double>(nodes) * litres_per_node();
     }
     const char* litre_name() const
     {
@@ -101,7 +101,7 @@ private:
         const double room = 2.0 * op_.gap_nodes + 3;
         const double columns =
             (drawn.max.x - drawn.min.x + room) * (drawn.max.y - drawn.min.y + room);
-        if (columns * bytes_a_column > static_cast<double>(available_memory()))
+        if (columns * bytes_per_column > static_cast<double>(available_memory()))
             throw GeometryError(fmt::format(
                 "the box around all that is drawn has {:g} columns of nodes, more than fit into "
                 "this machine's memory; a larger dp needs less",
@@ -122,7 +122,7 @@ private:
             }
             case FillMeasure::Litres:
             {
-                const double wanted = op_.amount / litres_a_node();
+                const double wanted = op_.amount / litres_per_node();
                 // Half a node is what rounding can be about.
                 if (wanted > count + 0.5)
                 {

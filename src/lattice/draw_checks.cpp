@@ -89,7 +89,7 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
         warn(op.source, Kind::Lost,
              fmt::format("it reaches from {} = {:g} to {:g}, the nodes of the domain from {:g} to "
                          "{:g}: what lies beyond gives no particles; expected a <pointmin> and "
-                         "<pointmax> around it (the node at pointmax is none of them)",
+                         "<pointmax> around it (a node at pointmax is outside)",
                          "xyz"[axis], bounds.min[axis], bounds.max[axis], grid.origin[axis],
                          grid.origin[axis] + static_cast<double>(last) * grid.dp));
         return;
@@ -103,8 +103,8 @@ void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
     const std::uint64_t open = open_edge_count(soup);
     if (open > 0)
         warn(source, Kind::Open,
-             fmt::format("{} has {} open edges or edges between facets that look to different "
-                         "sides, so its inside is not certain; close the mesh (fppg inspect shows "
+             fmt::format("{} has {} open edges or edges between facets that face opposite ways, so "
+                         "its inside is not certain; close the mesh (fppg inspect shows "
                          "where) or draw it without autofill, advanced or fppg:fill",
                          op.file, open));
 }

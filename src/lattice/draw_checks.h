@@ -10,8 +10,8 @@
 namespace fppg
 {
 
-/// Looks for slips in draws that GenCase passes over in silence. Each kind of warning comes once a
-/// line of the definition, however often a list runs it.
+/// Looks for diagnostics in draws that GenCase passes over in silence. Each kind of warning comes
+/// once a line of the definition, however often a list runs it.
 class DrawChecks
 {
 public:

@@ -23,8 +23,8 @@ struct Limits
 /// Nodes strictly inside a snapped box.
 NodeBox node_box(const BoxRegion& region, const LatticeGrid& grid);
 
-/// The inside of a figure as one entry a slab of the lattice.
-SpanSet mask_of(const Painting& painting, const Brush& brush, const FigureOp& figure);
+/// The inside of a polyhedron as one entry a slab of the lattice.
+SpanSet mask_of(const Painting& painting, const Brush& brush, const PolyhedronOp& polyhedron);
 
 /// All nodes where there is no region.
 Limits limits_of(const Painting& painting, const Brush& brush,

@@ -97,11 +97,11 @@ NodeBox node_box(const BoxRegion& region, const LatticeGrid& grid)
     return intersect(box, whole_lattice(grid));
 }
 
-SpanSet mask_of(const Painting& painting, const Brush& brush, const FigureOp& figure)
+SpanSet mask_of(const Painting& painting, const Brush& brush, const PolyhedronOp& polyhedron)
 {
     SpanSet mask;
     mask.slabs.resize(painting.grid().n[0]);
-    const SlabRegion inside = solid_of(figure, *brush.state, painting.grid());
+    const SlabRegion inside = solid_of(polyhedron, *brush.state, painting.grid());
     for (std::uint32_t x = inside.x_begin; x < inside.x_end; ++x)
         mask.slabs[x] = listed(inside, x, {}, painting.grid());
     return mask;
@@ -115,7 +115,7 @@ Limits limits_of(const Painting& painting, const Brush& brush,
     if (const auto* box = std::get_if<BoxRegion>(&*region))
         limits.box = node_box(*box, painting.grid());
     else
-        limits.mask = mask_of(painting, brush, std::get<FigureOp>(*region));
+        limits.mask = mask_of(painting, brush, std::get<PolyhedronOp>(*region));
     return limits;
 }
 

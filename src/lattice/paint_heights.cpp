@@ -1,9 +1,9 @@
 // Tables of heights.
-#include "lattice/paint_free.h"
 #include "lattice/paint_mesh.h"
+#include "lattice/paint_off_lattice.h"
 #include "nodes/snap.h"
 #include "shapes/file_polygons.h"
-#include "shapes/free_parts.h"
+#include "shapes/off_lattice_parts.h"
 #include "shapes/plane_shapes.h"
 
 namespace fppg
@@ -41,7 +41,7 @@ void paint_cell(Painting& painting, const Brush& brush, const TriangleSoup& move
         paint_triangles(painting, brush, std::move(triangles));
         return;
     }
-    FigureOp cell;
+    PolyhedronOp cell;
     for (const std::uint32_t v : corners) cell.vertices.push_back(moved.vertices[v]);
     cell.faces.push_back({{0, 1, 2, 3}, true, {}, 0, {}});
     paint(painting, brush, cell);
@@ -55,7 +55,7 @@ void paint_free_heights(Painting& painting, const Brush& brush, const MeshFileOp
     const LatticeGrid& grid = painting.grid();
     const bool is_wire = brush.state->mode == DrawMode::Wire;
     const TriangleSoup moved = moved_soup(file.soup, op.transform, painting.canvas.threads());
-    FigureOp cells;
+    PolyhedronOp cells;
     cells.vertices = moved.vertices;
     std::vector<SnappedTriangle> others;
     const auto paint_cells = [&]

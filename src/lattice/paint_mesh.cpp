@@ -7,12 +7,12 @@
 
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
-#include "lattice/paint_free.h"
+#include "lattice/paint_off_lattice.h"
 #include "meshes/mesh_library.h"
 #include "nodes/snap.h"
 #include "scene/surfaces.h"
 #include "shapes/file_polygons.h"
-#include "shapes/free_parts.h"
+#include "shapes/off_lattice_parts.h"
 #include "shapes/plane_shapes.h"
 
 #include <fmt/format.h>
@@ -91,17 +91,17 @@ void paint_wire(Painting& painting, const Brush& brush, const MeshFileOp& op, co
 void paint_free_mesh(Painting& painting, const Brush& brush, const MeshFileOp& op,
                      const MeshFile& file)
 {
-    FigureOp figure;
-    figure.vertices = moved_soup(file.soup, op.transform, painting.canvas.threads()).vertices;
+    PolyhedronOp polyhedron;
+    polyhedron.vertices = moved_soup(file.soup, op.transform, painting.canvas.threads()).vertices;
     for_each_polygon(file, op, painting.grid().dp,
                      [&](std::vector<std::uint32_t> corners) {
-                         figure.faces.push_back({std::move(corners), true, {}, 0, {}});
+                         polyhedron.faces.push_back({std::move(corners), true, {}, 0, {}});
                      });
     if (brush.state->mode == DrawMode::Wire)
-        paint_free_wire(painting, brush, figure);
+        paint_free_wire(painting, brush, polyhedron);
     else
         // With the placement of the file, which is a part of the matrix then.
-        paint_free_pieces(painting, brush, free_pieces(figure, op.transform, painting.grid()));
+        paint_free_pieces(painting, brush, free_pieces(polyhedron, op.transform, painting.grid()));
 }
 
 std::vector<SnappedTriangle> snapped_facets(const Painting& painting, const MeshFileOp& op,
@@ -231,7 +231,7 @@ private:
 
     void paint_polygon(const TriangleSoup& moved, const std::vector<std::uint32_t>& corners)
     {
-        FigureOp face;
+        PolyhedronOp face;
         for (const std::uint32_t v : corners) face.vertices.push_back(moved.vertices[v]);
         if (is_wire())
         {

@@ -1,5 +1,5 @@
 // Spheres and cylinders, which setfrdrawmode draws off the lattice too.
-#include "lattice/paint_free.h"
+#include "lattice/paint_off_lattice.h"
 #include "lattice/painting.h"
 #include "shapes/kinds.h"
 

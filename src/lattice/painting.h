@@ -38,15 +38,16 @@ struct Painting
 // A file a kind of draw. Each paints one draw over what is there; clips, pattern and mk are the
 // brush's. Kinds of shapes without a function here are painted by their nodes alone.
 
-// paint_figure.cpp
+// paint_polyhedron.cpp
 void paint(Painting& painting, const Brush& brush, const PointsOp& op);
 void paint(Painting& painting, const Brush& brush, const LinesOp& op);
-void paint(Painting& painting, const Brush& brush, const FigureOp& op);
+void paint(Painting& painting, const Brush& brush, const PolyhedronOp& op);
 /// Nodes by their distance to triangles, which the report counts.
 void paint_triangles(Painting& painting, const Brush& brush,
                      std::vector<SnappedTriangle> triangles);
-/// The inside of a figure with the constants of setdpctes.
-SlabRegion solid_of(const FigureOp& figure, const DrawState& state, const LatticeGrid& grid);
+/// The inside of a polyhedron with the constants of setdpctes.
+SlabRegion solid_of(const PolyhedronOp& polyhedron, const DrawState& state,
+                    const LatticeGrid& grid);
 
 // paint_round.cpp
 void paint(Painting& painting, const Brush& brush, const SphereOp& op);

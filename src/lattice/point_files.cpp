@@ -160,8 +160,8 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
     }
     if (near_nodes > 0)
         report.warnings.push_back(fmt::format(
-            "{}: {} points stand nearer than dp/2 to a particle on the lattice, the first at {}.",
-            at, near_nodes, text(first)));
+            "{}: {} points are nearer than dp/2 to a particle on the lattice, the first at {}.", at,
+            near_nodes, text(first)));
     const auto before = [](const Vec3& a, const Vec3& b)
     { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
     std::vector<Vec3> sorted = field.walls.volume.positions;
@@ -171,8 +171,8 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
         if (sorted[i] == sorted[i - 1] && twice++ == 0) first = sorted[i];
     if (twice > 0)
         report.warnings.push_back(
-            fmt::format("{}: {} points stand where another one stands already, the first at {}.",
-                        at, twice, text(first)));
+            fmt::format("{}: {} points are at the place of another one, the first at {}.", at,
+                        twice, text(first)));
 }
 
 } // namespace

@@ -42,45 +42,45 @@ namespace
 {
 
 /// Slabs whose spans one thread joins.
-constexpr std::size_t slabs_a_block = 16;
+constexpr std::size_t slabs_per_block = 16;
 
 /// Sets of spans that are connected, each named by its first span.
 class SpanSets
 {
 public:
-    explicit SpanSets(std::size_t spans) : above_(spans) {}
+    explicit SpanSets(std::size_t spans) : parent_(spans) {}
 
     /// Before the spans [begin, end) are joined: each is a set of its own.
     void part(std::size_t begin, std::size_t end)
     {
-        for (std::size_t i = begin; i < end; ++i) above_[i] = i;
+        for (std::size_t i = begin; i < end; ++i) parent_[i] = i;
     }
 
     void join(std::size_t a, std::size_t b)
     {
         a = shorten_to_first(a);
         b = shorten_to_first(b);
-        if (a != b) above_[std::max(a, b)] = std::min(a, b);
+        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
     }
 
     std::size_t first_of(std::size_t a) const
     {
-        while (above_[a] != a) a = above_[a];
+        while (parent_[a] != a) a = parent_[a];
         return a;
     }
 
 private:
     std::size_t shorten_to_first(std::size_t a)
     {
-        while (above_[a] != a)
+        while (parent_[a] != a)
         {
-            above_[a] = above_[above_[a]];
-            a = above_[a];
+            parent_[a] = parent_[parent_[a]];
+            a = parent_[a];
         }
         return a;
     }
 
-    RawArray<std::size_t> above_;
+    RawArray<std::size_t> parent_;
 };
 
 } // namespace
@@ -101,12 +101,12 @@ std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<Spa
                             [&](std::uint32_t a, std::uint32_t b)
                             { sets.join(first[i - 1] + a, first[i] + b); });
     };
-    const std::size_t blocks = (slabs + slabs_a_block - 1) / slabs_a_block;
+    const std::size_t blocks = (slabs + slabs_per_block - 1) / slabs_per_block;
     parallel_for(blocks, threads,
                  [&](std::size_t block)
                  {
-                     const std::size_t begin = block * slabs_a_block;
-                     const std::size_t end = std::min(slabs, begin + slabs_a_block);
+                     const std::size_t begin = block * slabs_per_block;
+                     const std::size_t end = std::min(slabs, begin + slabs_per_block);
                      sets.part(first[begin], first[end]);
                      for (std::size_t i = begin; i < end; ++i)
                      {
@@ -117,7 +117,7 @@ std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<Spa
                          if (i > begin) join_slabs(i);
                      }
                  });
-    for (std::size_t block = 1; block < blocks; ++block) join_slabs(block * slabs_a_block);
+    for (std::size_t block = 1; block < blocks; ++block) join_slabs(block * slabs_per_block);
 
     std::vector<std::size_t> reached;
     for (const SpanGraph::Id& seed : seeds)

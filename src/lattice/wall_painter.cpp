@@ -242,7 +242,7 @@ void WallPainter::hand_over_shares()
     {
         if (counts[b].kept == 0 || counts[b].touched == 0) continue;
         FittedBody& body = field_->walls.bodies[b];
-        body.figures.kept = counts[b].kept / (counts[b].kept + counts[b].touched);
+        body.measures.kept = counts[b].kept / (counts[b].kept + counts[b].touched);
         body.settle_share(field_->grid.dp);
     }
 }
@@ -252,7 +252,7 @@ void WallPainter::finish()
     for (const Hollow& hollow : hollows_)
     {
         FittedBody& body = field_->walls.bodies[hollow.body];
-        body.figures.filled = filled_share(hollow);
+        body.measures.filled = filled_share(hollow);
         body.settle_share(field_->grid.dp);
     }
     hollows_.clear();

@@ -72,8 +72,7 @@ private:
         const Edit* edit = step.edit();
         if (edit != nullptr && is_redraw(*edit) && told_.insert(op.source.line).second)
             out_.notes.push_back(
-                fmt::format("<{}> of line {} changes nodes, not shapes, and is "
-                            "not followed.",
+                fmt::format("<{}> of line {} changes nodes, not shapes, and is ignored.",
                             op.source.command, op.source.line));
         for (StepSurface& surface : step_surfaces(scene_, step, threads_))
         {

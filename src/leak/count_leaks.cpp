@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr double farthest_off_dp = 0.05; // of a rigid body's particles, dp
-constexpr std::size_t particles_a_chunk = 256;
+constexpr std::size_t particles_per_chunk = 256;
 
 class LeakCounter
 {
@@ -80,8 +80,8 @@ private:
         def_ = read_case(path, options);
         if (!def_.vres.zones.empty())
             throw CaseError(path, 0,
-                            "the case has variable resolution, whose zones are not judged; "
-                            "expected a case of one resolution");
+                            "the case has variable resolution, which is not supported; expected a "
+                            "case of one resolution");
     }
 
     /// The type of a particle; what no block has is new fluid of the solver's inlets.
@@ -172,10 +172,10 @@ private:
             }
             given_up.insert(mk);
             if (told_.insert(mk).second)
-                report_.notes.push_back(fmt::format(
-                    "mk {} does not move as a rigid body ({:.3g} dp off at {:g} s) and is not "
-                    "judged then.",
-                    mk, motion.farthest / report_.dp, part.time()));
+                report_.notes.push_back(
+                    fmt::format("mk {} does not move as a rigid body ({:.3g} dp off at {:g} s) and "
+                                "is left out at that time.",
+                                mk, motion.farthest / report_.dp, part.time()));
         }
         return motions;
     }
@@ -212,7 +212,7 @@ private:
             else if (report_.has_housing)
                 is_out[k] = housing_->is_outside(p) ? 1 : 0;
         };
-        parallel_for(fluid.size(), options_.threads, judge, particles_a_chunk);
+        parallel_for(fluid.size(), options_.threads, judge, particles_per_chunk);
         instant.fluid = fluid.size();
         const auto known =
             static_cast<std::uint64_t>(part.value("NpTotal", static_cast<double>(source_.size())));

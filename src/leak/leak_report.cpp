@@ -73,8 +73,8 @@ std::string to_text(const LeakReport& report)
                                 type_name(report.bodies[b].type), worst.count, worst.time);
     }
     for (const std::string& note : report.notes) text += "  " + note + "\n";
-    text += report.is_tight() ? "Tight: no fluid is where none can be.\n"
-                              : "Leaks: fluid is where none can be.\n";
+    text += report.is_tight() ? "No leaks: no fluid is inside solids or outside the housing.\n"
+                              : "Leaks: fluid is inside solids or outside the housing.\n";
     return text;
 }
 

@@ -131,10 +131,9 @@ private:
         for (const auto* lines : {&grid.xs, &grid.ys})
             for (std::size_t i = 1; i < lines->size(); ++i)
                 if (!((*lines)[i] > (*lines)[i - 1]))
-                    fail(
-                        fmt::format("its points are no grid: {:g} stands after {:g}, expected "
-                                    "rising values",
-                                    (*lines)[i], (*lines)[i - 1]));
+                    fail(fmt::format(
+                        "its points are no grid: {:g} follows {:g}, expected rising values",
+                        (*lines)[i], (*lines)[i - 1]));
         return grid;
     }
 

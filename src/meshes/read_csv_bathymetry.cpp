@@ -116,8 +116,8 @@ private:
     {
         for (std::size_t i = 1; i < values.size(); ++i)
             if (values[i] < values[i - 1])
-                fail(fmt::format("{} = {:g} stands after {:g}, expected rising values", axis,
-                                 values[i], values[i - 1]));
+                fail(fmt::format("{} = {:g} follows {:g}, expected rising values", axis, values[i],
+                                 values[i - 1]));
     }
 
     TextLines lines_;

@@ -183,7 +183,7 @@ private:
 
     void read_property()
     {
-        if (elements_.empty()) lines_.fail("a property stands before the first element");
+        if (elements_.empty()) lines_.fail("a property comes before the first element");
         Property property;
         const std::size_t before = lines_.offset();
         if (lines_.next_word_of_line() == "list")

@@ -95,7 +95,7 @@ Vec3 to_cylinder(const Vec3& p, const CylinderNormals& cylinder, double reach, d
 
 /// Length of a normal in the picture of svshapes: as GenCase v5.4.354 draws it, a fifth of the mean
 /// distance from the centre to the corners.
-ShapePolygons picture_line(const NormalFacet& facet, int index)
+ShapePolygons normal_line(const NormalFacet& facet, int index)
 {
     Vec3 centre;
     for (std::uint32_t i = 0; i < facet.size; ++i) centre = centre + facet.corners[i];
@@ -113,7 +113,7 @@ std::vector<ShapePolygons> picture(const std::vector<NormalFacet>& facets)
 {
     std::vector<ShapePolygons> out;
     for (std::size_t f = 0; f < facets.size(); ++f)
-        out.push_back(picture_line(facets[f], static_cast<int>(f)));
+        out.push_back(normal_line(facets[f], static_cast<int>(f)));
     for (std::size_t f = 0; f < facets.size(); ++f)
     {
         ShapePolygons shape;
@@ -271,9 +271,9 @@ private:
     Vec3 own_normal(std::size_t r, const Float3& normal) const
     {
         const RunPlace& place = places_[r];
-        if (!place.run->is_free()) return {};
+        if (!place.run->is_off_lattice) return {};
         const auto k = static_cast<std::uint64_t>(&normal - &normals_[place.id]);
-        const std::array<float, 3>& n = particles_.free.normals[place.run->free_begin() + k];
+        const std::array<float, 3>& n = particles_.free.normals[place.run->off_lattice_begin() + k];
         Transform turn = motion_of(*place.block);
         turn.offset = {};
         return turn({n[0], n[1], n[2]});

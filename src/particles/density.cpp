@@ -90,7 +90,7 @@ private:
     /// GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.
     bool is_plain(const ParticleBlock& block) const
     {
-        const std::vector<std::uint16_t>& mks = field_.walls.free_mks;
+        const std::vector<std::uint16_t>& mks = field_.walls.off_lattice_mks;
         return !def_.hydrostatic_off_lattice &&
                std::binary_search(mks.begin(), mks.end(), block.mk);
     }

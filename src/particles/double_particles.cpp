@@ -32,14 +32,14 @@ public:
                 const float density = density_of(block, r, i, id);
                 if (block.type == ParticleType::Fluid && !all_.rhop.empty())
                     rhop_.insert(rhop_.end(), doubles ? 2 : 1, density);
-                if (r.is_free())
-                    add(r.free_begin() + i, doubles, density);
+                if (r.is_off_lattice)
+                    add(r.off_lattice_begin() + i, doubles, density);
                 else if (doubles)
                     add_pair(node(block, r, i), density);
             }
             if (doubles) continue;
             runs.push_back(r);
-            if (r.is_free()) runs.back().set_free_begin(free_.size() - r.count);
+            if (r.is_off_lattice) runs.back().set_free_begin(free_.size() - r.count);
         }
         if (doubles) add_runs(runs, free_begin);
         block.runs = std::move(runs);
@@ -75,7 +75,7 @@ private:
     float density_of(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i,
                      std::uint64_t id) const
     {
-        if (r.is_free()) return all_.free.rhop[r.free_begin() + i];
+        if (r.is_off_lattice) return all_.free.rhop[r.off_lattice_begin() + i];
         if (block.type != ParticleType::Fluid) return rhop0;
         if (!all_.rhop.empty()) return all_.rhop[id - fluid_begin_];
         if (all_.rhop_of_depth.empty()) return rhop0;
@@ -100,7 +100,7 @@ private:
 
     void add(std::uint64_t from, bool doubles, float density)
     {
-        const FreeParticles& old = all_.free;
+        const OffLatticeParticles& old = all_.free;
         if (doubles)
             add_pair(old.positions[from], density);
         else
@@ -132,7 +132,7 @@ private:
     Vec3 shift_;
     std::uint64_t fluid_begin_ = 0;
     std::uint64_t np_ = 0;
-    FreeParticles free_;
+    OffLatticeParticles free_;
     std::vector<float> rhop_;
 };
 

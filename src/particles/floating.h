@@ -12,8 +12,8 @@ namespace fppg
 /// the minus sign, in a flat case too. What the definition gives replaces it. Sums are plain ones
 /// of doubles in id order, so that their rounding is GenCase's: it decides which form the inertia
 /// has in Case.xml (equal to all printed digits for 670 bodies of public cases). Particles of
-/// fitted walls count by their shares (FreeParticles::shares), so that mass, centre and inertia are
-/// those of the volume that the body has.
+/// fitted walls count by their shares (OffLatticeParticles::shares), so that mass, centre and
+/// inertia are those of the volume that the body has.
 ///
 /// nodes     with the block; where `<lattice>` doubles particles, those before it: GenCase counts
 ///           each pair once

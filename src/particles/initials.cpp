@@ -168,7 +168,7 @@ void for_places(const CaseParticles& particles, const ParticleBlock& block, bool
     for (const ParticleRun& run : block.runs)
     {
         if (run.count == 0) continue;
-        const std::uint32_t step = all || run.is_free() ? 1 : std::max(1u, run.count - 1);
+        const std::uint32_t step = all || run.is_off_lattice ? 1 : std::max(1u, run.count - 1);
         for (std::uint32_t k = 0; k < run.count; k += step)
         {
             InitialState state;

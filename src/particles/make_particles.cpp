@@ -6,8 +6,8 @@
 #include "particles/density.h"
 #include "particles/double_particles.h"
 #include "particles/floating.h"
-#include "particles/free_particles.h"
 #include "particles/initials.h"
+#include "particles/off_lattice_particles.h"
 #include "particles/run_positions.h"
 
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ public:
         compute_densities({def_, field_, type_of_mk_, free_begin_}, out_, constants, threads_);
         orient_blocks();
         merge_free();
-        list_free_points();
+        list_off_lattice_points();
         if (def_.constants.lattice_bound != 1) keep_single();
         if (double_particles(def_, out_)) set_limits();
         set_initials(def_, constants, out_);
@@ -104,7 +104,7 @@ private:
                 if (!r.is_covered) used[r.mk] = 1;
         if (has_free())
         {
-            free_of_mk_ = count_free_particles(field_.walls);
+            free_of_mk_ = count_off_lattice_particles(field_.walls);
             for (std::size_t mk = 0; mk < used.size(); ++mk)
                 if (free_of_mk_[mk] > 0) used[mk] = 1;
         }
@@ -229,31 +229,33 @@ private:
         if (!has_free()) return;
         for (const ParticleBlock& block : out_.blocks) orders_.push_back(order_of(block.mk));
         // An mk has no block where a zone of other resolution left no particle of it.
-        for (const std::uint16_t mk : field_.walls.free_mks)
+        for (const std::uint16_t mk : field_.walls.off_lattice_mks)
             if (const std::size_t b = block_of_mk_[mk]; b != no_block)
                 orders_[b].use_cells(box_of(out_.blocks[b]));
-        out_.free = sort_free_particles(field_.walls, out_.blocks, orders_, threads_, free_begin_);
+        out_.free =
+            sort_off_lattice_particles(field_.walls, out_.blocks, orders_, threads_, free_begin_);
     }
 
     void merge_free()
     {
         if (!has_free()) return;
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
-            merge_free_particles(out_, out_.blocks[b], orders_[b], free_begin_[b],
-                                 free_begin_[b + 1]);
+            merge_off_lattice_particles(out_, out_.blocks[b], orders_[b], free_begin_[b],
+                                        free_begin_[b + 1]);
     }
 
-    void list_free_points()
+    void list_off_lattice_points()
     {
-        for (const std::uint16_t mk : field_.walls.free_mks)
+        for (const std::uint16_t mk : field_.walls.off_lattice_mks)
         {
             if (block_of_mk_[mk] == no_block) continue;
             const ParticleBlock& block = out_.blocks[block_of_mk_[mk]];
             for (const ParticleRun& run : block.runs)
                 for (std::uint32_t k = 0; k < run.count; ++k)
-                    out_.free_points.positions.push_back(place_in_run(out_, block, run, k));
-            out_.free_points.mk.resize(out_.free_points.positions.size(), mk);
-            out_.free_points.types.resize(out_.free_points.positions.size(), block.type);
+                    out_.off_lattice_points.positions.push_back(place_in_run(out_, block, run, k));
+            out_.off_lattice_points.mk.resize(out_.off_lattice_points.positions.size(), mk);
+            out_.off_lattice_points.types.resize(out_.off_lattice_points.positions.size(),
+                                                 block.type);
         }
     }
 
@@ -265,19 +267,19 @@ private:
         std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX};
         std::array<std::uint32_t, 3> high{0, 0, 0};
         std::mutex guard;
-        constexpr std::size_t runs_a_part = 65536;
+        constexpr std::size_t runs_per_part = 65536;
         for (const ParticleBlock& block : out_.blocks)
             parallel_for(
-                (block.runs.size() + runs_a_part - 1) / runs_a_part, threads_,
+                (block.runs.size() + runs_per_part - 1) / runs_per_part, threads_,
                 [&](std::size_t part)
                 {
                     std::array<std::uint32_t, 3> l{UINT32_MAX, UINT32_MAX, UINT32_MAX};
                     std::array<std::uint32_t, 3> h{0, 0, 0};
-                    const std::size_t end = std::min(block.runs.size(), (part + 1) * runs_a_part);
-                    for (std::size_t i = part * runs_a_part; i < end; ++i)
+                    const std::size_t end = std::min(block.runs.size(), (part + 1) * runs_per_part);
+                    for (std::size_t i = part * runs_per_part; i < end; ++i)
                     {
                         const ParticleRun& r = block.runs[i];
-                        if (r.is_free()) continue;
+                        if (r.is_off_lattice) continue;
                         const std::uint32_t below =
                             block.run_descending ? r.z - (r.count - 1) : r.z;
                         l = {std::min(l[0], r.x), std::min(l[1], r.y), std::min(l[2], below)};
@@ -335,7 +337,7 @@ private:
                              [&](const ParticleBlock& b) { return b.mk == asked.mk; });
             if (found == out_.blocks.end()) continue;
             ParticleBlock& block = *found;
-            const std::vector<std::uint16_t>& free = field_.walls.free_mks;
+            const std::vector<std::uint16_t>& free = field_.walls.off_lattice_mks;
             const bool has_free_ones = std::find(free.begin(), free.end(), asked.mk) != free.end();
             const MkOrient orient = has_free_ones ? orient_of_cells(asked) : asked;
             const bool z_is_fastest = orient.axes[2] == 2;

@@ -17,7 +17,7 @@ namespace
 
 /// A stretch of so many particles that together make up for less than half of one is even enough.
 constexpr std::size_t even_stretch = 40;
-constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 /// The share of the kernel's integral that is farther than a radius, by the rule of rectangles.
 double share_beyond(double radius, double h, bool is_2d)

@@ -8,7 +8,7 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 /// Which of the six neighbours along the axes a particle has, as bits.
 unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)

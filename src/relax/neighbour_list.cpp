@@ -17,10 +17,10 @@ namespace
 
 /// Cells along an axis: three such numbers fill a word.
 constexpr std::uint32_t most_cells = 1u << 21;
-constexpr std::size_t points_a_block = 1 << 14;
+constexpr std::size_t points_per_block = 1 << 14;
 
 /// Puts two empty bits before every bit of a number below 2^21.
-std::uint64_t spread(std::uint64_t v)
+std::uint64_t interleaved(std::uint64_t v)
 {
     v = (v | v << 32) & 0x001F00000000FFFFu;
     v = (v | v << 16) & 0x001F0000FF0000FFu;
@@ -44,8 +44,9 @@ std::int64_t gathered(std::uint64_t v)
 
 std::uint64_t morton_key(std::int64_t i, std::int64_t j, std::int64_t k)
 {
-    return spread(static_cast<std::uint64_t>(i)) | spread(static_cast<std::uint64_t>(j)) << 1 |
-           spread(static_cast<std::uint64_t>(k)) << 2;
+    return interleaved(static_cast<std::uint64_t>(i)) |
+           interleaved(static_cast<std::uint64_t>(j)) << 1 |
+           interleaved(static_cast<std::uint64_t>(k)) << 2;
 }
 
 /// Where the cells along one axis begin, and how many a unit of length there are.
@@ -71,7 +72,7 @@ void sort_by_key(RawArray<Keyed>& items, std::size_t n, std::uint64_t largest_ke
 {
     constexpr unsigned digit_bits = 10;
     constexpr std::size_t digits = 1 << digit_bits;
-    const std::size_t blocks = std::clamp<std::size_t>(n / points_a_block, 1, 64);
+    const std::size_t blocks = std::clamp<std::size_t>(n / points_per_block, 1, 64);
     const auto begin_of = [&](std::size_t block) { return n * block / blocks; };
     RawArray<Keyed> other(n);
     std::vector<std::array<std::uint32_t, digits>> counts(blocks);
@@ -112,12 +113,12 @@ struct Range
 
 Range range_of(const std::vector<float>& values, int threads)
 {
-    std::vector<Range> blocks((values.size() + points_a_block - 1) / points_a_block);
+    std::vector<Range> blocks((values.size() + points_per_block - 1) / points_per_block);
     parallel_for(blocks.size(), threads,
                  [&](std::size_t b)
                  {
-                     const std::size_t end = std::min(values.size(), (b + 1) * points_a_block);
-                     for (std::size_t i = b * points_a_block; i < end; ++i)
+                     const std::size_t end = std::min(values.size(), (b + 1) * points_per_block);
+                     for (std::size_t i = b * points_per_block; i < end; ++i)
                          blocks[b].add({values[i], values[i]});
                  });
     Range all;
@@ -146,11 +147,12 @@ RawArray<Keyed> sorted_keys(const PointArrays& points, float cell, int threads)
         n, threads,
         [&](std::size_t i)
         {
-            keys[i] = {spread(axes[0].key(points.x[i])) | spread(axes[1].key(points.y[i])) << 1 |
-                           spread(axes[2].key(points.z[i])) << 2,
+            keys[i] = {interleaved(axes[0].key(points.x[i])) |
+                           interleaved(axes[1].key(points.y[i])) << 1 |
+                           interleaved(axes[2].key(points.z[i])) << 2,
                        static_cast<std::uint32_t>(i)};
         },
-        points_a_block);
+        points_per_block);
     const std::uint64_t along = std::bit_width(static_cast<std::uint32_t>(extent / side));
     sort_by_key(keys, n, (std::uint64_t{1} << std::min<std::uint64_t>(3 * along, 63)) - 1, threads);
     return keys;
@@ -241,7 +243,7 @@ std::vector<std::uint32_t> morton_order(const PointArrays& points, float cell, i
     const RawArray<Keyed> keys = sorted_keys(points, cell, threads);
     std::vector<std::uint32_t> order(points.size());
     parallel_for(
-        order.size(), threads, [&](std::size_t k) { order[k] = keys[k].index; }, points_a_block);
+        order.size(), threads, [&](std::size_t k) { order[k] = keys[k].index; }, points_per_block);
     return order;
 }
 
@@ -254,12 +256,12 @@ void NeighbourList::sort_into_cells(const PointArrays& points, int threads)
     built_at_.resize(n);
     const auto is_first_of_cell = [&](std::size_t k)
     { return k == 0 || keys[k].key != keys[k - 1].key; };
-    const std::size_t blocks = (n + points_a_block - 1) / points_a_block;
+    const std::size_t blocks = (n + points_per_block - 1) / points_per_block;
     std::vector<std::uint32_t> cells(blocks + 1, 0); // first of each block's
     const auto for_block = [&](std::size_t b, const auto& visit)
     {
-        const std::size_t end = std::min(n, (b + 1) * points_a_block);
-        for (std::size_t k = b * points_a_block; k < end; ++k) visit(k);
+        const std::size_t end = std::min(n, (b + 1) * points_per_block);
+        for (std::size_t k = b * points_per_block; k < end; ++k) visit(k);
     };
     parallel_for(blocks, threads,
                  [&](std::size_t b)
@@ -418,14 +420,14 @@ bool NeighbourList::is_outdated(const PointArrays& points, int threads) const
     const std::size_t n = points.size();
     if (n != built_at_.size()) return true;
     const float limit = 0.25f * skin_ * skin_;
-    const std::size_t blocks = (n + points_a_block - 1) / points_a_block;
+    const std::size_t blocks = (n + points_per_block - 1) / points_per_block;
     std::vector<char> is_far(blocks, 0);
     parallel_for(blocks, threads,
                  [&](std::size_t b)
                  {
                      float largest = 0;
-                     const std::size_t end = std::min(n, (b + 1) * points_a_block);
-                     for (std::size_t row = b * points_a_block; row < end; ++row)
+                     const std::size_t end = std::min(n, (b + 1) * points_per_block);
+                     for (std::size_t row = b * points_per_block; row < end; ++row)
                      {
                          const std::uint32_t i = order_[row];
                          const float dx = points.x[i] - built_at_.x[row];

@@ -52,7 +52,7 @@ public:
     void build(const PointArrays& points, int threads, const IsActive& is_active, const Keep& keep)
     {
         sort_into_cells(points, threads);
-        lists_.resize((order_.size() + rows_a_chunk - 1) / rows_a_chunk);
+        lists_.resize((order_.size() + rows_per_chunk - 1) / rows_per_chunk);
         ends_.resize(order_.size());
         parallel_for(lists_.size(), threads,
                      [&](std::size_t chunk) { fill_chunk(chunk, is_active, keep); });
@@ -68,14 +68,14 @@ public:
     /// Its neighbours; empty if it is not active. Behind them so many more indices can be read.
     std::span<const std::uint32_t> neighbours(std::size_t row) const
     {
-        const std::uint32_t begin = row % rows_a_chunk == 0 ? 0 : ends_[row - 1];
-        return {lists_[row / rows_a_chunk].data() + begin, ends_[row] - begin};
+        const std::uint32_t begin = row % rows_per_chunk == 0 ? 0 : ends_[row - 1];
+        return {lists_[row / rows_per_chunk].data() + begin, ends_[row] - begin};
     }
 
     static constexpr std::size_t readable_behind = 7;
 
     /// Rows that make a good chunk for parallel_for(): their lists lie together.
-    static constexpr std::size_t rows_a_chunk = 1024;
+    static constexpr std::size_t rows_per_chunk = 1024;
 
 private:
     /// What one thread needs while it fills chunks.
@@ -112,8 +112,8 @@ private:
     {
         Scratch& scratch = scratch_of_thread();
         scratch.list.clear();
-        const std::size_t begin = chunk * rows_a_chunk;
-        const std::size_t end = std::min(begin + rows_a_chunk, order_.size());
+        const std::size_t begin = chunk * rows_per_chunk;
+        const std::size_t end = std::min(begin + rows_per_chunk, order_.size());
         std::size_t cell = cell_of_row(begin);
         bool is_gathered = false;
         for (std::size_t row = begin; row < end; ++row)

@@ -68,7 +68,7 @@ public:
                     p.kind = particles.kinds[i];
                     p.is_moving = p.kind == FitKind::Surface && (held.empty() || !held[i]);
                 },
-                NeighbourList::rows_a_chunk);
+                NeighbourList::rows_per_chunk);
             layers_.emplace_back(bodies[b], std::move(own), options.dp, options.h, threads);
             body_of_layer_.push_back(b);
         }

@@ -30,7 +30,7 @@ constexpr int first_count_change = 5;
 constexpr int count_change_interval = 5;
 constexpr int last_count_change = 15;
 
-constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 /// What one chunk of particles adds up to.
 struct ChunkSums

@@ -29,7 +29,7 @@ constexpr double reach_of_cuts_dp = 3;
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int surface_iterations = 100;
 constexpr int volume_iterations = 30;
-constexpr std::size_t runs_a_chunk = 256;
+constexpr std::size_t runs_per_chunk = 256;
 
 /// A run of the field and its slab.
 struct SlabRun
@@ -190,10 +190,10 @@ private:
         {
             if (before[b] == 0) continue;
             FittedBody& body = field_.walls.bodies[b];
-            FitFigures& figures = body.figures;
-            const double more = figures.wall_particles * (after[b] / before[b] - 1);
-            figures.wall_particles += more;
-            figures.wall_volume += 0.5 * more * std::pow(field_.grid.dp, 3);
+            FitMeasures& measures = body.measures;
+            const double more = measures.wall_particles * (after[b] / before[b] - 1);
+            measures.wall_particles += more;
+            measures.wall_volume += 0.5 * more * std::pow(field_.grid.dp, 3);
             body.settle_share(field_.grid.dp);
         }
     }
@@ -306,7 +306,8 @@ private:
         PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
         for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
-        std::vector<std::vector<Candidate>> chunks((runs.size() + runs_a_chunk - 1) / runs_a_chunk);
+        std::vector<std::vector<Candidate>> chunks((runs.size() + runs_per_chunk - 1) /
+                                                   runs_per_chunk);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
             const double band = region.band[r.run.mk];
@@ -336,8 +337,8 @@ private:
         parallel_for(chunks.size(), threads_,
                      [&](std::size_t c)
                      {
-                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_a_chunk);
-                         for (std::size_t i = c * runs_a_chunk; i < end; ++i)
+                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_per_chunk);
+                         for (std::size_t i = c * runs_per_chunk; i < end; ++i)
                              look_at(runs[i], chunks[c]);
                      });
         // Per body: whether it has nodes of the region on its inner and its outer side.
@@ -375,7 +376,7 @@ private:
                                             [](double band) { return std::isinf(band); });
         PointGrid moving(reach, movers.size());
         for (const Mover& m : movers) moving.add(place_of(m.node, grid));
-        std::vector<std::vector<Vec3>> chunks((runs.size() + runs_a_chunk - 1) / runs_a_chunk);
+        std::vector<std::vector<Vec3>> chunks((runs.size() + runs_per_chunk - 1) / runs_per_chunk);
         const auto comes_before = [](const Mover& m, const NodeIndex& node)
         { return std::tuple(m.node.x, m.node.y, m.node.z) < std::tuple(node.x, node.y, node.z); };
         const auto look_at = [&](const SlabRun& r, std::vector<Vec3>& out)
@@ -401,8 +402,8 @@ private:
         parallel_for(chunks.size(), threads_,
                      [&](std::size_t c)
                      {
-                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_a_chunk);
-                         for (std::size_t i = c * runs_a_chunk; i < end; ++i)
+                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_per_chunk);
+                         for (std::size_t i = c * runs_per_chunk; i < end; ++i)
                              look_at(runs[i], chunks[c]);
                      });
         std::vector<Vec3> held;
@@ -490,14 +491,14 @@ private:
     {
         const double dp = field_.grid.dp;
         const auto is_meant = [&](const FittedBody& body)
-        { return region.band[body.mk] > 0 && body.is_solid && body.figures.filled > 0; };
+        { return region.band[body.mk] > 0 && body.is_solid && body.measures.filled > 0; };
         double volume = 0;
         for (const FittedBody& body : field_.walls.bodies)
-            if (is_meant(body)) volume += body.figures.node_volume;
+            if (is_meant(body)) volume += body.measures.node_volume;
         for (FittedBody& body : field_.walls.bodies)
         {
             if (!is_meant(body) || volume <= 0) continue;
-            body.figures.node_volume += more * dp * dp * dp * body.figures.node_volume / volume;
+            body.measures.node_volume += more * dp * dp * dp * body.measures.node_volume / volume;
             body.settle_share(dp);
         }
     }

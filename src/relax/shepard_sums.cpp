@@ -53,7 +53,7 @@ std::vector<double> shepard_sums(std::span<const Vec3> particles,
                 sum += beyond.share(plane.distance / options.dp + 0.5);
             sums[i] = sum;
         },
-        NeighbourList::rows_a_chunk);
+        NeighbourList::rows_per_chunk);
     return sums;
 }
 

@@ -20,7 +20,7 @@ constexpr double largest_step = 0.1; // dp
 /// How far within a feature edge particles are kept, dp.
 constexpr double inside_border = 1e-10;
 /// Particles that one thread takes at a time.
-constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 constexpr std::size_t prefetch_ahead = 8;
 

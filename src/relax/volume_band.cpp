@@ -14,7 +14,7 @@ namespace
 /// Walls are looked for again when a particle has moved so far: on a wall of curvature radius R
 /// the plane is off by 0.02 / R.
 constexpr float wall_renewal = 0.2f;
-constexpr std::size_t chunk_size = NeighbourList::rows_a_chunk;
+constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 void append(PointArrays& points, std::span<const Vec3> positions, const Vec3& origin, double dp)
 {

@@ -10,10 +10,10 @@
 namespace fppg
 {
 
-/// The body that a boundary mk draws, when a single closed shape draws it: a figure or a mesh file
-/// whose edges all meet (by the sum over its facets), a sphere, cylinder or ellipsoid (by formula).
-/// Fills with the mk count as the inside of the shape. What later draws cut from it is not taken
-/// off.
+/// The body that a boundary mk draws, when a single closed shape draws it: a polyhedron or a mesh
+/// file whose edges all meet (by the sum over its facets), a sphere, cylinder or ellipsoid (by
+/// formula). Fills with the mk count as the inside of the shape. What later draws cut from it is
+/// not taken off.
 ///
 /// mk       absolute
 /// why_not  filled with a sentence when nothing is returned

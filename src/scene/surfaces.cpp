@@ -22,7 +22,7 @@ DrawOp whole_of(const DrawOp& draw)
     state->mk_next_auto = false;
     whole.state = std::move(state);
     if (auto* shape = std::get_if<Shape>(&whole.what))
-        if (auto* figure = std::get_if<FigureOp>(shape)) figure->part_count = 0;
+        if (auto* polyhedron = std::get_if<PolyhedronOp>(shape)) polyhedron->part_count = 0;
     return whole;
 }
 
@@ -41,11 +41,11 @@ std::vector<ShapeMesh> surfaces_of(const Scene& scene, const DrawOp& draw, Parts
     const MeshFile* mesh = mesh_of(scene, draw, threads);
     if (mesh != nullptr && mesh->soup.vertices.empty()) return {};
     const LatticeGrid& grid = scene.def->grid;
-    const auto* figure = shape_as<FigureOp>(draw);
-    const bool is_part = figure != nullptr && figure->part_count > 0;
+    const auto* polyhedron = shape_as<PolyhedronOp>(draw);
+    const bool is_part = polyhedron != nullptr && polyhedron->part_count > 0;
     if (parts == PartsAs::Drawn || (!is_part && !draw.state->mk_next_auto))
         return shape_meshes(draw, mesh, grid);
-    if (is_part && figure->part > 0) return {};
+    if (is_part && polyhedron->part > 0) return {};
     return shape_meshes(whole_of(draw), mesh, grid);
 }
 

@@ -3,7 +3,7 @@
 #include "fppg/case_def.h"
 #include "fppg/mesh.h"
 
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <array>
 #include <cstdint>

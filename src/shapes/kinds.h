@@ -30,7 +30,7 @@ struct CellList
     void add_face(ShapeCell corners);
     /// Turned over, a face of a sphere or cylinder keeps its first corner.
     void add_round_face(ShapeCell corners);
-    /// A triangle or quad of a figure or mesh: in wire mode its sides; a triangle that snapping
+    /// A triangle or quad of a polyhedron or mesh: in wire mode its sides; a triangle that snapping
     /// leaves with two places is a line, with one it goes.
     void add_flat_face(ShapeCell corners);
 
@@ -44,11 +44,11 @@ Box3 bounds_of(const LinesOp& lines, double dp);
 void add_cells(const LinesOp& lines, CellList& out);
 
 // polyhedron.cpp
-Box3 bounds_of(const FigureOp& figure, double dp);
-bool is_body(const FigureOp& figure, DrawMode mode);
-std::vector<ShapeMesh> surfaces_of(const FigureOp& figure, const ShapeContext& context);
-void add_cells(const FigureOp& figure, CellList& out);
-std::optional<ExactBody> body_of(const FigureOp& figure, const ShapeContext& context,
+Box3 bounds_of(const PolyhedronOp& polyhedron, double dp);
+bool is_body(const PolyhedronOp& polyhedron, DrawMode mode);
+std::vector<ShapeMesh> surfaces_of(const PolyhedronOp& polyhedron, const ShapeContext& context);
+void add_cells(const PolyhedronOp& polyhedron, CellList& out);
+std::optional<ExactBody> body_of(const PolyhedronOp& polyhedron, const ShapeContext& context,
                                  std::string& why_not);
 
 // sphere.cpp

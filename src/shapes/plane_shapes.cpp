@@ -1,7 +1,7 @@
 #include "shapes/plane_shapes.h"
 
-#include "shapes/figures.h"
 #include "shapes/planes.h"
+#include "shapes/polyhedra.h"
 
 #include <algorithm>
 #include <limits>
@@ -437,16 +437,16 @@ SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const Lattic
     return region;
 }
 
-std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
-                                               bool only_visible)
+std::vector<SnappedTriangle> snapped_triangles(const PolyhedronOp& polyhedron,
+                                               const LatticeGrid& grid, bool only_visible)
 {
     std::vector<SnappedTriangle> out;
     std::vector<Node> nodes;
-    for (const Vec3& v : figure.vertices) nodes.push_back(snap(v, grid));
-    for (const FigureFace& face : figure.faces)
+    for (const Vec3& v : polyhedron.vertices) nodes.push_back(snap(v, grid));
+    for (const PolyhedronFace& face : polyhedron.faces)
     {
         if (only_visible && !face.is_visible) continue;
-        for (const auto& t : face_triangles(figure, face))
+        for (const auto& t : face_triangles(polyhedron, face))
             out.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
     }
     return out;

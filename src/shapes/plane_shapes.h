@@ -31,8 +31,9 @@ struct SnappedTriangle
 SlabRegion triangles_region(std::vector<SnappedTriangle> triangles, const LatticeGrid& grid,
                             double weight_dp, double limits_dp);
 
-/// Cuts the faces of a figure into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule P5).
-std::vector<SnappedTriangle> snapped_triangles(const FigureOp& figure, const LatticeGrid& grid,
-                                               bool only_visible);
+/// Cuts the faces of a polyhedron into triangles on the lattice, (0, 1, 2), (0, 2, 3), ... (rule
+/// P5).
+std::vector<SnappedTriangle> snapped_triangles(const PolyhedronOp& polyhedron,
+                                               const LatticeGrid& grid, bool only_visible);
 
 } // namespace fppg

@@ -1,8 +1,8 @@
 #include "fppg/error.h"
 
-#include "shapes/figures.h"
 #include "shapes/kinds.h"
 #include "shapes/polygon_cut.h"
+#include "shapes/polyhedra.h"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@ namespace
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// The triangles of a polygon of a figure, all running around as the polygon does.
-std::vector<Corners> triangles_of(const FigureOp& figure, const FigureFace& face)
+/// The triangles of a polygon of a polyhedron, all running around as the polygon does.
+std::vector<Corners> triangles_of(const PolyhedronOp& polyhedron, const PolyhedronFace& face)
 {
     std::vector<Corners> out = face.triangles;
     if (out.empty() && face.cut.empty())
@@ -27,7 +27,7 @@ std::vector<Corners> triangles_of(const FigureOp& figure, const FigureFace& face
             out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
     else if (out.empty())
     {
-        for (const auto& t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+        for (const auto& t : cut_polygon(polyhedron.vertices, {face.cut.begin(), face.cut.end()}))
         {
             Corners& corners = out.emplace_back();
             for (std::size_t k = 0; k < 3; ++k)
@@ -73,29 +73,29 @@ double volume_of(const TriangleSoup& soup)
     return sum / 6;
 }
 
-TriangleSoup soup_of(const FigureOp& figure, const std::vector<FigureFace>& faces)
+TriangleSoup soup_of(const PolyhedronOp& polyhedron, const std::vector<PolyhedronFace>& faces)
 {
     TriangleSoup soup;
-    for (const FigureFace& face : faces)
-        for (const Corners& t : triangles_of(figure, face))
-            for (const std::uint32_t v : t) soup.vertices.push_back(figure.vertices[v]);
+    for (const PolyhedronFace& face : faces)
+        for (const Corners& t : triangles_of(polyhedron, face))
+            for (const std::uint32_t v : t) soup.vertices.push_back(polyhedron.vertices[v]);
     return soup;
 }
 
 /// The visible part of the faces that setmknextauto draws at this turn: a polygon that is cut as
 /// given counts as one part, each triangle of the others as a part of its own.
-TriangleSoup part_of(const FigureOp& figure)
+TriangleSoup part_of(const PolyhedronOp& polyhedron)
 {
     TriangleSoup soup;
     std::uint32_t part = 0;
-    for (const FigureFace& face : figure.faces)
+    for (const PolyhedronFace& face : polyhedron.faces)
     {
         if (!face.is_visible) continue;
         const bool is_one_part = face.triangles.empty() && face.cut.empty();
-        for (const Corners& t : triangles_of(figure, face))
+        for (const Corners& t : triangles_of(polyhedron, face))
         {
-            if (part == figure.part)
-                for (const std::uint32_t v : t) soup.vertices.push_back(figure.vertices[v]);
+            if (part == polyhedron.part)
+                for (const std::uint32_t v : t) soup.vertices.push_back(polyhedron.vertices[v]);
             if (!is_one_part) ++part;
         }
         if (is_one_part) ++part;
@@ -103,10 +103,10 @@ TriangleSoup part_of(const FigureOp& figure)
     return soup;
 }
 
-void add_faces(const FigureOp& figure, CellList& out)
+void add_faces(const PolyhedronOp& polyhedron, CellList& out)
 {
-    const auto corner = [&](std::size_t v) { return out.context.place(figure.vertices[v]); };
-    for (const FigureFace& face : figure.faces)
+    const auto corner = [&](std::size_t v) { return out.context.place(polyhedron.vertices[v]); };
+    for (const PolyhedronFace& face : polyhedron.faces)
     {
         if (!face.is_visible) continue;
         if (face.triangles.empty() && face.cut.empty())
@@ -116,7 +116,7 @@ void add_faces(const FigureOp& figure, CellList& out)
             out.add_flat_face(std::move(corners));
             continue;
         }
-        for (auto t : face_triangles(figure, face))
+        for (auto t : face_triangles(polyhedron, face))
         {
             // The top of a prism is cut as its bottom, which looks down.
             if (face.cut_offset > 0 && !out.context.is_wire()) std::reverse(t.begin(), t.end());
@@ -126,7 +126,7 @@ void add_faces(const FigureOp& figure, CellList& out)
 }
 
 /// Its sides are those of boxfill all, in the same order, whatever it is filled as.
-void add_solid_box(const FigureOp& box, CellList& out)
+void add_solid_box(const PolyhedronOp& box, CellList& out)
 {
     if (out.context.is_wire() && !out.context.state.off_lattice) add_faces(box, out);
     constexpr std::array<std::array<std::size_t, 4>, 6> sides{
@@ -142,68 +142,68 @@ void add_solid_box(const FigureOp& box, CellList& out)
 
 } // namespace
 
-Box3 bounds_of(const FigureOp& figure, double)
+Box3 bounds_of(const PolyhedronOp& polyhedron, double)
 {
     Box3 box;
-    for (const FigureFace& face : figure.faces)
+    for (const PolyhedronFace& face : polyhedron.faces)
     {
         if (!face.is_visible) continue;
-        for (const std::uint32_t v : face.vertices) box.add(figure.vertices[v]);
+        for (const std::uint32_t v : face.vertices) box.add(polyhedron.vertices[v]);
     }
     return box;
 }
 
-bool is_body(const FigureOp& figure, DrawMode mode)
+bool is_body(const PolyhedronOp& polyhedron, DrawMode mode)
 {
-    return figure.solid != SolidKind::None && mode != DrawMode::Face;
+    return polyhedron.solid != SolidKind::None && mode != DrawMode::Face;
 }
 
-std::vector<ShapeMesh> surfaces_of(const FigureOp& figure, const ShapeContext& context)
+std::vector<ShapeMesh> surfaces_of(const PolyhedronOp& polyhedron, const ShapeContext& context)
 {
     if (context.is_wire()) return {};
     ShapeMesh mesh;
-    mesh.is_solid = context.may_fill() && figure.solid != SolidKind::None;
-    if (figure.part_count > 0 && mesh.is_solid)
+    mesh.is_solid = context.may_fill() && polyhedron.solid != SolidKind::None;
+    if (polyhedron.part_count > 0 && mesh.is_solid)
         throw GeometryError(
             "setmknextauto draws the inside of this shape part by part, which "
             "body-fitted particles cannot follow; switch one of the two off");
     // Hidden faces help to tell the outside of what is seen.
-    const TriangleSoup hull = soup_of(figure, figure.faces);
+    const TriangleSoup hull = soup_of(polyhedron, polyhedron.faces);
     const bool is_turned = is_closed(hull) && volume_of(hull) < 0;
-    std::vector<FigureFace> visible;
-    std::copy_if(figure.faces.begin(), figure.faces.end(), std::back_inserter(visible),
-                 [](const FigureFace& f) { return f.is_visible; });
+    std::vector<PolyhedronFace> visible;
+    std::copy_if(polyhedron.faces.begin(), polyhedron.faces.end(), std::back_inserter(visible),
+                 [](const PolyhedronFace& f) { return f.is_visible; });
     if (mesh.is_solid)
         mesh.soup = hull;
     else
-        mesh.soup = figure.part_count > 0 ? part_of(figure) : soup_of(figure, visible);
+        mesh.soup = polyhedron.part_count > 0 ? part_of(polyhedron) : soup_of(polyhedron, visible);
     if (is_turned) flip(mesh.soup);
     return {std::move(mesh)};
 }
 
-void add_cells(const FigureOp& figure, CellList& out)
+void add_cells(const PolyhedronOp& polyhedron, CellList& out)
 {
     const DrawState& state = out.context.state;
     // Off the lattice parts are others; there the first stands for all.
-    const bool in_parts = figure.part_count > 0 && !state.off_lattice;
-    if (figure.part > 0 && (!in_parts || figure.solid == SolidKind::Box)) return;
-    if (figure.solid == SolidKind::Box)
-        add_solid_box(figure, out);
-    else if (figure.solid == SolidKind::None || state.mode != DrawMode::Solid)
-        add_faces(figure, out);
-    if (!in_parts || figure.solid == SolidKind::Box) return;
-    const std::size_t first = figure.part_count - out.cells.size();
-    if (figure.part < first)
+    const bool in_parts = polyhedron.part_count > 0 && !state.off_lattice;
+    if (polyhedron.part > 0 && (!in_parts || polyhedron.solid == SolidKind::Box)) return;
+    if (polyhedron.solid == SolidKind::Box)
+        add_solid_box(polyhedron, out);
+    else if (polyhedron.solid == SolidKind::None || state.mode != DrawMode::Solid)
+        add_faces(polyhedron, out);
+    if (!in_parts || polyhedron.solid == SolidKind::Box) return;
+    const std::size_t first = polyhedron.part_count - out.cells.size();
+    if (polyhedron.part < first)
         out.cells.clear();
     else
-        out.cells = {std::move(out.cells[figure.part - first])};
+        out.cells = {std::move(out.cells[polyhedron.part - first])};
 }
 
-std::optional<ExactBody> body_of(const FigureOp& figure, const ShapeContext& context,
+std::optional<ExactBody> body_of(const PolyhedronOp& polyhedron, const ShapeContext& context,
                                  std::string& why_not)
 {
-    if (figure.part > 0) return std::nullopt; // the first part stands for the whole
-    FigureOp whole = figure;
+    if (polyhedron.part > 0) return std::nullopt; // the first part stands for the whole
+    PolyhedronOp whole = polyhedron;
     whole.part_count = 0;
     DrawState full = context.state;
     full.mode = DrawMode::Full;

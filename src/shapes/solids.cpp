@@ -1,8 +1,8 @@
 #include "shapes/solids.h"
 
-#include "shapes/figures.h"
 #include "shapes/planes.h"
 #include "shapes/polygon_cut.h"
+#include "shapes/polyhedra.h"
 
 #include <algorithm>
 #include <memory>
@@ -43,14 +43,17 @@ bool is_one_node(const InnerFace& face)
 class SolidCutter
 {
 public:
-    SolidCutter(const FigureOp& figure, const LatticeGrid& grid) : grid_(grid)
+    SolidCutter(const PolyhedronOp& polyhedron, const LatticeGrid& grid) : grid_(grid)
     {
-        for (const std::uint32_t v : figure.solid_vertices)
-            nodes_.push_back(snap(figure.vertices[v], grid));
-        if (figure.solid == SolidKind::Prism || figure.solid == SolidKind::Box) cut_prism(figure);
-        if (figure.solid == SolidKind::Pyramid && figure.faces[0].cut.empty()) take_pyramid();
-        if (figure.solid == SolidKind::Pyramid && !figure.faces[0].cut.empty()) cut_pyramid(figure);
-        if (figure.solid == SolidKind::Faces) take_faces(figure);
+        for (const std::uint32_t v : polyhedron.solid_vertices)
+            nodes_.push_back(snap(polyhedron.vertices[v], grid));
+        if (polyhedron.solid == SolidKind::Prism || polyhedron.solid == SolidKind::Box)
+            cut_prism(polyhedron);
+        if (polyhedron.solid == SolidKind::Pyramid && polyhedron.faces[0].cut.empty())
+            take_pyramid();
+        if (polyhedron.solid == SolidKind::Pyramid && !polyhedron.faces[0].cut.empty())
+            cut_pyramid(polyhedron);
+        if (polyhedron.solid == SolidKind::Faces) take_faces(polyhedron);
     }
 
     std::vector<SolidPart> parts;
@@ -80,11 +83,11 @@ private:
         parts.push_back(std::move(part));
     }
 
-    void cut_prism(const FigureOp& figure)
+    void cut_prism(const PolyhedronOp& polyhedron)
     {
         const std::size_t n = nodes_.size() / 2;
-        const Triangles cut = figure.solid == SolidKind::Box ? Triangles{{3, 0, 1}, {1, 2, 3}}
-                                                             : bottom_triangles(figure);
+        const Triangles cut = polyhedron.solid == SolidKind::Box ? Triangles{{3, 0, 1}, {1, 2, 3}}
+                                                                 : bottom_triangles(polyhedron);
         std::vector<std::vector<Plane>> ends;
         for (const auto& t : cut)
         {
@@ -114,11 +117,11 @@ private:
     }
 
     /// Over a base that is not flat as drawn. The face looks down.
-    void cut_pyramid(const FigureOp& figure)
+    void cut_pyramid(const PolyhedronOp& polyhedron)
     {
         const Node& apex = nodes_[0];
         Triangles cut;
-        for (const auto& t : figure.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
+        for (const auto& t : polyhedron.faces[0].triangles) cut.push_back({t[0], t[2], t[1]});
         for (const auto& t : cut)
         {
             const std::array<Node, 3> b{nodes_[t[0]], nodes_[t[1]], nodes_[t[2]]};
@@ -145,12 +148,12 @@ private:
         add_part(std::move(planes));
     }
 
-    void take_faces(const FigureOp& figure)
+    void take_faces(const PolyhedronOp& polyhedron)
     {
         std::vector<Plane> planes;
-        for (const SnappedTriangle& t : snapped_triangles(figure, grid_, false))
+        for (const SnappedTriangle& t : snapped_triangles(polyhedron, grid_, false))
             planes.push_back(plane(t.a, t.c, t.b));
-        for (const Vec3& v : figure.vertices) nodes_.push_back(snap(v, grid_));
+        for (const Vec3& v : polyhedron.vertices) nodes_.push_back(snap(v, grid_));
         add_part(std::move(planes));
     }
 
@@ -250,11 +253,11 @@ SlabRegion join(std::vector<SlabRegion> regions)
 
 } // namespace
 
-std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
+std::vector<SlabRegion> solid_parts(const PolyhedronOp& polyhedron, const LatticeGrid& grid,
                                     double weight_dp, double limits_dp)
 {
-    const auto cutter = std::make_shared<const SolidCutter>(figure, grid);
-    const bool are_apart = figure.solid != SolidKind::Pyramid;
+    const auto cutter = std::make_shared<const SolidCutter>(polyhedron, grid);
+    const bool are_apart = polyhedron.solid != SolidKind::Pyramid;
     std::vector<SlabRegion> regions;
     std::vector<SlabRegion> faces; // of the part before, that go with this one
     for (std::size_t p = 0; p < cutter->parts.size(); ++p)
@@ -291,10 +294,10 @@ std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& g
     return regions;
 }
 
-SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
+SlabRegion solid_region(const PolyhedronOp& polyhedron, const LatticeGrid& grid, double weight_dp,
                         double limits_dp)
 {
-    return join(solid_parts(figure, grid, weight_dp, limits_dp));
+    return join(solid_parts(polyhedron, grid, weight_dp, limits_dp));
 }
 
 } // namespace fppg

@@ -10,7 +10,7 @@
 namespace fppg
 {
 
-/// The inside of a figure, found by experiment with GenCase v5.4.354 (rules S1 to S4): nodes
+/// The inside of a polyhedron, found by experiment with GenCase v5.4.354 (rules S1 to S4): nodes
 /// strictly inside all planes of its parts, in double and without tolerance; none when it is wound
 /// inwards.
 /// - a prism of more than three corners is cut into prisms of three: from the bottom polygon the
@@ -26,14 +26,14 @@ namespace fppg
 ///   none different)
 /// - a base that is not flat is cut by least perimeter, seen from outside, and the pyramid into
 ///   tetrahedra with the triangles between them (recorded cases pyramid_face, _full, _solid)
-SlabRegion solid_region(const FigureOp& figure, const LatticeGrid& grid, double weight_dp,
+SlabRegion solid_region(const PolyhedronOp& polyhedron, const LatticeGrid& grid, double weight_dp,
                         double limits_dp);
 
 /// The same inside, part by part in GenCase's order of drawing: a convex part, then the faces that
 /// it turns to its neighbours, that at the last side of its triangle of the bottom first. Faces
 /// between the parts of a pyramid go with the part behind them, those of the last one by
 /// themselves.
-std::vector<SlabRegion> solid_parts(const FigureOp& figure, const LatticeGrid& grid,
+std::vector<SlabRegion> solid_parts(const PolyhedronOp& polyhedron, const LatticeGrid& grid,
                                     double weight_dp, double limits_dp);
 
 } // namespace fppg

@@ -49,7 +49,7 @@ void share_nodes(const std::vector<BooleanWallPart>& parts, const std::vector<Sp
     out.volume.assign(grid.n[0], {});
     if (std::any_of(parts.begin(), parts.end(),
                     [](const BooleanWallPart& p) { return !p.is_solid; }))
-        out.body.figures.filled = 0; // part of it is hollow
+        out.body.measures.filled = 0; // part of it is hollow
     for (std::size_t p = 0; p < parts.size(); ++p)
     {
         if (shares[p].slabs.empty()) continue;
@@ -98,7 +98,7 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
         MeshReport report;
         try
         {
-            out.meshes.push_back(take_in_mesh(part.soup, {}, threads, report));
+            out.meshes.push_back(repair_mesh(part.soup, {}, threads, report));
         }
         catch (const GeometryError& e)
         {

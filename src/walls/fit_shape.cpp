@@ -1,8 +1,8 @@
 #include "walls/fit_shape.h"
 
+#include "fppg/exclusion_band.h"
 #include "fppg/one_sheet.h"
 #include "fppg/section.h"
-#include "fppg/wall_zone.h"
 
 #include "core/parallel.h"
 #include "meshes/round_surface.h"
@@ -83,24 +83,24 @@ double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
 }
 
 /// A closed surface that holds no node is as good as solid: its particles stand for all of it.
-void take_figures(const WallZone& zone, const WallZoneOptions& options, std::size_t second_sheet,
-                  const LatticeGrid& grid, FittedBody& body)
+void take_measures(const ExclusionBand& zone, const ExclusionBandOptions& options,
+                   std::size_t second_sheet, const LatticeGrid& grid, FittedBody& body)
 {
     const double dp = grid.dp;
     const double dp3 = dp * dp * dp;
     const auto n = static_cast<double>(options.wall_particles);
-    FitFigures& figures = body.figures;
-    figures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
+    FitMeasures& measures = body.measures;
+    measures.area = zone.area + 0.5 * dp * open_rims(body.mesh, grid);
     if (second_sheet > 0)
-        figures.second_sheet = figures.area * (1 - n / (n + static_cast<double>(second_sheet)));
-    figures.area -= figures.second_sheet;
-    figures.wall_particles = n;
+        measures.second_sheet = measures.area * (1 - n / (n + static_cast<double>(second_sheet)));
+    measures.area -= measures.second_sheet;
+    measures.wall_particles = n;
     if (!zone.has_inside) return;
-    figures.volume = zone.body_volume;
-    figures.sheet_volume = zone.sheet_area * dp;
-    figures.node_volume = static_cast<double>(zone.nodes) * dp3;
-    figures.wall_volume = n * zone.wall_share_inside * dp3;
-    figures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
+    measures.volume = zone.body_volume;
+    measures.sheet_volume = zone.sheet_area * dp;
+    measures.node_volume = static_cast<double>(zone.nodes) * dp3;
+    measures.wall_volume = n * zone.wall_share_inside * dp3;
+    measures.filled = body.is_solid || zone.nodes == 0 ? 1 : 0;
     body.settle_share(dp);
 }
 
@@ -109,19 +109,19 @@ void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_
                 int threads, FittedDraw& out)
 {
     FittedBody& body = out.body;
-    WallZoneOptions options;
+    ExclusionBandOptions options;
     options.clearance_dp = settings.clearance_dp;
     options.wall_particles = wall_particles;
     options.is_solid = body.is_solid;
-    WallZone zone = wall_zone(body.mesh, body.report, grid, options, threads);
+    ExclusionBand zone = exclusion_band(body.mesh, body.report, grid, options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (body.is_solid && !zone.has_inside && zone.warnings.empty())
         out.warnings.emplace_back(
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
-    take_figures(zone, options, out.second_sheet.positions.size(), grid, body);
-    if (zone.has_inside && body.figures.filled == 0)
+    take_measures(zone, options, out.second_sheet.positions.size(), grid, body);
+    if (zone.has_inside && body.measures.filled == 0)
         out.hollow = by_slab(SpanSet{zone.volume}, grid);
     out.zone = by_slab(std::move(zone.zone), grid);
     out.volume = by_slab(body.is_solid ? std::move(zone.volume) : SpanSet{}, grid);
@@ -210,7 +210,7 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     FittedBody body;
     body.is_solid = shape.is_solid;
     body.round = shape.round;
-    body.mesh = take_in_mesh(shape.soup, {}, threads, body.report);
+    body.mesh = repair_mesh(shape.soup, {}, threads, body.report);
     body.features = find_features(body.mesh, feature_options(settings, grid));
     return fit_body(std::move(body), settings, grid, clips, threads);
 }

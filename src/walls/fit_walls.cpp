@@ -63,7 +63,7 @@ void keep_depth(const Scene& scene, const DrawOp& draw, int threads, FittedDraw&
     const LatticeGrid& grid = scene.def->grid;
     TriangleSoup moved = moved_soup(mesh_of(scene, draw, threads)->soup, file->transform, threads);
     if (draw.state->normal_invert) turn_over(moved);
-    if (!file->any_depth) fitted.body.figures.filled = 0; // only a layer of it is
+    if (!file->any_depth) fitted.body.measures.filled = 0; // only a layer of it is
     const SlabRegion region = depth_region(moved, *file, grid, threads);
     parallel_for(fitted.volume.size(), threads,
                  [&](std::size_t x)

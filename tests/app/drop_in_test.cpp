@@ -391,7 +391,7 @@ TEST(FppgFiles, HoldPicturesOfTheRelaxationThatTheCaseAsksFor)
     write_text(folder / "Case_Def.xml", text.text());
     const RunResult result = run(folder, {"Case_Def", "out/Case"});
     ASSERT_EQ(result.code, 0) << result.output;
-    EXPECT_TRUE(contains(result.output, "Case_Relax_*.vtk: 2 pictures of the relaxation"));
+    EXPECT_TRUE(contains(result.output, "Case_Relax_*.vtk: 2 VTK files of the relaxation"));
     EXPECT_TRUE(fs::exists(folder / "out/Case_Relax_0010.vtk"));
     EXPECT_TRUE(fs::exists(folder / "out/Case_Relax_0020.vtk"));
     EXPECT_FALSE(fs::exists(folder / "out/Case_Relax_0030.vtk"));

@@ -244,8 +244,8 @@ TEST(FitCheck, TellsAGivenClearanceWithMkLineAndVolumes)
     const RunResult result = run_case(folder, text, {});
     ASSERT_EQ(result.code, 0) << result.output;
     EXPECT_TRUE(contains(result.output,
-                         "*** WARNING: Case_Def.xml: fitted particles do not make up the volume "
-                         "of their solids, as clearance=\"1\" is given: mk 10: "))
+                         "*** WARNING: Case_Def.xml: fitted particles do not have the volume of "
+                         "their solids, as clearance=\"1\" is given: mk 10: "))
         << result.output;
     EXPECT_TRUE(contains(result.output, "; its <drawbox> of line 7 has ")) << result.output;
     EXPECT_TRUE(contains(result.output, " of 0.006783 m^3.")) << result.output;
@@ -264,7 +264,7 @@ TEST(FitCheck, SaysInOneSentenceWhichBodiesAreOffAlike)
     const RunResult result = run_case(folder, text, {"-fit"});
     ASSERT_EQ(result.code, 0) << result.output;
     const std::string said =
-        "particles on fitted surfaces are more or fewer than one a dp^2, as "
+        "particles on fitted surfaces are more or fewer than one per dp^2, as "
         "they are small against dp: mk 10-12: +";
     const std::size_t first = result.output.find("*** WARNING: Case_Def.xml: " + said);
     ASSERT_NE(first, std::string::npos) << result.output;

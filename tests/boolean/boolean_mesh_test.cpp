@@ -170,7 +170,7 @@ TEST(BooleanMesh, APartWithAHoleHasAnInside)
     const double whole = [&]
     {
         MeshReport report;
-        take_in_mesh(ball, {}, 1, report);
+        repair_mesh(ball, {}, 1, report);
         return report.area;
     }();
     ball.vertices.resize(ball.vertices.size() - 3);

@@ -87,7 +87,7 @@ struct PartList
     void add(const TriangleSoup& soup, const std::string& name = "part")
     {
         reports.emplace_back();
-        meshes.push_back(take_in_mesh(soup, {}, 1, reports.back()));
+        meshes.push_back(repair_mesh(soup, {}, 1, reports.back()));
         BooleanPart part;
         part.name = name;
         part.mesh = &meshes.back();

@@ -312,7 +312,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "<relax>: attribute steps=\"3\" is not known, expected active, iterations,"},
         Mistake{"Text", "<fppg>walls</fppg>", "<fppg>: text \"walls\" has no meaning here"},
         Mistake{"TwoRelaxes", "<fppg><bodyfitted><relax /><relax /></bodyfitted></fppg>",
-                "<relax>: stands twice in <bodyfitted>, expected once at most"},
+                "<relax>: is given twice in <bodyfitted>, expected once at most"},
         Mistake{"FlatAngle", R"(<fppg><bodyfitted featureangle="180" /></fppg>)",
                 "attribute featureangle=\"180\" is 180, expected degrees from 0 to less than 180"},
         Mistake{"EmptyAngle", R"(<fppg><bodyfitted featureangle=" " /></fppg>)",
@@ -356,7 +356,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "<fluidband>: mkfluid 9 is out of range, <mkconfig> leaves 0 to 8 (raise "
                 "fluidcount"},
         Mistake{"WrongPlace", "<someblock><fppg /></someblock>",
-                "<fppg>: stands in <someblock>, expected directly in <casedef>"}),
+                "<fppg>: is in <someblock>, expected directly in <casedef>"}),
     name_of);
 
 TEST(FitBlock, TakesEveryNumberOfMkconfig)

@@ -635,7 +635,7 @@ TEST(State, HidesFacesByABitMaskOrAListOfNumbers)
     {
         const CaseDef def = run("<drawprism mask=\"" + mask + "\">" + points);
         std::string out;
-        for (const FigureFace& face : shape_as<FigureOp>(def.ops.at(0))->faces)
+        for (const PolyhedronFace& face : shape_as<PolyhedronOp>(def.ops.at(0))->faces)
             out += face.is_visible ? '1' : '0';
         return out;
     };

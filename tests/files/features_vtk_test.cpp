@@ -23,7 +23,7 @@ FittedBody body_of(const TriangleSoup& soup, std::uint16_t mk)
 {
     FittedBody body;
     body.mk = mk;
-    body.mesh = take_in_mesh(soup, {}, 1, body.report);
+    body.mesh = repair_mesh(soup, {}, 1, body.report);
     body.features = find_features(body.mesh, {});
     return body;
 }

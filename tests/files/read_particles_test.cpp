@@ -48,8 +48,8 @@ ParticleCloud expected_cloud(const CaseParticles& particles)
             {
                 const std::uint32_t z = block.run_descending ? run.z - k : run.z + k;
                 cloud.positions.push_back(
-                    run.is_free()
-                        ? particles.free.positions[run.free_begin() + k]
+                    run.is_off_lattice
+                        ? particles.free.positions[run.off_lattice_begin() + k]
                         : grid.origin + grid.dp * Vec3{double(run.x), double(run.y), double(z)});
                 cloud.mk.push_back(block.mk);
                 cloud.type.push_back(static_cast<std::uint8_t>(block.type));

@@ -43,7 +43,7 @@ TEST(WriteShapesVtk, LeavesEmptyPartsOut)
 
 TEST(WriteFreePointsVtk, KeepsPlacesInDoublesWithMkAndType)
 {
-    FreePoints points;
+    OffLatticePoints points;
     points.positions = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
     points.mk = {1, 10};
     points.types = {ParticleType::Fluid, ParticleType::Floating};

@@ -16,7 +16,7 @@ using namespace test;
 SurfaceMesh mesh_of(const TriangleSoup& soup)
 {
     MeshReport report;
-    return take_in_mesh(soup, {}, 1, report);
+    return repair_mesh(soup, {}, 1, report);
 }
 
 /// Whether a facet reaches a cell, by cutting it at the cell's six faces.

@@ -44,7 +44,7 @@ struct FitInput
     FitInput(const TriangleSoup& soup, double dp)
     {
         MeshReport report;
-        mesh = take_in_mesh(soup, {}, 1, report);
+        mesh = repair_mesh(soup, {}, 1, report);
         FeatureOptions feature_options;
         feature_options.dp = dp;
         features = find_features(mesh, feature_options);

@@ -29,7 +29,7 @@ struct Fitted
     explicit Fitted(const Vec3& size, int threads = 1)
     {
         MeshReport report;
-        mesh = take_in_mesh(box(size), {}, 1, report);
+        mesh = repair_mesh(box(size), {}, 1, report);
         FeatureOptions options;
         options.dp = dp;
         features = find_features(mesh, options);

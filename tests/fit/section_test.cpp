@@ -22,7 +22,7 @@ constexpr double pi = std::numbers::pi;
 SurfaceMesh taken(const TriangleSoup& soup)
 {
     MeshReport report;
-    return take_in_mesh(soup, {}, 1, report);
+    return repair_mesh(soup, {}, 1, report);
 }
 
 SectionParticles cut(const TriangleSoup& soup, double y, double dp)

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "fppg/exclusion_band.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
-#include "fppg/wall_zone.h"
 
 #include <cmath>
 #include <string>
@@ -17,7 +17,7 @@ struct FittedMesh
     MeshReport report;
     std::size_t wall_particles = 0;
     LatticeGrid grid;
-    WallZone zone;
+    ExclusionBand zone;
     std::vector<std::string> warnings; ///< of intake and zone
 
     std::size_t volume_nodes() const
@@ -55,7 +55,7 @@ inline FittedMesh fit_soup(const TriangleSoup& soup, double dp = 0, double shift
                            int threads = 1)
 {
     FittedMesh result;
-    const SurfaceMesh mesh = take_in_mesh(soup, {}, threads, result.report);
+    const SurfaceMesh mesh = repair_mesh(soup, {}, threads, result.report);
     const Vec3 size = result.report.bounds.max - result.report.bounds.min;
     if (dp == 0) dp = std::max({size.x, size.y, size.z}) / 40;
     FeatureOptions feature_options;
@@ -68,9 +68,9 @@ inline FittedMesh fit_soup(const TriangleSoup& soup, double dp = 0, double shift
                     fit_options, threads)
             .positions.size();
     result.grid = lattice_around(result.report.bounds, dp, shift);
-    WallZoneOptions options;
+    ExclusionBandOptions options;
     options.wall_particles = result.wall_particles;
-    result.zone = wall_zone(mesh, result.report, result.grid, options, threads);
+    result.zone = exclusion_band(mesh, result.report, result.grid, options, threads);
     result.warnings = result.report.warnings;
     result.warnings.insert(result.warnings.end(), result.zone.warnings.begin(),
                            result.zone.warnings.end());

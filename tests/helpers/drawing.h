@@ -4,7 +4,7 @@
 #include "fppg/lattice.h"
 #include "fppg/scene.h"
 
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <cstdint>
 #include <memory>

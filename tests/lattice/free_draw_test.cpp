@@ -45,7 +45,7 @@ std::string point(double x)
 }
 
 // The numbers are those of GenCase v5.4.354.
-TEST(FreeDraw, KeepsTheTruePlaceOfAPoint)
+TEST(OffLatticeDraw, KeepsTheTruePlaceOfAPoint)
 {
     const RunField field = field_of(point(0.13));
     ASSERT_EQ(field.walls.volume.size(), 1u);
@@ -53,14 +53,14 @@ TEST(FreeDraw, KeepsTheTruePlaceOfAPoint)
     EXPECT_EQ(node_particles(field), 0u);
 }
 
-TEST(FreeDraw, LeavesTheLastOfPointsThatAreTooNear)
+TEST(OffLatticeDraw, LeavesTheLastOfPointsThatAreTooNear)
 {
     const RunField field = field_of(point(0.1) + point(0.16) + point(0.22));
     ASSERT_EQ(field.walls.volume.size(), 1u);
     EXPECT_DOUBLE_EQ(field.walls.volume.positions[0].x, 0.22);
 }
 
-TEST(FreeDraw, GivesWayToALaterNodeOfAnotherMkOnly)
+TEST(OffLatticeDraw, GivesWayToALaterNodeOfAnotherMkOnly)
 {
     const std::string lattice = "<setfrdrawmode auto=\"false\" />";
     const RunField other = field_of(point(0.13) + lattice + "<setmkbound mk=\"1\" />" + point(0.1));
@@ -71,7 +71,7 @@ TEST(FreeDraw, GivesWayToALaterNodeOfAnotherMkOnly)
     EXPECT_EQ(node_particles(same), 0u);
 }
 
-TEST(FreeDraw, GivesWayToALaterParticleOfALowerMkAtItsNode)
+TEST(OffLatticeDraw, GivesWayToALaterParticleOfALowerMkAtItsNode)
 {
     const std::string high = "<setmkbound mk=\"1\" />" + point(0.13);
     const std::string low = "<setmkbound mk=\"0\" />" + point(0.23);
@@ -82,7 +82,7 @@ TEST(FreeDraw, GivesWayToALaterParticleOfALowerMkAtItsNode)
     EXPECT_EQ(node_particles(field), 0u);
 }
 
-TEST(FreeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
+TEST(OffLatticeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
 {
     const RunField field =
         field_of(point(0.13) + "<setmkbound mk=\"1\" />" + point(0.23) +
@@ -91,7 +91,7 @@ TEST(FreeDraw, DropsBothWallsWhoseSharedNodeIsPaintedOver)
     EXPECT_EQ(node_particles(field), 1u);
 }
 
-TEST(FreeDraw, GivesEveryPartOfAPrismItsOwnMk)
+TEST(OffLatticeDraw, GivesEveryPartOfAPrismItsOwnMk)
 {
     const RunField field = field_of(
         R"(<setmknextauto auto="true" /><drawprism><point x="0" y="0" z="0" />)"
@@ -104,7 +104,7 @@ TEST(FreeDraw, GivesEveryPartOfAPrismItsOwnMk)
     EXPECT_EQ(node_particles(field), 12u);
 }
 
-TEST(FreeDraw, RefusesABoxWhoseParticlesWouldBeTooNear)
+TEST(OffLatticeDraw, RefusesABoxWhoseParticlesWouldBeTooNear)
 {
     EXPECT_THROW(field_of(R"(<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" />)"
                           R"(<size x="0.21" y="0.1" z="0.1" /></drawbox>)"),
@@ -121,7 +121,7 @@ std::string trapezoid(double end)
         end);
 }
 
-TEST(FreeDraw, RefusesATrapezoidWhoseSecondLegIsLonger)
+TEST(OffLatticeDraw, RefusesATrapezoidWhoseSecondLegIsLonger)
 {
     // GenCase v5.4.354 takes legs of 0.6083 and 0.6132, and refuses 0.6133.
     EXPECT_NO_THROW(field_of(trapezoid(0.8732)));
@@ -147,7 +147,7 @@ std::vector<Vec3> in_plane(const std::string& corners)
     return drawn_in_plane("<drawquadri>" + corners + "</drawquadri>");
 }
 
-TEST(FreeDraw, DrawsASphereOfA2dCaseAsADisc)
+TEST(OffLatticeDraw, DrawsASphereOfA2dCaseAsADisc)
 {
     const auto count = [](const std::string& mode, double y)
     {
@@ -162,7 +162,7 @@ TEST(FreeDraw, DrawsASphereOfA2dCaseAsADisc)
     EXPECT_EQ(count("full", 0.4), 1U);
 }
 
-TEST(FreeDraw, EmptiesWhatStandsAtAFilledCylinderOnly)
+TEST(OffLatticeDraw, EmptiesWhatStandsAtAFilledCylinderOnly)
 {
     const std::string cylinder = R"(<drawcylinder radius="0.3"><point x="0.5" y="0.5" z="0.2" />)"
                                  R"(<point x="0.5" y="0.5" z="0.8" /></drawcylinder>)";
@@ -176,7 +176,7 @@ TEST(FreeDraw, EmptiesWhatStandsAtAFilledCylinderOnly)
               count(face + cylinder) + 1);
 }
 
-TEST(FreeDraw, DrawsAQuadThatCrossesThePlaneOfA2dCaseAsLines)
+TEST(OffLatticeDraw, DrawsAQuadThatCrossesThePlaneOfA2dCaseAsLines)
 {
     EXPECT_EQ(in_plane(R"(<point x="0.2" y="-0.2" z="0.1" /><point x="1.13" y="0.3" z="0.4" />)"
                        R"(<point x="0.5" y="0.25" z="1.1" /><point x="0.1" y="-0.25" z="0.9" />)")
@@ -189,7 +189,7 @@ TEST(FreeDraw, DrawsAQuadThatCrossesThePlaneOfA2dCaseAsLines)
               5u);
 }
 
-TEST(FreeDraw, IsTheSameWithOneAndEightThreads)
+TEST(OffLatticeDraw, IsTheSameWithOneAndEightThreads)
 {
     const std::string sphere =
         R"(<drawsphere radius="0.37"><point x="0.31" y="0.52" z="0.47" /></drawsphere>)";

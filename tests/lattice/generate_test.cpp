@@ -2,7 +2,7 @@
 #include "fppg/scene.h"
 
 #include "helpers/dense_grid.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <gtest/gtest.h>
 

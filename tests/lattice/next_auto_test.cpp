@@ -104,10 +104,10 @@ TEST(MkNextAuto, TakesAllLayersOfASphereAsOne)
 
 TEST(MkNextAuto, DrawsTheInsideOfAFigureAfterItsFaces)
 {
-    const std::string figure = R"(<drawfigure><points><point x="0" y="0" z="0" />
+    const std::string polyhedron = R"(<drawfigure><points><point x="0" y="0" z="0" />
 <point x="0.5" y="0" z="0" /><point x="0" y="0.5" z="0" /><point x="0" y="0" z="0.5" /></points>
 <triangles><triangle x="0" y="1" z="3" /></triangles></drawfigure>)";
-    const std::map<int, int> nodes = nodes_of_parts("full", figure + point);
+    const std::map<int, int> nodes = nodes_of_parts("full", polyhedron + point);
     EXPECT_EQ(nodes.at(2), 21);
     EXPECT_EQ(nodes.rbegin()->first, 4);
 }

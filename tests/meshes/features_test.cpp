@@ -26,7 +26,7 @@ constexpr double pi = 3.14159265358979323846;
 SurfaceMesh taken_in(const TriangleSoup& soup, int threads = 2)
 {
     MeshReport report;
-    return take_in_mesh(soup, {}, threads, report);
+    return repair_mesh(soup, {}, threads, report);
 }
 
 /// A prism over a polygon around the origin, along z from 0 to `height`.

@@ -298,15 +298,17 @@ std::vector<ShapePolygons> ball_faces(int side)
 std::size_t expect_radial(const Made& made, int side, const Vec3& centre = {0.4, 0.4, 0.4})
 {
     std::size_t count = 0;
-    const FreeParticles& free = made.particles.free;
+    const OffLatticeParticles& free = made.particles.free;
     for (const ParticleBlock& block : made.particles.blocks)
     {
         std::uint64_t id = block.begin;
         for (const ParticleRun& run : block.runs)
             for (std::uint32_t k = 0; k < run.count; ++k, ++id)
             {
-                if (!run.is_free() || free.kinds[run.free_begin() + k] == FitKind::Volume) continue;
-                const Vec3 p = motion_of(block)(free.positions[run.free_begin() + k]);
+                if (!run.is_off_lattice ||
+                    free.kinds[run.off_lattice_begin() + k] == FitKind::Volume)
+                    continue;
+                const Vec3 p = motion_of(block)(free.positions[run.off_lattice_begin() + k]);
                 const auto& n = made.normals.at(id);
                 expect_vector(Vec3{n[0], n[1], n[2]} / 0.001, side * (p - centre) / 0.3, 1e-4);
                 ++count;

@@ -214,7 +214,7 @@ TEST(InitialMesh, IsRefusedWhereItsFileIsWrong)
         return std::string("nothing was thrown");
     };
     const std::string good = "0;0;1;2;10;11;12;20;21;22";
-    EXPECT_NE(message(mesh_file("float", good, ""), "false").find("holds one number a node"),
+    EXPECT_NE(message(mesh_file("float", good, ""), "false").find("holds one number per node"),
               std::string::npos);
     EXPECT_NE(
         message(mesh_file("float", good + ";3", ""), "true").find("mesh.csv:4: the line has 11"),

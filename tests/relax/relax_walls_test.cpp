@@ -2,7 +2,7 @@
 
 #include "helpers/dense_grid.h"
 #include "helpers/drawing.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include <gtest/gtest.h>
 
@@ -197,7 +197,7 @@ TEST(RelaxWalls, KeepsASlantedBoxWithinItsWall)
 {
     Drawing drawing;
     const Vec3 half{0.91, 0.72, 0.63};
-    FigureOp box =
+    PolyhedronOp box =
         make_box(-1 * half, 2 * half, {true, true, true, true, true, true}, true, {}, dp)[0];
     for (Vec3& v : box.vertices) v = rotate(v, 0.4);
     drawing.draw(box);

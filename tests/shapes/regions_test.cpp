@@ -203,7 +203,7 @@ TEST(SolidRegion, OfFacesIsWhatLiesBehindAllOfThem)
     for (int i = 0; i < cases; ++i)
     {
         const LatticeGrid grid = any_grid(dice);
-        FigureOp tetrahedron;
+        PolyhedronOp tetrahedron;
         tetrahedron.solid = SolidKind::Faces;
         std::vector<Node> nodes;
         for (int k = 0; k < 4; ++k)
@@ -216,7 +216,7 @@ TEST(SolidRegion, OfFacesIsWhatLiesBehindAllOfThem)
         for (const std::array<std::uint32_t, 3>& f :
              {std::array<std::uint32_t, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
         {
-            FigureFace face;
+            PolyhedronFace face;
             face.vertices = {f[0], f[1], f[2]};
             tetrahedron.faces.push_back(face);
             part.planes.push_back(plane_through(position(nodes[f[0]], grid),
@@ -254,7 +254,7 @@ TEST(SolidRegion, OfAPrismIsItsPartsAndTheNodesBetweenThem)
     {
         const LatticeGrid grid = any_grid(dice);
         const auto n = static_cast<std::size_t>(dice.whole(3, 5));
-        FigureOp prism;
+        PolyhedronOp prism;
         prism.solid = SolidKind::Prism;
         const Node up = any_node(dice, grid, 3);
         std::vector<Node> nodes;

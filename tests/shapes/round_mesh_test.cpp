@@ -26,7 +26,7 @@ FittedBody body_of(const ShapeMesh& shape)
 {
     FittedBody body;
     body.round = shape.round;
-    body.mesh = take_in_mesh(shape.soup, {}, 1, body.report);
+    body.mesh = repair_mesh(shape.soup, {}, 1, body.report);
     body.features = find_features(body.mesh, {});
     return body;
 }

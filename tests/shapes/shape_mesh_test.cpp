@@ -4,7 +4,7 @@
 #include "casedef/transforms.h"
 #include "fppg/error.h"
 #include "meshes/test_shapes.h"
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 #include "shapes/round_facets.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ struct Taken
 Taken taken(const ShapeMesh& shape)
 {
     Taken out;
-    out.mesh = take_in_mesh(shape.soup, {}, 1, out.report);
+    out.mesh = repair_mesh(shape.soup, {}, 1, out.report);
     out.features = find_features(out.mesh, {});
     return out;
 }
@@ -73,7 +73,7 @@ void expect_solid(const std::vector<ShapeMesh>& shapes, double volume)
 
 constexpr std::array<bool, 6> all_sides{true, true, true, true, true, true};
 
-FigureOp solid_box()
+PolyhedronOp solid_box()
 {
     return make_box({0.1, 0.2, 0.3}, {1, 2, 3}, all_sides, true, {}, dp)[0];
 }
@@ -103,16 +103,16 @@ double area_of(const std::vector<Vec3>& polygon)
 }
 
 /// An L of eight triangles and more, seen from outside counter-clockwise.
-FigureOp l_figure()
+PolyhedronOp l_polyhedron()
 {
     const std::vector<Vec3> outline{{0, 0, 0}, {2, 0, 0}, {2, 0, 1},
                                     {1, 0, 1}, {1, 0, 2}, {0, 0, 2}};
-    FigureOp figure;
-    figure.solid = SolidKind::Faces;
-    figure.vertices = outline;
-    for (const Vec3& p : outline) figure.vertices.push_back(p + Vec3{0, 0.5, 0});
+    PolyhedronOp polyhedron;
+    polyhedron.solid = SolidKind::Faces;
+    polyhedron.vertices = outline;
+    for (const Vec3& p : outline) polyhedron.vertices.push_back(p + Vec3{0, 0.5, 0});
     const auto add = [&](std::vector<std::uint32_t> v) {
-        figure.faces.push_back({std::move(v), true, {}, 0, {}});
+        polyhedron.faces.push_back({std::move(v), true, {}, 0, {}});
     };
     for (const auto& [a, b, c, d] :
          {std::array<std::uint32_t, 4>{0, 1, 2, 3}, std::array<std::uint32_t, 4>{0, 3, 4, 5}})
@@ -128,7 +128,7 @@ FigureOp l_figure()
         add({j, i, i + 6});
         add({j, i + 6, j + 6});
     }
-    return figure;
+    return polyhedron;
 }
 
 TEST(ShapeMeshes, ASolidBoxHasTwelveLinesAndEightCorners)
@@ -146,19 +146,20 @@ TEST(ShapeMeshes, ASolidBoxHasTwelveLinesAndEightCorners)
 TEST(ShapeMeshes, AMirroredOrTurnedFigureStillLooksOutward)
 {
     for (const Vec3& scale : {Vec3{-1, 1, 1}, Vec3{1, 2, -0.5}, Vec3{-1, -1, -1}, Vec3{3, 1, 1}})
-        for (const FigureOp& figure : {solid_box(), l_figure()})
+        for (const PolyhedronOp& polyhedron : {solid_box(), l_polyhedron()})
         {
-            FigureOp moved = figure;
-            transform_figure(moved, rotation({1, 2, 3}, 0.7) * scaling(scale));
-            const double volume = figure.solid == SolidKind::Box ? 6 : 1.5;
+            PolyhedronOp moved = polyhedron;
+            transform_polyhedron(moved, rotation({1, 2, 3}, 0.7) * scaling(scale));
+            const double volume = polyhedron.solid == SolidKind::Box ? 6 : 1.5;
             expect_solid(meshes(moved), volume * std::fabs(scale.x * scale.y * scale.z));
         }
 }
 
 TEST(ShapeMeshes, AMirroredOpenBoxStillLooksOutward)
 {
-    FigureOp box = make_box({}, {1, 1, 1}, {true, true, true, true, true, false}, false, {}, dp)[0];
-    transform_figure(box, scaling({-1, 1, 1}));
+    PolyhedronOp box =
+        make_box({}, {1, 1, 1}, {true, true, true, true, true, false}, false, {}, dp)[0];
+    transform_polyhedron(box, scaling({-1, 1, 1}));
     const auto shapes = meshes(box, DrawMode::Face);
     ASSERT_EQ(shapes.size(), 1U);
     EXPECT_EQ(shapes[0].soup.size(), 10U);
@@ -179,8 +180,8 @@ TEST(ShapeMeshes, PrismsOfAnyOutlineAreWatertight)
         // An odd star has two long corners side by side.
         const double area = area_of(points);
         for (const Vec3& p : star(n, 1.5)) points.push_back(p);
-        FigureOp prism = make_prism(points);
-        transform_figure(prism, translation({3, 1, 2}) * rotation({1, -1, 2}, 1.1));
+        PolyhedronOp prism = make_prism(points);
+        transform_polyhedron(prism, translation({3, 1, 2}) * rotation({1, -1, 2}, 1.1));
         expect_solid(meshes(prism), area * 1.5);
         expect_solid(meshes(prism, DrawMode::Full), area * 1.5);
     }
@@ -208,15 +209,15 @@ TEST(ShapeMeshes, ATwistedPrismIsWatertightThoughItsSidesAreNotPlane)
 
 TEST(ShapeMeshes, AnLOfTrianglesKeepsItsNotch)
 {
-    expect_solid(meshes(l_figure()), 1.5);
-    const Taken t = taken(meshes(l_figure())[0]);
+    expect_solid(meshes(l_polyhedron()), 1.5);
+    const Taken t = taken(meshes(l_polyhedron())[0]);
     EXPECT_EQ(t.features.lines.size(), 18U);
     EXPECT_EQ(t.features.singular.size(), 12U);
 }
 
 TEST(ShapeMeshes, FaceModeGivesVisibleFacesAndNoSolid)
 {
-    const FigureOp open =
+    const PolyhedronOp open =
         make_box({}, {1, 1, 1}, {true, false, true, true, true, true}, false, {}, dp)[0];
     for (const DrawMode mode : {DrawMode::Face, DrawMode::Solid, DrawMode::Full})
     {
@@ -228,7 +229,7 @@ TEST(ShapeMeshes, FaceModeGivesVisibleFacesAndNoSolid)
     const auto closed = meshes(solid_box(), DrawMode::Face);
     EXPECT_FALSE(closed[0].is_solid);
     EXPECT_TRUE(taken(closed[0]).report.is_watertight);
-    FigureOp masked = solid_box();
+    PolyhedronOp masked = solid_box();
     hide_faces(masked, {1, 4});
     EXPECT_EQ(meshes(masked)[0].soup.size(), 8U);
 }
@@ -246,7 +247,7 @@ TEST(ShapeMeshes, APolygonIsCutInsideItsOutline)
 
 TEST(ShapeMeshes, NormalInvertTurnsSurfacesAndNotSolids)
 {
-    FigureOp triangle;
+    PolyhedronOp triangle;
     triangle.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     triangle.faces.push_back({{0, 1, 2}, true, {}, 0, {}});
     const auto up = taken(meshes(triangle)[0]).mesh.normals[0];
@@ -322,7 +323,7 @@ TEST(ShapeMeshes, WhatStaysOnTheLatticeGivesNone)
 
 TEST(ShapeMeshes, PartsOfASurfaceComeOneByOneAndPartsOfASolidAreRefused)
 {
-    FigureOp box = make_box({}, {1, 1, 1}, all_sides, false, {}, dp)[0];
+    PolyhedronOp box = make_box({}, {1, 1, 1}, all_sides, false, {}, dp)[0];
     box.part_count = count_parts(box, DrawMode::Face);
     ASSERT_EQ(box.part_count, 6U);
     double area = 0;
@@ -334,7 +335,7 @@ TEST(ShapeMeshes, PartsOfASurfaceComeOneByOneAndPartsOfASolidAreRefused)
         area += taken(shapes[0]).report.area;
     }
     EXPECT_NEAR(area, 6, 1e-12);
-    FigureOp solid = solid_box();
+    PolyhedronOp solid = solid_box();
     solid.part_count = count_parts(solid, DrawMode::Solid);
     EXPECT_THROW(meshes(solid), GeometryError);
 }

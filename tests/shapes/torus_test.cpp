@@ -181,7 +181,7 @@ TEST(Torus, HasAClosedSmoothMeshWithinTheChordError)
             const ShapeMesh shape =
                 make_torus({1, -2, 0.5}, Vec3{2, -1, 2} / 3, radius, tube).shape->surface(dp);
             MeshReport report;
-            const SurfaceMesh mesh = take_in_mesh(shape.soup, {}, 1, report);
+            const SurfaceMesh mesh = repair_mesh(shape.soup, {}, 1, report);
             EXPECT_TRUE(report.is_watertight);
             EXPECT_EQ(report.degenerate_facets, 0U);
             EXPECT_EQ(report.shells, 1U);

@@ -55,7 +55,7 @@ TEST(UpgradeCommand, WritesANewFileButNeverAnOldOne)
     {
         const RunResult again = run(folder, {"upgrade", "Tank_Def", "-o", there});
         EXPECT_EQ(again.code, 4);
-        EXPECT_THAT(again.output, HasSubstr("is there already"));
+        EXPECT_THAT(again.output, HasSubstr("exists already"));
     }
     EXPECT_EQ(read_text(folder / "Tank_Def.xml"), old_case);
     EXPECT_EQ(read_text(folder / "New_Def.xml"), upgraded);
@@ -72,7 +72,7 @@ TEST(UpgradeCommand, KeepsTheDefinitionThatItWritesOver)
     fs::create_symlink("Tank_Def.xml", folder / "Link_Def.xml");
     const RunResult result = run(folder, {"upgrade", "Link_Def.xml", "Tank_Def.xml", "--in-place"});
     EXPECT_EQ(result.code, 0) << result.output;
-    EXPECT_THAT(result.output, HasSubstr("the file of before is Link_Def.xml.bak"));
+    EXPECT_THAT(result.output, HasSubstr("the old file is Link_Def.xml.bak"));
     EXPECT_THAT(result.output, HasSubstr("Tank_Def.xml: 0 changes"));
     EXPECT_TRUE(fs::is_symlink(folder / "Link_Def.xml"));
     EXPECT_EQ(fs::status(folder / "Tank_Def.xml").permissions(),

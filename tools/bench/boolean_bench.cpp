@@ -200,7 +200,7 @@ int main(int argc, char** argv)
                            std::deque<fppg::SurfaceMesh> out;
                            fppg::MeshReport report;
                            for (const auto& soup : soups)
-                               out.push_back(fppg::take_in_mesh(soup, {}, threads, report));
+                               out.push_back(fppg::repair_mesh(soup, {}, threads, report));
                            return out;
                        });
         std::vector<fppg::BooleanPart> parts;

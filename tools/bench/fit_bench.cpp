@@ -148,7 +148,7 @@ int main(int count, char** values)
     const double dp = std::atof(argv[2]);
     const int threads = argc > 4 ? std::atoi(argv[4]) : 1;
     fppg::MeshReport report;
-    auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
+    auto mesh = fppg::repair_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
     const auto start_lines = clock::now();
     fppg::FeatureOptions feature_options;
     feature_options.dp = dp;

@@ -177,7 +177,7 @@ int main(int argc, char** argv)
     const bool has_quadrature = argc > 10;
 
     fppg::MeshReport report;
-    const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
+    const auto mesh = fppg::repair_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
     fppg::TriangleSoup soup;
     for (const auto& facet : mesh.facets)
         for (const auto v : facet) soup.vertices.push_back(mesh.vertices[v]);

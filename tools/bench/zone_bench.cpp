@@ -6,10 +6,10 @@
 // The lattice stands on whole multiples of dp, moved by `shift` dp.
 
 #include "fit/near_nodes.h"
+#include "fppg/exclusion_band.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
-#include "fppg/wall_zone.h"
 
 #include <cmath>
 #include <cstdio>
@@ -47,7 +47,7 @@ int main(int argc, char** argv)
     const double shift = argc > 4 ? std::atof(argv[4]) : 0;
     const bool is_2d = argc > 5;
     fppg::MeshReport report;
-    const auto mesh = fppg::take_in_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
+    const auto mesh = fppg::repair_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
     fppg::FeatureOptions feature_options;
     feature_options.dp = dp;
     const auto features = fppg::find_features(mesh, feature_options);
@@ -73,7 +73,7 @@ int main(int argc, char** argv)
         grid.origin.y = 0.5 * (report.bounds.min.y + report.bounds.max.y);
         grid.n[1] = 1;
     }
-    fppg::WallZoneOptions options;
+    fppg::ExclusionBandOptions options;
     options.wall_particles = particles.positions.size();
     fppg::TriangleSoup soup;
     for (const auto& facet : mesh.facets)
@@ -83,7 +83,7 @@ int main(int argc, char** argv)
     for (const auto& slab : fppg::find_near_nodes(soup, grid, threads)) near += slab.size();
     const double near_seconds = seconds_since(near_start);
     const auto start = std::clock();
-    const auto zone = fppg::wall_zone(mesh, report, grid, options, threads);
+    const auto zone = fppg::exclusion_band(mesh, report, grid, options, threads);
     const double seconds = seconds_since(start);
     std::printf(
         "%zu facets, %zu wall particles (%.3f s); %zu nodes within 1 dp, %.2f us a node to "

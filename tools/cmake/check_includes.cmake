@@ -43,7 +43,7 @@ set(app_may_see upgrade leak batch report compare render walls lattice fit boole
 set(main_may_see app)
 
 # Public headers with functions of a stage: only who may see its folder includes them.
-set(fit_headers fit one_sheet section wall_zone)
+set(fit_headers fit one_sheet section exclusion_band)
 set(boolean_headers boolean)
 set(relax_headers relax relax_volume relax_walls)
 set(compare_headers compare)

@@ -42,7 +42,7 @@ expect_fault(src/relax/b.cpp "#include <embree3/rtcore.h>" "only meshes and rend
 expect_fault(src/files/b.cpp "#include <png.h>" "only render may include png")
 expect_fault(src/lattice/b.cpp "#include <CLI/CLI.hpp>" "only app may include CLI")
 expect_fault(src/batch/b.cpp "#include <nlohmann/json.hpp>" "only core may include nlohmann")
-expect_fault(src/lattice/b.cpp "#include \"fppg/wall_zone.h\"" "lattice may not include fppg/wall_zone.h of fit")
+expect_fault(src/lattice/b.cpp "#include \"fppg/exclusion_band.h\"" "lattice may not include fppg/exclusion_band.h of fit")
 expect_fault(src/lattice/b.cpp "#include \"fppg/boolean.h\"" "lattice may not include fppg/boolean.h of boolean")
 expect_fault(src/files/b.cpp "#include \"b.h\"" "name the folder of the header")
 expect_fault(src/other/b.cpp "" "other has no place among the layers")

@@ -254,9 +254,9 @@ void add_meshes(const std::shared_ptr<WorkFolder>& work)
                 {
                     fppg::TriangleSoup soup = fppg::read_stl(path).soup;
                     fppg::MeshReport report;
-                    const fppg::SurfaceMesh one = fppg::take_in_mesh(soup, {}, threads, report);
+                    const fppg::SurfaceMesh one = fppg::repair_mesh(soup, {}, threads, report);
                     for (fppg::Vec3& v : soup.vertices) v = v + fppg::Vec3{0.21, 0.13, 0.17};
-                    const fppg::SurfaceMesh two = fppg::take_in_mesh(soup, {}, threads, report);
+                    const fppg::SurfaceMesh two = fppg::repair_mesh(soup, {}, threads, report);
                     fppg::BooleanNode both;
                     both.op = fppg::BooleanOp::Union;
                     both.operands.resize(2);

@@ -11,7 +11,7 @@ namespace fppg
 {
 
 /// A file that shows what a command read, for looking at only.
-struct DebugPicture
+struct DebugVtk
 {
     std::string name; ///< behind the case name
     std::function<void(OutputFile&)> write;
@@ -26,6 +26,6 @@ struct DebugPicture
 ///   ending; of two such commands with one name the later one counts
 ///
 /// threads  for reading the points of a bathymetry
-std::vector<DebugPicture> debug_pictures(const CaseDef& def, int threads);
+std::vector<DebugVtk> debug_vtk(const CaseDef& def, int threads);
 
 } // namespace fppg

@@ -1,11 +1,11 @@
-#include "lattice/paint_free.h"
+#include "lattice/paint_off_lattice.h"
 
 #include "fppg/error.h"
 
 #include "lattice/draw_pattern.h"
-#include "lattice/free_points.h"
-#include "shapes/figures.h"
-#include "shapes/free_parts.h"
+#include "lattice/off_lattice_points.h"
+#include "shapes/off_lattice_parts.h"
+#include "shapes/polyhedra.h"
 #include "shapes/solids.h"
 
 #include <fmt/format.h>
@@ -39,7 +39,8 @@ void append(std::vector<Vec3>& points, const std::vector<Vec3>& more)
 
 } // namespace
 
-void paint_free_points(Painting& painting, const Brush& brush, const std::vector<Vec3>& points)
+void paint_off_lattice_points(Painting& painting, const Brush& brush,
+                              const std::vector<Vec3>& points)
 {
     paint_made(painting, brush, [&] { return points; });
 }
@@ -70,7 +71,7 @@ void paint_free_pieces(Painting& painting, const Brush& brush,
                });
 }
 
-void paint_free_figure(Painting& painting, const Brush& brush, const FigureOp& op)
+void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const PolyhedronOp& op)
 {
     const DrawState& state = *brush.state;
     const LatticeGrid& grid = painting.grid();
@@ -88,10 +89,10 @@ void paint_free_figure(Painting& painting, const Brush& brush, const FigureOp& o
                    });
         return;
     }
-    std::vector<FreePart> parts = free_parts(op, state.mode, state.matrix, grid);
+    std::vector<OffLatticePart> parts = off_lattice_parts(op, state.mode, state.matrix, grid);
     if (op.part_count > 0) parts = {parts.at(op.part)};
     std::vector<SlabRegion> insides;
-    for (const FreePart& part : parts)
+    for (const OffLatticePart& part : parts)
     {
         if (!part.inside)
         {
@@ -107,7 +108,7 @@ void paint_free_figure(Painting& painting, const Brush& brush, const FigureOp& o
     }
 }
 
-void paint_free_wire(Painting& painting, const Brush& brush, const FigureOp& op)
+void paint_free_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op)
 {
     std::vector<std::pair<Vec3, Vec3>> segments;
     const auto add_sides = [&](const auto& corners)
@@ -116,7 +117,7 @@ void paint_free_wire(Painting& painting, const Brush& brush, const FigureOp& op)
             segments.emplace_back(op.vertices[corners[i]],
                                   op.vertices[corners[(i + 1) % corners.size()]]);
     };
-    for (const FigureFace& face : op.faces)
+    for (const PolyhedronFace& face : op.faces)
     {
         if (!face.is_visible) continue;
         if (face.triangles.empty() && face.cut.empty())

@@ -1,4 +1,4 @@
-#include "shapes/figures.h"
+#include "shapes/polyhedra.h"
 
 #include "shapes/polygon_cut.h"
 
@@ -15,9 +15,9 @@ namespace
 
 using Face = std::vector<std::uint32_t>;
 
-std::vector<std::uint32_t> all_vertices(const FigureOp& figure)
+std::vector<std::uint32_t> all_vertices(const PolyhedronOp& polyhedron)
 {
-    std::vector<std::uint32_t> out(figure.vertices.size());
+    std::vector<std::uint32_t> out(polyhedron.vertices.size());
     std::iota(out.begin(), out.end(), 0u);
     return out;
 }
@@ -30,24 +30,24 @@ constexpr std::uint32_t corner(unsigned x, unsigned y, unsigned z)
 
 /// Bottom, top and sides of a prism; the bottom is cut by least perimeter and the top as the
 /// bottom.
-void add_prism_faces(FigureOp& figure, const std::vector<std::uint32_t>& corners)
+void add_prism_faces(PolyhedronOp& polyhedron, const std::vector<std::uint32_t>& corners)
 {
     const auto n = static_cast<std::uint32_t>(corners.size() / 2);
     const Face bottom(corners.begin(), corners.begin() + n);
     const Face top(corners.begin() + n, corners.end());
-    figure.faces.push_back({Face(bottom.rbegin(), bottom.rend()), true, bottom, 0, {}});
-    figure.faces.push_back({top, true, bottom, top[0] - bottom[0], {}});
+    polyhedron.faces.push_back({Face(bottom.rbegin(), bottom.rend()), true, bottom, 0, {}});
+    polyhedron.faces.push_back({top, true, bottom, top[0] - bottom[0], {}});
     for (std::uint32_t i = 0; i < n; ++i)
     {
         const std::uint32_t j = (i + 1) % n;
-        figure.faces.push_back({{bottom[i], bottom[j], top[j], top[i]}, true, {}, 0, {}});
+        polyhedron.faces.push_back({{bottom[i], bottom[j], top[j], top[i]}, true, {}, 0, {}});
     }
 }
 
-FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 6>& sides,
-                      bool is_solid)
+PolyhedronOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 6>& sides,
+                          bool is_solid)
 {
-    FigureOp box;
+    PolyhedronOp box;
     for (unsigned c = 0; c < 8; ++c)
         box.vertices.push_back({(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y,
                                 (c & 4) != 0 ? high.z : low.z});
@@ -77,9 +77,9 @@ FigureOp make_one_box(const Vec3& low, const Vec3& high, const std::array<bool, 
 
 } // namespace
 
-std::vector<FigureOp> make_box(const Vec3& point, const Vec3& extent,
-                               const std::array<bool, 6>& sides, bool is_solid,
-                               const std::vector<double>& layers_dp, double dp)
+std::vector<PolyhedronOp> make_box(const Vec3& point, const Vec3& extent,
+                                   const std::array<bool, 6>& sides, bool is_solid,
+                                   const std::vector<double>& layers_dp, double dp)
 {
     // Layers move outwards whichever corner of the box comes first.
     Vec3 corner = point;
@@ -111,15 +111,15 @@ std::vector<FigureOp> make_box(const Vec3& point, const Vec3& extent,
         }
         return make_one_box(low, high, sides, is_solid);
     };
-    std::vector<FigureOp> out;
+    std::vector<PolyhedronOp> out;
     for (const double layer : layers_dp) out.push_back(grown(layer));
     if (layers_dp.empty()) out.push_back(grown(0));
     return out;
 }
 
-FigureOp make_prism(const std::vector<Vec3>& points)
+PolyhedronOp make_prism(const std::vector<Vec3>& points)
 {
-    FigureOp prism;
+    PolyhedronOp prism;
     prism.vertices = points;
     prism.solid = SolidKind::Prism;
     prism.solid_vertices = all_vertices(prism);
@@ -127,9 +127,9 @@ FigureOp make_prism(const std::vector<Vec3>& points)
     return prism;
 }
 
-FigureOp prism_limits(const std::vector<Vec3>& points)
+PolyhedronOp prism_limits(const std::vector<Vec3>& points)
 {
-    FigureOp prism;
+    PolyhedronOp prism;
     prism.vertices = points;
     prism.solid = SolidKind::Faces;
     const auto n = static_cast<std::uint32_t>(points.size() / 2);
@@ -165,12 +165,12 @@ bool is_flat_base(const std::vector<Vec3>& points)
 
 } // namespace
 
-FigureOp make_pyramid(const std::vector<Vec3>& points)
+PolyhedronOp make_pyramid(const std::vector<Vec3>& points)
 {
-    FigureOp pyramid;
+    PolyhedronOp pyramid;
     pyramid.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size()) - 1;
-    FigureFace base;
+    PolyhedronFace base;
     for (std::uint32_t i = 0; i < n; ++i) base.vertices.push_back(n - i);
     // The order of corners decides nodes within rounding of a limit, that of triangles their mks
     // (drawn apart and as parts by GenCase): a fan from the first corner, the last triangle first,
@@ -188,18 +188,18 @@ FigureOp make_pyramid(const std::vector<Vec3>& points)
     return pyramid;
 }
 
-FigureOp make_fan(const std::vector<Vec3>& points)
+PolyhedronOp make_fan(const std::vector<Vec3>& points)
 {
-    FigureOp fan;
+    PolyhedronOp fan;
     fan.vertices = points;
     for (std::uint32_t i = 2; i < points.size(); ++i)
         fan.faces.push_back({{0, i - 1, i}, true, {}, 0, {}});
     return fan;
 }
 
-FigureOp make_strip(const std::vector<Vec3>& points)
+PolyhedronOp make_strip(const std::vector<Vec3>& points)
 {
-    FigureOp strip;
+    PolyhedronOp strip;
     strip.vertices = points;
     // Every second triangle turns the other way: nodes at its limits are as GenCase's (150 strips,
     // 39 were not with all turned alike).
@@ -209,9 +209,9 @@ FigureOp make_strip(const std::vector<Vec3>& points)
     return strip;
 }
 
-FigureOp make_polygon(const std::vector<Vec3>& points)
+PolyhedronOp make_polygon(const std::vector<Vec3>& points)
 {
-    FigureOp polygon;
+    PolyhedronOp polygon;
     polygon.vertices = points;
     const Face face = all_vertices(polygon);
     // Four corners are cut as a quad.
@@ -219,7 +219,7 @@ FigureOp make_polygon(const std::vector<Vec3>& points)
     return polygon;
 }
 
-FigureOp make_beach(const std::vector<Vec3>& points)
+PolyhedronOp make_beach(const std::vector<Vec3>& points)
 {
     std::vector<Vec3> both = points;
     for (Vec3& p : both) p.y = 0;
@@ -257,9 +257,9 @@ std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& 
     return out;
 }
 
-FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed)
+PolyhedronOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bool is_closed)
 {
-    FigureOp out;
+    PolyhedronOp out;
     out.vertices = points;
     const auto n = static_cast<std::uint32_t>(points.size());
     for (const Vec3& p : points) out.vertices.push_back(p + extrude);
@@ -271,20 +271,20 @@ FigureOp make_extrusion(const std::vector<Vec3>& points, const Vec3& extrude, bo
     return out;
 }
 
-std::optional<std::uint32_t> part_between(const FigureOp& figure, DrawMode mode)
+std::optional<std::uint32_t> part_between(const PolyhedronOp& polyhedron, DrawMode mode)
 {
     const bool fills = mode == DrawMode::Solid || mode == DrawMode::Full;
-    if (!fills || figure.solid != SolidKind::Pyramid || figure.faces.at(0).cut.empty())
+    if (!fills || polyhedron.solid != SolidKind::Pyramid || polyhedron.faces.at(0).cut.empty())
         return std::nullopt;
-    return static_cast<std::uint32_t>(figure.faces[0].cut.size()) - 2;
+    return static_cast<std::uint32_t>(polyhedron.faces[0].cut.size()) - 2;
 }
 
-std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
+std::uint32_t count_parts(const PolyhedronOp& polyhedron, DrawMode mode)
 {
     if (mode == DrawMode::Wire)
     {
         std::uint32_t sides = 0;
-        for (const FigureFace& f : figure.faces)
+        for (const PolyhedronFace& f : polyhedron.faces)
         {
             if (!f.is_visible) continue;
             if (!f.triangles.empty())
@@ -295,15 +295,15 @@ std::uint32_t count_parts(const FigureOp& figure, DrawMode mode)
         }
         return sides;
     }
-    const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
+    const bool fills = mode != DrawMode::Face && polyhedron.solid != SolidKind::None;
     std::uint32_t count = 0;
     std::uint32_t corners = 3;
-    if (figure.solid == SolidKind::Box || figure.solid == SolidKind::Prism)
-        corners = static_cast<std::uint32_t>(figure.solid_vertices.size() / 2);
+    if (polyhedron.solid == SolidKind::Box || polyhedron.solid == SolidKind::Prism)
+        corners = static_cast<std::uint32_t>(polyhedron.solid_vertices.size() / 2);
     if (fills) count = corners - 2 + 2 * (corners - 3);
-    if (const auto between = part_between(figure, mode)) count = *between + 1;
+    if (const auto between = part_between(polyhedron, mode)) count = *between + 1;
     if (fills && mode == DrawMode::Solid) return count;
-    for (const FigureFace& f : figure.faces)
+    for (const PolyhedronFace& f : polyhedron.faces)
     {
         if (!f.is_visible) continue;
         if (!f.triangles.empty())
@@ -339,22 +339,23 @@ bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp)
     return std::fabs(dot(normal, last)) <= 0.1 * dp * norm(normal);
 }
 
-void hide_faces(FigureOp& figure, const std::vector<int>& numbers)
+void hide_faces(PolyhedronOp& polyhedron, const std::vector<int>& numbers)
 {
     for (const int number : numbers)
-        if (number >= 1 && number <= static_cast<int>(figure.faces.size()))
-            figure.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
-    if (!numbers.empty()) figure.solid = SolidKind::None;
+        if (number >= 1 && number <= static_cast<int>(polyhedron.faces.size()))
+            polyhedron.faces[static_cast<std::size_t>(number - 1)].is_visible = false;
+    if (!numbers.empty()) polyhedron.solid = SolidKind::None;
 }
 
-void cut_faces(FigureOp& figure)
+void cut_faces(PolyhedronOp& polyhedron)
 {
     // Bases are cut as seen from above and look down.
-    const bool looks_down = figure.solid == SolidKind::Prism || figure.solid == SolidKind::Pyramid;
-    for (FigureFace& face : figure.faces)
+    const bool looks_down =
+        polyhedron.solid == SolidKind::Prism || polyhedron.solid == SolidKind::Pyramid;
+    for (PolyhedronFace& face : polyhedron.faces)
     {
         if (face.cut.empty()) continue;
-        for (const auto& t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+        for (const auto& t : cut_polygon(polyhedron.vertices, {face.cut.begin(), face.cut.end()}))
         {
             std::array<std::uint32_t, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
@@ -365,7 +366,7 @@ void cut_faces(FigureOp& figure)
     }
 }
 
-std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism)
+std::vector<std::array<std::size_t, 3>> bottom_triangles(const PolyhedronOp& prism)
 {
     std::vector<std::array<std::size_t, 3>> cut;
     if (prism.faces.empty() || prism.faces[0].triangles.empty())
@@ -379,8 +380,8 @@ std::vector<std::array<std::size_t, 3>> bottom_triangles(const FigureOp& prism)
     return cut;
 }
 
-std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
-                                                       const FigureFace& face)
+std::vector<std::array<std::size_t, 3>> face_triangles(const PolyhedronOp& polyhedron,
+                                                       const PolyhedronFace& face)
 {
     std::vector<std::array<std::size_t, 3>> out;
     for (const auto& t : face.triangles) out.push_back({t[0], t[1], t[2]});
@@ -391,17 +392,17 @@ std::vector<std::array<std::size_t, 3>> face_triangles(const FigureOp& figure,
             out.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
         return out;
     }
-    for (auto t : cut_polygon(figure.vertices, {face.cut.begin(), face.cut.end()}))
+    for (auto t : cut_polygon(polyhedron.vertices, {face.cut.begin(), face.cut.end()}))
     {
-        if (figure.solid == SolidKind::Prism) std::swap(t[1], t[2]);
+        if (polyhedron.solid == SolidKind::Prism) std::swap(t[1], t[2]);
         out.push_back({t[0] + face.cut_offset, t[1] + face.cut_offset, t[2] + face.cut_offset});
     }
     return out;
 }
 
-void transform_figure(FigureOp& figure, const Transform& transform)
+void transform_polyhedron(PolyhedronOp& polyhedron, const Transform& transform)
 {
-    for (Vec3& v : figure.vertices) v = transform(v);
+    for (Vec3& v : polyhedron.vertices) v = transform(v);
 }
 
 bool keeps_boxes(const Transform& t)
@@ -415,24 +416,24 @@ bool keeps_boxes(const Transform& t)
     return dot(t.linear[0], cross(t.linear[1], t.linear[2])) > 0;
 }
 
-FigureOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t)
+PolyhedronOp turned_box(const Vec3& corner0, const Vec3& corner1, const Transform& t)
 {
-    FigureOp figure;
-    figure.solid = SolidKind::Faces;
+    PolyhedronOp polyhedron;
+    polyhedron.solid = SolidKind::Faces;
     for (unsigned corner = 0; corner < 8; ++corner)
     {
         Vec3 p;
         for (int axis = 0; axis < 3; ++axis)
             p[axis] = ((corner >> axis) & 1U) != 0 ? std::max(corner0[axis], corner1[axis])
                                                    : std::min(corner0[axis], corner1[axis]);
-        figure.vertices.push_back(t(p));
+        polyhedron.vertices.push_back(t(p));
     }
     // Corners by bits: 1 is the far one along x, 2 along y, 4 along z.
     constexpr std::array<std::array<std::uint32_t, 3>, 6> sides{
         {{0, 3, 1}, {4, 5, 7}, {0, 1, 5}, {3, 2, 6}, {1, 3, 7}, {2, 0, 4}}};
     for (const auto& side : sides)
-        figure.faces.push_back({{side[0], side[1], side[2]}, true, {}, 0, {}});
-    return figure;
+        polyhedron.faces.push_back({{side[0], side[1], side[2]}, true, {}, 0, {}});
+    return polyhedron;
 }
 
 } // namespace fppg

@@ -36,7 +36,7 @@ SurfaceMesh cube()
           std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
         for (const std::size_t i : {0, 1, 2, 0, 2, 3}) soup.vertices.push_back(corner(q[i]));
     MeshReport report;
-    return take_in_mesh(soup, {}, 1, report);
+    return repair_mesh(soup, {}, 1, report);
 }
 
 /// The facet that looks along `direction`, the first of them.
@@ -107,9 +107,9 @@ std::vector<Shown> all_of(const CaseParticles& particles)
         for (const ParticleRun& run : block.runs)
             for (std::uint32_t k = 0; k < run.count; ++k)
             {
-                Shown p{block.mk, block.type, {}, 0, run.is_free()};
-                if (run.is_free())
-                    p.position = particles.free.positions.at(run.free_begin() + k);
+                Shown p{block.mk, block.type, {}, 0, run.is_off_lattice};
+                if (run.is_off_lattice)
+                    p.position = particles.free.positions.at(run.off_lattice_begin() + k);
                 else
                     p.position = place_of(particles.grid, run.x, run.y,
                                           block.run_descending ? run.z - k : run.z + k);
@@ -117,12 +117,12 @@ std::vector<Shown> all_of(const CaseParticles& particles)
                 {
                     if (!particles.rhop.empty())
                         p.rhop = particles.rhop.at(fluid++);
-                    else if (!run.is_free())
+                    else if (!run.is_off_lattice)
                         p.rhop = particles.rhop_of_depth.at(
                             run.depth + (block.run_descending ? k : run.count - 1 - k));
-                    if (run.is_free())
+                    if (run.is_off_lattice)
                     {
-                        const float rhop = particles.free.rhop.at(run.free_begin() + k);
+                        const float rhop = particles.free.rhop.at(run.off_lattice_begin() + k);
                         if (!particles.rhop.empty())
                         {
                             EXPECT_EQ(p.rhop, rhop);
@@ -209,7 +209,7 @@ CaseText oriented(const std::string& order)
     return text;
 }
 
-RC_GTEST_PROP(FreeParticles, StandAmongTheNodesInTheOrderOfAllPositions, (std::uint32_t seed))
+RC_GTEST_PROP(OffLatticeParticles, StandAmongTheNodesInTheOrderOfAllPositions, (std::uint32_t seed))
 {
     Dice dice(seed);
     const std::string order = dice.one_of(orders);
@@ -277,7 +277,7 @@ RC_GTEST_PROP(FreeParticles, StandAmongTheNodesInTheOrderOfAllPositions, (std::u
         RC_ASSERT(expected[i].tied() == by_brute_force[i].tied());
 }
 
-RC_GTEST_PROP(FreeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std::uint32_t seed))
+RC_GTEST_PROP(OffLatticeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std::uint32_t seed))
 {
     const char* const gravities[] = {R"(x="0" y="0" z="-9.81")", R"(x="0" y="0" z="9.81")",
                                      R"(x="0" y="0" z="0")",     R"(x="3" y="0" z="-9")",
@@ -324,14 +324,14 @@ RC_GTEST_PROP(FreeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std::uint
 }
 
 // Order of GenCase v5.4.354: 1024 cells of the box that holds all particles of the mk.
-TEST(FreeParticles, OfSetfrdrawmodeAreSortedByCells)
+TEST(OffLatticeParticles, OfSetfrdrawmodeAreSortedByCells)
 {
     const CaseDef def = read(small_case());
     RunField field;
     field.grid = def.grid;
     field.slabs.resize(def.grid.n[0]);
     FittedWalls& walls = field.walls;
-    walls.free_mks = {10};
+    walls.off_lattice_mks = {10};
     add_to_volume(walls, {0, 0.3, 0.5}, 10);
     add_to_volume(walls, {0.5124, 0.4, 0.1}, 10);
     add_to_volume(walls, {0.5129, 0.2, 0.1}, 10); // beyond by half a cell: still before the last
@@ -342,10 +342,10 @@ TEST(FreeParticles, OfSetfrdrawmodeAreSortedByCells)
     std::vector<double> x;
     for (const Vec3& p : made.free.positions) x.push_back(p.x);
     EXPECT_EQ(x, (std::vector<double>{0, 0.5129, 0.5124, 0.7, 0.70001, 1.024}));
-    EXPECT_EQ(made.free_points.positions, made.free.positions);
+    EXPECT_EQ(made.off_lattice_points.positions, made.free.positions);
 }
 
-TEST(FreeParticles, MakeABlockOfAnMkWithoutNodes)
+TEST(OffLatticeParticles, MakeABlockOfAnMkWithoutNodes)
 {
     const CaseDef def = read(small_case());
     test::DenseMks nodes(def.grid);
@@ -369,7 +369,7 @@ TEST(FreeParticles, MakeABlockOfAnMkWithoutNodes)
     EXPECT_NEAR(body.inertia[2].z, 0, 1e-15);
 }
 
-TEST(FreeParticles, OfAFloatingBodyCountForItsMassCentreAndInertia)
+TEST(OffLatticeParticles, OfAFloatingBodyCountForItsMassCentreAndInertia)
 {
     Dice dice(9);
     const CaseDef def = read(small_case());
@@ -415,7 +415,7 @@ float density_at(const Vec3& steps, const CaseDef& def, CaseConstants& constants
     return made.particles.free.rhop.at(0);
 }
 
-TEST(FreeParticles, HaveTheDensityOfTheirTrueDepthInTheirColumn)
+TEST(OffLatticeParticles, HaveTheDensityOfTheirTrueDepthInTheirColumn)
 {
     const CaseDef def = read(small_case());
     struct Place
@@ -435,7 +435,7 @@ TEST(FreeParticles, HaveTheDensityOfTheirTrueDepthInTheirColumn)
     }
 }
 
-TEST(FreeParticles, CountForTheDepthOfWaterAsTheirNodes)
+TEST(OffLatticeParticles, CountForTheDepthOfWaterAsTheirNodes)
 {
     const CaseDef def = read(small_case());
     CaseConstants c;
@@ -445,7 +445,7 @@ TEST(FreeParticles, CountForTheDepthOfWaterAsTheirNodes)
     EXPECT_NEAR(c.hswl, 0.7, 1e-12);
 }
 
-TEST(FreeParticles, WidenTheLimits)
+TEST(OffLatticeParticles, WidenTheLimits)
 {
     const CaseDef def = read(small_case());
     test::DenseMks nodes(def.grid);
@@ -459,7 +459,7 @@ TEST(FreeParticles, WidenTheLimits)
     EXPECT_TRUE(particles.pos_max == (Vec3{0.31, 0.2, 0.9}));
 }
 
-TEST(FreeParticles, HaveTheNormalsOfFacetsEdgesAndCorners)
+TEST(OffLatticeParticles, HaveTheNormalsOfFacetsEdgesAndCorners)
 {
     const CaseDef def = read(small_case());
     RunField field = walled(test::DenseMks(def.grid));
@@ -479,7 +479,7 @@ TEST(FreeParticles, HaveTheNormalsOfFacetsEdgesAndCorners)
         add_to_wall(field.walls, middle, 11, FitKind::Edge, right);
     }
     const CaseParticles particles = make(def, field).particles;
-    const FreeParticles& free = particles.free;
+    const OffLatticeParticles& free = particles.free;
     ASSERT_EQ(free.size(), 5U);
     EXPECT_EQ(free.kinds[0], FitKind::Surface);
     EXPECT_EQ(free.normals[0], (std::array<float, 3>{0, 0, 1}));
@@ -496,7 +496,7 @@ TEST(FreeParticles, HaveTheNormalsOfFacetsEdgesAndCorners)
     }
 }
 
-TEST(FreeParticles, OnRoundBodiesHaveTheNormalOfTheTrueShape)
+TEST(OffLatticeParticles, OnRoundBodiesHaveTheNormalOfTheTrueShape)
 {
     const CaseDef def = read(small_case());
     RunField field = walled(test::DenseMks(def.grid));
@@ -507,14 +507,14 @@ TEST(FreeParticles, OnRoundBodiesHaveTheNormalOfTheTrueShape)
     const std::uint32_t cover = facet_towards(body.mesh, {0, 0, 1});
     add_to_wall(field.walls, {0.5 + 0.3, 0.5 + 0.4, 0.3}, 10, FitKind::Surface, side);
     add_to_wall(field.walls, {0.9, 0.5, 1}, 10, FitKind::Surface, cover);
-    const FreeParticles free = make(def, field).particles.free;
+    const OffLatticeParticles free = make(def, field).particles.free;
     EXPECT_NEAR(free.normals[0][0], 0.6, 1e-6);
     EXPECT_NEAR(free.normals[0][1], 0.8, 1e-6);
     EXPECT_NEAR(free.distances[0], 0, 1e-15);
     EXPECT_EQ(free.normals[1], (std::array<float, 3>{0, 0, 1}));
 }
 
-TEST(FreeParticles, AreTheSameWithOneAndEightThreads)
+TEST(OffLatticeParticles, AreTheSameWithOneAndEightThreads)
 {
     for (const char* gravity :
          {R"(<gravity x="0" y="0" z="-9.81" />)", R"(<gravity x="1" y="1" z="-9" />)"})

@@ -11,7 +11,7 @@
 namespace fppg
 {
 
-struct WallZoneOptions
+struct ExclusionBandOptions
 {
     /// Lattice nodes nearer to the surface than this are left out, in dp, 0.5 to 1.0. Empty: chosen
     /// for each side so that nodes and half of the wall's particles make up its volume.
@@ -23,7 +23,7 @@ struct WallZoneOptions
 };
 
 /// The lattice nodes around a fitted wall.
-struct WallZone
+struct ExclusionBand
 {
     SpanSet volume; ///< nodes inside the body, outside the zone
     SpanSet zone;   ///< nodes that carry no particle: too near to the surface, on either side
@@ -75,7 +75,7 @@ struct WallZone
 /// In a 2D lattice, all of this is about the section of the mesh with the plane y = grid.origin.y:
 /// distances are those in the plane, a wall particle stands for dp of its length.
 ///
-/// mesh     as take_in_mesh() made it, with its report
+/// mesh     as repair_mesh() made it, with its report
 /// grid     a mesh may reach out of it: the clearances are those of the whole body, the nodes those
 ///          in the lattice
 /// threads  number of threads; the result does not depend on it
@@ -83,7 +83,8 @@ struct WallZone
 ///          2^31 dp, or a given clearance is not between 0.5 and 1
 /// cost     about 0.3 microseconds a node within 1 dp and 0.1 a facet smaller than dp; 30 bytes
 ///          a node at its peak
-WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
-                   const WallZoneOptions& options, int threads);
+ExclusionBand exclusion_band(const SurfaceMesh& mesh, const MeshReport& report,
+                             const LatticeGrid& grid, const ExclusionBandOptions& options,
+                             int threads);
 
 } // namespace fppg

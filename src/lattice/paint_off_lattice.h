@@ -11,16 +11,17 @@ namespace fppg
 // Draws of setfrdrawmode: particles at their true places. Each throws CaseError where GenCase
 // refuses the shape too ("too sharp").
 
-void paint_free_points(Painting& painting, const Brush& brush, const std::vector<Vec3>& points);
+void paint_off_lattice_points(Painting& painting, const Brush& brush,
+                              const std::vector<Vec3>& points);
 void paint_free_lines(Painting& painting, const Brush& brush,
                       const std::vector<std::pair<Vec3, Vec3>>& segments);
 /// pieces  corners as free_pieces() gives them
 void paint_free_pieces(Painting& painting, const Brush& brush,
                        const std::vector<std::vector<Vec3>>& pieces);
-/// A figure part by part; of solids but boxes the inside stands on the lattice.
-void paint_free_figure(Painting& painting, const Brush& brush, const FigureOp& op);
+/// A polyhedron part by part; of solids but boxes the inside stands on the lattice.
+void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const PolyhedronOp& op);
 /// The sides of its visible polygons.
-void paint_free_wire(Painting& painting, const Brush& brush, const FigureOp& op);
+void paint_free_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op);
 void paint_free_sphere(Painting& painting, const Brush& brush, const SphereOp& op);
 void paint_free_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op);
 

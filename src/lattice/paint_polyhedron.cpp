@@ -1,9 +1,9 @@
 // Points, lines and what planes bound.
-#include "lattice/paint_free.h"
+#include "lattice/paint_off_lattice.h"
 #include "lattice/painting.h"
 #include "nodes/snap.h"
-#include "shapes/figures.h"
 #include "shapes/plane_shapes.h"
+#include "shapes/polyhedra.h"
 #include "shapes/solids.h"
 
 #include <utility>
@@ -24,11 +24,11 @@ void paint_segments(Painting& painting, const Brush& brush, const NodeSegments& 
 
 /// The sides of the visible triangles and quads, in this order: so the wire of a solid box
 /// shows the cut between its two prisms (rule S4).
-NodeSegments wire_of(const FigureOp& op, const LatticeGrid& grid)
+NodeSegments wire_of(const PolyhedronOp& op, const LatticeGrid& grid)
 {
     NodeSegments segments;
-    FigureOp one = op;
-    for (const FigureFace& face : op.faces)
+    PolyhedronOp one = op;
+    for (const PolyhedronFace& face : op.faces)
     {
         if (!face.is_visible) continue;
         if (face.triangles.empty() && face.cut.empty())
@@ -46,13 +46,13 @@ NodeSegments wire_of(const FigureOp& op, const LatticeGrid& grid)
     return segments;
 }
 
-bool fills(const FigureOp& op, DrawMode mode)
+bool fills(const PolyhedronOp& op, DrawMode mode)
 {
     return mode != DrawMode::Face && op.solid != SolidKind::None;
 }
 
 /// The parts of the faces: those cut as given are one each, of others every triangle is.
-std::vector<SlabRegion> face_parts(const FigureOp& op, const DrawConstants& c,
+std::vector<SlabRegion> face_parts(const PolyhedronOp& op, const DrawConstants& c,
                                    const LatticeGrid& grid)
 {
     std::vector<SlabRegion> parts;
@@ -61,8 +61,8 @@ std::vector<SlabRegion> face_parts(const FigureOp& op, const DrawConstants& c,
         parts.push_back(
             triangles_region(std::move(triangles), grid, c.triangle_weight, c.triangle_limits));
     };
-    FigureOp face = op;
-    for (const FigureFace& f : op.faces)
+    PolyhedronOp face = op;
+    for (const PolyhedronFace& f : op.faces)
     {
         if (!f.is_visible) continue;
         face.faces = {f};
@@ -75,9 +75,9 @@ std::vector<SlabRegion> face_parts(const FigureOp& op, const DrawConstants& c,
     return parts;
 }
 
-/// One part of a figure, for setmknextauto. The inside of a <drawfigure> comes after its faces,
+/// One part of a polyhedron, for setmknextauto. The inside of a <drawfigure> comes after its faces,
 /// that of other shapes before them.
-SlabRegion part_of(const FigureOp& op, const DrawState& state, const LatticeGrid& grid)
+SlabRegion part_of(const PolyhedronOp& op, const DrawState& state, const LatticeGrid& grid)
 {
     std::vector<SlabRegion> parts;
     const auto append = [&](std::vector<SlabRegion> more)
@@ -101,7 +101,7 @@ void paint(Painting& painting, const Brush& brush, const PointsOp& op)
 {
     if (brush.state->off_lattice)
     {
-        paint_free_points(painting, brush, op.points);
+        paint_off_lattice_points(painting, brush, op.points);
         return;
     }
     // Clips keep or drop a point where it is, not its node (8 points at two planes, GenCase v5.0).
@@ -126,12 +126,12 @@ void paint(Painting& painting, const Brush& brush, const LinesOp& op)
     paint_segments(painting, brush, segments);
 }
 
-void paint(Painting& painting, const Brush& brush, const FigureOp& op)
+void paint(Painting& painting, const Brush& brush, const PolyhedronOp& op)
 {
     const DrawState& state = *brush.state;
     if (state.off_lattice)
     {
-        paint_free_figure(painting, brush, op);
+        paint_off_lattice_polyhedron(painting, brush, op);
         return;
     }
     if (state.mode == DrawMode::Wire)
@@ -162,9 +162,9 @@ void paint_triangles(Painting& painting, const Brush& brush, std::vector<Snapped
                                                   c.triangle_weight, c.triangle_limits));
 }
 
-SlabRegion solid_of(const FigureOp& figure, const DrawState& state, const LatticeGrid& grid)
+SlabRegion solid_of(const PolyhedronOp& polyhedron, const DrawState& state, const LatticeGrid& grid)
 {
-    return solid_region(figure, grid, state.constants.triangle_weight,
+    return solid_region(polyhedron, grid, state.constants.triangle_weight,
                         state.constants.triangle_limits);
 }
 

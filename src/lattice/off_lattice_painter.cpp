@@ -1,4 +1,4 @@
-#include "lattice/free_painter.h"
+#include "lattice/off_lattice_painter.h"
 
 #include "fppg/particles.h"
 
@@ -116,8 +116,8 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
     return nodes;
 }
 
-std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
-                                     const std::vector<ClipPlane>& clips, std::uint16_t mk)
+std::vector<Spans> OffLatticePainter::draw(const std::vector<Vec3>& points,
+                                           const std::vector<ClipPlane>& clips, std::uint16_t mk)
 {
     const LatticeGrid& grid = field_->grid;
     const std::vector<Clip> kept(clips.begin(), clips.end());
@@ -137,7 +137,7 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
                       {
                           has_node = true;
                           nodes[x].push_back({y, z, z + 1});
-                          if (mk != 0) claims_.push_back({x, y, z, mk});
+                          if (mk != 0) covered_.push_back({x, y, z, mk});
                       });
         if (mk == 0 || !has_node) continue;
         positions_.push_back(p);
@@ -148,40 +148,40 @@ std::vector<Spans> FreePainter::draw(const std::vector<Vec3>& points,
     return nodes;
 }
 
-void FreePainter::reset()
+void OffLatticePainter::reset()
 {
     positions_.clear();
     mk_.clear();
-    claims_.clear();
+    covered_.clear();
 }
 
 /// By node and mk, each once.
-void FreePainter::sort_claims()
+void OffLatticePainter::sort_claims()
 {
-    std::sort(claims_.begin(), claims_.end());
-    claims_.erase(std::unique(claims_.begin(), claims_.end()), claims_.end());
+    std::sort(covered_.begin(), covered_.end());
+    covered_.erase(std::unique(covered_.begin(), covered_.end()), covered_.end());
 }
 
-bool FreePainter::is_claimed(const Claim& claim) const
+bool OffLatticePainter::is_covered_by_another(const CoveredNode& claim) const
 {
-    return std::binary_search(claims_.begin(), claims_.end(), claim);
+    return std::binary_search(covered_.begin(), covered_.end(), claim);
 }
 
-std::size_t FreePainter::claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
+std::size_t OffLatticePainter::claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const
 {
-    const auto found = std::lower_bound(claims_.begin(), claims_.end(), std::tuple(x, y, z),
-                                        [](const Claim& c, const auto& at)
+    const auto found = std::lower_bound(covered_.begin(), covered_.end(), std::tuple(x, y, z),
+                                        [](const CoveredNode& c, const auto& at)
                                         { return std::tuple(c.x, c.y, c.z) < at; });
-    return static_cast<std::size_t>(found - claims_.begin());
+    return static_cast<std::size_t>(found - covered_.begin());
 }
 
-std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) const
+std::vector<char> OffLatticePainter::staying_particles(std::vector<char>& is_emptied) const
 {
     std::vector<std::vector<std::uint32_t>> of_mk(65536);
     for (std::size_t i = 0; i < mk_.size(); ++i)
         of_mk[mk_[i]].push_back(static_cast<std::uint32_t>(i));
     std::vector<char> stays(positions_.size());
-    is_emptied.assign(claims_.size(), 0);
+    is_emptied.assign(covered_.size(), 0);
     for (std::size_t mk = of_mk.size(); mk-- > 0;)
     {
         const std::vector<std::uint32_t>& particles = of_mk[mk];
@@ -198,7 +198,7 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
                              const std::uint16_t found = mk_at(field_->slabs[x], y, z);
                              const bool hides_elsewhere =
                                  !is_near && !of_mk[found].empty() &&
-                                 (found > mk || !is_claimed({x, y, z, found}));
+                                 (found > mk || !is_covered_by_another({x, y, z, found}));
                              keeps = keeps && (found == mk || hides_elsewhere ||
                                                is_emptied[claim_of(x, y, z)]);
                          });
@@ -215,7 +215,7 @@ std::vector<char> FreePainter::staying_particles(std::vector<char>& is_emptied) 
     return stays;
 }
 
-void FreePainter::finish()
+void OffLatticePainter::finish()
 {
     if (positions_.empty()) return;
     const LatticeGrid& grid = field_->grid;
@@ -245,9 +245,9 @@ void FreePainter::finish()
 
     // Nodes of particles that do not stay are empty, those of the others are hidden.
     std::vector<Spans> empty(field_->slabs.size());
-    for (std::size_t i = 0; i < claims_.size(); ++i)
+    for (std::size_t i = 0; i < covered_.size(); ++i)
     {
-        const Claim& c = claims_[i];
+        const CoveredNode& c = covered_[i];
         if (is_emptied[i]) empty[c.x].push_back({c.y, c.z, c.z + 1});
     }
     std::vector<std::vector<Run>> hidden(field_->slabs.size());
@@ -267,7 +267,7 @@ void FreePainter::finish()
         out.mk.push_back(mk_[i]);
         out.distances.push_back(distance_of_nodes);
     }
-    std::vector<std::uint16_t>& mks = field_->walls.free_mks;
+    std::vector<std::uint16_t>& mks = field_->walls.off_lattice_mks;
     mks = out.mk;
     std::sort(mks.begin(), mks.end());
     mks.erase(std::unique(mks.begin(), mks.end()), mks.end());

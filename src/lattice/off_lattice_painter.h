@@ -44,10 +44,10 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
 ///   1.47500000001 no with the last at 1.4), where one of their nodes lies in the lattice: none of
 ///   two coordinates of 0.51 dp has one from 1.45 on (800 random points at edges, none different);
 ///   in 2D within 0.1 dp of the plane, into which they are moved
-class FreePainter
+class OffLatticePainter
 {
 public:
-    FreePainter(RunField& field, int threads) : field_(&field), threads_(threads) {}
+    OffLatticePainter(RunField& field, int threads) : field_(&field), threads_(threads) {}
 
     /// Keeps the points that lie in the domain and within the clips.
     ///
@@ -63,19 +63,19 @@ public:
     void finish();
 
 private:
-    struct Claim
+    struct CoveredNode
     {
         std::uint32_t x = 0;
         std::uint32_t y = 0;
         std::uint32_t z = 0;
         std::uint16_t mk = 0;
 
-        auto operator<=>(const Claim&) const = default;
+        auto operator<=>(const CoveredNode&) const = default;
     };
 
     void sort_claims();
     /// Whether a particle of this mk has this node.
-    bool is_claimed(const Claim& claim) const;
+    bool is_covered_by_another(const CoveredNode& claim) const;
     /// Index of the first claim of a node that has one, which stands for the node.
     std::size_t claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
     /// One entry a particle; is_emptied gets one a claim, for the nodes that are not the lattice's.
@@ -85,7 +85,7 @@ private:
     int threads_;
     std::vector<Vec3> positions_;
     std::vector<std::uint16_t> mk_;
-    std::vector<Claim> claims_; ///< sorted by finish()
+    std::vector<CoveredNode> covered_; ///< sorted by finish()
 };
 
 } // namespace fppg

@@ -1,4 +1,4 @@
-#include "particles/free_particles.h"
+#include "particles/off_lattice_particles.h"
 
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
@@ -43,7 +43,7 @@ public:
     }
     void add_free(std::uint64_t index)
     {
-        if (!runs_.empty() && runs_.back().is_free())
+        if (!runs_.empty() && runs_.back().is_off_lattice)
             ++runs_.back().count;
         else
             runs_.push_back(ParticleRun::of_free(index, 1));
@@ -67,9 +67,9 @@ void spread_densities(CaseParticles& particles, const ParticleBlock& block)
     auto to = begin;
     for (const ParticleRun& run : block.runs)
     {
-        if (run.is_free())
+        if (run.is_off_lattice)
             to = std::copy_n(
-                particles.free.rhop.begin() + static_cast<std::ptrdiff_t>(run.free_begin()),
+                particles.free.rhop.begin() + static_cast<std::ptrdiff_t>(run.off_lattice_begin()),
                 run.count, to);
         else
         {
@@ -81,7 +81,7 @@ void spread_densities(CaseParticles& particles, const ParticleBlock& block)
 
 } // namespace
 
-std::vector<std::uint64_t> count_free_particles(const FittedWalls& walls)
+std::vector<std::uint64_t> count_off_lattice_particles(const FittedWalls& walls)
 {
     std::vector<std::uint64_t> count(65536, 0);
     for (const std::uint16_t mk : walls.particles.mk) ++count[mk];
@@ -89,17 +89,17 @@ std::vector<std::uint64_t> count_free_particles(const FittedWalls& walls)
     return count;
 }
 
-FreeParticles sort_free_particles(const FittedWalls& walls,
-                                  const std::vector<ParticleBlock>& blocks,
-                                  const std::vector<PositionOrder>& orders, int threads,
-                                  std::vector<std::uint64_t>& begin)
+OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
+                                               const std::vector<ParticleBlock>& blocks,
+                                               const std::vector<PositionOrder>& orders,
+                                               int threads, std::vector<std::uint64_t>& begin)
 {
     const std::size_t of_walls = walls.particles.size();
     const std::size_t n = of_walls + walls.volume.size();
     const auto position = [&](std::size_t i) -> const Vec3&
     { return i < of_walls ? walls.particles.positions[i] : walls.volume.positions[i - of_walls]; };
 
-    const std::vector<std::uint64_t> count = count_free_particles(walls);
+    const std::vector<std::uint64_t> count = count_off_lattice_particles(walls);
     std::vector<std::vector<Entry>> entries(blocks.size());
     std::vector<std::size_t> block_of_mk(65536, 0);
     begin.assign(blocks.size() + 1, 0);
@@ -117,7 +117,7 @@ FreeParticles sort_free_particles(const FittedWalls& walls,
         entries[b].push_back({orders[b].key(position(i)), static_cast<std::uint32_t>(i)});
     }
 
-    FreeParticles out;
+    OffLatticeParticles out;
     out.positions.resize(n);
     out.kinds.resize(n);
     out.normals.resize(n);
@@ -178,8 +178,8 @@ std::uint32_t first_behind(const PositionOrder::Key& particle, const KeyOfNode& 
 
 } // namespace
 
-void merge_free_particles(CaseParticles& particles, ParticleBlock& block,
-                          const PositionOrder& order, std::uint64_t begin, std::uint64_t end)
+void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
+                                 const PositionOrder& order, std::uint64_t begin, std::uint64_t end)
 {
     if (begin == end) return;
     const LatticeGrid& grid = particles.grid;

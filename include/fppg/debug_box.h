@@ -11,7 +11,7 @@ namespace fppg
 
 /// The box of `fillbox`, `redrawbox` or `redrawnearbox`, for the picture that GenCase v5.4.354
 /// writes of all boxes of a command (found by experiment, 35 small cases).
-struct BoxPicture
+struct DebugBox
 {
     std::string command;         ///< whose boxes stand in one file
     int mk = 0;                  ///< absolute; 0 void

@@ -1,4 +1,4 @@
-#include "fppg/wall_zone.h"
+#include "fppg/exclusion_band.h"
 
 #include "core/parallel.h"
 #include "fit/closed_part.h"
@@ -190,7 +190,7 @@ constexpr std::uint32_t least_distance = distance_units / 5 * 2;
 
 /// A number for each node such that those below any bound are spread evenly over any plane of the
 /// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
-std::uint32_t spread(std::int64_t x, std::int64_t y, std::int64_t z)
+std::uint32_t even_rank(std::int64_t x, std::int64_t y, std::int64_t z)
 {
     constexpr std::uint64_t a1 = 3518319155, a2 = 2882110345, a3 = 2360945575;
     return static_cast<std::uint32_t>(a1 * static_cast<std::uint64_t>(x) +
@@ -305,7 +305,7 @@ std::vector<Span> clip(const std::vector<Span>& spans, const WideGrid& wide,
 }
 
 void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
-          WallZone& zone)
+          ExclusionBand& zone)
 {
     if (!zone.has_inside)
         zone.warnings.push_back(fmt::format(
@@ -326,10 +326,11 @@ void warn(const ClosedPart& part, const MeshReport& report, double area, double 
             fmt::format("Holes of {:.3g} m2, {:.2g} % of the surface, count as closed.",
                         part.hole_area, 100 * part.hole_area / area));
     if (zone.disputed_nodes > 0)
-        zone.warnings.push_back(fmt::format(
-            "Whether {} nodes are inside was told by the winding number of the surface, as lines "
-            "through it disagree.",
-            zone.disputed_nodes));
+        zone.warnings.push_back(
+            fmt::format("Whether {} nodes are inside was resolved by the winding number of the "
+                        "surface, as lines "
+                        "through it disagree.",
+                        zone.disputed_nodes));
 }
 
 /// Finds the zone of one wall.
@@ -337,7 +338,7 @@ class ZoneFinder
 {
 public:
     ZoneFinder(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
-               const WallZoneOptions& options, int threads)
+               const ExclusionBandOptions& options, int threads)
         : mesh_(mesh),
           report_(report),
           grid_(grid),
@@ -349,7 +350,7 @@ public:
     {
     }
 
-    WallZone run()
+    ExclusionBand run()
     {
         part_ = find_closed_part(mesh_);
         const Wall wall =
@@ -417,8 +418,8 @@ private:
 
     std::uint32_t hash_of(std::size_t x, const NearNode& node) const
     {
-        return spread(static_cast<std::int64_t>(x) + wide_.offset[0], node.y + wide_.offset[1],
-                      node.z + wide_.offset[2]);
+        return even_rank(static_cast<std::int64_t>(x) + wide_.offset[0], node.y + wide_.offset[1],
+                         node.z + wide_.offset[2]);
     }
 
     /// How near to the wall nodes are left out on both sides: as given, or so that the particles
@@ -498,7 +499,7 @@ private:
     const SurfaceMesh& mesh_;
     const MeshReport& report_;
     const LatticeGrid& grid_;
-    const WallZoneOptions& options_;
+    const ExclusionBandOptions& options_;
     int threads_;
     Side within_;
     Side beyond_;
@@ -507,13 +508,14 @@ private:
     std::vector<std::vector<NearNode>> near_; ///< per slab of the wide grid
     SpanSet inside_;
     double overlap_ = 0; ///< cubic metres
-    WallZone zone_;
+    ExclusionBand zone_;
 };
 
 } // namespace
 
-WallZone wall_zone(const SurfaceMesh& mesh, const MeshReport& report, const LatticeGrid& grid,
-                   const WallZoneOptions& options, int threads)
+ExclusionBand exclusion_band(const SurfaceMesh& mesh, const MeshReport& report,
+                             const LatticeGrid& grid, const ExclusionBandOptions& options,
+                             int threads)
 {
     if (options.clearance_dp && !(*options.clearance_dp >= 0.5 && *options.clearance_dp <= 1.0))
         throw GeometryError(

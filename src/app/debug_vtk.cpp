@@ -1,4 +1,4 @@
-#include "app/debug_pictures.h"
+#include "app/debug_vtk.h"
 
 #include "core/float32.h"
 #include "meshes/mesh_library.h"
@@ -15,7 +15,7 @@ namespace fppg
 namespace
 {
 
-ShapePolygons box_and_seed(const BoxPicture& picture, double dp)
+ShapePolygons box_and_seed(const DebugBox& picture, double dp)
 {
     ShapePolygons shape;
     shape.mk = picture.mk;
@@ -38,12 +38,12 @@ ShapePolygons box_and_seed(const BoxPicture& picture, double dp)
     return shape;
 }
 
-void add_boxes(const CaseDef& def, std::vector<DebugPicture>& out)
+void add_boxes(const CaseDef& def, std::vector<DebugVtk>& out)
 {
     for (const char* command : {"fillbox", "redrawbox", "redrawnearbox"})
     {
         std::vector<ShapePolygons> shapes;
-        for (const BoxPicture& picture : def.box_pictures)
+        for (const DebugBox& picture : def.debug_boxes)
             if (picture.command == command) shapes.push_back(box_and_seed(picture, def.grid.dp));
         if (!shapes.empty())
             out.push_back({fmt::format("_dbg-{}.vtk", command),
@@ -52,8 +52,7 @@ void add_boxes(const CaseDef& def, std::vector<DebugPicture>& out)
     }
 }
 
-void add_bathymetry(const CaseDef& def, const DrawOp& op, int threads,
-                    std::vector<DebugPicture>& out)
+void add_bathymetry(const CaseDef& def, const DrawOp& op, int threads, std::vector<DebugVtk>& out)
 {
     const MeshFileOp& mesh = *shape_as<MeshFileOp>(op);
     const IndexedMesh grid = read_bathymetry_file(def.meshes->find(op.source, mesh.file),
@@ -62,7 +61,7 @@ void add_bathymetry(const CaseDef& def, const DrawOp& op, int threads,
     const auto add = [&](const char* ending, std::vector<std::vector<std::uint32_t>> cells)
     {
         std::string name = stem + ending;
-        std::erase_if(out, [&](const DebugPicture& p) { return p.name == name; });
+        std::erase_if(out, [&](const DebugVtk& p) { return p.name == name; });
         out.push_back({std::move(name),
                        [points = grid.points, cells = std::move(cells)](OutputFile& file)
                        { write_heights_vtk(file, points, cells); }});
@@ -82,9 +81,9 @@ void add_bathymetry(const CaseDef& def, const DrawOp& op, int threads,
 
 } // namespace
 
-std::vector<DebugPicture> debug_pictures(const CaseDef& def, int threads)
+std::vector<DebugVtk> debug_vtk(const CaseDef& def, int threads)
 {
-    std::vector<DebugPicture> out;
+    std::vector<DebugVtk> out;
     add_boxes(def, out);
     for (const DrawOp& op : def.ops)
         if (const auto* mesh = shape_as<MeshFileOp>(op);

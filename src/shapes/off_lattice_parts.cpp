@@ -1,7 +1,7 @@
-#include "shapes/free_parts.h"
+#include "shapes/off_lattice_parts.h"
 
-#include "shapes/figures.h"
 #include "shapes/polygon_cut.h"
+#include "shapes/polyhedra.h"
 
 #include <algorithm>
 #include <cmath>
@@ -124,35 +124,36 @@ void add_quad(std::array<Vec3, 4> c, const Transform& matrix, const LatticeGrid&
 }
 
 /// The pieces of one face.
-std::vector<std::vector<Vec3>> pieces_of(const FigureOp& figure, const FigureFace& face,
+std::vector<std::vector<Vec3>> pieces_of(const PolyhedronOp& polyhedron, const PolyhedronFace& face,
                                          const Transform& matrix, const LatticeGrid& grid)
 {
     std::vector<std::vector<Vec3>> out;
-    const auto corner = [&](std::size_t k) { return figure.vertices[face.vertices[k]]; };
+    const auto corner = [&](std::size_t k) { return polyhedron.vertices[face.vertices[k]]; };
     if (face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty())
         add_quad({corner(0), corner(1), corner(2), corner(3)}, matrix, grid, out);
     else
-        for (const auto& t : face_triangles(figure, face))
-            out.push_back({figure.vertices[t[0]], figure.vertices[t[1]], figure.vertices[t[2]]});
+        for (const auto& t : face_triangles(polyhedron, face))
+            out.push_back(
+                {polyhedron.vertices[t[0]], polyhedron.vertices[t[1]], polyhedron.vertices[t[2]]});
     return out;
 }
 
 } // namespace
 
-std::vector<std::vector<Vec3>> free_pieces(const FigureOp& figure, const Transform& matrix,
+std::vector<std::vector<Vec3>> free_pieces(const PolyhedronOp& polyhedron, const Transform& matrix,
                                            const LatticeGrid& grid)
 {
     std::vector<std::vector<Vec3>> out;
-    for (const FigureFace& face : figure.faces)
+    for (const PolyhedronFace& face : polyhedron.faces)
     {
         if (!face.is_visible) continue;
-        for (std::vector<Vec3>& piece : pieces_of(figure, face, matrix, grid))
+        for (std::vector<Vec3>& piece : pieces_of(polyhedron, face, matrix, grid))
             out.push_back(std::move(piece));
     }
     return out;
 }
 
-std::vector<Vec3> box_section(const FigureOp& box, const LatticeGrid& grid)
+std::vector<Vec3> box_section(const PolyhedronOp& box, const LatticeGrid& grid)
 {
     const double y = grid.origin.y;
     std::array<int, 8> side{};
@@ -172,7 +173,7 @@ std::vector<Vec3> box_section(const FigureOp& box, const LatticeGrid& grid)
         return Vec3{at.x, y, at.z};
     };
     std::vector<std::pair<Place, Place>> lines;
-    for (const FigureFace& face : box.faces)
+    for (const PolyhedronFace& face : box.faces)
     {
         std::vector<Place> ends;
         for (std::size_t k = 0; k < 4; ++k)
@@ -207,12 +208,12 @@ namespace
 {
 
 /// The parts of a solid box in a 2D case.
-std::vector<FreePart> section_parts(const FigureOp& box, DrawMode mode, const Transform& matrix,
-                                    const LatticeGrid& grid)
+std::vector<OffLatticePart> section_parts(const PolyhedronOp& box, DrawMode mode,
+                                          const Transform& matrix, const LatticeGrid& grid)
 {
     const std::vector<Vec3> corners = box_section(box, grid);
     const std::size_t n = corners.size();
-    std::vector<FreePart> parts;
+    std::vector<OffLatticePart> parts;
     if (n == 2)
         parts.push_back({{corners}});
     else if (n > 2 && mode == DrawMode::Wire)
@@ -226,24 +227,24 @@ std::vector<FreePart> section_parts(const FigureOp& box, DrawMode mode, const Tr
         parts.push_back({{corners}});
     else
         parts.emplace_back();
-    for (FreePart& part : parts) part.is_section = true;
+    for (OffLatticePart& part : parts) part.is_section = true;
     parts.back().ends_quad = true;
     return parts;
 }
 
 } // namespace
 
-std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Transform& matrix,
-                                 const LatticeGrid& grid)
+std::vector<OffLatticePart> off_lattice_parts(const PolyhedronOp& polyhedron, DrawMode mode,
+                                              const Transform& matrix, const LatticeGrid& grid)
 {
-    if (figure.solid == SolidKind::Box) return section_parts(figure, mode, matrix, grid);
-    std::vector<FreePart> parts;
-    const auto add_face = [&](const FigureFace& face)
+    if (polyhedron.solid == SolidKind::Box) return section_parts(polyhedron, mode, matrix, grid);
+    std::vector<OffLatticePart> parts;
+    const auto add_face = [&](const PolyhedronFace& face)
     {
-        std::vector<std::vector<Vec3>> pieces = pieces_of(figure, face, matrix, grid);
+        std::vector<std::vector<Vec3>> pieces = pieces_of(polyhedron, face, matrix, grid);
         const bool is_quad =
             face.vertices.size() == 4 && face.triangles.empty() && face.cut.empty();
-        FreePart quad;
+        OffLatticePart quad;
         quad.ends_quad = true;
         for (std::vector<Vec3>& piece : pieces)
         {
@@ -261,14 +262,14 @@ std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Tr
     std::size_t insides = 0;
     const auto add_insides = [&]
     {
-        if (figure.solid != SolidKind::Prism)
+        if (polyhedron.solid != SolidKind::Prism)
         {
             parts.push_back({{}, insides++});
             return;
         }
-        const auto n = static_cast<std::uint32_t>(figure.vertices.size() / 2);
+        const auto n = static_cast<std::uint32_t>(polyhedron.vertices.size() / 2);
         for_each_part_and_side(
-            bottom_triangles(figure),
+            bottom_triangles(polyhedron),
             [&](std::size_t) {
                 parts.push_back({{}, insides++});
             },
@@ -280,22 +281,23 @@ std::vector<FreePart> free_parts(const FigureOp& figure, DrawMode mode, const Tr
                 ++insides;
             });
     };
-    const bool fills = mode != DrawMode::Face && figure.solid != SolidKind::None;
-    const bool fills_last = fills && figure.solid == SolidKind::Faces;
+    const bool fills = mode != DrawMode::Face && polyhedron.solid != SolidKind::None;
+    const bool fills_last = fills && polyhedron.solid == SolidKind::Faces;
     if (fills && !fills_last) add_insides();
     if (!fills || mode == DrawMode::Full)
-        for (const FigureFace& face : figure.faces)
+        for (const PolyhedronFace& face : polyhedron.faces)
             if (face.is_visible) add_face(face);
     if (fills_last) add_insides();
     return parts;
 }
 
-std::uint32_t count_free_parts(const FigureOp& figure, DrawMode mode, const LatticeGrid& grid)
+std::uint32_t count_off_lattice_parts(const PolyhedronOp& polyhedron, DrawMode mode,
+                                      const LatticeGrid& grid)
 {
-    const bool is_box = figure.solid == SolidKind::Box;
+    const bool is_box = polyhedron.solid == SolidKind::Box;
     if (is_box && !grid.is_2d) return 1;
-    if (!is_box && mode == DrawMode::Wire) return count_parts(figure, mode);
-    return static_cast<std::uint32_t>(free_parts(figure, mode, {}, grid).size());
+    if (!is_box && mode == DrawMode::Wire) return count_parts(polyhedron, mode);
+    return static_cast<std::uint32_t>(off_lattice_parts(polyhedron, mode, {}, grid).size());
 }
 
 } // namespace fppg

@@ -27,8 +27,8 @@ using test::sphere;
 SurfaceMesh taken_in(const TriangleSoup& soup, MeshReport& report, double weld_distance = 0,
                      int threads = 2)
 {
-    return take_in_mesh(soup, {.weld_distance = weld_distance, .count_self_intersections = true},
-                        threads, report);
+    return repair_mesh(soup, {.weld_distance = weld_distance, .count_self_intersections = true},
+                       threads, report);
 }
 
 TriangleSoup open_box()

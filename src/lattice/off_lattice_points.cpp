@@ -1,12 +1,12 @@
-#include "lattice/free_points.h"
+#include "lattice/off_lattice_points.h"
 
 #include "fppg/error.h"
 
 #include "nodes/snap.h"
-#include "shapes/figures.h"
 #include "shapes/plane_shapes.h"
 #include "shapes/planes.h"
 #include "shapes/polygon_cut.h"
+#include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 

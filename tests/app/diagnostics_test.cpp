@@ -90,7 +90,7 @@ struct Scene
 };
 
 /// Whether the case runs, warns in these words, and fails with -strict.
-void expect_slip(const Scene& scene, const std::string& words)
+void expect_diagnostic(const Scene& scene, const std::string& words)
 {
     const RunResult usual = scene.run();
     EXPECT_EQ(usual.code, 0) << usual.output;
@@ -103,55 +103,57 @@ void expect_slip(const Scene& scene, const std::string& words)
     EXPECT_FALSE(scene.has(".bi4"));
 }
 
-TEST(Slip, AMeshFileInMillimetresIsTold)
+TEST(Diagnostic, AMeshFileInMillimetresIsTold)
 {
-    expect_slip(Scene(R"(<drawfilestl file="mm.stl" />)"), "mm.stl is 500 m wide in a domain of 2");
-    expect_slip(Scene(R"(<drawfilestl file="small.stl" />)"), R"(<drawscale x="1000")");
+    expect_diagnostic(Scene(R"(<drawfilestl file="mm.stl" />)"),
+                      "mm.stl is 500 m wide in a domain of 2");
+    expect_diagnostic(Scene(R"(<drawfilestl file="small.stl" />)"), R"(<drawscale x="1000")");
 }
 
-TEST(Slip, AFillThatLeaksIsTold)
+TEST(Diagnostic, AFillThatLeaksIsTold)
 {
-    expect_slip(
+    expect_diagnostic(
         Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="1")", "bottom") +
               R"(<fillpoint x="0.5" y="0.5" z="0.5"><modefill>void</modefill></fillpoint>)"),
         "the fill reached the border of the domain (lowest x, highest x");
 }
 
-TEST(Slip, AFillsSeedInASolidIsTold)
+TEST(Diagnostic, AFillsSeedInASolidIsTold)
 {
-    expect_slip(
+    expect_diagnostic(
         Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="1")") +
               R"(<fillpoint x="0.5" y="0.5" z="0.5"><modefill>void</modefill></fillpoint>)"),
         "lies in the solid of mkbound 0");
 }
 
-TEST(Slip, AFillsSeedOutsideTheDomainIsTold)
+TEST(Diagnostic, AFillsSeedOutsideTheDomainIsTold)
 {
-    expect_slip(Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="1")") +
-                      R"(<fillpoint x="7" y="0.5" z="0.5"><modefill>void</modefill></fillpoint>)"),
-                "is outside the domain");
+    expect_diagnostic(
+        Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="1")") +
+              R"(<fillpoint x="7" y="0.5" z="0.5"><modefill>void</modefill></fillpoint>)"),
+        "is outside the domain");
 }
 
-TEST(Slip, AFilledMeshWithAHoleIsTold)
+TEST(Diagnostic, AFilledMeshWithAHoleIsTold)
 {
-    expect_slip(Scene(R"(<drawfilestl file="part.stl" autofill="true" />)"),
-                "part.stl has 3 open edges");
+    expect_diagnostic(Scene(R"(<drawfilestl file="part.stl" autofill="true" />)"),
+                      "part.stl has 3 open edges");
 }
 
-TEST(Slip, ABodyThinnerThanDpIsTold)
+TEST(Diagnostic, ABodyThinnerThanDpIsTold)
 {
-    expect_slip(Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="0.04")")),
-                "the body is 0.04 m thick, less than dp = 0.1 m");
+    expect_diagnostic(Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1" y="1" z="0.04")")),
+                      "the body is 0.04 m thick, less than dp = 0.1 m");
 }
 
-TEST(Slip, AShapeBeyondTheNodesIsTold)
+TEST(Diagnostic, AShapeBeyondTheNodesIsTold)
 {
     // The node at pointmax 1.5 is not part of the lattice.
-    expect_slip(Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1.5" y="1" z="1")")),
-                "it reaches from x = 0 to 1.5, the nodes of the domain from -0.5 to 1.4");
+    expect_diagnostic(Scene(box_command(R"(x="0" y="0" z="0")", R"(x="1.5" y="1" z="1")")),
+                      "it reaches from x = 0 to 1.5, the nodes of the domain from -0.5 to 1.4");
 }
 
-TEST(Slip, AnAutofillOfTheWrongSpaceIsTold)
+TEST(Diagnostic, AnAutofillOfTheWrongSpaceIsTold)
 {
     // The cube's lid is missing: nothing is inside it, and the flood fills it all the same.
     Scene scene(R"(<drawfilestl file="open.stl" autofill="true" />)");
@@ -159,21 +161,21 @@ TEST(Slip, AnAutofillOfTheWrongSpaceIsTold)
     EXPECT_TRUE(contains(scene.run().output, "open.stl has 4 open edges"));
 }
 
-TEST(Slip, AMovingPartThatLeavesTheDomainIsTold)
+TEST(Diagnostic, AMovingPartThatLeavesTheDomainIsTold)
 {
     Scene scene(box_command(R"(x="0" y="0" z="0")", R"(x="0.3" y="0.3" z="0.3")"));
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="-1"><vel x="2" y="0" z="0" /></mvrect></objreal></motion>)";
-    expect_slip(scene, R"(<objreal ref="0">: by t = 0.65)");
+    expect_diagnostic(scene, R"(<objreal ref="0">: by t = 0.65)");
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrectsinu id="1" duration="5"><freq x="1" y="0" z="0" /><ampl x="0.4" y="0" z="0" /></mvrectsinu></objreal></motion>)";
     EXPECT_FALSE(contains(scene.run().output, "<objreal"));
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="1.2" y="0" z="0" /><axisp2 x="1.2" y="1" z="0" /></mvrot></objreal></motion>)";
-    expect_slip(scene, R"(<objreal ref="0">: by t =)");
+    expect_diagnostic(scene, R"(<objreal ref="0">: by t =)");
 }
 
-TEST(Slip, NothingIsToldOfASoundCase)
+TEST(Diagnostic, NothingIsToldOfASoundCase)
 {
     Scene scene;
     scene.text = tank();

@@ -1,4 +1,4 @@
-#include "fppg/wall_zone.h"
+#include "fppg/exclusion_band.h"
 
 #include "fit/fit_shapes.h"
 #include "fit/wall_of_soup.h"
@@ -22,7 +22,7 @@ struct NodeTable
     std::vector<bool> volume, zone, inside;
     std::vector<double> distance;
 
-    NodeTable(const TriangleSoup& soup, const LatticeGrid& grid, const WallZone& found)
+    NodeTable(const TriangleSoup& soup, const LatticeGrid& grid, const ExclusionBand& found)
         : volume(nodes_of(found.volume, grid)),
           zone(nodes_of(found.zone, grid)),
           inside(nodes_of(inside_spans(soup, grid, 1), grid))
@@ -48,7 +48,7 @@ void expect_no_way_through(const LatticeGrid& grid, const NodeTable& nodes)
         }
 }
 
-TEST(WallZone, HoldsTheNodesOfThePlainSearch)
+TEST(ExclusionBand, HoldsTheNodesOfThePlainSearch)
 {
     for (const TriangleSoup& soup : {sphere(3), gear(8, 0.8, 1.0, 0.5), sphere(5), octahedron(1)})
     {
@@ -66,7 +66,7 @@ TEST(WallZone, HoldsTheNodesOfThePlainSearch)
     }
 }
 
-TEST(WallZone, NodesAndHalfOfTheWallMakeUpTheVolume)
+TEST(ExclusionBand, NodesAndHalfOfTheWallMakeUpTheVolume)
 {
     for (const double shift : {0.0, 0.2, 0.5, 0.7})
         EXPECT_NEAR(fit_soup(sphere(4), 0.04, shift).zone.volume_error, 0, 0.005);
@@ -74,14 +74,14 @@ TEST(WallZone, NodesAndHalfOfTheWallMakeUpTheVolume)
         EXPECT_NEAR(fit_soup(gear(12, 0.8, 1.0, 0.5), 0.04, shift).zone.volume_error, 0, 0.005);
 }
 
-TEST(WallZone, FillsAnAlignedCubeThoughItsNodesAllStandEquallyFar)
+TEST(ExclusionBand, FillsAnAlignedCubeThoughItsNodesAllStandEquallyFar)
 {
     const FittedMesh fitted = fit_soup(box({0, 0, 0}, {2, 2, 2}), 0.05, 0);
     EXPECT_NEAR(fitted.volume(), 8, 0.02);
     EXPECT_NEAR(fit_soup(box({0, 0, 0}, {2, 2, 2}), 0.05, 0.5).volume(), 8, 0.02);
 }
 
-TEST(WallZone, LeavesRoomOutsideForTheOtherHalfOfTheWall)
+TEST(ExclusionBand, LeavesRoomOutsideForTheOtherHalfOfTheWall)
 {
     const FittedMesh fitted = fit_soup(sphere(4), 0.07);
     const NodeTable nodes(sphere(4), fitted.grid, fitted.zone);
@@ -92,7 +92,7 @@ TEST(WallZone, LeavesRoomOutsideForTheOtherHalfOfTheWall)
     EXPECT_NEAR(taken, cells + 0.5 * static_cast<double>(fitted.wall_particles), 1);
 }
 
-TEST(WallZone, LetsNoFillThrough)
+TEST(ExclusionBand, LetsNoFillThrough)
 {
     for (const double shift : {0.0, 0.5, 0.37})
         for (const TriangleSoup& soup :
@@ -103,7 +103,7 @@ TEST(WallZone, LetsNoFillThrough)
         }
 }
 
-TEST(WallZone, SpreadsEquallyFarNodesEvenly)
+TEST(ExclusionBand, SpreadsEquallyFarNodesEvenly)
 {
     // The nodes 0.8 dp below the top of the box: every 10 x 10 of them keep about as many.
     const TriangleSoup soup = box({0, 0, 0}, {5.98, 5.98, 5.98});
@@ -126,7 +126,7 @@ TEST(WallZone, SpreadsEquallyFarNodesEvenly)
         for (std::uint32_t j = 10; j <= 50; j += 10) EXPECT_NEAR(count(i, j), first, 6);
 }
 
-TEST(WallZone, HasNoInsideInASheet)
+TEST(ExclusionBand, HasNoInsideInASheet)
 {
     TriangleSoup soup;
     add_quad(soup, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
@@ -138,35 +138,35 @@ TEST(WallZone, HasNoInsideInASheet)
     EXPECT_EQ(fitted.zone.warnings.size(), 1u);
 }
 
-TEST(WallZone, KeepsAGivenClearance)
+TEST(ExclusionBand, KeepsAGivenClearance)
 {
     MeshReport report;
-    const SurfaceMesh mesh = take_in_mesh(sphere(3), {}, 1, report);
+    const SurfaceMesh mesh = repair_mesh(sphere(3), {}, 1, report);
     const LatticeGrid grid = lattice_around(report.bounds, 0.1, 0.3);
-    WallZoneOptions options;
+    ExclusionBandOptions options;
     options.clearance_dp = 0.8;
-    const WallZone zone = wall_zone(mesh, report, grid, options, 1);
+    const ExclusionBand zone = exclusion_band(mesh, report, grid, options, 1);
     const NodeTable nodes(sphere(3), grid, zone);
     for (std::size_t at = 0; at < nodes.zone.size(); ++at)
         ASSERT_EQ(nodes.zone[at], nodes.distance[at] < 0.8);
     options.clearance_dp = 0.4;
-    EXPECT_THROW(wall_zone(mesh, report, grid, options, 1), GeometryError);
+    EXPECT_THROW(exclusion_band(mesh, report, grid, options, 1), GeometryError);
 }
 
-TEST(WallZone, OfALatticeThatCutsTheBodyIsThatOfTheWholeBody)
+TEST(ExclusionBand, OfALatticeThatCutsTheBodyIsThatOfTheWholeBody)
 {
     MeshReport report;
-    const SurfaceMesh mesh = take_in_mesh(sphere(3), {}, 1, report);
+    const SurfaceMesh mesh = repair_mesh(sphere(3), {}, 1, report);
     const LatticeGrid whole = lattice_around(report.bounds, 0.125, 0);
     LatticeGrid part = whole;
     part.origin.x += 8 * 0.125;
     part.origin.z += 5 * 0.125;
     part.n[0] -= 12;
     part.n[2] -= 5;
-    WallZoneOptions options;
+    ExclusionBandOptions options;
     options.wall_particles = 800;
-    const WallZone all = wall_zone(mesh, report, whole, options, 1);
-    const WallZone cut = wall_zone(mesh, report, part, options, 1);
+    const ExclusionBand all = exclusion_band(mesh, report, whole, options, 1);
+    const ExclusionBand cut = exclusion_band(mesh, report, part, options, 1);
     EXPECT_EQ(cut.volume_error, all.volume_error);
     const auto all_nodes = nodes_of(all.volume, whole), cut_nodes = nodes_of(cut.volume, part);
     std::size_t same = 0, at = 0;
@@ -182,17 +182,17 @@ TEST(WallZone, OfALatticeThatCutsTheBodyIsThatOfTheWholeBody)
     EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(at));
 }
 
-TEST(WallZone, IsAboutTheSectionIn2D)
+TEST(ExclusionBand, IsAboutTheSectionIn2D)
 {
     MeshReport report;
-    const SurfaceMesh mesh = take_in_mesh(sphere(5), {}, 1, report);
+    const SurfaceMesh mesh = repair_mesh(sphere(5), {}, 1, report);
     LatticeGrid grid = lattice_around(report.bounds, 0.02, 0.3);
     grid.is_2d = true;
     grid.origin.y = 0.6;
     grid.n[1] = 1;
-    WallZoneOptions options;
+    ExclusionBandOptions options;
     options.wall_particles = 251; // a circle of radius 0.8, every 0.02
-    const WallZone zone = wall_zone(mesh, report, grid, options, 1);
+    const ExclusionBand zone = exclusion_band(mesh, report, grid, options, 1);
     EXPECT_NEAR(zone.body_volume / 0.02, 3.14159 * 0.64, 0.01);
     EXPECT_NEAR(zone.volume_error, 0, 0.001);
     for (const auto& [set, is_volume] : {std::pair{zone.volume, true}, std::pair{zone.zone, false}})
@@ -207,11 +207,11 @@ TEST(WallZone, IsAboutTheSectionIn2D)
                 }
 }
 
-TEST(WallZone, IsTheSameForOneAndEightThreads)
+TEST(ExclusionBand, IsTheSameForOneAndEightThreads)
 {
     const TriangleSoup soup = joined(sphere(4), moved(sphere(4), {.offset = {1, 0.1, 0.2}}));
-    const WallZone one = fit_soup(soup, 0.05, 0.3, 1).zone;
-    const WallZone eight = fit_soup(soup, 0.05, 0.3, 8).zone;
+    const ExclusionBand one = fit_soup(soup, 0.05, 0.3, 1).zone;
+    const ExclusionBand eight = fit_soup(soup, 0.05, 0.3, 8).zone;
     EXPECT_EQ(one.volume.slabs, eight.volume.slabs);
     EXPECT_EQ(one.zone.slabs, eight.zone.slabs);
     EXPECT_EQ(one.volume_error, eight.volume_error);

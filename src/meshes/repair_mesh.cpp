@@ -122,8 +122,8 @@ void warn_of_repairs(const FirstPlaces& places, MeshReport& report)
 
 } // namespace
 
-SurfaceMesh take_in_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
-                         MeshReport& report)
+SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
+                        MeshReport& report)
 {
     report = {};
     report.facets_read = soup.size();
