@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 namespace fppg
@@ -59,6 +60,71 @@ SmoothParts smooth_parts(const SurfaceMesh& mesh, const Features& features)
     return parts;
 }
 
+/// Coarse cells with the directions of the surface in and around them: where all are within 60
+/// degrees of one, no two face away from each other, and no sheet lies behind another.
+class FacingCells
+{
+public:
+    explicit FacingCells(double reach) : reach_(reach), side_(cell_reaches * reach) {}
+
+    /// A surface with unit normal n at p, which counts in all cells within reach.
+    void add(const Vec3& p, const Vec3& n)
+    {
+        for_each_cell(p,
+                      [&](std::uint64_t key)
+                      {
+                          const auto [cell, is_new] = cells_.try_emplace(key, Cell{n, false});
+                          if (!is_new && !(dot(cell->second.axis, n) > cos_of_axis))
+                              cell->second.is_mixed = true;
+                          return false;
+                      });
+    }
+    bool is_mixed_at(const Vec3& p) const
+    {
+        const auto cell = cells_.find(key_of(index(p.x), index(p.y), index(p.z)));
+        return cell != cells_.end() && cell->second.is_mixed;
+    }
+    bool is_mixed_within_reach(const Vec3& p) const
+    {
+        return for_each_cell(p, [&](std::uint64_t key) { return cells_.at(key).is_mixed; });
+    }
+
+private:
+    static constexpr double cell_reaches = 5;
+    static constexpr double cos_of_axis = 0.5 + 1e-9;
+    struct Cell
+    {
+        Vec3 axis;
+        bool is_mixed = false;
+    };
+
+    std::int64_t index(double c) const { return static_cast<std::int64_t>(std::floor(c / side_)); }
+    /// Far cells may share a key, which only makes more of them mixed.
+    static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z)
+    {
+        constexpr std::uint64_t mask = (1U << 21U) - 1;
+        return (static_cast<std::uint64_t>(x) & mask) |
+               (static_cast<std::uint64_t>(y) & mask) << 21U |
+               (static_cast<std::uint64_t>(z) & mask) << 42U;
+    }
+    /// Until `stops` is true for one; whether it was.
+    template <typename Stops>
+    bool for_each_cell(const Vec3& p, const Stops& stops) const
+    {
+        const Vec3 r{reach_, reach_, reach_};
+        const Vec3 low = p - r, high = p + r;
+        for (std::int64_t x = index(low.x); x <= index(high.x); ++x)
+            for (std::int64_t y = index(low.y); y <= index(high.y); ++y)
+                for (std::int64_t z = index(low.z); z <= index(high.z); ++z)
+                    if (stops(key_of(x, y, z))) return true;
+        return false;
+    }
+
+    double reach_;
+    double side_;
+    std::unordered_map<std::uint64_t, Cell> cells_;
+};
+
 /// Finds the particles of the sheet that goes.
 class SheetChoice
 {
@@ -86,6 +152,7 @@ public:
 
 private:
     std::uint32_t part_of(std::size_t i) const { return parts_.of_facet[particles_.facets[i]]; }
+    bool is_on_face(std::size_t i) const { return particles_.kinds[i] == FitKind::Surface; }
     const Vec3& normal_of(std::size_t i) const { return mesh_.normals[particles_.facets[i]]; }
 
     bool gives_way(std::size_t i, std::size_t j) const
@@ -98,8 +165,7 @@ private:
     /// Whether j stands behind i, through the plate, and not farther than it is thick.
     bool is_behind(std::size_t i, std::uint32_t j, double squared) const
     {
-        if (particles_.kinds[j] != FitKind::Surface || dot(normal_of(i), normal_of(j)) > -0.5)
-            return false;
+        if (dot(normal_of(i), normal_of(j)) > -0.5) return false;
         const double dp = options_.dp;
         const double depth = dot(particles_.positions[i] - particles_.positions[j], normal_of(i));
         return depth > 0 && depth < options_.thickness * dp && squared - depth * depth <= dp * dp;
@@ -108,16 +174,28 @@ private:
     void take_behind_others()
     {
         const double reach = reach_dp * options_.dp;
-        PointGrid grid(reach, is_taken_.size());
-        for (const Vec3& p : particles_.positions) grid.add(p);
+        const std::size_t n = is_taken_.size();
+        FacingCells facing(reach);
+        for (std::size_t i = 0; i < n; ++i)
+            if (is_on_face(i)) facing.add(particles_.positions[i], normal_of(i));
+        std::vector<std::uint32_t> near; // the particles in the grid
+        PointGrid grid(reach, n);
+        for (std::uint32_t i = 0; i < n; ++i)
+        {
+            if (!is_on_face(i) || !facing.is_mixed_within_reach(particles_.positions[i])) continue;
+            near.push_back(i);
+            grid.add(particles_.positions[i]);
+        }
         parallel_for(
-            is_taken_.size(), threads_,
-            [&](std::size_t i)
+            near.size(), threads_,
+            [&](std::size_t k)
             {
-                if (particles_.kinds[i] != FitKind::Surface) return;
+                const std::uint32_t i = near[k];
+                if (!facing.is_mixed_at(particles_.positions[i])) return;
                 grid.for_each_near(particles_.positions[i], reach,
-                                   [&](std::uint32_t j, double squared)
+                                   [&](std::uint32_t l, double squared)
                                    {
+                                       const std::uint32_t j = near[l];
                                        if (!is_behind(i, j, squared) || !gives_way(i, j)) return;
                                        is_taken_[i] = 1;
                                        winner_[i] = std::min(winner_[i], part_of(j));
