@@ -140,8 +140,8 @@ TEST_P(FloatingMass, OfASphereIsThatOfItsVolume)
 }
 
 INSTANTIATE_TEST_SUITE_P(FittedBodies, FloatingMass, testing::Values("-fit", "-fit:raw"),
-                         [](const auto& info)
-                         { return std::string(info.param) == "-fit" ? "Relaxed" : "Raw"; });
+                         [](const auto& mode)
+                         { return std::string(mode.param) == "-fit" ? "Relaxed" : "Raw"; });
 
 TEST(FloatingMassIn2D, IsThatOfTheSection)
 {
