@@ -110,14 +110,17 @@ private:
         }
     }
 
-    Span read_name()
+    TextSpan read_name()
     {
         const std::size_t begin = at_;
         while (at_ < text_.size() && !ends_name(text_[at_])) ++at_;
         return {begin, at_};
     }
 
-    std::string part(Span span) const { return text_.substr(span.begin, span.end - span.begin); }
+    std::string part(TextSpan span) const
+    {
+        return text_.substr(span.begin, span.end - span.begin);
+    }
 
     void skip_blanks()
     {
@@ -128,7 +131,7 @@ private:
     {
         const std::size_t begin = at_;
         at_ += 2;
-        const Span name = read_name();
+        const TextSpan name = read_name();
         if (depth == 0 || part(name) != parent.name)
             fail(begin,
                  fmt::format("</{}> closes nothing{}", part(name),

@@ -9,7 +9,7 @@ namespace fppg
 {
 
 /// Bytes of a text, from `begin` to before `end`.
-struct Span
+struct TextSpan
 {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -19,9 +19,9 @@ struct TextAttribute
 {
     std::string name;
     std::string value; ///< as it stands in the text, entities not resolved
-    Span whole;        ///< name, equals sign and value with its quotes
-    Span name_at;
-    Span value_at; ///< between the quotes
+    TextSpan whole;    ///< name, equals sign and value with its quotes
+    TextSpan name_at;
+    TextSpan value_at; ///< between the quotes
 };
 
 /// An element or a comment of a definition, and where its parts stand in the text. Unlike Element
@@ -31,11 +31,11 @@ struct TextNode
     bool is_comment = false;
     std::string name; ///< empty for a comment
     int line = 0;     ///< of its first byte, from 1
-    Span whole;       ///< from '<' of the start tag to behind '>' of the end tag
-    Span start_tag;
-    Span name_at;     ///< in the start tag
-    Span end_name_at; ///< in the end tag; empty where the element is one tag
-    Span inside;      ///< between start and end tag; empty where the element is one tag
+    TextSpan whole;   ///< from '<' of the start tag to behind '>' of the end tag
+    TextSpan start_tag;
+    TextSpan name_at;     ///< in the start tag
+    TextSpan end_name_at; ///< in the end tag; empty where the element is one tag
+    TextSpan inside;      ///< between start and end tag; empty where the element is one tag
     bool is_one_tag = false;
     std::vector<TextAttribute> attributes;
     std::vector<TextNode> children; ///< elements and comments, in the order of the text

@@ -42,14 +42,14 @@ void EditedText::rename(const TextNode& node, const std::string& name)
 
 void EditedText::remove(const TextAttribute& attribute)
 {
-    Span span = attribute.whole;
+    TextSpan span = attribute.whole;
     while (is_space(text_[span.begin - 1])) --span.begin;
     replace(span, "");
 }
 
 void EditedText::remove(const TextNode& node)
 {
-    Span span = node.whole;
+    TextSpan span = node.whole;
     std::size_t end = span.end;
     while (end < text_.size() && is_space(text_[end])) ++end;
     if (end < text_.size() && text_[end] == '\r') ++end;

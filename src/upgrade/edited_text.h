@@ -20,9 +20,12 @@ public:
     EditedText(const std::string& text, UpgradedDefinition& out) : text_(text), out_(out) {}
 
     const std::string& text() const { return text_; }
-    std::string part(Span span) const { return text_.substr(span.begin, span.end - span.begin); }
+    std::string part(TextSpan span) const
+    {
+        return text_.substr(span.begin, span.end - span.begin);
+    }
 
-    void replace(Span span, std::string with) { edits_.push_back({span, std::move(with)}); }
+    void replace(TextSpan span, std::string with) { edits_.push_back({span, std::move(with)}); }
     void insert(std::size_t at, std::string what) { replace({at, at}, std::move(what)); }
     /// Start and end tag.
     void rename(const TextNode& node, const std::string& name);
@@ -46,7 +49,7 @@ public:
 private:
     struct Edit
     {
-        Span span;
+        TextSpan span;
         std::string with;
     };
 

@@ -229,7 +229,7 @@ private:
     void move(const TextNode& node, const std::string& inner_indent)
     {
         std::string text = edited_.part(node.whole);
-        const auto rename = [&](Span at)
+        const auto rename = [&](TextSpan at)
         { text.replace(at.begin - node.whole.begin, at.end - at.begin, new_name(node)); };
         if (!node.is_one_tag) rename(node.end_name_at);
         rename(node.name_at);

@@ -99,16 +99,16 @@ private:
             upgrade_shape_modes(child);
             if (child.name != "setshapemode") continue;
             // What GenCase reads of it.
-            const Span text{child.inside.begin, child.children.empty()
-                                                    ? child.inside.end
-                                                    : child.children.front().whole.begin};
+            const TextSpan text{child.inside.begin, child.children.empty()
+                                                        ? child.inside.end
+                                                        : child.children.front().whole.begin};
             const std::string before = edited_.part(text);
             const auto words = words_of(before);
             const auto is = [&](std::string_view name)
             {
                 return std::any_of(
                     words.begin(), words.end(),
-                    [&](Span word)
+                    [&](TextSpan word)
                     { return before.substr(word.begin, word.end - word.begin) == name; });
             };
             if (!is("real")) continue;
@@ -122,7 +122,7 @@ private:
             std::string after;
             std::size_t at = 0;
             bool has_actual = is("actual");
-            for (const Span word : words)
+            for (const TextSpan word : words)
             {
                 if (before.substr(word.begin, word.end - word.begin) != "real") continue;
                 after.append(before, at, word.begin - at);
@@ -140,10 +140,10 @@ private:
     }
 
     /// The words between the bars.
-    static std::vector<Span> words_of(const std::string& list)
+    static std::vector<TextSpan> words_of(const std::string& list)
     {
         constexpr std::string_view no_word = "| \t\r\n";
-        std::vector<Span> words;
+        std::vector<TextSpan> words;
         for (std::size_t at = 0;;)
         {
             const std::size_t begin = list.find_first_not_of(no_word, at);
