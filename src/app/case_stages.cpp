@@ -48,7 +48,7 @@ LatticeProgress draw_progress()
 
 /// The polygons that norgeometry asks for: those of a shape file of this run, or of a file that
 /// stands in the folder of the output, where GenCase looks for it, or beside the definition.
-std::vector<ShapePolygons> normal_geometry(const RunState& run, const MadeCase& made)
+std::vector<ShapePolygons> normal_geometry(const CaseRunState& run, const MadeCase& made)
 {
     if (!made.def.normals.geometry) return {};
     const GeometryNormals& geometry = *made.def.normals.geometry;
@@ -72,7 +72,7 @@ std::vector<ShapePolygons> normal_geometry(const RunState& run, const MadeCase& 
 
 } // namespace
 
-void read_definition(RunState& run, std::size_t zone, const VresDef* vres, MadeCase& made)
+void read_definition(CaseRunState& run, std::size_t zone, const VresDef* vres, MadeCase& made)
 {
     run.stage("LoadXMLInit",
               [&]
@@ -93,7 +93,7 @@ void read_definition(RunState& run, std::size_t zone, const VresDef* vres, MadeC
               });
 }
 
-void draw(RunState& run, MadeCase& made)
+void draw(CaseRunState& run, MadeCase& made)
 {
     run.stage("Draw",
               [&]
@@ -123,7 +123,7 @@ void draw(RunState& run, MadeCase& made)
               });
 }
 
-void relax(RunState& run, MadeCase& made)
+void relax(CaseRunState& run, MadeCase& made)
 {
     if (made.field.walls.bodies.empty()) return;
     log_fitted_walls(made.field, run.log);
@@ -140,7 +140,7 @@ void relax(RunState& run, MadeCase& made)
         run.warn(fmt::format("{}: {}", made.def.file, w));
 }
 
-void add_points(RunState& run, MadeCase& made)
+void add_points(CaseRunState& run, MadeCase& made)
 {
     if (made.def.point_files.empty()) return;
     LatticeReport report;
@@ -151,7 +151,7 @@ void add_points(RunState& run, MadeCase& made)
     for (std::string& w : report.warnings) run.warn(std::move(w));
 }
 
-void prepare_particles(RunState& run, MadeCase& made)
+void prepare_particles(CaseRunState& run, MadeCase& made)
 {
     run.stage("PreparePoints",
               [&]
@@ -176,7 +176,7 @@ void prepare_particles(RunState& run, MadeCase& made)
                         fmt::join(run.diagnostics, "\n  ")));
 }
 
-void make_normals(RunState& run, MadeCase& made)
+void make_normals(CaseRunState& run, MadeCase& made)
 {
     made.shape_files = collect_shape_files(made.scene);
     if (!made.def.normals.is_active) return;

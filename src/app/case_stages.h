@@ -14,23 +14,23 @@ namespace fppg
 ///
 /// zone  of a case with `<vres>`; 0 else
 /// vres  zones as the definition of zone 0 gives them; null for zone 0
-void read_definition(RunState& run, std::size_t zone, const VresDef* vres, MadeCase& made);
+void read_definition(CaseRunState& run, std::size_t zone, const VresDef* vres, MadeCase& made);
 
 /// Fits walls and draws the rest on the lattice.
-void draw(RunState& run, MadeCase& made);
+void draw(CaseRunState& run, MadeCase& made);
 
 /// Spreads the particles of fitted walls.
-void relax(RunState& run, MadeCase& made);
+void relax(CaseRunState& run, MadeCase& made);
 
 /// Adds the particles of point files, which relaxation would move.
-void add_points(RunState& run, MadeCase& made);
+void add_points(CaseRunState& run, MadeCase& made);
 
 /// Makes particles of nodes and walls.
 ///
 /// throws  CaseError with -strict and diagnostics
-void prepare_particles(RunState& run, MadeCase& made);
+void prepare_particles(CaseRunState& run, MadeCase& made);
 
 /// Collects the shape files, and computes the normals, which may be those of one.
-void make_normals(RunState& run, MadeCase& made);
+void make_normals(CaseRunState& run, MadeCase& made);
 
 } // namespace fppg

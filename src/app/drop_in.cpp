@@ -47,7 +47,8 @@ void take_from_others(const std::vector<ZoneSummary>& zones, const VresDef& vres
 ///
 /// vres   of all zones; null for a case without and for zone 0
 /// zones  those made before; this one is added
-void make_case(RunState& run, const VresDef* vres, std::vector<ZoneSummary>& zones, MadeCase& made)
+void make_case(CaseRunState& run, const VresDef* vres, std::vector<ZoneSummary>& zones,
+               MadeCase& made)
 {
     read_definition(run, zones.size(), vres, made);
     if (vres != nullptr) take_from_others(zones, *vres, made.def);
@@ -62,7 +63,7 @@ void make_case(RunState& run, const VresDef* vres, std::vector<ZoneSummary>& zon
 }
 
 /// Each zone of a case with `<vres>` is a case of its own.
-void make_zones(RunState& run, MadeCase& made)
+void make_zones(CaseRunState& run, MadeCase& made)
 {
     std::vector<ZoneSummary> zones;
     make_case(run, nullptr, zones, made);
@@ -78,7 +79,7 @@ void make_zones(RunState& run, MadeCase& made)
     log_zones(zones, run.log);
 }
 
-void print_warnings(RunState& run)
+void print_warnings(CaseRunState& run)
 {
     if (run.warnings.empty()) return;
     run.log.line("[WARNINGS]");
@@ -88,7 +89,7 @@ void print_warnings(RunState& run)
 }
 
 /// What went wrong goes into Case.out, unless one of an older run stands beside older results.
-void write_failed_log(RunState& run, const std::exception& error)
+void write_failed_log(CaseRunState& run, const std::exception& error)
 {
     const std::string path = run.options.output + ".out";
     std::error_code ignored;
@@ -112,7 +113,7 @@ void write_failed_log(RunState& run, const std::exception& error)
 int run_case(const DropInOptions& options)
 {
     const Stopwatch total;
-    RunState run;
+    CaseRunState run;
     run.options = options;
     run.threads = options.threads > 0 ? options.threads : default_threads();
     run.log = RunLog(options.log_json   ? LogStyle::Json

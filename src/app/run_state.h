@@ -21,7 +21,7 @@ namespace fppg
 {
 
 /// What all stages of a run share.
-struct RunState
+struct CaseRunState
 {
     DropInOptions options;
     int threads = 1;

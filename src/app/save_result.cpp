@@ -45,7 +45,7 @@ std::string date_of_run()
 
 /// A file of the case, or of the zone, that is made.
 template <typename Body>
-void write(RunState& run, const MadeCase& made, const std::string& ending, const char* note,
+void write(CaseRunState& run, const MadeCase& made, const std::string& ending, const char* note,
            const Body& body)
 {
     run.files.write(made.output + ending, note, run.log, body);
@@ -53,7 +53,7 @@ void write(RunState& run, const MadeCase& made, const std::string& ending, const
 
 /// Meshes go beside the result, as with GenCase; those outside the folder of the case stay
 /// where they are.
-void copy_meshes(RunState& run, const MadeCase& made)
+void copy_meshes(CaseRunState& run, const MadeCase& made)
 {
     for (const MeshFileUse& mesh : made.mesh_files)
     {
@@ -70,7 +70,7 @@ void copy_meshes(RunState& run, const MadeCase& made)
 }
 
 /// Files that the solver reads go beside the result too, as with GenCase.
-void list_data_files(RunState& run, MadeCase& made)
+void list_data_files(CaseRunState& run, MadeCase& made)
 {
     for (const DataFileUse& use : made.def.data_files)
     {
@@ -109,7 +109,7 @@ void write_shape_file(OutputFile& f, const ShapeFile& shape_file)
 }
 
 /// What cellsout and pointsmkout ask for; cells of an mk without any give no file.
-void save_node_files(RunState& run, const MadeCase& made)
+void save_node_files(CaseRunState& run, const MadeCase& made)
 {
     for (const NodeFile& node_file : made.node_files)
     {
@@ -128,7 +128,7 @@ void save_node_files(RunState& run, const MadeCase& made)
     }
 }
 
-std::vector<VtkOutEntry> save_shapes(RunState& run, const MadeCase& made)
+std::vector<VtkOutEntry> save_shapes(CaseRunState& run, const MadeCase& made)
 {
     std::vector<VtkOutEntry> vtk_out;
     for (const ShapeFile& shape_file : made.shape_files)
@@ -168,7 +168,7 @@ std::vector<ParticleType> types_of(const CaseParticles& particles)
 
 /// With one name for both, Case.xml takes the place of the definition, as with GenCase; the
 /// definition is kept beside it.
-void keep_overwritten_definition(RunState& run, const MadeCase& made)
+void keep_overwritten_definition(CaseRunState& run, const MadeCase& made)
 {
     const std::string source = run.options.input + ".xml";
     const std::string target = made.output + ".xml";
@@ -187,7 +187,7 @@ void keep_overwritten_definition(RunState& run, const MadeCase& made)
 }
 
 /// Pictures and tables of what stands between the definition and the particles.
-void save_field(RunState& run, const MadeCase& made)
+void save_field(CaseRunState& run, const MadeCase& made)
 {
     const DropInOptions& options = run.options;
     if (!made.normal_shapes.empty())
@@ -207,7 +207,7 @@ void save_field(RunState& run, const MadeCase& made)
               [&](OutputFile& f) { write_features_vtk(f, made.field.walls); });
 }
 
-void save_particles(RunState& run, const MadeCase& made, const FileOrigin& origin)
+void save_particles(CaseRunState& run, const MadeCase& made, const FileOrigin& origin)
 {
     const CaseParticles& particles = made.particles;
     if (run.options.save_bi4)
@@ -244,7 +244,7 @@ std::string full_name()
     return fmt::format("fppg v{} (compatible with GenCase v5.4)", version);
 }
 
-void save_result(RunState& run, MadeCase& made)
+void save_result(CaseRunState& run, MadeCase& made)
 {
     run.stage("SaveCase3D",
               [&]
@@ -273,7 +273,7 @@ void save_result(RunState& run, MadeCase& made)
     run.log.line();
 }
 
-void save_zones(RunState& run, const VresDef& vres)
+void save_zones(CaseRunState& run, const VresDef& vres)
 {
     const std::string& output = run.options.output;
     for (std::size_t id = 0; id < vres.zones.size(); ++id)

@@ -14,9 +14,9 @@ std::string full_name();
 /// their names when the run commits its files. What is no longer needed is given back.
 ///
 /// throws  IoError
-void save_result(RunState& run, MadeCase& made);
+void save_result(CaseRunState& run, MadeCase& made);
 
 /// Writes the files that show the zones of a case with `<vres>`.
-void save_zones(RunState& run, const VresDef& vres);
+void save_zones(CaseRunState& run, const VresDef& vres);
 
 } // namespace fppg

@@ -22,7 +22,7 @@ double barycentric(const WorkFacet& facet, std::size_t s, const Vec3& point)
 
 } // namespace
 
-bool slide(const WorkMesh& mesh, SurfacePlace& place, const Vec3& step, double inside)
+bool slide(const WorkMesh& mesh, SlidePlace& place, const Vec3& step, double inside)
 {
     double left = norm(step);
     if (!(left > 0)) return true;
@@ -58,7 +58,7 @@ bool slide(const WorkMesh& mesh, SurfacePlace& place, const Vec3& step, double i
     return false;
 }
 
-SurfacePlace place_on_facet(const WorkMesh& mesh, std::uint32_t parent, const Vec3& point)
+SlidePlace place_on_facet(const WorkMesh& mesh, std::uint32_t parent, const Vec3& point)
 {
     const std::uint32_t piece = mesh.locate(parent, point);
     const WorkFacet& facet = mesh.facets[piece];

@@ -68,7 +68,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
 }
 
 /// The feature particle that place_feature_particles() made, told by place and facet.
-FeatureParticle feature_at(const FittedBody& body, FitKind kind, const SurfacePlace& place)
+FeatureParticle feature_at(const FittedBody& body, FitKind kind, const SlidePlace& place)
 {
     const SurfaceMesh& mesh = body.mesh;
     FeatureParticle particle;
@@ -302,7 +302,7 @@ Vec3 SurfaceLayer::intended_step(std::size_t i, bool is_restart) const
     return length > largest_step ? step * (largest_step / length) : step;
 }
 
-void SurfaceLayer::accept(std::size_t i, const SurfacePlace& place)
+void SurfaceLayer::accept(std::size_t i, const SlidePlace& place)
 {
     const Vec3& normal = work_.facets[place.facet].normal;
     const Vec3 moved = (place.position - particles_[i].place.position) / dp_;
@@ -313,7 +313,7 @@ void SurfaceLayer::accept(std::size_t i, const SurfacePlace& place)
 
 bool SurfaceLayer::move(std::size_t i, bool is_restart)
 {
-    SurfacePlace place = particles_[i].place;
+    SlidePlace place = particles_[i].place;
     if (!slide(work_, place, intended_step(i, is_restart) * dp_, inside_border * dp_)) return false;
     accept(i, place);
     return true;
@@ -392,7 +392,7 @@ void SurfaceLayer::project(std::size_t i, bool is_restart)
         query_ = std::make_unique<MeshQuery>(soup_of(body_->mesh), threads_);
         find_patches();
     }
-    const SurfacePlace& place = particles_[i].place;
+    const SlidePlace& place = particles_[i].place;
     const Vec3 step = intended_step(i, is_restart) * dp_;
     const ClosestPoint found = query_->closest_point(place.position + step);
     const std::uint32_t piece = work_.locate(found.facet, found.point);

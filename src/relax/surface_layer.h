@@ -25,7 +25,7 @@ struct LayerState
 /// A particle of a body while it is relaxed.
 struct LayerParticle
 {
-    SurfacePlace place;
+    SlidePlace place;
     std::uint32_t source = no_index; ///< the given particle that it is or was put next to
     std::uint32_t site = no_index;   ///< of a feature particle, among the layer's
     FitKind kind = FitKind::Surface;
@@ -71,7 +71,7 @@ private:
     void project(std::size_t i, bool is_restart);
     void find_patches();
     Vec3 normal_of(const LayerParticle& particle) const;
-    void accept(std::size_t i, const SurfacePlace& place);
+    void accept(std::size_t i, const SlidePlace& place);
     std::vector<char> find_near_holes(float radius);
     void name_sources();
     Vec3 local(const Vec3& position) const { return (position - origin_) / dp_; }

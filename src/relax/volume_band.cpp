@@ -71,7 +71,7 @@ bool is_alone(const Band& band, std::size_t i, std::span<const std::uint32_t> ne
                        });
 }
 
-Plane as_plane(const WallPlane& plane, double dp)
+BandPlane as_plane(const WallPlane& plane, double dp)
 {
     return {static_cast<float>(plane.normal.x), static_cast<float>(plane.normal.y),
             static_cast<float>(plane.normal.z), static_cast<float>(plane.distance / dp)};
@@ -153,7 +153,7 @@ bool renew_nearest_wall(Band& band, std::size_t i, const WallPlanes& found)
     const Vec3 old{band.wall_normals.x[i], band.wall_normals.y[i], band.wall_normals.z[i]};
     if (dot(found.planes[0].normal, old) < same_wall) return false;
     if (band.meetings[i] != no_meeting)
-        for (Plane& plane : band.meeting_walls[band.meetings[i]].planes)
+        for (BandPlane& plane : band.meeting_walls[band.meetings[i]].planes)
             plane.distance -= approach_to(band, i, plane);
     ++band.light_looks[i];
     set_nearest_wall(band, i, found);

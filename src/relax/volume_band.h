@@ -31,7 +31,7 @@ inline double list_radius(double h)
 }
 
 /// A wall as a plane.
-struct Plane
+struct BandPlane
 {
     float x, y, z;  ///< normal, towards the wall
     float distance; ///< from the particle, as of when walls were last looked for
@@ -40,7 +40,7 @@ struct Plane
 /// The walls that meet the nearest one near a particle.
 struct MeetingWalls
 {
-    std::array<Plane, 2> planes;
+    std::array<BandPlane, 2> planes;
     std::uint32_t count = 0;
 };
 
@@ -98,7 +98,7 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
 /// Makes the lists of all particles that move.
 void build_list(NeighbourList& list, const Band& band, double h, int threads);
 
-inline float approach_to(const Band& band, std::size_t i, const Plane& plane)
+inline float approach_to(const Band& band, std::size_t i, const BandPlane& plane)
 {
     return band.moved.x[i] * plane.x + band.moved.y[i] * plane.y + band.moved.z[i] * plane.z;
 }
@@ -107,7 +107,7 @@ inline float approach_to(const Band& band, std::size_t i, const Plane& plane)
 template <typename Visit>
 void for_each_wall(const Band& band, std::size_t i, const Visit& visit)
 {
-    const auto visit_plane = [&](const Plane& plane)
+    const auto visit_plane = [&](const BandPlane& plane)
     { visit(plane, std::max(0.0f, plane.distance - approach_to(band, i, plane))); };
     visit_plane({band.wall_normals.x[i], band.wall_normals.y[i], band.wall_normals.z[i],
                  band.wall_distances[i]});

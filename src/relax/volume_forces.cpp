@@ -67,7 +67,7 @@ VolumeForces::Result VolumeForces::on(const Band& band, std::uint32_t i,
     const PairSums pairs = sum_pairs_(band.points, i, near, factors_);
     Result result{pairs.x, pairs.y, pairs.z, alpha_ * (1 + static_cast<double>(pairs.weight))};
     for_each_wall(band, i,
-                  [&](const Plane& plane, float distance)
+                  [&](const BandPlane& plane, float distance)
                   {
                       const double way = double{distance} + behind_wall;
                       if (way >= beyond_.reach()) return;

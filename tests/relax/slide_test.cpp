@@ -19,7 +19,7 @@ WorkMesh work_mesh(const TriangleSoup& soup)
     return make_work_mesh(input.mesh, input.features, 10);
 }
 
-SurfacePlace on_top(const WorkMesh& mesh, const Vec3& position)
+SlidePlace on_top(const WorkMesh& mesh, const Vec3& position)
 {
     for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
         if (mesh.facets[f].normal.z > 0.5)
@@ -32,7 +32,7 @@ SurfacePlace on_top(const WorkMesh& mesh, const Vec3& position)
 TEST(Slide, GoesAlongAFeatureEdgeInsteadOfOverIt)
 {
     const WorkMesh mesh = work_mesh(box({0, 0, 0}, {1, 1, 1}));
-    SurfacePlace place = on_top(mesh, {0.95, 0.4, 1});
+    SlidePlace place = on_top(mesh, {0.95, 0.4, 1});
     ASSERT_TRUE(slide(mesh, place, {0.3, 0.3, 0}, 1e-12));
     EXPECT_NEAR(place.position.x, 1, 1e-11);
     EXPECT_LT(place.position.x, 1);
@@ -43,7 +43,7 @@ TEST(Slide, GoesAlongAFeatureEdgeInsteadOfOverIt)
 TEST(Slide, StopsInACorner)
 {
     const WorkMesh mesh = work_mesh(box({0, 0, 0}, {1, 1, 1}));
-    SurfacePlace place = on_top(mesh, {0.95, 0.9, 1});
+    SlidePlace place = on_top(mesh, {0.95, 0.9, 1});
     ASSERT_TRUE(slide(mesh, place, {0.3, 0.4, 0}, 1e-12));
     EXPECT_NEAR(place.position.x, 1, 1e-9);
     EXPECT_NEAR(place.position.y, 1, 1e-9);
@@ -53,7 +53,7 @@ TEST(Slide, StopsInACorner)
 TEST(Slide, FollowsABentSurface)
 {
     const WorkMesh mesh = work_mesh(sphere(4));
-    SurfacePlace place = on_top(mesh, {0, 0, 1});
+    SlidePlace place = on_top(mesh, {0, 0, 1});
     const Vec3 before = place.position;
     const Vec3 normal = mesh.facets[place.facet].normal;
     const Vec3 step = Vec3{0.2, 0, 0} - normal * (0.2 * normal.x);
@@ -65,8 +65,8 @@ TEST(Slide, FollowsABentSurface)
 TEST(Slide, LeavesThePlaceAsItIsWhenItWouldCrossTooManyFacets)
 {
     const WorkMesh mesh = work_mesh(sphere(6));
-    SurfacePlace place = on_top(mesh, {0, 0, 1});
-    const SurfacePlace before = place;
+    SlidePlace place = on_top(mesh, {0, 0, 1});
+    const SlidePlace before = place;
     const Vec3 normal = mesh.facets[place.facet].normal;
     const Vec3 step = Vec3{3, 0, 0} - normal * (3 * normal.x);
     EXPECT_FALSE(slide(mesh, place, step, 1e-12));
