@@ -81,8 +81,8 @@ struct BathymetryGrid
 struct MeshReading
 {
     MeshFormat format = MeshFormat::Stl;
-    ShapeSelection shapes;
-    std::optional<BathymetryGrid> bathymetry; ///< of MeshFormat::Bathymetry
+    ShapeSelection shapes{};
+    std::optional<BathymetryGrid> bathymetry{}; ///< of MeshFormat::Bathymetry
     bool operator==(const MeshReading&) const = default;
 };
 

@@ -6,8 +6,7 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 #include "meshes/connect_mesh.h"
-#include "meshes/mesh_query.h"
-#include "meshes/winding_tree.h"
+#include "meshes/inside_test.h"
 
 #include <fmt/format.h>
 
@@ -58,8 +57,7 @@ public:
             return;
         }
         for (const Vec3& v : closed_.soup.vertices) bounds_.add(v);
-        query_.emplace(closed_.soup, threads);
-        if (!closed_.is_exact) winding_ = std::make_unique<WindingTree>(closed_.soup);
+        inside_ = std::make_unique<InsideTest>(closed_.soup, threads);
     }
 
     bool has_inside() const { return has_inside_; }
@@ -74,7 +72,7 @@ public:
             if (p[axis] < bounds_.min[axis] - merge_distance ||
                 p[axis] > bounds_.max[axis] + merge_distance)
                 return Where::Outside;
-        const ClosestPoint closest = query_->closest_point(p);
+        const ClosestPoint closest = inside_->query().closest_point(p);
         if (closest.distance < merge_distance)
         {
             const Vec3* c = &closed_.soup.vertices[3 * static_cast<std::size_t>(closest.facet)];
@@ -83,27 +81,13 @@ public:
             // A surface that only comes near at an angle is told by what is behind it.
             if (std::abs(across) > 0.999) return across > 0 ? Where::OnSame : Where::OnOpposite;
         }
-        return is_inside(p) ? Where::Inside : Where::Outside;
+        return inside_->is_inside(p) ? Where::Inside : Where::Outside;
     }
 
 private:
-    bool is_inside(const Vec3& p) const
-    {
-        if (winding_) return winding_->winding_number(p) > 0.5;
-        int votes = 0;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            int sum = 0;
-            for (const Crossing& c : query_->crossings(p, axis)) sum -= c.step;
-            votes += sum > 0 ? 1 : 0;
-        }
-        return votes >= 2;
-    }
-
     ClosedPart closed_;
     Box3 bounds_;
-    std::optional<MeshQuery> query_;
-    std::unique_ptr<WindingTree> winding_;
+    std::unique_ptr<InsideTest> inside_;
     bool has_inside_ = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/neighbour_grid.h"
+#include "fit/key_table.h"
 #include "fit/work_mesh.h"
 
 #include <span>

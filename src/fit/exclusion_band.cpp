@@ -7,13 +7,11 @@
 #include "fppg/error.h"
 #include "meshes/column_spans.h"
 #include "meshes/inside_by_vote.h"
-#include "meshes/mesh_query.h"
-#include "meshes/winding_tree.h"
+#include "meshes/inside_test.h"
 #include "nodes/spans.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -99,8 +97,7 @@ Wall section_of(const SurfaceMesh& mesh, const ClosedPart& part, double plane_y)
 
 /// How much of a wall lies inside the body, from points spread evenly over it: each of the two
 /// sides of a point counts one half.
-double share_inside(const Wall& wall, const TriangleSoup& body, bool is_exact, double dp,
-                    int threads)
+double share_inside(const Wall& wall, const TriangleSoup& body, double dp, int threads)
 {
     constexpr std::size_t samples = 4096;
     double total = 0;
@@ -115,18 +112,7 @@ double share_inside(const Wall& wall, const TriangleSoup& body, bool is_exact, d
              ++next)
             facet_of[next] = f;
     }
-    // Of a body without holes, the crossings of a half line are its winding number.
-    const std::unique_ptr<MeshQuery> query =
-        is_exact ? std::make_unique<MeshQuery>(body, threads) : nullptr;
-    const TriangleSoup nothing;
-    const WindingTree tree(is_exact ? nothing : body);
-    const auto is_inside = [&](const Vec3& p)
-    {
-        if (!is_exact) return tree.winding_number(p) > 0.5;
-        int sum = 0;
-        for (const Crossing& crossing : query->crossings(p, 0)) sum -= crossing.step;
-        return sum > 0;
-    };
+    const InsideTest test(body, threads);
     std::vector<char> sides(samples, 0);
     parallel_for(
         samples, threads,
@@ -143,7 +129,7 @@ double share_inside(const Wall& wall, const TriangleSoup& body, bool is_exact, d
             }
             const Vec3 at = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
             for (const double way : {-1e-4, 1e-4})
-                if (is_inside(at + way * dp * wall.normals[facet_of[i]])) ++sides[i];
+                if (test.is_inside(at + way * dp * wall.normals[facet_of[i]])) ++sides[i];
         },
         64);
     std::size_t sum = 0;
@@ -404,8 +390,7 @@ private:
             overlap_ = measure_overlap(part_.soup, threads_);
         zone_.body_volume -= overlap_;
         if (overlap_ != 0 || zone_.sheet_facets > 0)
-            zone_.wall_share_inside =
-                share_inside(wall, part_.soup, part_.is_exact, grid_.dp, threads_);
+            zone_.wall_share_inside = share_inside(wall, part_.soup, grid_.dp, threads_);
         inside_ = std::move(vote.inside);
     }
 

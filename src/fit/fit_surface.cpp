@@ -7,6 +7,7 @@
 #include "fit/for_each_chart.h"
 #include "fppg/error.h"
 #include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 
 #include <algorithm>
 
@@ -105,15 +106,11 @@ void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int 
         },
         1024);
     const double near = same_point * options.dp;
-    NeighbourGrid grid;
-    grid.start(near);
+    PointGrid grid(near, result.positions.size() + closest.size());
     for (const Vec3& p : result.positions) grid.add(p);
     for (const ClosestPoint& c : closest)
     {
-        bool is_there = false;
-        grid.for_each_near(c.point, near,
-                           [&](std::uint32_t, const Vec3&, double) { is_there = true; });
-        if (is_there) continue;
+        if (grid.has_nearer(c.point, near)) continue;
         grid.add(c.point);
         result.positions.push_back(c.point);
         result.facets.push_back(c.facet);

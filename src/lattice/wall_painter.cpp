@@ -1,7 +1,7 @@
 #include "lattice/wall_painter.h"
 
 #include "core/parallel.h"
-#include "meshes/mesh_query.h"
+#include "meshes/inside_test.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
 
@@ -47,19 +47,6 @@ std::uint64_t count_nodes(const Spans& spans)
     std::uint64_t count = 0;
     for (const Span& s : spans) count += s.z_end - s.z_begin;
     return count;
-}
-
-/// Inside by the sum of signed crossings along each axis, two of three. Used away from the surface.
-bool is_inside_mesh(const MeshQuery& query, const Vec3& p)
-{
-    int votes = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        int sum = 0;
-        for (const Crossing& c : query.crossings(p, axis)) sum -= c.step;
-        votes += sum > 0 ? 1 : 0;
-    }
-    return votes >= 2;
 }
 
 } // namespace
@@ -150,18 +137,18 @@ void WallPainter::cut_by(const FittedDraw& draw)
     for (const auto& f : draw.body.mesh.facets)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
     const auto is_near = [&](const Vec3& p) { return is_within(p, bounds, reach); };
-    std::optional<MeshQuery> query;
+    std::optional<InsideTest> test;
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     if (std::none_of(positions.begin(), positions.end(), is_near)) return;
-    query.emplace(soup_of(draw.body.mesh), threads_);
+    test.emplace(soup_of(draw.body.mesh), threads_);
     parallel_for(
         positions.size(), threads_,
         [&](std::size_t i)
         {
             const Vec3& p = positions[i];
             if (is_cut_[i] || !is_near(p)) return;
-            const double distance = query->closest_point(p).distance;
-            const bool is_inside = draw.body.is_solid && is_inside_mesh(*query, p);
+            const double distance = test->query().closest_point(p).distance;
+            const bool is_inside = draw.body.is_solid && test->is_inside(p);
             if (distance < reach || is_inside)
                 is_cut_[i] = is_inside && distance > touching_dp * field_->grid.dp ? 1 : touched;
         },

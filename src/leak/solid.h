@@ -1,10 +1,9 @@
 #pragma once
 
 #include "fppg/case_def.h"
-#include "meshes/mesh_query.h"
-#include "meshes/winding_tree.h"
+#include "meshes/inside_test.h"
 
-#include <memory>
+#include <vector>
 
 namespace fppg
 {
@@ -18,17 +17,15 @@ public:
     /// clips  the shape is cut at these
     Solid(TriangleSoup soup, std::vector<ClipPlane> clips, int threads);
 
-    /// By the sum of signed crossings along each axis, where two axes at least balance and all that
-    /// balance agree; else by the winding number.
+    /// InsideTest, where facets that face inwards bound as well.
     bool is_inside(const Vec3& p) const;
     /// Metres to the surface.
-    double distance(const Vec3& p) const { return query_.closest_point(p).distance; }
+    double distance(const Vec3& p) const { return inside_.query().closest_point(p).distance; }
     bool is_nearer(const Vec3& p, double distance) const;
     const Box3& bounds() const { return bounds_; }
 
 private:
-    MeshQuery query_;
-    std::unique_ptr<WindingTree> winding_;
+    InsideTest inside_;
     std::vector<ClipPlane> clips_;
     Box3 bounds_;
 };

@@ -104,7 +104,8 @@ struct MeshQuery::Scene
     {
         Vec3 origin;
         int axis = 0;
-        std::vector<Crossing>* found = nullptr;
+        std::vector<Crossing>* found = nullptr; ///< all crossings of the half line, or
+        LineSums* sums = nullptr;               ///< only the sums of the whole line
     };
 
     /// Notes the crossing and reports no hit, so that the ray goes on to the end.
@@ -117,9 +118,37 @@ struct MeshQuery::Scene
                                 context.axis);
         const Vec3 at = ColumnFacet::turned(context.origin, context.axis);
         if (!cut_column(facet, at.x, at.y).is_crossed) return;
-        if (side_of_plane(facet, at.x, at.y, at.z) > 0) return;
+        const bool is_before = side_of_plane(facet, at.x, at.y, at.z) > 0;
+        if (context.sums != nullptr)
+        {
+            (is_before ? context.sums->before : context.sums->behind) -= facet.facing;
+            return;
+        }
+        if (is_before) return;
         const double position = std::max(at.z, height_above(facet, at.x, at.y).z);
         context.found->push_back({position, -facet.facing, arguments->primID});
+    }
+
+    /// A ray that starts below the whole mesh; where a half line begins is decided in double.
+    void cast(RayContext& context) const
+    {
+        const int axis = context.axis;
+        Vec3 start = to_unit(context.origin);
+        for (int other = 0; other < 3; ++other)
+            if (other != axis && !(std::abs(start[other]) <= 1 + rounding_room)) return;
+        start[axis] = -2;
+        RTCRayHit ray{};
+        ray.ray.org_x = static_cast<float>(start.x);
+        ray.ray.org_y = static_cast<float>(start.y);
+        ray.ray.org_z = static_cast<float>(start.z);
+        ray.ray.dir_x = axis == 0 ? 1.0F : 0.0F;
+        ray.ray.dir_y = axis == 1 ? 1.0F : 0.0F;
+        ray.ray.dir_z = axis == 2 ? 1.0F : 0.0F;
+        ray.ray.tnear = 0;
+        ray.ray.tfar = std::numeric_limits<float>::infinity();
+        ray.ray.mask = ~0U;
+        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        embree_intersect(scene.get(), context, ray);
     }
 
     struct Nearest
@@ -188,29 +217,22 @@ std::vector<Crossing> MeshQuery::crossings(const Vec3& origin, int axis) const
     context.origin = origin;
     context.axis = axis;
     context.found = &found;
-
-    // The ray starts below the whole mesh; where the half line begins is decided in double.
-    Vec3 start = scene_->to_unit(origin);
-    for (int other = 0; other < 3; ++other)
-        if (other != axis && !(std::abs(start[other]) <= 1 + rounding_room)) return found;
-    start[axis] = -2;
-    RTCRayHit ray{};
-    ray.ray.org_x = static_cast<float>(start.x);
-    ray.ray.org_y = static_cast<float>(start.y);
-    ray.ray.org_z = static_cast<float>(start.z);
-    ray.ray.dir_x = axis == 0 ? 1.0F : 0.0F;
-    ray.ray.dir_y = axis == 1 ? 1.0F : 0.0F;
-    ray.ray.dir_z = axis == 2 ? 1.0F : 0.0F;
-    ray.ray.tnear = 0;
-    ray.ray.tfar = std::numeric_limits<float>::infinity();
-    ray.ray.mask = ~0U;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree_intersect(scene_->scene.get(), context, ray);
-
+    scene_->cast(context);
     std::sort(found.begin(), found.end(),
               [](const Crossing& a, const Crossing& b)
               { return a.position != b.position ? a.position < b.position : a.facet < b.facet; });
     return found;
+}
+
+LineSums MeshQuery::line_sums(const Vec3& point, int axis) const
+{
+    LineSums sums;
+    Scene::RayContext context;
+    context.origin = point;
+    context.axis = axis;
+    context.sums = &sums;
+    scene_->cast(context);
+    return sums;
 }
 
 } // namespace fppg

@@ -10,7 +10,10 @@
 namespace fppg
 {
 
-/// Points in cubic cells that can be added one by one, found by open hashing of the cells.
+/// Points in cubic cells that can be added one by one, found by open hashing of the cells. Others
+/// have tasks that this one is too slow or too large for: ChartGrid compares a front particle with
+/// 16 neighbours at once, NeighbourList keeps lists over the steps of a relaxation, CellGrid walks
+/// through files that are larger than memory.
 class PointGrid
 {
 public:
@@ -36,7 +39,8 @@ public:
         return index;
     }
 
-    /// Calls visit(index, squared distance) for the points within `radius`, in no useful order.
+    /// Calls visit(index, squared distance) for the points within `radius`, in an order that
+    /// depends on the points and the order of adding only.
     template <typename Visit>
     void for_each_near(const Vec3& p, double radius, const Visit& visit) const
     {

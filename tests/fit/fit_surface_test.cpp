@@ -1,9 +1,9 @@
 #include "fppg/fit.h"
 
 #include "fit/fit_shapes.h"
-#include "fit/neighbour_grid.h"
 #include "helpers/surface_cover.h"
 #include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -46,8 +46,7 @@ double farthest_point(const FitInput& input, const SurfaceParticles& particles)
 /// The smallest distance of a surface particle to any other on its side of the body, in dp.
 double least_distance(const SurfaceMesh& mesh, const SurfaceParticles& particles, double dp)
 {
-    NeighbourGrid grid;
-    grid.start(dp);
+    PointGrid grid(dp, particles.positions.size());
     for (const Vec3& p : particles.positions) grid.add(p);
     double least = dp * dp;
     for (std::uint32_t i = 0; i < particles.positions.size(); ++i)
@@ -55,7 +54,7 @@ double least_distance(const SurfaceMesh& mesh, const SurfaceParticles& particles
         if (particles.kinds[i] != FitKind::Surface) continue;
         const Vec3& normal = mesh.normals[particles.facets[i]];
         grid.for_each_near(particles.positions[i], dp,
-                           [&](std::uint32_t j, const Vec3&, double squared)
+                           [&](std::uint32_t j, double squared)
                            {
                                if (j != i && dot(normal, mesh.normals[particles.facets[j]]) > -0.5)
                                    least = std::min(least, squared);

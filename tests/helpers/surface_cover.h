@@ -2,7 +2,7 @@
 
 #include "fppg/mesh.h"
 
-#include "fit/neighbour_grid.h"
+#include "meshes/point_grid.h"
 #include "meshes/test_shapes.h"
 
 #include <algorithm>
@@ -32,8 +32,7 @@ inline TriangleSoup wedge()
 inline double farthest_point_dp(const SurfaceMesh& mesh, const std::vector<Vec3>& particles,
                                 double dp, double samples_per_dp2)
 {
-    NeighbourGrid grid;
-    grid.start(2 * dp);
+    PointGrid grid(2 * dp, particles.size());
     for (const Vec3& p : particles) grid.add(p);
     double farthest = 0;
     double due = 0;
@@ -55,7 +54,7 @@ inline double farthest_point_dp(const SurfaceMesh& mesh, const std::vector<Vec3>
             }
             double nearest = 4 * dp * dp;
             grid.for_each_near(a + (b - a) * u + (c - a) * v, 2 * dp,
-                               [&](std::uint32_t, const Vec3&, double squared)
+                               [&](std::uint32_t, double squared)
                                { nearest = std::min(nearest, squared); });
             farthest = std::max(farthest, nearest);
         }

@@ -1,10 +1,10 @@
 #include "fppg/relax.h"
 
 #include "fit/fit_shapes.h"
-#include "fit/neighbour_grid.h"
 #include "fppg/error.h"
 #include "helpers/surface_cover.h"
 #include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -158,8 +158,7 @@ TEST(RelaxSurface, KeepsSurfaceParticlesApart)
         Walls walls(shape.soup, shape.dp);
         walls.relax(2);
         const double dp = shape.dp;
-        NeighbourGrid grid;
-        grid.start(dp);
+        PointGrid grid(dp, walls.particles.size());
         for (const Vec3& p : walls.particles.positions) grid.add(p);
         double least = dp * dp;
         for (std::uint32_t i = 0; i < walls.particles.size(); ++i)
@@ -167,17 +166,18 @@ TEST(RelaxSurface, KeepsSurfaceParticlesApart)
             if (walls.particles.kinds[i] != FitKind::Surface) continue;
             const auto& normals = walls.bodies[0].mesh.normals;
             const Vec3& normal = normals[walls.particles.facets[i]];
-            grid.for_each_near(walls.particles.positions[i], dp,
-                               [&](std::uint32_t j, const Vec3& offset, double squared)
-                               {
-                                   // Edge particles behind a plate belong to its other side.
-                                   const bool is_behind =
-                                       walls.particles.kinds[j] != FitKind::Surface &&
-                                       std::abs(dot(offset, normal)) > 0.1 * dp;
-                                   if (j != i && !is_behind &&
-                                       dot(normal, normals[walls.particles.facets[j]]) > -0.5)
-                                       least = std::min(least, squared);
-                               });
+            grid.for_each_near(
+                walls.particles.positions[i], dp,
+                [&](std::uint32_t j, double squared)
+                {
+                    const Vec3 offset = walls.particles.positions[j] - walls.particles.positions[i];
+                    // Edge particles behind a plate belong to its other side.
+                    const bool is_behind = walls.particles.kinds[j] != FitKind::Surface &&
+                                           std::abs(dot(offset, normal)) > 0.1 * dp;
+                    if (j != i && !is_behind &&
+                        dot(normal, normals[walls.particles.facets[j]]) > -0.5)
+                        least = std::min(least, squared);
+                });
         }
         EXPECT_GE(std::sqrt(least) / dp, 0.6) << shape.name;
     }

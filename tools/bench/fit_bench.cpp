@@ -5,11 +5,11 @@
 //
 // N is the number of iterations, 0 for as many as improve the spacing.
 
-#include "fit/neighbour_grid.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/relax.h"
 #include "fppg/shapes.h"
+#include "meshes/point_grid.h"
 
 #include <sys/resource.h>
 
@@ -106,15 +106,14 @@ void relax(fppg::SurfaceMesh& mesh, const fppg::Features& features,
 void count_close_pairs(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticles& particles,
                        double dp)
 {
-    fppg::NeighbourGrid grid;
-    grid.start(dp);
+    fppg::PointGrid grid(dp, particles.positions.size());
     for (const fppg::Vec3& p : particles.positions) grid.add(p);
     std::size_t on_features = 0;
     std::size_t through_plates = 0;
     std::size_t others = 0;
     for (std::uint32_t i = 0; i < particles.positions.size(); ++i)
         grid.for_each_near(particles.positions[i], 0.3 * dp,
-                           [&](std::uint32_t j, const fppg::Vec3&, double)
+                           [&](std::uint32_t j, double)
                            {
                                if (j >= i) return;
                                if (particles.kinds[i] != fppg::FitKind::Surface)
