@@ -124,7 +124,7 @@ void write_heights_vtk(OutputFile& file, const std::vector<Vec3>& points,
 /// Writes `_FreePt.vtk`: POINTS double, VERTICES, SCALARS Mk and a field Type (unsigned_char, 0
 /// fixed, 1 moving, 2 floating, 3 fluid), with the bytes of GenCase v5.4.354. Mk is unsigned_char,
 /// unsigned_short where one is above 255.
-void write_free_points_vtk(OutputFile& file, const OffLatticePoints& points);
+void write_off_lattice_points_vtk(OutputFile& file, const OffLatticePoints& points);
 
 /// Polygons of one drawn object, for shape files.
 struct ShapePolygons

@@ -26,19 +26,19 @@ enum class ParticleType : std::uint8_t
 /// block says otherwise; or `count` consecutive particles off the lattice.
 struct ParticleRun
 {
-    /// A run of particles off the lattice, from this index of CaseParticles::free on. They follow
-    /// one another upwards whatever the block says.
-    static ParticleRun of_free(std::uint64_t begin, std::uint32_t count)
+    /// A run of particles off the lattice, from this index of CaseParticles::off_lattice on. They
+    /// follow one another upwards whatever the block says.
+    static ParticleRun of_off_lattice(std::uint64_t begin, std::uint32_t count)
     {
         ParticleRun run;
         run.count = count;
         run.is_off_lattice = true;
-        run.set_free_begin(begin);
+        run.set_off_lattice_begin(begin);
         return run;
     }
     /// Of a run of particles off the lattice, which needs no node: x and y hold it.
     std::uint64_t off_lattice_begin() const { return x | static_cast<std::uint64_t>(y) << 32U; }
-    void set_free_begin(std::uint64_t begin)
+    void set_off_lattice_begin(std::uint64_t begin)
     {
         x = static_cast<std::uint32_t>(begin);
         y = static_cast<std::uint32_t>(begin >> 32U);
@@ -162,7 +162,7 @@ struct CaseParticles
 {
     LatticeGrid grid;
     std::vector<ParticleBlock> blocks;
-    OffLatticeParticles free;
+    OffLatticeParticles off_lattice;
     bool has_walls = false; ///< the case has fitted walls: pictures show kind, normal, distance
     std::uint64_t np = 0;
     std::uint64_t n_fixed = 0;

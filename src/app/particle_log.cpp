@@ -75,8 +75,8 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
                          c.speed_system ? "fixed" : "automatic"));
     log.line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
                          c.speed_sound ? "fixed" : "automatic"));
-    const std::vector<ParticleType>& free = particles.off_lattice_points.types;
-    if (std::find(free.begin(), free.end(), ParticleType::Fluid) != free.end())
+    const std::vector<ParticleType>& types = particles.off_lattice_points.types;
+    if (std::find(types.begin(), types.end(), ParticleType::Fluid) != types.end())
         log.line(def.hydrostatic_off_lattice
                      ? "Density of fluid of <setfrdrawmode>: hydrostatic (<offlattice>)"
                      : "Density of fluid of <setfrdrawmode>: rhop0, as GenCase gives it");

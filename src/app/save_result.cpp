@@ -199,7 +199,8 @@ void save_field(CaseRunState& run, const MadeCase& made)
               { write_cells_vtk(f, made.field, types_of(made.particles), run.threads); });
     if (options.save_off_lattice_points && !made.particles.off_lattice_points.mk.empty())
         write(run, made, "_FreePt.vtk", "",
-              [&](OutputFile& f) { write_free_points_vtk(f, made.particles.off_lattice_points); });
+              [&](OutputFile& f)
+              { write_off_lattice_points_vtk(f, made.particles.off_lattice_points); });
     if (options.save_relaxation && !made.relax_history.empty())
         write(run, made, "_Relax.csv", "", [&](OutputFile& f) { f.append(made.relax_history); });
     if (options.save_features && !made.field.walls.bodies.empty())

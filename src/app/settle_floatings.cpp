@@ -97,7 +97,7 @@ private:
                            {
                                if (!run.is_off_lattice) return false;
                                const auto first =
-                                   particles_.free.kinds.begin() +
+                                   particles_.off_lattice.kinds.begin() +
                                    static_cast<std::ptrdiff_t>(run.off_lattice_begin());
                                return std::any_of(first, first + run.count, is_of_wall);
                            });

@@ -107,8 +107,8 @@ void draw_box(Program& p, const Element& e)
     const Element* end = e.find_child("endpoint");
     const Vec3 size = end != nullptr ? p.read.vec3(*end) - corner : p.read.child_vec3(e, "size");
     std::vector<Program::Layer> layers = p.layers_of(e);
-    // GenCase leaves one mk out after every box but one with layers and one that is a block of free
-    // particles (30 boxes of v5.0).
+    // GenCase leaves one mk out after every box but one with layers and one that is a block off the
+    // lattice (30 boxes of v5.0).
     const bool leaves_one_out =
         layers.empty() && !(p.state.off_lattice && is_solid && !p.def.grid.is_2d);
     // Of a solid box the outermost layer alone is drawn (34 lists of layers in GenCase v5.0: in

@@ -161,8 +161,8 @@ std::vector<Program::Layer> Program::layers_of(const Element& e) const
     if (std::none_of(out.begin(), out.end(), [](const Layer& l) { return l.is_shown; }))
         for (Layer& layer : out) layer.is_shown = true;
     // GenCase draws the outermost layer first: it is the first part under setmknextauto (30 boxes
-    // of v5.0, 7 extrusions of v5.4), and of free particles nearer than 0.75 dp those of inner
-    // layers stay (5 spheres, cylinders and extrusions of v5.4).
+    // of v5.0, 7 extrusions of v5.4), and of particles off the lattice nearer than 0.75 dp those of
+    // inner layers stay (5 spheres, cylinders and extrusions of v5.4).
     std::stable_sort(out.begin(), out.end(),
                      [](const Layer& a, const Layer& b) { return a.dp > b.dp; });
     return out;

@@ -64,7 +64,7 @@ void draw_sphere(Program& p, const Element& e)
     }
     else
     {
-        // Free spheres without a radius are a point.
+        // Off the lattice a sphere without a radius is a point.
         const std::vector<Program::Layer> layers = p.layers_of(e);
         if (!p.state.off_lattice) p.check_layers(e, radius, layers);
         SphereOp op{p.matrix(center), radius, {}, {}};

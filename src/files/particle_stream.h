@@ -90,8 +90,8 @@ void for_each_position(const CaseParticles& particles, const ParticleSegment& se
 {
     if (segment.run->is_off_lattice)
     {
-        const Vec3* p =
-            particles.free.positions.data() + segment.run->off_lattice_begin() + segment.offset;
+        const Vec3* p = particles.off_lattice.positions.data() + segment.run->off_lattice_begin() +
+                        segment.offset;
         for (std::int64_t k = 0; k < segment.count; ++k) put(k, p[k].x, p[k].y, p[k].z);
         return;
     }
@@ -116,7 +116,7 @@ void for_each_density(const CaseParticles& particles, float rhop0, const Particl
     if (segment.run->is_off_lattice)
     {
         const float* values =
-            particles.free.rhop.data() + segment.run->off_lattice_begin() + segment.offset;
+            particles.off_lattice.rhop.data() + segment.run->off_lattice_begin() + segment.offset;
         for (std::uint32_t k = 0; k < count; ++k) put(k, values[k]);
         return;
     }

@@ -172,7 +172,7 @@ void fill_normals(const PieceBuffer& buffer, const CaseParticles& particles, std
 }
 
 /// Kind, normal and distance.
-void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParticles& free,
+void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParticles& off_lattice,
                 const ParticleSegment& segment)
 {
     const ParticleRun& run = *segment.run;
@@ -189,13 +189,13 @@ void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParti
     for (std::size_t k = 0; k < segment.count; ++k)
     {
         const std::size_t from = run.off_lattice_begin() + segment.offset + k;
-        buffer.kind[at + k] = big_endian(static_cast<std::uint32_t>(free.kinds[from]));
-        const std::array<float, 3>& n = free.normals[from];
+        buffer.kind[at + k] = big_endian(static_cast<std::uint32_t>(off_lattice.kinds[from]));
+        const std::array<float, 3>& n = off_lattice.normals[from];
         const Vec3 normal = turn({n[0], n[1], n[2]});
         for (int axis = 0; axis < 3; ++axis)
             buffer.wall_normal[3 * (at + k) + static_cast<std::size_t>(axis)] =
                 big_endian(static_cast<float>(normal[axis]));
-        buffer.distance[at + k] = big_endian(free.distances[from]);
+        buffer.distance[at + k] = big_endian(off_lattice.distances[from]);
     }
 }
 
@@ -216,7 +216,7 @@ void fill_segment(const PieceBuffer& buffer, std::size_t at, const Layout& layou
         for_each_density(particles, rhop0, segment,
                          [&](std::uint32_t k, float v) { rhop[k] = big_endian(v); });
     }
-    if (layout.has.walls) fill_walls(buffer, at, particles.free, segment);
+    if (layout.has.walls) fill_walls(buffer, at, particles.off_lattice, segment);
     const ParticleBlock& block = *segment.block;
     if (!block.initials.empty()) start_segment(buffer, at, layout.has, particles, segment);
     std::fill_n(buffer.type + at, segment.count, static_cast<std::uint8_t>(block.type));

@@ -253,7 +253,7 @@ void write_points_vtk(OutputFile& file, const std::vector<Vec3>& points)
     file.append("\n");
 }
 
-void write_free_points_vtk(OutputFile& file, const OffLatticePoints& points)
+void write_off_lattice_points_vtk(OutputFile& file, const OffLatticePoints& points)
 {
     const std::size_t n = points.positions.size();
     std::string bytes;

@@ -33,7 +33,7 @@ Canvas::Canvas(const CaseDef& def, int threads)
     : def_(def),
       threads_(threads),
       walls_(field_, threads),
-      free_(field_, threads),
+      off_lattice_(field_, threads),
       run_limit_(available_memory() / 5 * 4 / sizeof(Run))
 {
     field_.grid = def.grid;
@@ -59,11 +59,11 @@ void Canvas::paint(const Brush& brush, const std::vector<Spans>& nodes)
     parallel_for(nodes.size(), threads_, [&](std::size_t x) { paint_slab(brush, x, nodes[x]); });
 }
 
-void Canvas::paint_free(const Brush& brush, const std::vector<Vec3>& points)
+void Canvas::paint_off_lattice(const Brush& brush, const std::vector<Vec3>& points)
 {
     Brush plain = brush;
     plain.heeds_pattern = false;
-    paint(plain, free_.draw(points, brush.state->clips, brush.mk.mk));
+    paint(plain, off_lattice_.draw(points, brush.state->clips, brush.mk.mk));
 }
 
 void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans)
@@ -105,12 +105,12 @@ void Canvas::reset()
 {
     for (auto& slab : field_.slabs) slab.clear();
     walls_.reset();
-    free_.reset();
+    off_lattice_.reset();
 }
 
 RunField Canvas::take()
 {
-    free_.finish();
+    off_lattice_.finish();
     walls_.finish();
     return std::move(field_);
 }

@@ -48,7 +48,7 @@ public:
     void paint(const Brush& brush, const std::vector<Spans>& nodes);
 
     /// Particles at their true places and their nodes, which patterns do not leave out.
-    void paint_free(const Brush& brush, const std::vector<Vec3>& points);
+    void paint_off_lattice(const Brush& brush, const std::vector<Vec3>& points);
 
     /// A body-fitted body on top of all that was drawn.
     void add_wall(FittedDraw&& draw) { walls_.add(std::move(draw)); }
@@ -66,7 +66,7 @@ private:
     int threads_;
     RunField field_;
     WallPainter walls_;
-    OffLatticePainter free_;
+    OffLatticePainter off_lattice_;
     std::atomic<std::uint64_t> runs_ = 0;
     std::uint64_t run_limit_;
 };

@@ -144,7 +144,7 @@ void add_cylinder(const Vec3& p0, const Vec3& p1, double radius, const CylinderP
 
 } // namespace
 
-std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp)
+std::vector<Vec3> off_lattice_line(const Vec3& from, const Vec3& to, double dp)
 {
     std::vector<Vec3> out;
     const int n = static_cast<int>(std::floor(norm(to - from) / dp + 0.5));
@@ -153,8 +153,8 @@ std::vector<Vec3> free_line(const Vec3& from, const Vec3& to, double dp)
     return out;
 }
 
-std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
-                                     double dp)
+std::vector<Vec3> off_lattice_parallelogram(const Vec3& corner, const Vec3& first, const Vec3& last,
+                                            double dp)
 {
     const int n = exact_interval_count(norm(first - corner), dp);
     const int m = exact_interval_count(norm(last - corner), dp);
@@ -171,7 +171,7 @@ std::vector<Vec3> free_parallelogram(const Vec3& corner, const Vec3& first, cons
     return out;
 }
 
-std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid)
+std::vector<Vec3> off_lattice_triangle(const std::array<Vec3, 3>& corners, const LatticeGrid& grid)
 {
     const auto& [a, b, c] = corners;
     Vec3 normal = cross(b - a, c - a);
@@ -222,7 +222,7 @@ std::vector<Vec3> free_triangle(const std::array<Vec3, 3>& corners, const Lattic
     return out;
 }
 
-std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp)
+std::vector<Vec3> off_lattice_trapezoid(const std::array<Vec3, 4>& corners, double dp)
 {
     const auto& [a, b, c, d] = corners;
     if (norm(c - b) > norm(d - a) + 0.05 * dp)
@@ -245,17 +245,20 @@ std::vector<Vec3> free_trapezoid(const std::array<Vec3, 4>& corners, double dp)
     return out;
 }
 
-std::vector<Vec3> free_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
+std::vector<Vec3> off_lattice_polygon(const std::vector<Vec3>& corners, const LatticeGrid& grid)
 {
     if (corners.size() == 1) return corners;
-    if (corners.size() == 2) return free_line(corners[0], corners[1], grid.dp);
-    if (corners.size() == 3) return free_triangle({corners[0], corners[1], corners[2]}, grid);
+    if (corners.size() == 2) return off_lattice_line(corners[0], corners[1], grid.dp);
+    if (corners.size() == 3)
+        return off_lattice_triangle({corners[0], corners[1], corners[2]}, grid);
     const std::array<Vec3, 4> quad{corners[0], corners[1], corners[2], corners[3]};
-    if (quad_kind(quad, grid.dp) == QuadKind::Trapezoid) return free_trapezoid(quad, grid.dp);
-    return free_parallelogram(corners[0], corners[1], corners[3], grid.dp);
+    if (quad_kind(quad, grid.dp) == QuadKind::Trapezoid)
+        return off_lattice_trapezoid(quad, grid.dp);
+    return off_lattice_parallelogram(corners[0], corners[1], corners[3], grid.dp);
 }
 
-std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours, double dp)
+std::vector<Vec3> off_lattice_block(const Vec3& corner, const std::array<Vec3, 3>& neighbours,
+                                    double dp)
 {
     std::array<int, 3> n{};
     std::array<Vec3, 3> step;
@@ -274,7 +277,8 @@ std::vector<Vec3> free_block(const Vec3& corner, const std::array<Vec3, 3>& neig
     return out;
 }
 
-std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawMode mode, double dp)
+std::vector<Vec3> off_lattice_sphere(const SphereOp& op, const Transform& matrix, DrawMode mode,
+                                     double dp)
 {
     Transform turn;
     turn.linear = matrix.linear;
@@ -289,12 +293,12 @@ std::vector<Vec3> free_sphere(const SphereOp& op, const Transform& matrix, DrawM
     return out;
 }
 
-bool fills_free_cylinder(const CylinderOp& op, DrawMode mode)
+bool fills_off_lattice_cylinder(const CylinderOp& op, DrawMode mode)
 {
     return mode != DrawMode::Face && op.layers.empty() && !op.is_masked;
 }
 
-std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double dp)
+std::vector<Vec3> off_lattice_disc(const SphereOp& op, DrawMode mode, double y, double dp)
 {
     std::vector<Vec3> out;
     const auto add = [&](double whole, bool has_disc)
@@ -318,13 +322,13 @@ std::vector<Vec3> free_disc(const SphereOp& op, DrawMode mode, double y, double 
     return out;
 }
 
-std::vector<Vec3> free_cylinder(const CylinderOp& op, DrawMode mode, double dp)
+std::vector<Vec3> off_lattice_cylinder(const CylinderOp& op, DrawMode mode, double dp)
 {
     std::vector<Vec3> out;
     for (const CylinderLayer& layer : op.layers)
         add_cylinder(layer.p0, layer.p1, layer.radius, {op.is_visible, false, false}, dp, out);
     if (!op.layers.empty()) return out;
-    const bool fills = fills_free_cylinder(op, mode);
+    const bool fills = fills_off_lattice_cylinder(op, mode);
     CylinderParts parts{op.is_visible, fills, fills && mode == DrawMode::Full};
     if (fills && mode == DrawMode::Solid) parts.faces = {false, false, false};
     add_cylinder(op.p0, op.p1, op.radius, parts, dp, out);

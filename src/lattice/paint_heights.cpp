@@ -49,8 +49,8 @@ void paint_cell(Painting& painting, const Brush& brush, const TriangleSoup& move
 
 } // namespace
 
-void paint_free_heights(Painting& painting, const Brush& brush, const MeshFileOp& op,
-                        const MeshFile& file)
+void paint_off_lattice_heights(Painting& painting, const Brush& brush, const MeshFileOp& op,
+                               const MeshFile& file)
 {
     const LatticeGrid& grid = painting.grid();
     const bool is_wire = brush.state->mode == DrawMode::Wire;
@@ -62,9 +62,10 @@ void paint_free_heights(Painting& painting, const Brush& brush, const MeshFileOp
     {
         if (cells.faces.empty()) return;
         if (is_wire)
-            paint_free_wire(painting, brush, cells);
+            paint_off_lattice_wire(painting, brush, cells);
         else
-            paint_free_pieces(painting, brush, free_pieces(cells, brush.state->matrix, grid));
+            paint_off_lattice_pieces(painting, brush,
+                                     off_lattice_pieces(cells, brush.state->matrix, grid));
         cells.faces.clear();
     };
     const auto paint_others = [&]

@@ -88,8 +88,8 @@ void paint_wire(Painting& painting, const Brush& brush, const MeshFileOp& op, co
 }
 
 /// The triangles and quads of a file, or their sides, off the lattice.
-void paint_free_mesh(Painting& painting, const Brush& brush, const MeshFileOp& op,
-                     const MeshFile& file)
+void paint_off_lattice_mesh(Painting& painting, const Brush& brush, const MeshFileOp& op,
+                            const MeshFile& file)
 {
     PolyhedronOp polyhedron;
     polyhedron.vertices = moved_soup(file.soup, op.transform, painting.canvas.threads()).vertices;
@@ -98,10 +98,11 @@ void paint_free_mesh(Painting& painting, const Brush& brush, const MeshFileOp& o
                          polyhedron.faces.push_back({std::move(corners), true, {}, 0, {}});
                      });
     if (brush.state->mode == DrawMode::Wire)
-        paint_free_wire(painting, brush, polyhedron);
+        paint_off_lattice_wire(painting, brush, polyhedron);
     else
         // With the placement of the file, which is a part of the matrix then.
-        paint_free_pieces(painting, brush, free_pieces(polyhedron, op.transform, painting.grid()));
+        paint_off_lattice_pieces(painting, brush,
+                                 off_lattice_pieces(polyhedron, op.transform, painting.grid()));
 }
 
 std::vector<SnappedTriangle> snapped_facets(const Painting& painting, const MeshFileOp& op,
@@ -121,10 +122,10 @@ std::vector<SnappedTriangle> snapped_facets(const Painting& painting, const Mesh
 }
 
 /// A file off the lattice.
-void paint_free_file(Painting& painting, const Brush& brush, const MeshFileOp& op,
-                     const MeshFile& file)
+void paint_off_lattice_file(Painting& painting, const Brush& brush, const MeshFileOp& op,
+                            const MeshFile& file)
 {
-    paint_free_mesh(painting, brush, op, file);
+    paint_off_lattice_mesh(painting, brush, op, file);
     const TriangleSoup moved = moved_soup(file.soup, op.transform, painting.canvas.threads());
     if (op.fill_inside) paint_inside(painting, brush, moved);
     if (op.autofill) autofill(painting, brush, op, file, moved);
@@ -164,9 +165,9 @@ void paint_as_one(Painting& painting, const Brush& brush, const MeshFileOp& op,
 {
     if (!op.advanced) paint_points_and_lines(painting, brush, file, op.transform);
     if (has_heights(op.reading.format) && brush.state->off_lattice)
-        paint_free_heights(painting, brush, op, file);
+        paint_off_lattice_heights(painting, brush, op, file);
     else if (!op.advanced && brush.state->off_lattice)
-        paint_free_file(painting, brush, op, file);
+        paint_off_lattice_file(painting, brush, op, file);
     else
         paint_on_lattice(painting, brush, op, file);
 }

@@ -26,8 +26,8 @@ void paint_points_and_lines(Painting& painting, const Brush& brush, const MeshFi
 /// trapezoids from 0.05 dp on), in wire mode the sides of all flat ones. The triangles of the
 /// others stand on the lattice. Each cell comes after the one before, which it may remove (24
 /// cells of GenCase v5.4.354 with one corner off by 0.04 to 0.4 dp, six saddles).
-void paint_free_heights(Painting& painting, const Brush& brush, const MeshFileOp& op,
-                        const MeshFile& file);
+void paint_off_lattice_heights(Painting& painting, const Brush& brush, const MeshFileOp& op,
+                               const MeshFile& file);
 
 /// The cells of a table of heights under setmknextauto: every flat one is a part, in wire mode
 /// each of its sides. Bent ones get the mk that is next and leave it to the cell behind them.

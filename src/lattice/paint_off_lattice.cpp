@@ -29,7 +29,7 @@ void paint_made(Painting& painting, const Brush& brush, const MakePoints& make_p
         throw CaseError(painting.def.file, brush.source->line,
                         fmt::format("<{}>: {}", brush.source->command, e.what()));
     }
-    painting.canvas.paint_free(brush, points);
+    painting.canvas.paint_off_lattice(brush, points);
 }
 
 void append(std::vector<Vec3>& points, const std::vector<Vec3>& more)
@@ -45,28 +45,28 @@ void paint_off_lattice_points(Painting& painting, const Brush& brush,
     paint_made(painting, brush, [&] { return points; });
 }
 
-void paint_free_lines(Painting& painting, const Brush& brush,
-                      const std::vector<std::pair<Vec3, Vec3>>& segments)
+void paint_off_lattice_lines(Painting& painting, const Brush& brush,
+                             const std::vector<std::pair<Vec3, Vec3>>& segments)
 {
     paint_made(painting, brush,
                [&]
                {
                    std::vector<Vec3> points;
                    for (const auto& [from, to] : segments)
-                       append(points, free_line(from, to, painting.grid().dp));
+                       append(points, off_lattice_line(from, to, painting.grid().dp));
                    return points;
                });
 }
 
-void paint_free_pieces(Painting& painting, const Brush& brush,
-                       const std::vector<std::vector<Vec3>>& pieces)
+void paint_off_lattice_pieces(Painting& painting, const Brush& brush,
+                              const std::vector<std::vector<Vec3>>& pieces)
 {
     paint_made(painting, brush,
                [&]
                {
                    std::vector<Vec3> points;
                    for (const std::vector<Vec3>& corners : pieces)
-                       append(points, free_polygon(corners, painting.grid()));
+                       append(points, off_lattice_polygon(corners, painting.grid()));
                    return points;
                });
 }
@@ -77,16 +77,17 @@ void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const 
     const LatticeGrid& grid = painting.grid();
     if (state.mode == DrawMode::Wire && op.solid != SolidKind::Box)
     {
-        paint_free_wire(painting, brush, op);
+        paint_off_lattice_wire(painting, brush, op);
         return;
     }
     if (op.solid == SolidKind::Box && !grid.is_2d)
     {
         const auto corner = [&](std::size_t i) { return op.vertices[op.solid_vertices[i]]; };
-        paint_made(painting, brush,
-                   [&] {
-                       return free_block(corner(0), {corner(1), corner(3), corner(4)}, grid.dp);
-                   });
+        paint_made(
+            painting, brush,
+            [&] {
+                return off_lattice_block(corner(0), {corner(1), corner(3), corner(4)}, grid.dp);
+            });
         return;
     }
     std::vector<OffLatticePart> parts = off_lattice_parts(op, state.mode, state.matrix, grid);
@@ -96,7 +97,7 @@ void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const 
     {
         if (!part.inside)
         {
-            paint_free_pieces(painting, brush, part.pieces);
+            paint_off_lattice_pieces(painting, brush, part.pieces);
             continue;
         }
         if (insides.empty())
@@ -108,7 +109,7 @@ void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const 
     }
 }
 
-void paint_free_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op)
+void paint_off_lattice_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op)
 {
     std::vector<std::pair<Vec3, Vec3>> segments;
     const auto add_sides = [&](const auto& corners)
@@ -126,26 +127,26 @@ void paint_free_wire(Painting& painting, const Brush& brush, const PolyhedronOp&
             for (const auto& t : face_triangles(op, face)) add_sides(t);
     }
     if (op.part_count > 0) segments = {segments.at(op.part)};
-    paint_free_lines(painting, brush, segments);
+    paint_off_lattice_lines(painting, brush, segments);
 }
 
-void paint_free_sphere(Painting& painting, const Brush& brush, const SphereOp& op)
+void paint_off_lattice_sphere(Painting& painting, const Brush& brush, const SphereOp& op)
 {
     const DrawState& state = *brush.state;
     const LatticeGrid& grid = painting.grid();
     if (grid.is_2d)
         paint_made(painting, brush,
-                   [&] { return free_disc(op, state.mode, grid.origin.y, grid.dp); });
+                   [&] { return off_lattice_disc(op, state.mode, grid.origin.y, grid.dp); });
     else
         paint_made(painting, brush,
-                   [&] { return free_sphere(op, state.matrix, state.mode, grid.dp); });
+                   [&] { return off_lattice_sphere(op, state.matrix, state.mode, grid.dp); });
 }
 
-void paint_free_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op)
+void paint_off_lattice_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op)
 {
     const DrawState& state = *brush.state;
     const LatticeGrid& grid = painting.grid();
-    if (state.draw_points && fills_free_cylinder(op, state.mode))
+    if (state.draw_points && fills_off_lattice_cylinder(op, state.mode))
     {
         std::vector<Spans> emptied =
             emptied_by_cylinder(op, state.clips, grid, painting.canvas.threads());
@@ -158,7 +159,7 @@ void paint_free_cylinder(Painting& painting, const Brush& brush, const CylinderO
         nothing.heeds_pattern = false;
         painting.canvas.paint(nothing, emptied);
     }
-    paint_made(painting, brush, [&] { return free_cylinder(op, state.mode, grid.dp); });
+    paint_made(painting, brush, [&] { return off_lattice_cylinder(op, state.mode, grid.dp); });
 }
 
 } // namespace fppg

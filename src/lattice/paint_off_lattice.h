@@ -13,16 +13,16 @@ namespace fppg
 
 void paint_off_lattice_points(Painting& painting, const Brush& brush,
                               const std::vector<Vec3>& points);
-void paint_free_lines(Painting& painting, const Brush& brush,
-                      const std::vector<std::pair<Vec3, Vec3>>& segments);
-/// pieces  corners as free_pieces() gives them
-void paint_free_pieces(Painting& painting, const Brush& brush,
-                       const std::vector<std::vector<Vec3>>& pieces);
+void paint_off_lattice_lines(Painting& painting, const Brush& brush,
+                             const std::vector<std::pair<Vec3, Vec3>>& segments);
+/// pieces  corners as off_lattice_pieces() gives them
+void paint_off_lattice_pieces(Painting& painting, const Brush& brush,
+                              const std::vector<std::vector<Vec3>>& pieces);
 /// A polyhedron part by part; of solids but boxes the inside stands on the lattice.
 void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const PolyhedronOp& op);
 /// The sides of its visible polygons.
-void paint_free_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op);
-void paint_free_sphere(Painting& painting, const Brush& brush, const SphereOp& op);
-void paint_free_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op);
+void paint_off_lattice_wire(Painting& painting, const Brush& brush, const PolyhedronOp& op);
+void paint_off_lattice_sphere(Painting& painting, const Brush& brush, const SphereOp& op);
+void paint_off_lattice_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op);
 
 } // namespace fppg

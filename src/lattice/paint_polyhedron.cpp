@@ -117,7 +117,7 @@ void paint(Painting& painting, const Brush& brush, const LinesOp& op)
 {
     if (brush.state->off_lattice)
     {
-        paint_free_lines(painting, brush, op.segments);
+        paint_off_lattice_lines(painting, brush, op.segments);
         return;
     }
     NodeSegments segments;

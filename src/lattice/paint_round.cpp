@@ -9,7 +9,7 @@ namespace fppg
 void paint(Painting& painting, const Brush& brush, const SphereOp& op)
 {
     if (brush.state->off_lattice)
-        paint_free_sphere(painting, brush, op);
+        paint_off_lattice_sphere(painting, brush, op);
     else
         painting.canvas.paint(brush, kinds::nodes_of(op, *brush.state, painting.grid()));
 }
@@ -17,7 +17,7 @@ void paint(Painting& painting, const Brush& brush, const SphereOp& op)
 void paint(Painting& painting, const Brush& brush, const CylinderOp& op)
 {
     if (brush.state->off_lattice)
-        paint_free_cylinder(painting, brush, op);
+        paint_off_lattice_cylinder(painting, brush, op);
     else
         painting.canvas.paint(brush, kinds::nodes_of(op, *brush.state, painting.grid()));
 }

@@ -104,31 +104,31 @@ void erase_nodes(const ZoneBox& box, bool keep, RunField& field)
 /// Takes out the particles off the lattice whose nearest node is one of a box, or that are nearer
 /// than 0.75 dp to one, as void nodes drawn later do (60 random cases of three zones in 2D, in
 /// order of ids, and 20 in 3D, in GenCase v5.4.354).
-void erase_free(const NodeBox& box, const LatticeGrid& grid, VolumeParticles& free)
+void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumeParticles& off_lattice)
 {
     if (box.is_empty()) return;
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < free.size(); ++i)
+    for (std::size_t i = 0; i < off_lattice.size(); ++i)
     {
         double squared = 0;
         bool is_nearest = true; // its nearest node is one of the box
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
-            const double steps = (free.positions[i][axis] - grid.origin[axis]) / grid.dp;
+            const double steps = (off_lattice.positions[i][axis] - grid.origin[axis]) / grid.dp;
             const double node = std::clamp(std::round(steps), static_cast<double>(box.begin[k]),
                                            static_cast<double>(box.end[k] - 1));
             squared += (steps - node) * (steps - node);
             is_nearest = is_nearest && node == std::round(steps);
         }
         if (is_nearest || squared < 0.75 * 0.75) continue;
-        free.positions[kept] = free.positions[i];
-        free.mk[kept] = free.mk[i];
-        free.distances[kept++] = free.distances[i];
+        off_lattice.positions[kept] = off_lattice.positions[i];
+        off_lattice.mk[kept] = off_lattice.mk[i];
+        off_lattice.distances[kept++] = off_lattice.distances[i];
     }
-    free.positions.resize(kept);
-    free.mk.resize(kept);
-    free.distances.resize(kept);
+    off_lattice.positions.resize(kept);
+    off_lattice.mk.resize(kept);
+    off_lattice.distances.resize(kept);
 }
 
 } // namespace
@@ -145,7 +145,7 @@ void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
         {
             const NodeBox box = nodes_within(inner.outer_end, field.grid);
             erase_box(box, field);
-            erase_free(box, field.grid, field.walls.volume);
+            erase_off_lattice(box, field.grid, field.walls.volume);
         }
         else
             erase_nodes(resized(inner.outer_end, -own.dp, vres.is_2d), false, field);

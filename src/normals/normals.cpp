@@ -157,7 +157,7 @@ public:
         }
         if (def_.normals.geometry) from_geometry(*def_.normals.geometry, geometry);
         for (const NormalOp& op : def_.normals.ops) execute(op);
-        if (particles_.free.size() > 0) fill_on_surfaces();
+        if (particles_.off_lattice.size() > 0) fill_on_surfaces();
         summarise();
         return std::move(normals_);
     }
@@ -273,7 +273,8 @@ private:
         const RunPlace& place = places_[r];
         if (!place.run->is_off_lattice) return {};
         const auto k = static_cast<std::uint64_t>(&normal - &normals_[place.id]);
-        const std::array<float, 3>& n = particles_.free.normals[place.run->off_lattice_begin() + k];
+        const std::array<float, 3>& n =
+            particles_.off_lattice.normals[place.run->off_lattice_begin() + k];
         Transform turn = motion_of(*place.block);
         turn.offset = {};
         return turn({n[0], n[1], n[2]});
@@ -350,7 +351,7 @@ private:
     Vec3 first_node() const
     {
         Vec3 low = particles_.pos_min;
-        if (particles_.free.size() == 0) return low;
+        if (particles_.off_lattice.size() == 0) return low;
         const LatticeGrid& grid = particles_.grid;
         for (int axis = 0; axis < 3; ++axis)
         {

@@ -49,7 +49,7 @@ std::int64_t PartSurface::row(double z) const
     return std::llround((z - low_.z) / dp_);
 }
 
-bool PartSurface::is_free(std::int64_t x, std::int64_t z) const
+bool PartSurface::is_empty(std::int64_t x, std::int64_t z) const
 {
     return x >= 0 && x < columns_ && z >= 0 && z < rows_ &&
            !is_taken_[static_cast<std::size_t>(z * columns_ + x)];
@@ -60,7 +60,7 @@ Vec3 PartSurface::normal_at(const Vec3& particle) const
     const std::int64_t x = column(particle.x);
     const std::int64_t z = row(particle.z);
     const auto first = std::find_if(steps_.begin(), steps_.end(),
-                                    [&](const Step& s) { return is_free(x + s.x, z + s.z); });
+                                    [&](const Step& s) { return is_empty(x + s.x, z + s.z); });
     if (first == steps_.end()) return {};
     std::vector<std::pair<int, int>> taken;
     int sum_x = 0;
@@ -68,7 +68,7 @@ Vec3 PartSurface::normal_at(const Vec3& particle) const
     for (auto s = first;
          s != steps_.end() && s->surface == first->surface && s->length == first->length; ++s)
     {
-        if (!is_free(x + s->x, z + s->z)) continue;
+        if (!is_empty(x + s->x, z + s->z)) continue;
         if (std::find(taken.begin(), taken.end(), std::pair(-s->x, -s->z)) != taken.end()) continue;
         taken.emplace_back(s->x, s->z);
         sum_x += s->x;

@@ -13,11 +13,11 @@ namespace fppg
 /// particles of the case. Beyond that box there is nothing, so a floor alone gets no normals.
 ///
 /// Rule, by experiments with GenCase v5.4.354 (floors, walls, an L, a tank, blocks, a disc, and
-/// blocks with single nodes of fluid inside): to a free node (a, b) nodes away, the surface is at
-/// the distance s = dp sqrt(max(|a| - 1/2, 0)^2 + max(|b| - 1/2, 0)^2) in its direction. The free
+/// blocks with single nodes of fluid inside): to an empty node (a, b) nodes away, the surface is at
+/// the distance s = dp sqrt(max(|a| - 1/2, 0)^2 + max(|b| - 1/2, 0)^2) in its direction. The empty
 /// nodes of least s count, at equal s those farther away; their vectors s (a, b) / |(a, b)| are
 /// summed up in the order of z, then x, without those opposite to one summed before. Nodes with s
-/// beyond the reach do not count. Fluid and boundary particles that are not selected are free
+/// beyond the reach do not count. Fluid and boundary particles that are not selected are empty
 /// nodes. All 630 normals of eight random scenes agree.
 class PartSurface
 {
@@ -28,7 +28,7 @@ public:
     PartSurface(const std::vector<Vec3>& selected, const Vec3& low, const Vec3& high, double dp,
                 double reach);
 
-    /// Zero where no free node is within reach.
+    /// Zero where no empty node is within reach.
     Vec3 normal_at(const Vec3& particle) const;
 
 private:
@@ -43,7 +43,7 @@ private:
 
     std::int64_t column(double x) const;
     std::int64_t row(double z) const;
-    bool is_free(std::int64_t x, std::int64_t z) const;
+    bool is_empty(std::int64_t x, std::int64_t z) const;
 
     Vec3 low_;
     double dp_;

@@ -39,7 +39,7 @@ public:
           is_vertical_(def_.constants.gravity.x == 0 && def_.constants.gravity.y == 0),
           by_height_(def_.constants.rhop_gradient == 3),
           top_(field_.slabs.size()),
-          free_(field_, meter_, water.free_begin, particles, threads)
+          off_lattice_(field_, meter_, water.off_lattice_begin, particles, threads)
     {
     }
 
@@ -48,19 +48,19 @@ public:
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
-        measure_free();
+        measure_off_lattice();
         constants_.hswl = hswl();
         set_speeds(def_, g_, constants_);
         const ConstantsDef& c = def_.constants;
         is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
         const auto rhop0 = static_cast<float>(c.rhop0);
-        std::fill(particles_.free.rhop.begin(), particles_.free.rhop.end(), rhop0);
+        std::fill(particles_.off_lattice.rhop.begin(), particles_.off_lattice.rhop.end(), rhop0);
         if (particles_.n_fluid == 0) return;
         if (is_uniform_ || (is_vertical_ && (!by_height_ || c.gravity.z < 0)))
             set_by_steps();
         else
             set_one_by_one();
-        if (!is_uniform_) set_free();
+        if (!is_uniform_) set_off_lattice();
     }
 
 private:
@@ -118,20 +118,21 @@ private:
         for (const WaterLimits& w : of_slab) water_.add(w);
     }
 
-    void measure_free()
+    void measure_off_lattice()
     {
         if (!(g_ > 0)) return;
         if (!by_height_)
         {
             if (is_vertical_)
-                free_.measure_along_z(top_, def_.grid.dp);
+                off_lattice_.measure_along_z(top_, def_.grid.dp);
             else
-                free_.sort_by_slab(field_.slabs.size());
+                off_lattice_.sort_by_slab(field_.slabs.size());
             return;
         }
         const double of_nodes = water_.s_max;
-        free_.for_each_of_fluid([&](std::uint64_t i, const ParticleBlock&)
-                                { water_.add(height(particles_.free.positions[i])); });
+        off_lattice_.for_each_of_fluid(
+            [&](std::uint64_t i, const ParticleBlock&)
+            { water_.add(height(particles_.off_lattice.positions[i])); });
         // Where GenCase v5.4.354 has several zones, the surface of the first is that of all.
         if (def_.main_surface && particles_.n_fluid > 0) water_.s_max = *def_.main_surface;
         if (std::isfinite(of_nodes)) excess_ = water_.s_max - of_nodes;
@@ -144,7 +145,7 @@ private:
         if (def_.main_hswl) return *def_.main_hswl;
         if (particles_.n_fluid == 0 || g_ == 0) return 0;
         if (by_height_) return water_.s_max - water_.s_min;
-        if (is_vertical_) return std::max(water_.deepest * def_.grid.dp, free_.deepest());
+        if (is_vertical_) return std::max(water_.deepest * def_.grid.dp, off_lattice_.deepest());
         double most = 0;
         TiltedDepths tilted(def_, field_, meter_);
         tilted.for_each(
@@ -152,8 +153,8 @@ private:
             {
                 if (counts_for_hswl(field_, field_.slabs[x][i])) most = std::max(most, d);
             },
-            [&](const TiltedDepths::Slab& slab) { free_.measure(tilted, slab); });
-        return std::max(most, free_.deepest());
+            [&](const TiltedDepths::Slab& slab) { off_lattice_.measure(tilted, slab); });
+        return std::max(most, off_lattice_.deepest());
     }
 
     /// The largest depth in steps of a run of fluid, after the depths of runs are set.
@@ -257,7 +258,7 @@ private:
                 {
                     if (first[x][i] != no_particle) particles_.rhop[first[x][i] + k] = rhop(d);
                 },
-                [&](const TiltedDepths::Slab& slab) { free_.measure(tilted, slab); });
+                [&](const TiltedDepths::Slab& slab) { off_lattice_.measure(tilted, slab); });
             return;
         }
         parallel_for(first.size(), threads_,
@@ -275,15 +276,15 @@ private:
     }
 
     /// Of the particles off the lattice.
-    void set_free()
+    void set_off_lattice()
     {
-        free_.for_each_of_fluid(
+        off_lattice_.for_each_of_fluid(
             [&](std::uint64_t i, const ParticleBlock& block)
             {
                 if (is_plain(block)) return;
-                const Vec3& p = particles_.free.positions[i];
-                particles_.free.rhop[i] =
-                    rhop(by_height_ ? water_.s_max - height(p) : free_.depth(i));
+                const Vec3& p = particles_.off_lattice.positions[i];
+                particles_.off_lattice.rhop[i] =
+                    rhop(by_height_ ? water_.s_max - height(p) : off_lattice_.depth(i));
             });
     }
 
@@ -302,7 +303,7 @@ private:
     std::vector<std::vector<std::uint32_t>> top_; ///< per run, steps from its highest node
     WaterLimits water_;
     double excess_ = 0; ///< height of the highest particle off the lattice over the highest node
-    FreeDepths free_;
+    OffLatticeDepths off_lattice_;
 };
 
 } // namespace

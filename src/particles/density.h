@@ -12,8 +12,8 @@ struct WaterNodes
     const CaseDef& def;
     const RunField& field;
     const std::vector<ParticleType>& type_of_mk; ///< size 65536
-    /// Per block its first particle in particles.free, and their number as last entry.
-    const std::vector<std::uint64_t>& free_begin;
+    /// Per block its first particle in particles.off_lattice, and their number as last entry.
+    const std::vector<std::uint64_t>& off_lattice_begin;
 };
 
 /// Depths of the fluid below the top of its water, and what follows from them (rules R1 to R6 of
@@ -37,9 +37,9 @@ struct WaterNodes
 /// random cases of free fluid under upright and oblique gravity 32 had GenCase's hswl.
 ///
 /// Sets hswl, speed_system, speed_sound, b of `constants`, the depths of the fluid runs, and
-/// rhop_of_depth or rhop of `particles`, and particles.free.rhop. Runs must be in the default order
-/// (x, y, z) and without those off the lattice; where values are stored one a particle, those of a
-/// block's nodes come first.
+/// rhop_of_depth or rhop of `particles`, and particles.off_lattice.rhop. Runs must be in the
+/// default order (x, y, z) and without those off the lattice; where values are stored one a
+/// particle, those of a block's nodes come first.
 ///
 void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
                        int threads);

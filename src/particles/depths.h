@@ -311,27 +311,28 @@ private:
 };
 
 /// Depths, in metres, of the particles off the lattice that are water.
-class FreeDepths
+class OffLatticeDepths
 {
 public:
-    FreeDepths(const RunField& field, const DepthMeter& meter,
-               const std::vector<std::uint64_t>& free_begin, const CaseParticles& particles,
-               int threads)
-        : blocks_(particles.blocks), free_begin_(free_begin)
+    OffLatticeDepths(const RunField& field, const DepthMeter& meter,
+                     const std::vector<std::uint64_t>& off_lattice_begin,
+                     const CaseParticles& particles, int threads)
+        : blocks_(particles.blocks), off_lattice_begin_(off_lattice_begin)
     {
         for (std::size_t b = 0; b < blocks_.size(); ++b)
             if (blocks_[b].type == ParticleType::Fluid || blocks_[b].type == ParticleType::Floating)
             {
                 // Blocks are sorted by type, so all of water stand together.
-                if (hosts_.empty()) first_ = free_begin[b];
-                hosts_.resize(free_begin[b + 1] - first_);
+                if (hosts_.empty()) first_ = off_lattice_begin[b];
+                hosts_.resize(off_lattice_begin[b + 1] - first_);
             }
         depths_.assign(hosts_.size(), 0);
         of_nodes_.assign(hosts_.size(), 0);
         const HostFinder finder(field, meter);
         parallel_for(
             hosts_.size(), threads,
-            [&](std::size_t i) { hosts_[i] = finder.find(particles.free.positions[first_ + i]); },
+            [&](std::size_t i)
+            { hosts_[i] = finder.find(particles.off_lattice.positions[first_ + i]); },
             1024);
     }
 
@@ -385,13 +386,13 @@ public:
     {
         for (std::size_t b = 0; b < blocks_.size(); ++b)
             if (blocks_[b].type == ParticleType::Fluid)
-                for (std::uint64_t i = free_begin_[b]; i < free_begin_[b + 1]; ++i)
+                for (std::uint64_t i = off_lattice_begin_[b]; i < off_lattice_begin_[b + 1]; ++i)
                     body(i, blocks_[b]);
     }
 
 private:
     const std::vector<ParticleBlock>& blocks_;
-    const std::vector<std::uint64_t>& free_begin_;
+    const std::vector<std::uint64_t>& off_lattice_begin_;
     std::uint64_t first_ = 0;
     std::vector<Host> hosts_;
     std::vector<double> depths_;

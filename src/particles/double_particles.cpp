@@ -24,7 +24,7 @@ public:
     {
         ParticleRuns runs;
         std::uint64_t id = block.begin;
-        const std::uint64_t free_begin = free_.size();
+        const std::uint64_t off_lattice_begin = off_lattice_.size();
         for (const ParticleRun& r : block.runs)
         {
             for (std::uint32_t i = 0; i < r.count; ++i, ++id)
@@ -39,9 +39,9 @@ public:
             }
             if (doubles) continue;
             runs.push_back(r);
-            if (r.is_off_lattice) runs.back().set_free_begin(free_.size() - r.count);
+            if (r.is_off_lattice) runs.back().set_off_lattice_begin(off_lattice_.size() - r.count);
         }
-        if (doubles) add_runs(runs, free_begin);
+        if (doubles) add_runs(runs, off_lattice_begin);
         block.runs = std::move(runs);
         block.begin = np_;
         if (doubles) block.count *= 2;
@@ -50,7 +50,7 @@ public:
 
     void finish()
     {
-        all_.free = std::move(free_);
+        all_.off_lattice = std::move(off_lattice_);
         if (!all_.rhop.empty()) all_.rhop = std::move(rhop_);
         all_.np = np_;
         all_.n_fixed = all_.n_moving = all_.n_floating = all_.n_fluid = 0;
@@ -75,7 +75,7 @@ private:
     float density_of(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i,
                      std::uint64_t id) const
     {
-        if (r.is_off_lattice) return all_.free.rhop[r.off_lattice_begin() + i];
+        if (r.is_off_lattice) return all_.off_lattice.rhop[r.off_lattice_begin() + i];
         if (block.type != ParticleType::Fluid) return rhop0;
         if (!all_.rhop.empty()) return all_.rhop[id - fluid_begin_];
         if (all_.rhop_of_depth.empty()) return rhop0;
@@ -84,11 +84,11 @@ private:
 
     void add(const Vec3& position, float density)
     {
-        free_.positions.push_back(position);
-        free_.kinds.push_back(FitKind::Volume);
-        free_.normals.push_back({});
-        free_.distances.push_back(distance_of_nodes);
-        free_.rhop.push_back(density);
+        off_lattice_.positions.push_back(position);
+        off_lattice_.kinds.push_back(FitKind::Volume);
+        off_lattice_.normals.push_back({});
+        off_lattice_.distances.push_back(distance_of_nodes);
+        off_lattice_.rhop.push_back(density);
     }
 
     void add_pair(const Vec3& position, float density)
@@ -100,26 +100,26 @@ private:
 
     void add(std::uint64_t from, bool doubles, float density)
     {
-        const OffLatticeParticles& old = all_.free;
+        const OffLatticeParticles& old = all_.off_lattice;
         if (doubles)
             add_pair(old.positions[from], density);
         else
             add(old.positions[from], density);
-        for (std::size_t i = free_.size() - (doubles ? 2 : 1); i < free_.size(); ++i)
+        for (std::size_t i = off_lattice_.size() - (doubles ? 2 : 1); i < off_lattice_.size(); ++i)
         {
-            free_.kinds[i] = old.kinds[from];
-            free_.normals[i] = old.normals[from];
-            free_.distances[i] = old.distances[from];
+            off_lattice_.kinds[i] = old.kinds[from];
+            off_lattice_.normals[i] = old.normals[from];
+            off_lattice_.distances[i] = old.distances[from];
         }
     }
 
     void add_runs(ParticleRuns& runs, std::uint64_t begin) const
     {
-        while (begin < free_.size())
+        while (begin < off_lattice_.size())
         {
             const auto count = static_cast<std::uint32_t>(
-                std::min<std::uint64_t>(free_.size() - begin, 1U << 30U));
-            runs.push_back(ParticleRun::of_free(begin, count));
+                std::min<std::uint64_t>(off_lattice_.size() - begin, 1U << 30U));
+            runs.push_back(ParticleRun::of_off_lattice(begin, count));
             begin += count;
         }
     }
@@ -132,7 +132,7 @@ private:
     Vec3 shift_;
     std::uint64_t fluid_begin_ = 0;
     std::uint64_t np_ = 0;
-    OffLatticeParticles free_;
+    OffLatticeParticles off_lattice_;
     std::vector<float> rhop_;
 };
 

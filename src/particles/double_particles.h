@@ -12,8 +12,8 @@ namespace fppg
 /// density. Every value but 1 does so (found by experiment with GenCase v5.4.354). Their masses are
 /// the caller's.
 ///
-/// particles  with densities, before `<initials>`; blocks, ids, counts, free particles and
-///            densities are those of the pairs afterwards, limits are left to the caller
+/// particles  with densities, before `<initials>`; blocks, ids, counts, particles off the lattice
+///            and densities are those of the pairs afterwards, limits are left to the caller
 /// returns    whether anything was doubled
 /// throws     CaseError when there are more particles than ids
 bool double_particles(const CaseDef& def, CaseParticles& particles);

@@ -21,9 +21,10 @@ void for_each_place(const CaseParticles& particles, const ParticleBlock& block,
             state.position = place_in_run(particles, block, run, k);
             state.place = place++;
             if (!initials.empty()) apply_initials(initials, state);
-            const bool has_share = run.is_off_lattice && !particles.free.shares.empty();
+            const bool has_share = run.is_off_lattice && !particles.off_lattice.shares.empty();
             body(state.position,
-                 has_share ? double{particles.free.shares[run.off_lattice_begin() + k]} : 1.0);
+                 has_share ? double{particles.off_lattice.shares[run.off_lattice_begin() + k]}
+                           : 1.0);
         }
 }
 

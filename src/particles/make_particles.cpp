@@ -51,12 +51,13 @@ public:
         make_blocks();
         number_blocks();
         fill_runs();
-        sort_free();
+        sort_off_lattice();
         set_limits();
         set_constants(constants);
-        compute_densities({def_, field_, type_of_mk_, free_begin_}, out_, constants, threads_);
+        compute_densities({def_, field_, type_of_mk_, off_lattice_begin_}, out_, constants,
+                          threads_);
         orient_blocks();
-        merge_free();
+        merge_off_lattice();
         list_off_lattice_points();
         if (def_.constants.lattice_bound != 1) keep_single();
         if (double_particles(def_, out_)) set_limits();
@@ -69,7 +70,10 @@ public:
 
 private:
     /// Whether there are particles off the lattice.
-    bool has_free() const { return field_.walls.particles.size() + field_.walls.volume.size() > 0; }
+    bool has_off_lattice() const
+    {
+        return field_.walls.particles.size() + field_.walls.volume.size() > 0;
+    }
 
     void set_types()
     {
@@ -102,11 +106,11 @@ private:
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab)
                 if (!r.is_covered) used[r.mk] = 1;
-        if (has_free())
+        if (has_off_lattice())
         {
-            free_of_mk_ = count_off_lattice_particles(field_.walls);
+            off_lattice_of_mk_ = count_off_lattice_particles(field_.walls);
             for (std::size_t mk = 0; mk < used.size(); ++mk)
-                if (free_of_mk_[mk] > 0) used[mk] = 1;
+                if (off_lattice_of_mk_[mk] > 0) used[mk] = 1;
         }
         for (const ParticleType type : {ParticleType::Fixed, ParticleType::Moving,
                                         ParticleType::Floating, ParticleType::Fluid})
@@ -149,8 +153,8 @@ private:
                 run_begin_[(x + 1) * n + b] += run_begin_[x * n + b];
                 out_.blocks[b].count += nodes[x * n + b];
             }
-        if (has_free())
-            for (ParticleBlock& block : out_.blocks) block.count += free_of_mk_[block.mk];
+        if (has_off_lattice())
+            for (ParticleBlock& block : out_.blocks) block.count += off_lattice_of_mk_[block.mk];
         std::uint64_t all = 0;
         for (const ParticleBlock& block : out_.blocks) all += block.count;
         // Ids in Case.bi4 are 32-bit numbers, the last of which means none.
@@ -223,25 +227,25 @@ private:
         return box;
     }
 
-    void sort_free()
+    void sort_off_lattice()
     {
-        free_begin_.assign(out_.blocks.size() + 1, 0);
-        if (!has_free()) return;
+        off_lattice_begin_.assign(out_.blocks.size() + 1, 0);
+        if (!has_off_lattice()) return;
         for (const ParticleBlock& block : out_.blocks) orders_.push_back(order_of(block.mk));
         // An mk has no block where a zone of other resolution left no particle of it.
         for (const std::uint16_t mk : field_.walls.off_lattice_mks)
             if (const std::size_t b = block_of_mk_[mk]; b != no_block)
                 orders_[b].use_cells(box_of(out_.blocks[b]));
-        out_.free =
-            sort_off_lattice_particles(field_.walls, out_.blocks, orders_, threads_, free_begin_);
+        out_.off_lattice = sort_off_lattice_particles(field_.walls, out_.blocks, orders_, threads_,
+                                                      off_lattice_begin_);
     }
 
-    void merge_free()
+    void merge_off_lattice()
     {
-        if (!has_free()) return;
+        if (!has_off_lattice()) return;
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
-            merge_off_lattice_particles(out_, out_.blocks[b], orders_[b], free_begin_[b],
-                                        free_begin_[b + 1]);
+            merge_off_lattice_particles(out_, out_.blocks[b], orders_[b], off_lattice_begin_[b],
+                                        off_lattice_begin_[b + 1]);
     }
 
     void list_off_lattice_points()
@@ -263,7 +267,7 @@ private:
     {
         if (out_.np == 0) return;
         Box3 limits;
-        for (const Vec3& p : out_.free.positions) limits.add(p);
+        for (const Vec3& p : out_.off_lattice.positions) limits.add(p);
         std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX};
         std::array<std::uint32_t, 3> high{0, 0, 0};
         std::mutex guard;
@@ -295,7 +299,7 @@ private:
                 });
         for (int axis = 0; axis < 3; ++axis)
         {
-            if (out_.np > out_.free.size())
+            if (out_.np > out_.off_lattice.size())
             {
                 limits.min[axis] = std::min(
                     limits.min[axis],
@@ -337,9 +341,10 @@ private:
                              [&](const ParticleBlock& b) { return b.mk == asked.mk; });
             if (found == out_.blocks.end()) continue;
             ParticleBlock& block = *found;
-            const std::vector<std::uint16_t>& free = field_.walls.off_lattice_mks;
-            const bool has_free_ones = std::find(free.begin(), free.end(), asked.mk) != free.end();
-            const MkOrient orient = has_free_ones ? orient_of_cells(asked) : asked;
+            const std::vector<std::uint16_t>& mks = field_.walls.off_lattice_mks;
+            const bool has_off_lattice_ones =
+                std::find(mks.begin(), mks.end(), asked.mk) != mks.end();
+            const MkOrient orient = has_off_lattice_ones ? orient_of_cells(asked) : asked;
             const bool z_is_fastest = orient.axes[2] == 2;
             if (!z_is_fastest || !out_.rhop.empty()) split_into_nodes(block);
             block.run_descending = false;
@@ -392,7 +397,7 @@ private:
     void keep_single()
     {
         single_.grid = out_.grid;
-        single_.free.positions = out_.free.positions;
+        single_.off_lattice.positions = out_.off_lattice.positions;
         single_.blocks.resize(out_.blocks.size());
         for (std::size_t b = 0; b < out_.blocks.size(); ++b)
             if (out_.blocks[b].type == ParticleType::Floating) single_.blocks[b] = out_.blocks[b];
@@ -453,10 +458,10 @@ private:
     std::vector<ParticleType> type_of_mk_;
     static constexpr std::size_t no_block = SIZE_MAX;
     std::vector<std::size_t> block_of_mk_;
-    std::vector<std::uint64_t> free_of_mk_; ///< particles off the lattice; empty without any
+    std::vector<std::uint64_t> off_lattice_of_mk_; ///< particles off the lattice; empty without any
     std::vector<std::uint64_t>
-        free_begin_;                    ///< per block its first one in out_.free, then their number
-    std::vector<PositionOrder> orders_; ///< of every block, where some are off the lattice
+        off_lattice_begin_; ///< per block its first one in out_.off_lattice, then their number
+    std::vector<PositionOrder> orders_;    ///< of every block, where some are off the lattice
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
     CaseParticles single_; ///< floating blocks before `<lattice>` doubles them; or empty
     CaseParticles out_;

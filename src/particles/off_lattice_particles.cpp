@@ -41,12 +41,12 @@ public:
         if (is_fluid_) part.depth += is_descending_ ? from : run.count - to;
         runs_.push_back(part);
     }
-    void add_free(std::uint64_t index)
+    void add_off_lattice(std::uint64_t index)
     {
         if (!runs_.empty() && runs_.back().is_off_lattice)
             ++runs_.back().count;
         else
-            runs_.push_back(ParticleRun::of_free(index, 1));
+            runs_.push_back(ParticleRun::of_off_lattice(index, 1));
     }
     ParticleRuns take() { return std::move(runs_); }
 
@@ -68,9 +68,9 @@ void spread_densities(CaseParticles& particles, const ParticleBlock& block)
     for (const ParticleRun& run : block.runs)
     {
         if (run.is_off_lattice)
-            to = std::copy_n(
-                particles.free.rhop.begin() + static_cast<std::ptrdiff_t>(run.off_lattice_begin()),
-                run.count, to);
+            to = std::copy_n(particles.off_lattice.rhop.begin() +
+                                 static_cast<std::ptrdiff_t>(run.off_lattice_begin()),
+                             run.count, to);
         else
         {
             to = std::copy_n(from, run.count, to);
@@ -183,7 +183,7 @@ void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
 {
     if (begin == end) return;
     const LatticeGrid& grid = particles.grid;
-    const std::vector<Vec3>& positions = particles.free.positions;
+    const std::vector<Vec3>& positions = particles.off_lattice.positions;
     RunList merged(block);
     std::uint64_t next = begin;
     for (const ParticleRun& run : block.runs)
@@ -198,7 +198,7 @@ void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
         for (std::uint32_t done = 0; done < run.count;)
         {
             const PositionOrder::Key first = node(done);
-            while (next < end && order.key(positions[next]) < first) merged.add_free(next++);
+            while (next < end && order.key(positions[next]) < first) merged.add_off_lattice(next++);
             const std::uint32_t before =
                 next < end ? first_behind(order.key(positions[next]), node, done + 1, run.count)
                            : run.count;
@@ -206,7 +206,7 @@ void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
             done = before;
         }
     }
-    while (next < end) merged.add_free(next++);
+    while (next < end) merged.add_off_lattice(next++);
     block.runs = merged.take();
     if (block.type == ParticleType::Fluid && !particles.rhop.empty())
         spread_densities(particles, block);

@@ -85,9 +85,9 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
                                                const std::vector<PositionOrder>& orders,
                                                int threads, std::vector<std::uint64_t>& begin);
 
-/// Sorts the particles [begin, end) of particles.free in among the nodes of a block: its runs are
-/// split where needed, and its part of particles.rhop, when there is one, is spread out. The runs
-/// must be in the given order.
+/// Sorts the particles [begin, end) of particles.off_lattice in among the nodes of a block: its
+/// runs are split where needed, and its part of particles.rhop, when there is one, is spread out.
+/// The runs must be in the given order.
 void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
                                  const PositionOrder& order, std::uint64_t begin,
                                  std::uint64_t end);

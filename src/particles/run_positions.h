@@ -9,7 +9,7 @@ namespace fppg
 inline Vec3 place_in_run(const CaseParticles& particles, const ParticleBlock& block,
                          const ParticleRun& run, std::uint32_t k)
 {
-    if (run.is_off_lattice) return particles.free.positions[run.off_lattice_begin() + k];
+    if (run.is_off_lattice) return particles.off_lattice.positions[run.off_lattice_begin() + k];
     const LatticeGrid& grid = particles.grid;
     const std::int64_t z = static_cast<std::int64_t>(run.z) +
                            (block.run_descending ? -1 : 1) * static_cast<std::int64_t>(k);

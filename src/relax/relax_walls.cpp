@@ -408,12 +408,12 @@ private:
                      });
         std::vector<Vec3> held;
         for (const auto& chunk : chunks) held.insert(held.end(), chunk.begin(), chunk.end());
-        // What an earlier region set free pushes as well.
-        const VolumeParticles& free = field_.walls.volume;
-        for (std::size_t i = 0; i < free.size(); ++i)
-            if ((region.band[free.mk[i]] > 0 || region.beside[free.mk[i]]) &&
-                moving.has_nearer(free.positions[i], reach))
-                held.push_back(free.positions[i]);
+        // What an earlier region took off the lattice pushes as well.
+        const VolumeParticles& volume = field_.walls.volume;
+        for (std::size_t i = 0; i < volume.size(); ++i)
+            if ((region.band[volume.mk[i]] > 0 || region.beside[volume.mk[i]]) &&
+                moving.has_nearer(volume.positions[i], reach))
+                held.push_back(volume.positions[i]);
         return held;
     }
 

@@ -99,8 +99,8 @@ void add_section(const std::array<Vec3, 4>& c, const LatticeGrid& grid,
     for (std::vector<Vec3>& line : lines) out.push_back(std::move(line));
 }
 
-/// The pieces of a quad, as free_pieces() has them. Of one in the plane of a 2D case all corners
-/// are put there, so that it is flat (GenCase v5.4.354: six bent ones, six without width).
+/// The pieces of a quad, as off_lattice_pieces() has them. Of one in the plane of a 2D case all
+/// corners are put there, so that it is flat (GenCase v5.4.354: six bent ones, six without width).
 void add_quad(std::array<Vec3, 4> c, const Transform& matrix, const LatticeGrid& grid,
               std::vector<std::vector<Vec3>>& out)
 {
@@ -140,8 +140,8 @@ std::vector<std::vector<Vec3>> pieces_of(const PolyhedronOp& polyhedron, const P
 
 } // namespace
 
-std::vector<std::vector<Vec3>> free_pieces(const PolyhedronOp& polyhedron, const Transform& matrix,
-                                           const LatticeGrid& grid)
+std::vector<std::vector<Vec3>> off_lattice_pieces(const PolyhedronOp& polyhedron,
+                                                  const Transform& matrix, const LatticeGrid& grid)
 {
     std::vector<std::vector<Vec3>> out;
     for (const PolyhedronFace& face : polyhedron.faces)

@@ -23,8 +23,8 @@ namespace fppg
 /// have the other cut), a flat one is cut as cut_polygon() does. Sections of upright slanted
 /// prisms: 116 of 120 in v5.4.354; the others are of one x and one y to the last bit, where it
 /// draws two lines that this joins.
-std::vector<std::vector<Vec3>> free_pieces(const PolyhedronOp& polyhedron, const Transform& matrix,
-                                           const LatticeGrid& grid);
+std::vector<std::vector<Vec3>> off_lattice_pieces(const PolyhedronOp& polyhedron,
+                                                  const Transform& matrix, const LatticeGrid& grid);
 
 /// Where the plane of a 2D case meets a box, as the corners of a polygon: the section of a solid
 /// box is drawn in its place. It starts with the line on the first face that meets the plane, of
@@ -34,8 +34,8 @@ std::vector<std::vector<Vec3>> free_pieces(const PolyhedronOp& polyhedron, const
 /// the box up to 0.01 dp beside the plane lie in it.
 std::vector<Vec3> box_section(const PolyhedronOp& box, const LatticeGrid& grid);
 
-/// What setmknextauto gives an mk of its own off the lattice: polygons as free_pieces() has them,
-/// or an inside that stands on the lattice.
+/// What setmknextauto gives an mk of its own off the lattice: polygons as off_lattice_pieces() has
+/// them, or an inside that stands on the lattice.
 struct OffLatticePart
 {
     std::vector<std::vector<Vec3>> pieces;

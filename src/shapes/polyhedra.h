@@ -53,7 +53,7 @@ PolyhedronOp make_beach(const std::vector<Vec3>& points);
 /// The polyline whose swept quads lie `distance` beside those of the given one, on the side of
 /// direction x extrude (rule S8). Open ends lie straight beside the old ones; a corner is where the
 /// shifted side that starts at it meets the plane of the shifted quad before (5 slanted polylines
-/// drawn free by GenCase v5.4.354, to the last bits).
+/// drawn off the lattice by GenCase v5.4.354, to the last bits).
 std::vector<Vec3> shifted_polyline(const std::vector<Vec3>& points, const Vec3& extrude,
                                    bool is_closed, double distance);
 /// Quads that a polyline sweeps along `extrude`.

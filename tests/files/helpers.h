@@ -125,19 +125,19 @@ inline CaseParticles walled_particles()
 {
     CaseParticles particles = small_particles();
     std::vector<ParticleBlock> blocks = std::move(particles.blocks);
-    blocks[1].runs = {{3, 0, 1, 1, 0}, ParticleRun::of_free(0, 2), {3, 0, 2, 1, 0}};
+    blocks[1].runs = {{3, 0, 1, 1, 0}, ParticleRun::of_off_lattice(0, 2), {3, 0, 2, 1, 0}};
     blocks[1].count += 2;
-    blocks[4].runs.push_back(ParticleRun::of_free(2, 3));
+    blocks[4].runs.push_back(ParticleRun::of_off_lattice(2, 3));
     blocks[4].count += 3;
     particles = make_particles(std::move(blocks));
     particles.has_walls = true;
-    particles.free.positions = {
+    particles.off_lattice.positions = {
         {0.2, 0.25, 0.41}, {0.2, 0.25, 1.0 / 3}, {2.1, 0.3, 0.5}, {2.2, 0.3, 0.5}, {2.3, 0.3, 0.5}};
-    particles.free.kinds = {FitKind::Corner, FitKind::Edge, FitKind::Surface, FitKind::Volume,
-                            FitKind::Volume};
-    particles.free.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0.6F, 0.8F}, {0, 0, 0}, {0, 0, 0}};
-    particles.free.distances = {0, 1e-17F, -1e-17F, 0.1F, 0.2F};
-    particles.free.rhop = {999, 999, 1010, 1011, 1012};
+    particles.off_lattice.kinds = {FitKind::Corner, FitKind::Edge, FitKind::Surface,
+                                   FitKind::Volume, FitKind::Volume};
+    particles.off_lattice.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0.6F, 0.8F}, {0, 0, 0}, {0, 0, 0}};
+    particles.off_lattice.distances = {0, 1e-17F, -1e-17F, 0.1F, 0.2F};
+    particles.off_lattice.rhop = {999, 999, 1010, 1011, 1012};
     return particles;
 }
 

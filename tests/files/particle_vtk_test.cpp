@@ -178,18 +178,18 @@ TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)
     for (std::uint32_t block = 0; block < 2; ++block)
     {
         blocks[block].runs.insert(blocks[block].runs.begin() + 40,
-                                  ParticleRun::of_free(block * 50000, 50000));
+                                  ParticleRun::of_off_lattice(block * 50000, 50000));
         blocks[block].count += 50000;
     }
     particles = make_particles(std::move(blocks));
     particles.has_walls = true;
     for (int i = 0; i < 100000; ++i)
     {
-        particles.free.positions.push_back({0.001 * i, 0.1, 0.2});
-        particles.free.kinds.push_back(static_cast<FitKind>(i % 4));
-        particles.free.normals.push_back({0, static_cast<float>(i), 0});
-        particles.free.distances.push_back(static_cast<float>(-i));
-        particles.free.rhop.push_back(static_cast<float>(1000 + i));
+        particles.off_lattice.positions.push_back({0.001 * i, 0.1, 0.2});
+        particles.off_lattice.kinds.push_back(static_cast<FitKind>(i % 4));
+        particles.off_lattice.normals.push_back({0, static_cast<float>(i), 0});
+        particles.off_lattice.distances.push_back(static_cast<float>(-i));
+        particles.off_lattice.rhop.push_back(static_cast<float>(1000 + i));
     }
     for (const VtkSelection selection :
          {VtkSelection::All, VtkSelection::Bound, VtkSelection::Fluid})

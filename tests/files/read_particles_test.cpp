@@ -49,7 +49,7 @@ ParticleCloud expected_cloud(const CaseParticles& particles)
                 const std::uint32_t z = block.run_descending ? run.z - k : run.z + k;
                 cloud.positions.push_back(
                     run.is_off_lattice
-                        ? particles.free.positions[run.off_lattice_begin() + k]
+                        ? particles.off_lattice.positions[run.off_lattice_begin() + k]
                         : grid.origin + grid.dp * Vec3{double(run.x), double(run.y), double(z)});
                 cloud.mk.push_back(block.mk);
                 cloud.type.push_back(static_cast<std::uint8_t>(block.type));
@@ -116,7 +116,7 @@ TEST(ReadParticles, FindsTheParticlesOffTheLatticeThatWereWritten)
     write_case(folder, "Case", particles);
     expect_same(read_particles(folder / "Case.bi4", false, 2), expected_cloud(particles), 1e-15);
     EXPECT_TRUE(read_particles(folder / "Case.bi4", false, 2).positions[5] ==
-                particles.free.positions[1]);
+                particles.off_lattice.positions[1]);
     const ParticleCloud cloud = read_particles(folder / "Case", true, 2);
     EXPECT_EQ(cloud.file, folder / "Case_All.vtk");
     expect_same(cloud, expected_cloud(particles), 1e-6);
@@ -125,7 +125,7 @@ TEST(ReadParticles, FindsTheParticlesOffTheLatticeThatWereWritten)
     EXPECT_EQ(cloud.kind[5], 1);
     EXPECT_EQ(cloud.kind[25], 2);
     ASSERT_EQ(cloud.normals.size(), 28U);
-    EXPECT_EQ(cloud.normals[25], particles.free.normals[2]);
+    EXPECT_EQ(cloud.normals[25], particles.off_lattice.normals[2]);
     EXPECT_EQ(cloud.normals[0], (std::array<float, 3>{0, 0, 0}));
     CaseParticles with_normals = particles;
     with_normals.bound_normals.assign(11, {0, 0, 7});
@@ -133,7 +133,7 @@ TEST(ReadParticles, FindsTheParticlesOffTheLatticeThatWereWritten)
     write_particles_vtk(bound, with_normals, small_constants(), VtkSelection::Bound, 1);
     bound.commit();
     EXPECT_EQ(read_particles(folder / "Case_Bound.vtk", true, 2).normals.at(5),
-              particles.free.normals[1]);
+              particles.off_lattice.normals[1]);
     ASSERT_EQ(cloud.distances.size(), 28U);
     EXPECT_EQ(cloud.distances[26], 0.1F);
     EXPECT_EQ(cloud.distances[6], distance_of_nodes);

@@ -41,14 +41,14 @@ TEST(WriteShapesVtk, LeavesEmptyPartsOut)
     EXPECT_EQ(file.cells.at("POLYGONS"), (std::vector<int>{4, 0, 1, 2, 3}));
 }
 
-TEST(WriteFreePointsVtk, KeepsPlacesInDoublesWithMkAndType)
+TEST(WriteOffLatticePointsVtk, KeepsPlacesInDoublesWithMkAndType)
 {
     OffLatticePoints points;
     points.positions = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
     points.mk = {1, 10};
     points.types = {ParticleType::Fluid, ParticleType::Floating};
     const VtkFile file =
-        VtkFile(written([&](OutputFile& out) { write_free_points_vtk(out, points); }));
+        VtkFile(written([&](OutputFile& out) { write_off_lattice_points_vtk(out, points); }));
     EXPECT_EQ(file.double_points, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5, 0.6}));
     EXPECT_EQ(file.cells.at("VERTICES"), (std::vector<int>{1, 0, 1, 1}));
     EXPECT_EQ(file.arrays.at("Mk"), (std::vector<double>{1, 10}));

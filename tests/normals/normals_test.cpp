@@ -298,7 +298,7 @@ std::vector<ShapePolygons> ball_faces(int side)
 std::size_t expect_radial(const Made& made, int side, const Vec3& centre = {0.4, 0.4, 0.4})
 {
     std::size_t count = 0;
-    const OffLatticeParticles& free = made.particles.free;
+    const OffLatticeParticles& off_lattice = made.particles.off_lattice;
     for (const ParticleBlock& block : made.particles.blocks)
     {
         std::uint64_t id = block.begin;
@@ -306,9 +306,9 @@ std::size_t expect_radial(const Made& made, int side, const Vec3& centre = {0.4,
             for (std::uint32_t k = 0; k < run.count; ++k, ++id)
             {
                 if (!run.is_off_lattice ||
-                    free.kinds[run.off_lattice_begin() + k] == FitKind::Volume)
+                    off_lattice.kinds[run.off_lattice_begin() + k] == FitKind::Volume)
                     continue;
-                const Vec3 p = motion_of(block)(free.positions[run.off_lattice_begin() + k]);
+                const Vec3 p = motion_of(block)(off_lattice.positions[run.off_lattice_begin() + k]);
                 const auto& n = made.normals.at(id);
                 expect_vector(Vec3{n[0], n[1], n[2]} / 0.001, side * (p - centre) / 0.3, 1e-4);
                 ++count;
@@ -466,7 +466,7 @@ TEST(NormalsOfParts, KeepToTheNodesBesideAFittedWall)
                              R"(<norparts mkbound="0"><maxdisth v="1.2" /></norparts>)");
     text.after_geometry += R"(<fppg><bodyfitted mkbound="1" /></fppg>)";
     const Made made = make(text);
-    ASSERT_GT(made.particles.free.size(), 5U);
+    ASSERT_GT(made.particles.off_lattice.size(), 5U);
     ASSERT_NEAR(made.particles.pos_min.x, -0.05, 0.01);
     for (const double x : {0.2, 0.3, 0.4, 0.5, 0.6})
     {

@@ -462,8 +462,8 @@ TEST(InitialMove, TakesAFittedBodyAlongWithTheLimits)
     const char* const fit = R"(<fppg><bodyfitted mkbound="0" /></fppg>)";
     const Started still = start("", "", fit);
     const Started moved = start(R"(<move mkbound="0" x="0.03" y="0" z="0.31" />)", "", fit);
-    ASSERT_GT(moved.particles.free.size(), 30U);
-    EXPECT_TRUE(moved.particles.free.positions == still.particles.free.positions);
+    ASSERT_GT(moved.particles.off_lattice.size(), 30U);
+    EXPECT_TRUE(moved.particles.off_lattice.positions == still.particles.off_lattice.positions);
     expect_vector(moved.particles.pos_min, {0, 0, 0});
     expect_vector(still.particles.pos_max, {1, 0.5, 0.5});
     expect_vector(moved.particles.pos_max, {1.03, 0.5, 0.51});

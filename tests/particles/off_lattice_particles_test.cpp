@@ -94,7 +94,7 @@ struct Shown
     ParticleType type = ParticleType::Fixed;
     Vec3 position;
     float rhop = 0; ///< of fluid
-    bool is_free = false;
+    bool is_off_lattice = false;
 };
 
 std::vector<Shown> all_of(const CaseParticles& particles)
@@ -109,7 +109,7 @@ std::vector<Shown> all_of(const CaseParticles& particles)
             {
                 Shown p{block.mk, block.type, {}, 0, run.is_off_lattice};
                 if (run.is_off_lattice)
-                    p.position = particles.free.positions.at(run.off_lattice_begin() + k);
+                    p.position = particles.off_lattice.positions.at(run.off_lattice_begin() + k);
                 else
                     p.position = place_of(particles.grid, run.x, run.y,
                                           block.run_descending ? run.z - k : run.z + k);
@@ -122,7 +122,8 @@ std::vector<Shown> all_of(const CaseParticles& particles)
                             run.depth + (block.run_descending ? k : run.count - 1 - k));
                     if (run.is_off_lattice)
                     {
-                        const float rhop = particles.free.rhop.at(run.off_lattice_begin() + k);
+                        const float rhop =
+                            particles.off_lattice.rhop.at(run.off_lattice_begin() + k);
                         if (!particles.rhop.empty())
                         {
                             EXPECT_EQ(p.rhop, rhop);
@@ -183,7 +184,7 @@ void add_to_volume(FittedWalls& walls, const Vec3& p, std::uint16_t mk, float di
 }
 
 /// Nodes of which a part became particles of the volume at the very same places.
-RunField with_nodes_set_free(test::DenseMks nodes, Dice& dice)
+RunField with_nodes_taken_off_lattice(test::DenseMks nodes, Dice& dice)
 {
     FittedWalls walls;
     test::for_each_node(nodes.grid,
@@ -241,15 +242,15 @@ RC_GTEST_PROP(OffLatticeParticles, StandAmongTheNodesInTheOrderOfAllPositions, (
         int type;
         std::uint16_t mk;
         std::array<double, 3> place;
-        bool is_free;
-        auto tied() const { return std::tie(type, mk, place, is_free); }
+        bool is_off_lattice;
+        auto tied() const { return std::tie(type, mk, place, is_off_lattice); }
     };
     const std::map<std::uint16_t, int> type_of{{10, 0}, {11, 1}, {12, 2}, {13, 0}, {1, 3}, {2, 3}};
     std::vector<Key> expected;
-    const auto add = [&](std::uint16_t mk, const Vec3& p, bool is_free)
+    const auto add = [&](std::uint16_t mk, const Vec3& p, bool is_off_lattice)
     {
         const bool is_oriented = mk == 1 || mk == 10;
-        Key key{type_of.at(mk), mk, {p.x, p.y, p.z}, is_free};
+        Key key{type_of.at(mk), mk, {p.x, p.y, p.z}, is_off_lattice};
         for (std::size_t i = 0; is_oriented && i < 3; ++i)
         {
             const double v = p[(order[i] | 0x20) - 'x'];
@@ -271,7 +272,7 @@ RC_GTEST_PROP(OffLatticeParticles, StandAmongTheNodesInTheOrderOfAllPositions, (
               [](const Key& a, const Key& b) { return a.tied() < b.tied(); });
     std::vector<Key> by_brute_force;
     by_brute_force.swap(expected);
-    for (const Shown& p : all_of(made.particles)) add(p.mk, p.position, p.is_free);
+    for (const Shown& p : all_of(made.particles)) add(p.mk, p.position, p.is_off_lattice);
     RC_ASSERT(expected.size() == by_brute_force.size());
     for (std::size_t i = 0; i < expected.size(); ++i)
         RC_ASSERT(expected[i].tied() == by_brute_force[i].tied());
@@ -289,13 +290,13 @@ RC_GTEST_PROP(OffLatticeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std
     const CaseDef def = read(text);
     const test::DenseMks nodes = any_nodes(def.grid, dice);
     const Made plain = make(def, test::runs_of(nodes));
-    const Made freed = make(def, with_nodes_set_free(nodes, dice));
+    const Made made = make(def, with_nodes_taken_off_lattice(nodes, dice));
     RC_ASSERT(!plain.particles.has_walls);
-    RC_ASSERT(freed.particles.has_walls);
-    RC_ASSERT(freed.particles.free.size() > 0U);
+    RC_ASSERT(made.particles.has_walls);
+    RC_ASSERT(made.particles.off_lattice.size() > 0U);
 
     const std::vector<Shown> expected = all_of(plain.particles);
-    const std::vector<Shown> found = all_of(freed.particles);
+    const std::vector<Shown> found = all_of(made.particles);
     RC_ASSERT(found.size() == expected.size());
     for (std::size_t i = 0; i < found.size(); ++i)
     {
@@ -304,17 +305,17 @@ RC_GTEST_PROP(OffLatticeParticles, AtThePlacesOfNodesGiveTheCaseOfTheNodes, (std
         RC_ASSERT(found[i].position == expected[i].position);
         RC_ASSERT(std::abs(found[i].rhop - expected[i].rhop) < 1e-3F);
     }
-    RC_ASSERT(std::abs(freed.constants.hswl - plain.constants.hswl) < 1e-12);
-    RC_ASSERT(freed.particles.n_fixed == plain.particles.n_fixed);
-    RC_ASSERT(freed.particles.n_moving == plain.particles.n_moving);
-    RC_ASSERT(freed.particles.n_floating == plain.particles.n_floating);
-    RC_ASSERT(freed.particles.n_fluid == plain.particles.n_fluid);
-    RC_ASSERT(freed.particles.pos_min == plain.particles.pos_min);
-    RC_ASSERT(freed.particles.pos_max == plain.particles.pos_max);
-    RC_ASSERT(freed.particles.floatings.size() == plain.particles.floatings.size());
+    RC_ASSERT(std::abs(made.constants.hswl - plain.constants.hswl) < 1e-12);
+    RC_ASSERT(made.particles.n_fixed == plain.particles.n_fixed);
+    RC_ASSERT(made.particles.n_moving == plain.particles.n_moving);
+    RC_ASSERT(made.particles.n_floating == plain.particles.n_floating);
+    RC_ASSERT(made.particles.n_fluid == plain.particles.n_fluid);
+    RC_ASSERT(made.particles.pos_min == plain.particles.pos_min);
+    RC_ASSERT(made.particles.pos_max == plain.particles.pos_max);
+    RC_ASSERT(made.particles.floatings.size() == plain.particles.floatings.size());
     for (std::size_t b = 0; b < plain.particles.floatings.size(); ++b)
     {
-        const FloatingBody& f = freed.particles.floatings[b];
+        const FloatingBody& f = made.particles.floatings[b];
         const FloatingBody& p = plain.particles.floatings[b];
         RC_ASSERT(f.mass_body == p.mass_body);
         RC_ASSERT(norm(f.center - p.center) < 1e-12);
@@ -340,9 +341,9 @@ TEST(OffLatticeParticles, OfSetfrdrawmodeAreSortedByCells)
     add_to_volume(walls, {0.70001, 0.3, 0.50001}, 10); // of one cell with the last one
     const CaseParticles made = make(def, field).particles;
     std::vector<double> x;
-    for (const Vec3& p : made.free.positions) x.push_back(p.x);
+    for (const Vec3& p : made.off_lattice.positions) x.push_back(p.x);
     EXPECT_EQ(x, (std::vector<double>{0, 0.5129, 0.5124, 0.7, 0.70001, 1.024}));
-    EXPECT_EQ(made.off_lattice_points.positions, made.free.positions);
+    EXPECT_EQ(made.off_lattice_points.positions, made.off_lattice.positions);
 }
 
 TEST(OffLatticeParticles, MakeABlockOfAnMkWithoutNodes)
@@ -398,7 +399,7 @@ TEST(OffLatticeParticles, OfAFloatingBodyCountForItsMassCentreAndInertia)
         }
 }
 
-/// Water of 8 nodes on a floor of the zone; one free particle of mk 1.
+/// Water of 8 nodes on a floor of the zone; one particle off the lattice of mk 1.
 float density_at(const Vec3& steps, const CaseDef& def, CaseConstants& constants)
 {
     test::DenseMks nodes(def.grid);
@@ -410,9 +411,9 @@ float density_at(const Vec3& steps, const CaseDef& def, CaseConstants& constants
     add_to_volume(field.walls, def.grid.origin + def.grid.dp * steps, 1, 0.5F);
     const Made made = make(def, field);
     constants = made.constants;
-    EXPECT_EQ(made.particles.free.distances.at(0), 0.5F);
-    EXPECT_EQ(made.particles.free.kinds.at(0), FitKind::Volume);
-    return made.particles.free.rhop.at(0);
+    EXPECT_EQ(made.particles.off_lattice.distances.at(0), 0.5F);
+    EXPECT_EQ(made.particles.off_lattice.kinds.at(0), FitKind::Volume);
+    return made.particles.off_lattice.rhop.at(0);
 }
 
 TEST(OffLatticeParticles, HaveTheDensityOfTheirTrueDepthInTheirColumn)
@@ -479,20 +480,21 @@ TEST(OffLatticeParticles, HaveTheNormalsOfFacetsEdgesAndCorners)
         add_to_wall(field.walls, middle, 11, FitKind::Edge, right);
     }
     const CaseParticles particles = make(def, field).particles;
-    const OffLatticeParticles& free = particles.free;
-    ASSERT_EQ(free.size(), 5U);
-    EXPECT_EQ(free.kinds[0], FitKind::Surface);
-    EXPECT_EQ(free.normals[0], (std::array<float, 3>{0, 0, 1}));
-    EXPECT_NEAR(free.distances[0], 1e-9, 1e-15);
-    EXPECT_EQ(free.kinds[1], FitKind::Corner);
+    const OffLatticeParticles& off_lattice = particles.off_lattice;
+    ASSERT_EQ(off_lattice.size(), 5U);
+    EXPECT_EQ(off_lattice.kinds[0], FitKind::Surface);
+    EXPECT_EQ(off_lattice.normals[0], (std::array<float, 3>{0, 0, 1}));
+    EXPECT_NEAR(off_lattice.distances[0], 1e-9, 1e-15);
+    EXPECT_EQ(off_lattice.kinds[1], FitKind::Corner);
     const Vec3 centre{0.5, 0.5, 0.5};
     for (std::size_t i = 1; i < 5; ++i)
     {
-        const Vec3 n{free.normals[i][0], free.normals[i][1], free.normals[i][2]};
+        const Vec3 n{off_lattice.normals[i][0], off_lattice.normals[i][1],
+                     off_lattice.normals[i][2]};
         // Corners, the middles of edges and of faces all look straight away from the centre.
-        const Vec3 outwards = free.positions[i] - centre;
+        const Vec3 outwards = off_lattice.positions[i] - centre;
         EXPECT_LT(norm(n - outwards / norm(outwards)), 1e-6) << i;
-        EXPECT_EQ(free.distances[i], 0) << i;
+        EXPECT_EQ(off_lattice.distances[i], 0) << i;
     }
 }
 
@@ -507,11 +509,11 @@ TEST(OffLatticeParticles, OnRoundBodiesHaveTheNormalOfTheTrueShape)
     const std::uint32_t cover = facet_towards(body.mesh, {0, 0, 1});
     add_to_wall(field.walls, {0.5 + 0.3, 0.5 + 0.4, 0.3}, 10, FitKind::Surface, side);
     add_to_wall(field.walls, {0.9, 0.5, 1}, 10, FitKind::Surface, cover);
-    const OffLatticeParticles free = make(def, field).particles.free;
-    EXPECT_NEAR(free.normals[0][0], 0.6, 1e-6);
-    EXPECT_NEAR(free.normals[0][1], 0.8, 1e-6);
-    EXPECT_NEAR(free.distances[0], 0, 1e-15);
-    EXPECT_EQ(free.normals[1], (std::array<float, 3>{0, 0, 1}));
+    const OffLatticeParticles off_lattice = make(def, field).particles.off_lattice;
+    EXPECT_NEAR(off_lattice.normals[0][0], 0.6, 1e-6);
+    EXPECT_NEAR(off_lattice.normals[0][1], 0.8, 1e-6);
+    EXPECT_NEAR(off_lattice.distances[0], 0, 1e-15);
+    EXPECT_EQ(off_lattice.normals[1], (std::array<float, 3>{0, 0, 1}));
 }
 
 TEST(OffLatticeParticles, AreTheSameWithOneAndEightThreads)
@@ -535,9 +537,9 @@ TEST(OffLatticeParticles, AreTheSameWithOneAndEightThreads)
         }
         const Made one = make(def, field, 1);
         const Made many = make(def, field, 8);
-        EXPECT_TRUE(one.particles.free.positions == many.particles.free.positions);
-        EXPECT_TRUE(one.particles.free.normals == many.particles.free.normals);
-        EXPECT_TRUE(one.particles.free.rhop == many.particles.free.rhop);
+        EXPECT_TRUE(one.particles.off_lattice.positions == many.particles.off_lattice.positions);
+        EXPECT_TRUE(one.particles.off_lattice.normals == many.particles.off_lattice.normals);
+        EXPECT_TRUE(one.particles.off_lattice.rhop == many.particles.off_lattice.rhop);
         EXPECT_TRUE(one.particles.rhop == many.particles.rhop);
         EXPECT_EQ(one.constants.hswl, many.constants.hswl);
         EXPECT_TRUE(one.particles.floatings.at(0).center == many.particles.floatings.at(0).center);

@@ -66,9 +66,9 @@ std::vector<Vec3> volume_of(const RunField& field, std::uint16_t mk)
     for (const auto& [n, node_mk] : nodes_of(field))
         if (node_mk == mk)
             out.push_back(field.grid.origin + Vec3{1.0 * n[0], 1.0 * n[1], 1.0 * n[2]} * dp);
-    const VolumeParticles& free = field.walls.volume;
-    for (std::size_t i = 0; i < free.size(); ++i)
-        if (free.mk[i] == mk) out.push_back(free.positions[i]);
+    const VolumeParticles& volume = field.walls.volume;
+    for (std::size_t i = 0; i < volume.size(); ++i)
+        if (volume.mk[i] == mk) out.push_back(volume.positions[i]);
     return out;
 }
 
