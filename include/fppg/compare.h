@@ -44,7 +44,7 @@ struct CompareOptions
 };
 
 /// Numbers of one kind, summed exactly: neither order nor blocks nor threads change a bit.
-struct Spread
+struct Statistics
 {
     static constexpr std::size_t bins = 60;
 
@@ -72,18 +72,18 @@ struct MkComparison
     std::uint16_t mk = 0;
     std::array<int, 2> type{-1, -1}; ///< as ParticleType; -1: none, or the file does not say
     std::array<std::uint64_t, 2> count{};
-    std::uint64_t same = 0;               ///< at the same place
-    std::uint64_t moved = 0;              ///< within dp of a particle of B
-    std::uint64_t missing = 0;            ///< in A only
-    std::uint64_t extra = 0;              ///< in B only
-    std::uint64_t mk_changed = 0;         ///< of A, with another mk at the same place in B
-    std::uint64_t mk_gained = 0;          ///< of B, with another mk at the same place in A
-    std::uint64_t id_changed = 0;         ///< same or moved, with another id
-    Spread moved_dp;                      ///< distances, (0, 1]
-    std::array<Spread, 2> spacing_dp;     ///< to the nearest particle of any mk
-    std::array<std::uint64_t, 2> alone{}; ///< without one within 2.6 dp, not in the spread
-    std::array<Spread, 2> shepard;        ///< sum of W dp^3 (W dp^2 in 2-D) over all particles
-    std::array<Spread, 2> distance_dp;    ///< to the geometry, where within 2 dp of it
+    std::uint64_t same = 0;                ///< at the same place
+    std::uint64_t moved = 0;               ///< within dp of a particle of B
+    std::uint64_t missing = 0;             ///< in A only
+    std::uint64_t extra = 0;               ///< in B only
+    std::uint64_t mk_changed = 0;          ///< of A, with another mk at the same place in B
+    std::uint64_t mk_gained = 0;           ///< of B, with another mk at the same place in A
+    std::uint64_t id_changed = 0;          ///< same or moved, with another id
+    Statistics moved_dp;                   ///< distances, (0, 1]
+    std::array<Statistics, 2> spacing_dp;  ///< to the nearest particle of any mk
+    std::array<std::uint64_t, 2> alone{};  ///< without one within 2.6 dp, not in the statistics
+    std::array<Statistics, 2> shepard;     ///< sum of W dp^3 (W dp^2 in 2-D) over all particles
+    std::array<Statistics, 2> distance_dp; ///< to the geometry, where within 2 dp of it
     ArrayDifference density, velocity, normal;
 };
 
@@ -136,7 +136,7 @@ struct ComparedFile
     Box3 bounds;
 };
 
-/// A stretch of numbers, cut into Spread::bins.
+/// A stretch of numbers, cut into Statistics::bins.
 struct HistogramRange
 {
     double begin = 0;

@@ -16,7 +16,7 @@ struct RelaxProgress
     int iteration = 0; ///< from 1; 0: before the first
     std::size_t particles = 0;
     double spacing_mean = 0;
-    double spacing_deviation = 0;    ///< standard deviation over mean
+    double spacing_variation = 0;    ///< coefficient of variation
     double largest_displacement = 0; ///< of this iteration
 };
 
@@ -28,8 +28,8 @@ struct RelaxSurfaceOptions
     double h = 0.8;
     int iterations = 0;       ///< exactly so many; 0: until the spacing no longer improves
     int max_iterations = 100; ///< where the number is not fixed
-    /// It no longer improves when its deviation falls by less than this in 30 iterations; not
-    /// judged before 60.
+    /// It no longer improves when its coefficient of variation falls by less than this in 30
+    /// iterations; not judged before 60.
     double tolerance = 1e-3;
     /// Called after every iteration. False ends the relaxation, and the state reached is kept;
     /// what it throws is passed on, and the particles stay as they were given.

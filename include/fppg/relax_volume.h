@@ -56,18 +56,18 @@ struct VolumeSurroundings
 /// What an iteration has reached.
 struct RelaxVolumeProgress
 {
-    int iteration = 0;       ///< from 1
-    double shepard_mean = 0; ///< over the particles that move, before the step
-    double shepard_std = 0;  ///< standard deviation over the mean
+    int iteration = 0;            ///< from 1
+    double shepard_mean = 0;      ///< over the particles that move, before the step
+    double shepard_variation = 0; ///< coefficient of variation
     double largest_step_dp = 0;
 };
 
 struct RelaxVolumeOptions
 {
-    double dp = 0;                     ///< metres, above 0
-    double h_dp = 1.0;                 ///< smoothing length in dp, 0.6 to 2
-    int iterations = 30;               ///< 0: until the spread settles, at most 100
-    bool is_2d = false;                ///< particles keep their y, the kernel is the plane one
+    double dp = 0;       ///< metres, above 0
+    double h_dp = 1.0;   ///< smoothing length in dp, 0.6 to 2
+    int iterations = 30; ///< 0: until the coefficient of variation settles, at most 100
+    bool is_2d = false;  ///< particles keep their y, the kernel is the plane one
     double min_wall_distance_dp = 0.4; ///< no particle comes nearer to a wall
     double clearance_dp = 1.0; ///< nodes nearer to a wall than this may be missing because of it
     /// Particles are removed where they are too many for the space that the walls leave, and
@@ -83,7 +83,7 @@ struct RelaxVolumeReport
     std::size_t held_at_surface = 0; ///< of the moving ones, held because a free surface is near
     std::size_t pushed_back = 0;     ///< steps that a wall shortened
     double shepard_mean = 0;         ///< of the last iteration
-    double shepard_std = 0;
+    double shepard_variation = 0;
     std::size_t removed = 0;
     std::size_t inserted = 0;
     /// With `fit_count`, for every particle of the result the index that it had, or that of the

@@ -21,7 +21,7 @@ struct RelaxStep
     int last_iteration = 0;    ///< that it may come to
     std::size_t particles = 0; ///< that may move, and of a surface all
     double mean = 0;           ///< spacing in dp on a surface, Shepard sum in a volume
-    double deviation = 0;      ///< standard deviation over mean
+    double variation = 0;      ///< coefficient of variation
     double largest_step_dp = 0;
 };
 
@@ -42,9 +42,9 @@ struct RelaxedPart
     std::size_t particles = 0; ///< afterwards
     std::size_t inserted = 0;
     std::size_t removed = 0;
-    double deviation_before = 0; ///< surfaces only
+    double variation_before = 0; ///< surfaces only
     double mean = 0;             ///< as in RelaxStep
-    double deviation = 0;
+    double variation = 0;
 };
 
 struct RelaxReport

@@ -47,10 +47,10 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
         return;
     }
     const char* mean = part.what == "surface" ? "spacing" : "density";
-    std::string text =
-        fmt::format("Relaxed {}: {} particles, {} iterations, {} {:.4f}, spread {:.4f}", part.what,
-                    thousands(part.particles), part.iterations, mean, part.mean, part.deviation);
-    if (part.deviation_before > 0) text += fmt::format(" (before: {:.4f})", part.deviation_before);
+    std::string text = fmt::format(
+        "Relaxed {}: {} particles, {} iterations, {} {:.4f}, coefficient of variation {:.4f}",
+        part.what, thousands(part.particles), part.iterations, mean, part.mean, part.variation);
+    if (part.variation_before > 0) text += fmt::format(" (before: {:.4f})", part.variation_before);
     if (part.inserted + part.removed > 0)
         text += fmt::format(", {} inserted, {} removed", part.inserted, part.removed);
     log.line(text);
@@ -97,12 +97,12 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
         left.note(step, now);
         done.history +=
             fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
-                        step.particles, step.mean, step.deviation, step.largest_step_dp);
+                        step.particles, step.mean, step.variation, step.largest_step_dp);
         const double rest = left.seconds(step, now);
         StageBar::show(
             now + rest > 0 ? now / (now + rest) : 0,
-            fmt::format("{}: {} of at most {}, spread {:.3f}, largest step {:.3f} dp", step.what,
-                        step.iteration, step.last_iteration, step.deviation, step.largest_step_dp));
+            fmt::format("{}: {} of at most {}, variation {:.3f}, largest step {:.3f} dp", step.what,
+                        step.iteration, step.last_iteration, step.variation, step.largest_step_dp));
         return !stop.is_asked();
     };
     const auto snapshot = [&](int iteration, const WallParticles& particles)

@@ -91,11 +91,11 @@ TriangleSoup geometry_of(const ReportCall& call)
     return soup;
 }
 
-std::string spread_cells(const Spread& spread)
+std::string statistics_cells(const Statistics& statistics)
 {
-    if (spread.count == 0) return "<td>-</td><td>-</td>";
-    return fmt::format("<td>{:.4f} &plusmn; {:.4f}</td><td>{:.4f} to {:.4f}</td>", spread.mean,
-                       spread.deviation, spread.least, spread.largest);
+    if (statistics.count == 0) return "<td>-</td><td>-</td>";
+    return fmt::format("<td>{:.4f} &plusmn; {:.4f}</td><td>{:.4f} to {:.4f}</td>", statistics.mean,
+                       statistics.deviation, statistics.least, statistics.largest);
 }
 
 std::string table_of(const MeasuredResult& result)
@@ -106,26 +106,26 @@ std::string table_of(const MeasuredResult& result)
     for (const MeasuredMk& of : result.mks)
         html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>{}{}{}</tr>\n", of.mk,
                             particle_type_name(of.type), grouped_digits(of.count),
-                            spread_cells(of.spacing_dp), spread_cells(of.shepard),
-                            spread_cells(of.distance_dp));
+                            statistics_cells(of.spacing_dp), statistics_cells(of.shepard),
+                            statistics_cells(of.distance_dp));
     return html + "</table></div>\n";
 }
 
 /// Boundaries and fluid side by side.
 std::string histograms_of(const MeasuredResult& result)
 {
-    using Histogram = std::array<std::uint64_t, Spread::bins>;
+    using Histogram = std::array<std::uint64_t, Statistics::bins>;
     const auto draw =
-        [&](const char* title, Spread MeasuredMk::*spread, const HistogramRange& range)
+        [&](const char* title, Statistics MeasuredMk::*statistics, const HistogramRange& range)
     {
         std::array<Histogram, 2> sums{};
         std::uint64_t count = 0;
         for (const MeasuredMk& of : result.mks)
         {
-            const Spread& one = of.*spread;
+            const Statistics& one = of.*statistics;
             count += one.count;
             const bool is_fluid = of.type == static_cast<int>(ParticleType::Fluid);
-            for (std::size_t b = 0; b < Spread::bins; ++b)
+            for (std::size_t b = 0; b < Statistics::bins; ++b)
                 sums[is_fluid ? 1 : 0][b] += one.histogram[b];
         }
         return count == 0

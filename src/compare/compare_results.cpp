@@ -1,6 +1,6 @@
 #include "fppg/compare.h"
 
-#include "compare/exact_spread.h"
+#include "compare/exact_statistics.h"
 #include "compare/first_few.h"
 #include "compare/measure.h"
 #include "compare/pair_particles.h"
@@ -49,7 +49,7 @@ struct MkTally
 {
     std::uint64_t same = 0, moved = 0, missing = 0, extra = 0, mk_changed = 0, mk_gained = 0,
                   id_changed = 0;
-    ExactSpread moved_dp;
+    ExactStatistics moved_dp;
     std::array<MkMeasures, 2> measures;
     ArrayDifference density, velocity, normal;
     std::array<std::optional<ChangedParticle>, kinds> foremost; ///< by Larger
@@ -415,13 +415,13 @@ private:
             to.mk_changed = from.mk_changed;
             to.mk_gained = from.mk_gained;
             to.id_changed = from.id_changed;
-            to.moved_dp = from.moved_dp.spread();
+            to.moved_dp = from.moved_dp.statistics();
             for (std::size_t f = 0; f < 2; ++f)
             {
                 to.alone[f] = from.measures[f].alone;
-                to.spacing_dp[f] = from.measures[f].spacing.spread();
-                to.shepard[f] = from.measures[f].shepard.spread();
-                to.distance_dp[f] = from.measures[f].distance.spread();
+                to.spacing_dp[f] = from.measures[f].spacing.statistics();
+                to.shepard[f] = from.measures[f].shepard.statistics();
+                to.distance_dp[f] = from.measures[f].distance.statistics();
             }
             to.density = from.density;
             to.velocity = from.velocity;

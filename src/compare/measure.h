@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compare/exact_spread.h"
+#include "compare/exact_statistics.h"
 #include "compare/slabs.h"
 #include "meshes/mesh_query.h"
 
@@ -18,7 +18,7 @@ namespace fppg
 struct MkMeasures
 {
     std::uint64_t alone = 0; ///< without a neighbour in reach, not in `spacing`
-    ExactSpread spacing, shepard, distance;
+    ExactStatistics spacing, shepard, distance;
 
     void add(const MkMeasures& other)
     {

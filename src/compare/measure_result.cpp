@@ -84,9 +84,9 @@ MeasuredResult measure_result(const std::string& name, const TriangleSoup& geome
     for (std::size_t m = 0; m < total.size(); ++m)
     {
         out.mks[m].alone = total[m].alone;
-        out.mks[m].spacing_dp = total[m].spacing.spread();
-        out.mks[m].shepard = total[m].shepard.spread();
-        out.mks[m].distance_dp = total[m].distance.spread();
+        out.mks[m].spacing_dp = total[m].spacing.statistics();
+        out.mks[m].shepard = total[m].shepard.statistics();
+        out.mks[m].distance_dp = total[m].distance.statistics();
     }
     return out;
 }

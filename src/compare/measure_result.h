@@ -16,8 +16,8 @@ struct MeasuredMk
     std::uint16_t mk = 0;
     int type = -1; ///< as ParticleType; -1: the file does not say
     std::uint64_t count = 0;
-    std::uint64_t alone = 0; ///< without one within 2.6 dp, not in the spread
-    Spread spacing_dp, shepard, distance_dp;
+    std::uint64_t alone = 0; ///< without one within 2.6 dp, not in the statistics
+    Statistics spacing_dp, shepard, distance_dp;
 };
 
 struct MeasuredResult

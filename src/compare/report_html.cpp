@@ -18,7 +18,7 @@ constexpr std::size_t values_shown = 300;
 constexpr std::size_t mks_with_histograms = 12;
 
 /// Bars of A and B side by side; either may be missing.
-std::string histogram(const std::string& title, const Spread* a, const Spread* b,
+std::string histogram(const std::string& title, const Statistics* a, const Statistics* b,
                       const HistogramRange& range)
 {
     std::vector<HistogramSeries> series;
@@ -27,11 +27,11 @@ std::string histogram(const std::string& title, const Spread* a, const Spread* b
     return histogram_svg(title, series, range.begin, range.end);
 }
 
-std::string spread_cells(const Spread& spread)
+std::string statistics_cells(const Statistics& statistics)
 {
-    return spread.count == 0
-               ? "<td>-</td>"
-               : fmt::format("<td>{:.4f} &plusmn; {:.4f}</td>", spread.mean, spread.deviation);
+    return statistics.count == 0 ? "<td>-</td>"
+                                 : fmt::format("<td>{:.4f} &plusmn; {:.4f}</td>", statistics.mean,
+                                               statistics.deviation);
 }
 
 std::string particles_table(const Comparison& comparison)
@@ -56,9 +56,10 @@ std::string particles_table(const Comparison& comparison)
         html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td>", of.missing, of.extra,
                             of.mk_changed + of.mk_gained, of.id_changed);
         for (const auto* pair : {&of.spacing_dp, &of.shepard})
-            for (const Spread& spread : *pair) html += spread_cells(spread);
+            for (const Statistics& statistics : *pair) html += statistics_cells(statistics);
         if (has_geometry)
-            for (const Spread& spread : of.distance_dp) html += spread_cells(spread);
+            for (const Statistics& statistics : of.distance_dp)
+                html += statistics_cells(statistics);
         html += "</tr>\n";
     }
     return html + "</table></div>\n";

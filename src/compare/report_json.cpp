@@ -14,16 +14,17 @@ Json as_json(const Vec3& p)
     return {p.x, p.y, p.z};
 }
 
-Json as_json(const Spread& spread, const HistogramRange& range)
+Json as_json(const Statistics& statistics, const HistogramRange& range)
 {
     Json json;
-    json["count"] = spread.count;
-    if (spread.count == 0) return json;
-    json["mean"] = spread.mean;
-    json["deviation"] = spread.deviation;
-    json["least"] = spread.least;
-    json["largest"] = spread.largest;
-    json["histogram"] = {{"begin", range.begin}, {"end", range.end}, {"counts", spread.histogram}};
+    json["count"] = statistics.count;
+    if (statistics.count == 0) return json;
+    json["mean"] = statistics.mean;
+    json["deviation"] = statistics.deviation;
+    json["least"] = statistics.least;
+    json["largest"] = statistics.largest;
+    json["histogram"] = {
+        {"begin", range.begin}, {"end", range.end}, {"counts", statistics.histogram}};
     return json;
 }
 

@@ -22,9 +22,11 @@ std::string whole(std::uint64_t n)
     return std::to_string(n);
 }
 
-std::string mean_and_deviation(const Spread& spread)
+std::string mean_and_deviation(const Statistics& statistics)
 {
-    return spread.count == 0 ? "-" : fmt::format("{:.4f} +- {:.4f}", spread.mean, spread.deviation);
+    return statistics.count == 0
+               ? "-"
+               : fmt::format("{:.4f} +- {:.4f}", statistics.mean, statistics.deviation);
 }
 
 std::string type_of(const MkComparison& of)
@@ -61,10 +63,10 @@ std::string quality_table(const Comparison& comparison)
                         mean_and_deviation(of.spacing_dp[1]), mean_and_deviation(of.shepard[0]),
                         mean_and_deviation(of.shepard[1])});
         if (!has_geometry) continue;
-        for (const Spread& d : of.distance_dp) rows.back().push_back(mean_and_deviation(d));
-        for (const Spread& d : of.distance_dp)
+        for (const Statistics& d : of.distance_dp) rows.back().push_back(mean_and_deviation(d));
+        for (const Statistics& d : of.distance_dp)
             rows.back().push_back(d.count > 0 ? fmt::format("{:.4f}", d.largest) : "-");
-        for (const Spread& d : of.distance_dp) rows.back().push_back(whole(d.count));
+        for (const Statistics& d : of.distance_dp) rows.back().push_back(whole(d.count));
     }
     return text_table(rows, 2, "  ");
 }

@@ -80,7 +80,7 @@ public:
         report_.before = progress(0, state, 0);
         report_.after = report_.before;
         const int count = options_.iterations > 0 ? options_.iterations : options_.max_iterations;
-        std::vector<double> deviations{report_.before.spacing_deviation};
+        std::vector<double> variations{report_.before.spacing_variation};
         for (int iteration = 1; iteration <= count; ++iteration)
         {
             const bool is_restart = iteration == 1 || state.power < 0;
@@ -99,8 +99,8 @@ public:
                 options_.on_snapshot(iteration, now);
             }
             if (options_.on_progress && !options_.on_progress(report_.after)) break;
-            deviations.push_back(report_.after.spacing_deviation);
-            if (options_.iterations == 0 && is_settled(deviations)) break;
+            variations.push_back(report_.after.spacing_variation);
+            if (options_.iterations == 0 && is_settled(variations)) break;
         }
         if (report_.after.iteration > 0) renew(last_least_distance, last_hole_radius);
         const int iteration = report_.after.iteration;
@@ -172,15 +172,15 @@ private:
     }
 
     /// Judged when the last renewal is well past: each makes the spacing worse for a while.
-    bool is_settled(const std::vector<double>& deviations) const
+    bool is_settled(const std::vector<double>& variations) const
     {
-        const auto now = static_cast<int>(deviations.size()) - 1;
+        const auto now = static_cast<int>(variations.size()) - 1;
         if (now < first_judged) return false;
         const bool is_recovering =
             std::any_of(renewals.begin(), renewals.end(),
                         [&](int r) { return now >= r && now < r + recovery; });
-        const double before = deviations[deviations.size() - 1 - judged_iterations];
-        return !is_recovering && before - deviations.back() < options_.tolerance;
+        const double before = variations[variations.size() - 1 - judged_iterations];
+        return !is_recovering && before - variations.back() < options_.tolerance;
     }
 
     LayerState look_around()
@@ -208,7 +208,7 @@ private:
         result.spacing_mean = state.spacing_sum / n;
         const double variance =
             state.spacing_square_sum / n - result.spacing_mean * result.spacing_mean;
-        result.spacing_deviation = std::sqrt(std::max(0.0, variance)) / result.spacing_mean;
+        result.spacing_variation = std::sqrt(std::max(0.0, variance)) / result.spacing_mean;
         return result;
     }
 

@@ -233,12 +233,12 @@ bool is_count_due(int iteration)
            (iteration - first_count_change) % count_change_interval == 0;
 }
 
-/// Whether the spread has come down by less than 5 per cent over ten iterations.
-bool has_settled(const std::vector<double>& spreads)
+/// Whether the coefficient of variation has fallen by less than 5 per cent over ten iterations.
+bool has_settled(const std::vector<double>& variations)
 {
     constexpr std::size_t apart = 10;
-    return spreads.size() > std::size_t{last_count_change} + apart &&
-           spreads.back() > 0.95 * spreads[spreads.size() - 1 - apart];
+    return variations.size() > std::size_t{last_count_change} + apart &&
+           variations.back() > 0.95 * variations[variations.size() - 1 - apart];
 }
 
 } // namespace
@@ -259,7 +259,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     const double wall_reach = 2 * options.h_dp - behind_wall;
     const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
     const int last = options.iterations > 0 ? options.iterations : most_iterations;
-    std::vector<double> spreads;
+    std::vector<double> variations;
     float kept = momentum;
     renew_walls(band, list, wall_reach, true, surroundings.closest, threads);
     for (int iteration = 1; iteration <= last; ++iteration)
@@ -286,13 +286,13 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         report.iterations = iteration;
         report.pushed_back += steps.pushed_back;
         report.shepard_mean = mean;
-        report.shepard_std = std::sqrt(std::max(0.0, variance)) / mean;
-        spreads.push_back(report.shepard_std);
+        report.shepard_variation = std::sqrt(std::max(0.0, variance)) / mean;
+        variations.push_back(report.shepard_variation);
         if (options.on_iteration &&
-            !options.on_iteration({iteration, report.shepard_mean, report.shepard_std,
+            !options.on_iteration({iteration, report.shepard_mean, report.shepard_variation,
                                    static_cast<double>(steps.largest_step)}))
             break;
-        if (options.iterations == 0 && has_settled(spreads)) break;
+        if (options.iterations == 0 && has_settled(variations)) break;
     }
     list = NeighbourList(0, 0); // its memory is needed for the result
     give_back(band, options, positions, report);

@@ -121,7 +121,7 @@ private:
         {
             return observe({"surface", p.iteration,
                             settings.iterations.value_or(surface_iterations), p.particles,
-                            p.spacing_mean, p.spacing_deviation, p.largest_displacement});
+                            p.spacing_mean, p.spacing_variation, p.largest_displacement});
         };
         options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
         options.on_snapshot = [&](int iteration, const WallParticles& now)
@@ -170,9 +170,9 @@ private:
         part.particles = particles.size();
         part.inserted = done.inserted;
         part.removed = done.removed;
-        part.deviation_before = done.before.spacing_deviation;
+        part.variation_before = done.before.spacing_variation;
         part.mean = done.after.spacing_mean;
-        part.deviation = done.after.spacing_deviation;
+        part.variation = done.after.spacing_variation;
         report_.parts.push_back(part);
     }
 
@@ -467,7 +467,7 @@ private:
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations, movers.size(),
-                            p.shepard_mean, p.shepard_std, p.largest_step_dp});
+                            p.shepard_mean, p.shepard_variation, p.largest_step_dp});
         };
         const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
         keep_moved(region, all, movers, positions, done.sources);
@@ -482,7 +482,7 @@ private:
         part.inserted = done.inserted;
         part.removed = done.removed;
         part.mean = done.shepard_mean;
-        part.deviation = done.shepard_std;
+        part.variation = done.shepard_variation;
         report_.parts.push_back(part);
     }
 

@@ -296,7 +296,7 @@ TEST(CompareResults, MeasuresTheDistanceToTheGeometryOfWhatIsNear)
     CompareOptions options;
     options.geometry = {folder / "ground.stl"};
     const Comparison found = compare_sets(box_of(6, 5, 4), box_of(6, 5, 4), options);
-    const Spread& distance = mk_of(found, 10).distance_dp[0];
+    const Statistics& distance = mk_of(found, 10).distance_dp[0];
     EXPECT_EQ(distance.count, 60U) << "layers z = 0 and z = 1";
     EXPECT_NEAR(distance.mean, 0.75, 1e-9);
     EXPECT_NEAR(distance.deviation, 0.5, 1e-8);

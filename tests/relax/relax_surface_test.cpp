@@ -79,7 +79,7 @@ struct Named
     const char* name;
     TriangleSoup soup;
     double dp;
-    double deviation; ///< allowed; more where lines crowd
+    double variation; ///< allowed; more where lines crowd
 };
 
 std::vector<Named> shapes()
@@ -135,7 +135,7 @@ TEST(RelaxSurface, SpreadsParticlesEvenly)
         Walls walls(shape.soup, shape.dp);
         const RelaxSurfaceReport report = walls.relax(2);
         EXPECT_LE(report.after.iteration, 100) << shape.name;
-        EXPECT_LE(report.after.spacing_deviation, shape.deviation) << shape.name;
+        EXPECT_LE(report.after.spacing_variation, shape.variation) << shape.name;
         EXPECT_GE(report.after.spacing_mean, 0.93) << shape.name;
         EXPECT_LE(report.after.spacing_mean, 1.10) << shape.name;
     }
@@ -269,7 +269,7 @@ TEST(RelaxSurface, KeepsAWholeStateWhenToldToStop)
     };
     const RelaxSurfaceReport report = walls.relax();
     EXPECT_EQ(report.after.iteration, 12);
-    EXPECT_LT(report.after.spacing_deviation, report.before.spacing_deviation);
+    EXPECT_LT(report.after.spacing_variation, report.before.spacing_variation);
     EXPECT_LE(farthest_point(walls), 0.75);
     for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
 }
@@ -395,7 +395,7 @@ TEST(RelaxSurface, CrossesAnyNumberOfNarrowFacets)
     const RelaxSurfaceReport report = walls.relax();
     EXPECT_GT(report.projected, 0u);
     EXPECT_EQ(report.returned, 0u);
-    EXPECT_LT(report.after.spacing_deviation, 0.06);
+    EXPECT_LT(report.after.spacing_variation, 0.06);
     EXPECT_LE(farthest_point(walls), 0.75);
     for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
 }

@@ -164,7 +164,7 @@ TEST(RelaxWalls, KeepsASolidSphereWithinItsWall)
     const Relaxed relaxed(drawing);
     const auto depth = [](const Vec3& p) { return 1.1 - norm(p - center); };
     expect_relaxed_solid(relaxed, depth);
-    EXPECT_LT(relaxed.part("surface").deviation, 0.7 * relaxed.part("surface").deviation_before);
+    EXPECT_LT(relaxed.part("surface").variation, 0.7 * relaxed.part("surface").variation_before);
     for (const Vec3& p : relaxed.after.walls.particles.positions) EXPECT_NEAR(depth(p), 0, 1e-12);
     for (std::size_t i = 0; i < relaxed.after.walls.volume.size(); ++i)
         EXPECT_NEAR(relaxed.after.walls.volume.distances[i],

@@ -93,8 +93,8 @@ void relax(fppg::SurfaceMesh& mesh, const fppg::Features& features,
         "%.4f +- %.4f, %zu projected, %zu returned\n   %.3f s (%.3f s of processor, "
         "%.3f us a particle and iteration)\n",
         report.after.iteration, walls.size(), report.inserted, report.removed,
-        report.before.spacing_mean, report.before.spacing_deviation, report.after.spacing_mean,
-        report.after.spacing_deviation, report.projected, report.returned, seconds, cpu_seconds,
+        report.before.spacing_mean, report.before.spacing_variation, report.after.spacing_mean,
+        report.after.spacing_variation, report.projected, report.returned, seconds, cpu_seconds,
         1e6 * cpu_seconds / updates);
     particles.positions = std::move(walls.positions);
     particles.kinds = std::move(walls.kinds);

@@ -34,7 +34,7 @@ using fppg::Vec3;
 std::atomic<std::size_t> allocated{0};
 std::atomic<std::size_t> allocated_at_peak{0};
 
-struct Spread
+struct Statistics
 {
     double mean = 0;
     double std = 0;
@@ -42,9 +42,9 @@ struct Spread
     double max = 0;
 };
 
-Spread spread_of(const std::vector<double>& values)
+Statistics statistics_of(const std::vector<double>& values)
 {
-    Spread s;
+    Statistics s;
     if (values.empty()) return s;
     for (const double v : values) s.mean += v / static_cast<double>(values.size());
     for (const double v : values)
@@ -239,9 +239,9 @@ int main(int argc, char** argv)
             std::vector<double> near;
             for (std::size_t i = 0; i < sums.size(); ++i)
                 if (distances[i] < 2.6) near.push_back(sums[i]);
-            return spread_of(near);
+            return statistics_of(near);
         };
-        const Spread s = banded(fppg::shepard_sums(moving, around, shepard, threads));
+        const Statistics s = banded(fppg::shepard_sums(moving, around, shepard, threads));
         std::printf("%s: S mean %.4f std %.2f %% min %.3f max %.3f", when, s.mean, 100 * s.std,
                     s.min, s.max);
         if (has_quadrature)
@@ -251,7 +251,7 @@ int main(int argc, char** argv)
             auto sums = fppg::shepard_sums(moving, without, shepard, threads);
             const auto more = sums_from(moving, beyond, 1.0 / 64, dp, shepard.h_dp, threads);
             for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
-            const Spread t = banded(sums);
+            const Statistics t = banded(sums);
             std::printf("; by quadrature mean %.4f std %.2f %% min %.3f max %.3f", t.mean,
                         100 * t.std, t.min, t.max);
         }
@@ -274,7 +274,7 @@ int main(int argc, char** argv)
                 nearest[i] = std::min(nearest[i], norm(all[i] - all[j]) / dp);
                 return false;
             });
-        const Spread nn = spread_of(nearest);
+        const Statistics nn = statistics_of(nearest);
         const auto side = std::count_if(moving.begin(), moving.end(),
                                         [&](const Vec3& p)
                                         {
@@ -294,7 +294,7 @@ int main(int argc, char** argv)
     {
         if (p.iteration <= 5 || p.iteration % 10 == 0)
             std::printf("   %3d: S %.4f %.2f %%, largest step %.4f\n", p.iteration, p.shepard_mean,
-                        100 * p.shepard_std, p.largest_step_dp);
+                        100 * p.shepard_variation, p.largest_step_dp);
         return true;
     };
     const auto before = moving;

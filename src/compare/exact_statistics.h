@@ -12,7 +12,7 @@ namespace fppg
 
 /// Adds up numbers from 0 to 3.9 as whole multiples of 2^-30, so that a sum has the same bits in
 /// any order. Up to 2^32 numbers.
-class ExactSpread
+class ExactStatistics
 {
 public:
     void add(double value, const HistogramRange& range)
@@ -25,23 +25,24 @@ public:
         least_ = std::min(least_, quanta);
         largest_ = std::max(largest_, quanta);
         const double share = (clamped - range.begin) / (range.end - range.begin);
-        const double bin = std::clamp(std::floor(share * Spread::bins), 0.0, Spread::bins - 1.0);
+        const double bin =
+            std::clamp(std::floor(share * Statistics::bins), 0.0, Statistics::bins - 1.0);
         ++histogram_[static_cast<std::size_t>(bin)];
     }
 
-    void add(const ExactSpread& other)
+    void add(const ExactStatistics& other)
     {
         count_ += other.count_;
         sum_ += other.sum_;
         squares_ += other.squares_;
         least_ = std::min(least_, other.least_);
         largest_ = std::max(largest_, other.largest_);
-        for (std::size_t b = 0; b < Spread::bins; ++b) histogram_[b] += other.histogram_[b];
+        for (std::size_t b = 0; b < Statistics::bins; ++b) histogram_[b] += other.histogram_[b];
     }
 
-    Spread spread() const
+    Statistics statistics() const
     {
-        Spread out;
+        Statistics out;
         if (count_ == 0) return out;
         out.count = count_;
         const auto n = static_cast<double>(count_);
@@ -63,7 +64,7 @@ private:
     Wide squares_ = 0;
     std::uint64_t least_ = UINT64_MAX;
     std::uint64_t largest_ = 0;
-    std::array<std::uint64_t, Spread::bins> histogram_{};
+    std::array<std::uint64_t, Statistics::bins> histogram_{};
 };
 
 } // namespace fppg
