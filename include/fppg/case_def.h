@@ -83,7 +83,7 @@ struct RelaxSettings
     /// Particles inside the solid up to this far from its surface move, in dp; 0: none; may be
     /// infinite.
     double band_dp = 3;
-    /// The wall particles are written as a picture after every so many iterations; 0: never.
+    /// Iterations between two pictures of the wall particles; 0: none.
     int snapshots = 0;
     bool operator==(const RelaxSettings&) const = default;
 };

@@ -184,9 +184,9 @@ struct Comparison
 ///          finite place
 /// cost     Files are mapped, never copied. Space is cut into slabs across its longest axis, so
 ///          that a slab and 9 dp on both sides hold `particles_at_once` particles of both files at
-///          most, but it is never thinner than 1.3 dp: memory is about 160 bytes a particle of
+///          most, but it is never thinner than 1.3 dp: memory is about 160 bytes per particle of
 ///          such a slab, 16 bytes for every 32,768 particles of a file, the meshes, and a few
-///          kilobytes an mk and thread. A hundred million particles in a cube, cut into single
+///          kilobytes per mk and thread. A hundred million particles in a cube, cut into single
 ///          layers, need 0.4 GB a file. About 1 microsecond a particle on one core
 Comparison compare_results(const std::string& name_a, const std::string& name_b,
                            const CompareOptions& options);

@@ -11,7 +11,7 @@ namespace fppg
 /// of all its shapes by the corners these have then.
 MeshReading reading_to_clip(MeshReading reading);
 
-/// The domain of a case (`<pointmin>` to `<pointmax>`), so many metres farther out on all sides.
+/// The domain of a case (`<pointmin>` to `<pointmax>`), this many metres farther out on all sides.
 Box3 clip_box(const Vec3& domain_min, const Vec3& domain_max, double resize);
 
 /// Whether all corners, points and lines of a mesh, chosen or not, lie in a box: GenCase v5.4.354

@@ -233,7 +233,7 @@ struct MeshFileOp
     std::string container; ///< the VTM file that names it, or empty
     MeshReading reading;   ///< what the file is, and which of its shapes are drawn
     Transform transform;   ///< scale, rotation and move of the command, then the current matrix
-    /// `<clipdomain>`: the surface is cut at the domain grown by so many metres on all sides.
+    /// `<clipdomain>`: the surface is cut at the domain grown by this many metres on all sides.
     std::optional<double> clip_resize;
     bool autofill = false;
     bool advanced =
@@ -358,7 +358,7 @@ struct CavityFillOp
     Vec3 up{0, 0, 1}; ///< of length 1; in 2D with a part in the plane
     FillMeasure measure = FillMeasure::Percent;
     double amount = 100;
-    int gap_nodes = 1; ///< openings up to so many nodes wide are closed; 0: none
+    int gap_nodes = 1; ///< openings up to this many nodes wide are closed; 0: none
 };
 
 /// `cellsout`: writes the cells of the nodes as they are now.

@@ -81,8 +81,8 @@ struct ExclusionBand
 /// threads  number of threads; the result does not depend on it
 /// throws   GeometryError when the zone needs more memory than there is, the mesh spans more than
 ///          2^31 dp, or a given clearance is not between 0.5 and 1
-/// cost     about 0.3 microseconds a node within 1 dp and 0.1 a facet smaller than dp; 30 bytes
-///          a node at its peak
+/// cost     about 0.3 microseconds per node within 1 dp and 0.1 per facet smaller than dp; 30 bytes
+///          per node at its peak
 ExclusionBand exclusion_band(const SurfaceMesh& mesh, const MeshReport& report,
                              const LatticeGrid& grid, const ExclusionBandOptions& options,
                              int threads);

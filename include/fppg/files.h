@@ -93,12 +93,12 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
 
 /// Writes `_MkCells.vtk`: the faces between cells (dp wide, centred on the nodes) of different mk,
 /// merged into rectangles, each drawn 0.001 dp inside its own cell (nodes in the zone of a fitted
-/// wall as those of its mk); CELL_DATA Mk (unsigned_short)
-/// and Type (unsigned_char, 0 fixed, 1 moving, 2 floating, 3 fluid). Between two cells that carry
-/// different mk both faces are drawn. Normals point outwards. A 2-D field is drawn as the areas of
-/// its cells instead, at 0.001 dp above its y. Made from runs: cost grows with the number of runs,
-/// not with nodes. The area covered by each mk and direction is that of GenCase v5.4.354; its
-/// choice of rectangles is another one.
+/// wall as those of its mk); CELL_DATA Mk (unsigned_short) and Type (unsigned_char, 0 fixed, 1
+/// moving, 2 floating, 3 fluid). Between two cells that carry different mk both faces are drawn.
+/// Normals point outwards. A 2-D field is drawn as the areas of its cells instead, at 0.001 dp
+/// above its y. Made from runs: cost grows with the number of runs, not with nodes. The area
+/// covered by each mk and direction is that of GenCase v5.4.354; its choice of rectangles is
+/// another one.
 ///
 /// type_of_mk  size 65536: the ParticleType of every mk
 /// throws      IoError if the file cannot be written, or from 536,870,912 rectangles on
@@ -133,7 +133,7 @@ struct ShapePolygons
     int mk = 0; ///< absolute; -1 void
     std::vector<Vec3> vertices;
     std::vector<std::vector<std::uint32_t>>
-        polygons; ///< 1 index a point, 2 a line, 3 and more a face
+        polygons; ///< 1 index for a point, 2 for a line, 3 and more for a face
 };
 
 /// Writes shapes as legacy binary VTK: points of all objects in order, then VERTICES, LINES and

@@ -11,8 +11,8 @@ namespace fppg
 
 enum class FitDensity : std::uint8_t
 {
-    Area, ///< one particle a dp^2 of surface
-    Cell, ///< one a crossed cell of the background lattice, as the paper: 1.0 to 1.7 a dp^2 by tilt
+    Area, ///< one particle per dp^2 of surface
+    Cell, ///< one per crossed cell, as the paper: 1.0 to 1.7 per dp^2 by tilt
 };
 
 struct FitOptions
@@ -39,7 +39,7 @@ struct SurfaceParticles
     std::vector<std::uint32_t> facets; ///< a facet of the mesh that the particle lies on
 };
 
-/// Particles on the true surface of a mesh: those of its features, and between them one a dp^2 or
+/// Particles on the true surface of a mesh: those of its features, and between them one per dp^2 or
 /// one a crossed cell. Positions lie on the facets to rounding of double.
 ///
 /// Area: no surface point is farther than 0.92 dp from a particle, and no surface particle is
@@ -51,7 +51,7 @@ struct SurfaceParticles
 ///
 /// Cell: every cell of the lattice (the cube of side dp around each node) that a facet crosses or
 /// touches is mapped to the surface point nearest to its node; points within 0.001 dp of another
-/// count once. They may lie as near one another as they come.
+/// count once. They may lie arbitrarily close.
 ///
 /// mesh, features, feature_particles  belong together, as repair_mesh(), find_features() and
 ///                                    place_feature_particles() made them
@@ -59,8 +59,8 @@ struct SurfaceParticles
 /// throws   GeometryError for Cell when the mesh has no facet or spans more than 2^30 dp
 /// source   a hexagonal front of spacing 1.075 dp that starts from rows 0.93 dp off the feature
 ///          lines, then farthest-point insertion in the holes; constants by trial on ten shapes
-/// cost     about 1.3 microseconds a particle on one core, 90 bytes a particle at its peak; more
-///          where features crowd or facets are far smaller than dp
+/// cost     about 1.3 microseconds per particle on one core, 90 bytes per particle at its peak;
+///          more where features crowd or facets are far smaller than dp
 SurfaceParticles fit_surface(const SurfaceMesh& mesh, const Features& features,
                              const std::vector<FeatureParticle>& feature_particles,
                              const FitOptions& options, int threads);

@@ -115,7 +115,7 @@ struct WallParticles
     }
     /// Takes particles out; the others keep their order.
     ///
-    /// is_out  one entry a particle
+    /// is_out  one entry per particle
     void erase(const std::vector<char>& is_out)
     {
         const auto compact = [&](auto& values)

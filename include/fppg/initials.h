@@ -44,8 +44,9 @@ struct ProfileVelocity
     std::vector<double> z;      ///< where they hold; all different
 };
 
-/// `<velwave>`: the horizontal velocity of a solitary wave,
-/// u_x = sqrt(g / depth) H sech^2(sqrt(3 H / (4 depth^3)) (x - x0)), the same at every z.
+/// `<velwave>`: the horizontal velocity of a solitary wave, the same at every z:
+///
+///     u_x = sqrt(g / depth) H sech^2(sqrt(3 H / (4 depth^3)) (x - x0))
 struct WaveVelocity
 {
     double depth = 0;

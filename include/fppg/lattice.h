@@ -123,8 +123,7 @@ RunField plain_nodes(const RunField& field, int threads);
 /// field   with all that was drawn; its nodes stay, empty ones where fluid comes get its mk and
 ///         are covered, so that water columns count it
 /// throws  IoError, GeometryError for the files; GeometryError that names the point and its line
-/// for
-///         one outside the domain (between its first and last nodes; in 2D off its plane)
+///         for one outside the domain (between its first and last nodes; in 2D off its plane)
 /// warns   of points nearer than dp/2 to a drawn node that is a particle, or equal to another one
 void add_point_files(const Scene& scene, RunField& field, LatticeReport& report);
 

@@ -107,7 +107,7 @@ struct NormalsReport
 /// particles  at their places after `<initials>`
 /// geometry   the polygons of def.normals.geometry's file; not used without
 /// threads    number of threads; the result does not depend on it
-/// returns    one vector a boundary particle, in id order, metres
+/// returns    one vector per boundary particle, in id order, metres
 /// throws     CaseError for norparts in 3-D
 /// cost       O((particles + polygons) log polygons + candidates) time, 12 bytes per boundary
 ///            particle

@@ -175,7 +175,7 @@ struct CaseParticles
 
     /// Fluid density. When gravity is along z (or zero), `rhop` is empty and the node `s` steps
     /// below the highest node of a run has rhop_of_depth[run.depth + s]. Otherwise `rhop` holds one
-    /// value a fluid particle, in id order, those off the lattice too. Boundary and floating
+    /// value per fluid particle, in id order, those off the lattice too. Boundary and floating
     /// particles have rhop0. Particles off the lattice have free.rhop.
     std::vector<float> rhop_of_depth;
     std::vector<float> rhop;
@@ -195,22 +195,21 @@ struct CaseDef;
 /// order and ids (rules N1 to N4), floating bodies, densities and hswl by GenCase's formulas.
 /// `<initials>` are distributed over the blocks; floating bodies and limits are those after it.
 ///
-/// With fitted walls, covered nodes give no particle; the particles of
-/// field.walls join the block of their mk. In the order of a block all positions are compared as
-/// doubles; at equal ones nodes come first, then the particles of walls, then those of the volume.
-/// Fluid of `<setfrdrawmode>` has rhop0, as in GenCase, unless def.hydrostatic_off_lattice. Another
-/// fluid particle off the lattice has the density of its true place below the top of the water
-/// column of its nearest node; where that is no water, of the nearest node of water within 4 dp,
-/// and rhop0 where there is none.
+/// With fitted walls, covered nodes give no particle; the particles of field.walls join the block
+/// of their mk. In the order of a block all positions are compared as doubles; at equal ones nodes
+/// come first, then the particles of walls, then those of the volume. Fluid of `<setfrdrawmode>`
+/// has rhop0, as in GenCase, unless def.hydrostatic_off_lattice. Another fluid particle off the
+/// lattice has the density of its true place below the top of the water column of its nearest node;
+/// where that is no water, of the nearest node of water within 4 dp, and rhop0 where there is none.
 ///
 /// threads    number of threads; the result does not depend on it
 /// constants  filled: what the definition fixes, the rest by formula
 /// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b
-/// zero
+///            zero
 /// throws    CaseError when a block is both moving and floating, a move leads out of the domain, or
-/// there are more particles than ids
+///           there are more particles than ids
 /// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
-/// or `<initials>` need every place; O(n log n) for n particles off the lattice
+///           or `<initials>` need every place; O(n log n) for n particles off the lattice
 CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
                              CaseConstants& constants, std::vector<std::string>& warnings);
 

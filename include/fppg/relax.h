@@ -23,10 +23,10 @@ struct RelaxProgress
 struct RelaxSurfaceOptions
 {
     double dp = 0; ///< metres, above 0
-    /// Smoothing length in dp, 0.5 to 2. A layer of one particle a dp^2 is unstable from 0.95 to
+    /// Smoothing length in dp, 0.5 to 2. A layer of one particle per dp^2 is unstable from 0.95 to
     /// 1.05 and at 1.5.
     double h = 0.8;
-    int iterations = 0;       ///< exactly so many; 0: until the spacing no longer improves
+    int iterations = 0;       ///< exactly this many; 0: until the spacing no longer improves
     int max_iterations = 100; ///< where the number is not fixed
     /// It no longer improves when its coefficient of variation falls by less than this in 30
     /// iterations; not judged before 60.
@@ -34,8 +34,8 @@ struct RelaxSurfaceOptions
     /// Called after every iteration. False ends the relaxation, and the state reached is kept;
     /// what it throws is passed on, and the particles stay as they were given.
     std::function<bool(const RelaxProgress&)> on_progress = {};
-    /// Called with the particles as they stand, on their facets, after every so many iterations; 0:
-    /// never. What it throws is passed on.
+    /// Iterations between two calls with the particles as they stand, on their facets; 0: no call.
+    /// What it throws is passed on.
     int snapshot_interval = 0;
     std::function<void(int iteration, const WallParticles&)> on_snapshot = {};
     /// Where particles may be put into holes, by index of the body, position and normal of the
@@ -71,15 +71,15 @@ struct RelaxSurfaceReport
 /// particles  by body; those of a body keep their order, and new ones follow at its end with the mk
 ///            of the particle nearest to them, or that of their facet where the nearest one is of
 ///            another part of a combination
-/// held       empty, or one a particle: not 0 holds it still. Kept in step with the particles; a
-/// new
-///            one next to a held surface particle is held
+/// held       empty, or one value per particle: one that is not 0 holds it still. Kept in step with
+///            the particles; a new one next to a held surface particle is held
 /// threads    number of threads; the result does not depend on it
 /// throws     GeometryError for a dp or h out of range; what on_progress throws
 /// source     FPPG paper, "Interparticle force": equation 15 with equal target pressures and
 ///            Wendland's kernel, and a short push below 0.8 dp. Steps follow a heavy-ball scheme
 ///            with restart instead of the paper's damped time integration: half the iterations
-/// cost       about 0.25 microseconds a particle and iteration on one core, 300 bytes a particle
+/// cost       about 0.25 microseconds per particle and iteration on one core, 300 bytes per
+///            particle
 RelaxSurfaceReport relax_surface(const std::vector<FittedBody>& bodies, WallParticles& particles,
                                  std::vector<char>& held, const RelaxSurfaceOptions& options,
                                  int threads);

@@ -96,7 +96,7 @@ struct RelaxVolumeReport
 /// Forces are those of equation 15 of the FPPG paper with one target density for all particles:
 ///   f_i = -sum_j grad W(x_i - x_j),
 /// W of Wendland (C2) with the factor for which its integral is 1, so that sums are in units of one
-/// particle a dp^3 (dp^2 in 2D). The paper prints p for the target density rho in equations 6 and
+/// particle per dp^3 (dp^2 in 2D). The paper prints p for the target density rho in equations 6 and
 /// 15; with one density it is a constant, which belongs to the step. The division by the Shepard
 /// sum of equation 8 is left out: the support is full everywhere, see below, so the sum is 1 to a
 /// few per cent and only scales the step.

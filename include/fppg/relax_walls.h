@@ -29,9 +29,9 @@ struct RelaxStep
 /// kept.
 using RelaxObserver = std::function<bool(const RelaxStep&)>;
 
-/// Called with all wall particles as they stand, on their facets, after every so many iterations as
-/// RelaxSettings::snapshots says. Where several surfaces are relaxed one after the other, their
-/// iterations are counted on.
+/// Called with all wall particles as they stand, on their facets, each time after the iterations
+/// that RelaxSettings::snapshots says. Where several surfaces are relaxed one after the other,
+/// their iterations are counted on.
 using RelaxSnapshot = std::function<void(int iteration, const WallParticles&)>;
 
 /// What one relaxation did.

@@ -85,7 +85,7 @@ Rgb colour_of_kind(std::uint8_t kind);
 /// returns  an image of the size asked for
 /// throws   UsageError if the options are out of range, no particle is left to draw, or the colour
 ///          is by kind and a cloud has no kinds
-/// cost     about 80 bytes a particle besides the clouds; a million particles at 1600 x 1200 take
+/// cost     about 80 bytes per particle besides the clouds; a million particles at 1600 x 1200 take
 ///          1.5 s of processor time, with reading and PNG (AMD EPYC)
 Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOptions& options,
                        int threads);

@@ -14,7 +14,7 @@ namespace fppg
 /// No facet, no vertex, no edge.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFF;
 
-/// A mesh with welded vertices, ready for walking over it.
+/// A mesh with welded vertices, with connectivity for traversal.
 ///
 /// Facet f has the corners facets[f], counter-clockwise from outside; its side s runs from corner s
 /// to corner (s + 1) % 3, belongs to edge facet_edges[f][s] and leads to facet neighbours[f][s]
@@ -47,7 +47,7 @@ struct MeshReport
     std::size_t joined_corners = 0;    ///< moved onto another corner, as facets did not meet
     double joined_within = 0;          ///< metres; the largest distance for that
     std::size_t duplicate_facets = 0;  ///< dropped: same three corners as an earlier one
-    std::size_t inner_wall_facets = 0; ///< dropped: two that look at each other between two bodies
+    std::size_t inner_wall_facets = 0; ///< dropped: coincident opposite facets between two bodies
     std::size_t degenerate_facets = 0; ///< dropped: no area after welding
     std::size_t flipped_facets = 0; ///< turned to agree with their neighbours or to look outwards
     std::size_t open_edges = 0;

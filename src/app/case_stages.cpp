@@ -10,6 +10,7 @@
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -170,9 +171,8 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
               });
     if (run.options.strict && !run.diagnostics.empty())
         throw CaseError(
-            fmt::format("-strict: {} warning{} count as errors, nothing is "
-                        "written:\n  {}",
-                        run.diagnostics.size(), run.diagnostics.size() == 1 ? "" : "s",
+            fmt::format("-strict: {} as errors, nothing is written:\n  {}",
+                        counted(run.diagnostics.size(), "warning counts", "warnings count"),
                         fmt::join(run.diagnostics, "\n  ")));
 }
 

@@ -22,7 +22,7 @@ namespace fppg
 namespace
 {
 
-/// Ways to change that pictures tell apart, in the order of their colours.
+/// Ways to change that pictures show, in the order of their colours.
 constexpr const char* changes[] = {"missing", "extra", "moved", "another mk"};
 
 constexpr std::size_t most_in_picture = 1500000;

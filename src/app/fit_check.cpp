@@ -22,7 +22,7 @@ constexpr double largest_deviation = 0.02 + 1e-9;
 constexpr double nearly_all = 0.98;
 /// A plate of this mean thickness or less has no room for nodes between the particles of its sides.
 constexpr double thin_dp = 2;
-/// Below so many dp^2 the particles of edges and corners are a share of all that counts.
+/// Below this many dp^2 the particles of edges and corners are a share of all that counts.
 constexpr double small_surface = 1000;
 /// Of the particles of a wall: its edges are close to one another.
 constexpr double many_on_edges = 0.25;

@@ -39,7 +39,7 @@ bool is_off(double share);
 
 /// Compares the particles of every fitted body with its shape, for the whole of it: what the domain
 /// and later draws cut off counts as if it were there. Writes both to the log: the particles on its
-/// surface against one a dp^2 and, of solids, the volume that they and the nodes inside stand for
+/// surface against one per dp^2 and, of solids, the volume that they and the nodes inside stand for
 /// (half of dp^3 each on the surface) against that of the shape.
 ///
 /// returns  a warning for each reason why bodies are off by more than 2 %, with their mks

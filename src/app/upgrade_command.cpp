@@ -1,6 +1,7 @@
 #include "app/upgrade_command.h"
 
 #include "app/subcommand_line.h"
+#include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "upgrade/upgrade.h"
@@ -60,20 +61,15 @@ std::string back_up(const std::string& path)
     }
 }
 
-const char* plural(std::size_t n)
-{
-    return n == 1 ? "" : "s";
-}
-
 void tell(const std::string& path, const UpgradedDefinition& upgraded)
 {
     for (const UpgradeChange& c : upgraded.changes)
         fmt::print("{}:{}: {}  ->  {}\n", path, c.line, c.from, c.to);
     for (const UpgradeNote& n : upgraded.notes)
         fmt::print("{}:{}: note: {}\n", path, n.line, n.text);
-    fmt::print("{}: {} change{}", path, upgraded.changes.size(), plural(upgraded.changes.size()));
+    fmt::print("{}: {}", path, counted(upgraded.changes.size(), "change", "changes"));
     if (!upgraded.notes.empty())
-        fmt::print(", {} note{}", upgraded.notes.size(), plural(upgraded.notes.size()));
+        fmt::print(", {}", counted(upgraded.notes.size(), "note", "notes"));
 }
 
 void upgrade(const std::string& name, const UpgradeCall& call)

@@ -26,7 +26,7 @@ double now()
         .count();
 }
 
-/// What goes wrong between fork and the program is told by this exit code, as shells do.
+/// The exit code for what goes wrong between fork and the program, as shells have it.
 constexpr int cannot_start = 127;
 
 } // namespace

@@ -25,7 +25,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The area of shapes that reach out of the domain is found with so many points.
+/// The area of shapes that reach out of the domain is found with this many points.
 constexpr double area_samples = 20000;
 /// Particles on a surface, as a multiple of area / dp^2 with density="cell": between 1.0 and 1.7
 /// by the tilt of the surface.

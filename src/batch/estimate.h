@@ -29,7 +29,7 @@ struct EstimatedBlock
     bool is_exact = true; ///< false: a body-fitted wall
 };
 
-/// What a case needs, told beforehand.
+/// What a case needs, estimated before it runs.
 struct Estimate
 {
     std::string definition;

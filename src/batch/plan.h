@@ -34,7 +34,7 @@ Plan read_plan(const std::string& folder);
 std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
                                 const std::vector<RunRecord>& estimates);
 
-/// A command a run, one a line, as GNU parallel takes them.
+/// One command per run, one per line, as GNU parallel takes them.
 std::string task_lines(const std::string& folder, const Plan& plan);
 
 /// A word for the shell, quoted where it has to be.

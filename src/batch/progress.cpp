@@ -1,6 +1,7 @@
 #include "batch/progress.h"
 
 #include "core/json.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -90,8 +91,7 @@ void Progress::finished(const BatchRun& run, const RunRecord& record)
     else
         text += name_of(record.state);
     if (!record.warnings.empty())
-        text += fmt::format(", {} warning{}", record.warnings.size(),
-                            record.warnings.size() == 1 ? "" : "s");
+        text += fmt::format(", {}", counted(record.warnings.size(), "warning", "warnings"));
     if (!record.error.empty()) text += ": " + first_line(record.error);
     fmt::print("{}\n", text);
     std::fflush(stdout);

@@ -23,7 +23,7 @@ BatchCounts count_states(const std::vector<RunRecord>& records);
 /// Writes summary.csv, summary.json and report.html into a folder. report.html needs no other file:
 /// pictures are inside it.
 ///
-/// records  one a run
+/// records  one per run
 /// throws   IoError
 void write_summary(const std::string& folder, const std::vector<BatchRun>& runs,
                    const std::vector<RunRecord>& records);

@@ -31,7 +31,7 @@ struct BatchRun
 /// fastest, cases in the order of their paths or of the list.
 ///
 /// source   a folder, searched with those in it for `*_Def.xml` (but not `out`), or a file that
-///          lists cases, one a line, relative to its own folder; blank lines and those that begin
+///          lists cases, one per line, relative to its own folder; blank lines and those that begin
 ///          with '#' do not count; ".xml" may be left out; or one definition `.xml`
 /// out      absolute folder of results; a run's files lie in out/<name>/<case>, <case> without
 ///          "_Def"

@@ -29,7 +29,7 @@ struct Arrangement
 
 /// Cuts meshes along each other. What crosses within one mesh stays as it is.
 ///
-/// Whether a side of a facet passes through another facet is told by exact predicates; what is
+/// Whether a side of a facet passes through another facet is decided by exact predicates; what is
 /// nearer than merge_distance counts as touching: a vertex at a vertex, on a side or on a facet,
 /// sides that meet. A vertex found by several facets is one vertex, so neighbours stay side to
 /// side. Facets that overlap in one plane are cut up together, so that the part that they share is

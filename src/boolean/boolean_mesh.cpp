@@ -78,7 +78,7 @@ public:
             const Vec3* c = &closed_.soup.vertices[3 * static_cast<std::size_t>(closest.facet)];
             const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
             const double across = dot(n, normal) / norm(n);
-            // A surface that only comes near at an angle is told by what is behind it.
+            // A surface that only comes near at an angle is judged by what is behind it.
             if (std::abs(across) > 0.999) return across > 0 ? Where::OnSame : Where::OnOpposite;
         }
         return inside_->is_inside(p) ? Where::Inside : Where::Outside;

@@ -19,8 +19,9 @@ struct PlanePoint
 /// A constrained triangulation of points in a plane. It covers a triangle far around them, whose
 /// corners are the three points behind the given ones.
 ///
-/// All sides are told by exact predicates, so that it is a valid triangulation whatever the
-/// points; it is that of Delaunay but for rounding and constraints.
+/// Exact predicates decide all sides, so that it is a valid triangulation whatever the points; it
+/// is that of Delaunay but for rounding and constraints.
+///
 /// Source: C. L. Lawson, Software for C1 surface interpolation, 1977 (points by flips); S. W.
 /// Sloan, A fast algorithm for generating constrained Delaunay triangulations, 1993.
 class PlaneTriangulation

@@ -3,7 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/expression.h"
-#include "core/letters.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Commands that fill and redraw.
 #include "casedef/command_table.h"
-#include "core/letters.h"
+#include "core/text.h"
 #include "shapes/polyhedra.h"
 
 #include <fmt/format.h>

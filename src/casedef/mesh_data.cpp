@@ -2,7 +2,7 @@
 
 #include "core/binary_items.h"
 #include "core/file_map.h"
-#include "core/letters.h"
+#include "core/text.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>

@@ -12,8 +12,7 @@ namespace fppg
 ///
 /// warnings  appended where GenCase v5.4.354 does something that its user hardly expects
 /// throws    CaseError for what GenCase refuses: unknown children, a second norgeometry,
-/// norgeometry
-///           with a selection, missing values
+///           norgeometry with a selection, missing values
 NormalsDef read_normals(const Element& list, const CaseDef& def, const AttributeReader& read,
                         std::vector<std::string>& warnings);
 

@@ -1,7 +1,7 @@
 // Commands that write files of shapes and nodes.
 #include "casedef/command_table.h"
 
-#include "core/letters.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "casedef/patterns.h"
 
-#include "core/letters.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 

@@ -23,8 +23,7 @@ inline constexpr std::size_t many_points = 100'000'000;
 ///
 /// State (rules O1 to O4, T1 to T4, found by experiment with GenCase v5.4.354):
 /// - every transform multiplies the current matrix on the right: the one written last acts first.
-/// Points
-///   of draws, fills and redraws all go through it
+///   Points of draws, fills and redraws all go through it
 /// - a clip stands at the coordinates written, whatever the matrix is then. Every transform after
 ///   it, matrixload, matrixreset and stateload too but not matrixsave, puts all clips at their
 ///   coordinates under the matrix that it leaves; clips defined later begin under that matrix,
@@ -37,8 +36,7 @@ inline constexpr std::size_t many_points = 100'000'000;
 /// - resetdraw forgets what was drawn and the whole state, matrix, clips and stacks included, but
 ///   not the pattern
 /// - setmknextbound takes the current mkbound + 1 (next="false": - 1), or 0 when the current mk is
-/// no
-///   bound one; setmknextfluid likewise
+///   no bound one; setmknextfluid likewise
 ///
 /// Commands are functions of a program and their element (command_table.h); what several of them
 /// need is here.
@@ -142,7 +140,7 @@ struct Program
         saved_mks;
     std::vector<DrawConstants> saved_constants;
     bool is_large_mk_known = false;     ///< a warning named an mk that GenCase v5.4 refuses
-    std::size_t pictures_forgotten = 0; ///< so many pictures are older than the last resetdraw
+    std::size_t pictures_forgotten = 0; ///< this many pictures are older than the last resetdraw
     /// fppg's own commands that were run, which GenCase refuses, with the lines of the first ones.
     std::map<std::string, int> own_commands;
     int list_depth = 0;

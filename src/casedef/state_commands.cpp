@@ -1,7 +1,7 @@
 // Commands that change the state of the draws: mk, modes, constants.
 #include "casedef/command_table.h"
 #include "casedef/patterns.h"
-#include "core/letters.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 

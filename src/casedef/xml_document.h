@@ -12,8 +12,7 @@ namespace fppg
 /// comment there). A file that is not UTF-8 is taken as Latin-1. The declaration is not kept.
 ///
 /// returns  an element without a name; its children are the root, whatever its name, and what
-/// stands
-///          around it
+///          stands around it
 /// throws   IoError if the file cannot be read; CaseError with the line where the XML breaks, or if
 ///          there is no root
 Element read_document(const std::string& path);

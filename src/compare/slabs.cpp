@@ -16,7 +16,8 @@ namespace
 
 constexpr std::uint64_t most_layers = std::uint64_t{1} << 20;
 
-/// After so many blocks the pages of the file are given back, so that memory does not grow with it.
+/// After this many blocks the pages of the file are given back, so that memory does not grow with
+/// it.
 constexpr std::size_t blocks_held = 32;
 
 /// Calls body(begin, end, block) for all blocks of a file.

@@ -1,4 +1,5 @@
-// The container JBinaryData, as seen in files of GenCase v5.4.354 and told by what readers accept:
+// The container JBinaryData, as seen in files of GenCase v5.4.354 and confirmed by what readers
+// accept:
 //
 //   file   := head item
 //   head   := 58 characters "#FileJBD JPartDataBi4" and blanks, '\n', 0, byte order, si64, 0, 0

@@ -17,7 +17,7 @@
 // Numbers are the shortest text that reads back exactly, where GenCase keeps six to eleven digits:
 // the solver compares data2dposy with the number in Case.bi4 and refuses a rounded one.
 
-#include "core/letters.h"
+#include "core/text.h"
 #include "files/case_motion.h"
 #include "files/vres_xml.h"
 #include "fppg/files.h"

@@ -21,7 +21,7 @@ struct CornerNumbers
 
 CornerNumbers number_corners(const std::vector<ShapePolygons>& shapes);
 
-/// Whether a cell of so many corners is a point (0), a line (1) or a face (2).
+/// Whether a cell of this many corners is a point (0), a line (1) or a face (2).
 inline std::size_t cell_kind(std::size_t corners)
 {
     return corners < 3 ? corners - 1 : 2;

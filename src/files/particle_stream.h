@@ -148,8 +148,8 @@ void for_each_density(const CaseParticles& particles, float rhop0, const Particl
     }
 }
 
-/// A buffer of at least that size, one a thread and kept for its next piece: a fresh one each time
-/// would cost more than filling it. Valid until the thread calls this again.
+/// A buffer of at least that size, one per thread and kept for its next piece: a fresh one each
+/// time would cost more than filling it. Valid until the thread calls this again.
 char* piece_buffer(std::size_t bytes);
 
 } // namespace fppg

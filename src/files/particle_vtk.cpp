@@ -1,4 +1,4 @@
-// Every part of the file has a size that is known beforehand, so its pieces are written at their
+// Every part of the file has a size that is known in advance, so its pieces are written at their
 // places by several threads. Vel is zero but where `<initials>` sets it, and a reserved file reads
 // as zeros: only pieces with such particles are written.
 
@@ -17,11 +17,12 @@ namespace fppg
 namespace
 {
 
-/// 27 bytes a particle, 12 more with velocities, 16 with normals and 20 with walls: one MiB or two.
+/// 27 bytes per particle, 12 more with velocities, 16 with normals and 20 with walls: one MiB or
+/// two.
 constexpr std::uint64_t particles_per_piece = 32768;
 constexpr std::uint64_t max_particles = 2147483647U;
 
-/// A part of the file: a line or more of text, then `width` bytes a particle.
+/// A part of the file: a line or more of text, then `width` bytes per particle.
 struct Part
 {
     std::string text;

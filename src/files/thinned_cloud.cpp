@@ -10,7 +10,7 @@ namespace fppg
 namespace
 {
 
-/// After so many particles the pages of the file are given back.
+/// After this many particles the pages of the file are given back.
 constexpr std::size_t particles_held = std::size_t{1} << 20;
 
 struct MkCube

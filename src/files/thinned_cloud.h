@@ -19,7 +19,7 @@ std::optional<ParticleCloud> one_of_every_cube(const ParticleSource& source, con
                                                double dp, std::uint64_t step, std::size_t most);
 
 /// The same with the smallest step that leaves at most `most` particles (to 2 % where it is above
-/// 64); one a mk where there are more mks than that.
+/// 64); one per mk where there are more mks than that.
 ParticleCloud thinned_cloud(const ParticleSource& source, const Vec3& from, double dp,
                             std::size_t most);
 

@@ -97,7 +97,7 @@ Element zone_tag(const CaseDef& def, std::size_t id)
 }
 
 /// A limit of a zone's domain from that of the particles around it: a number as it is, default,
-/// default and so many metres or percent of the size beyond.
+/// default and this many metres or percent of the size beyond.
 double limit_from(const std::string& text, double limit, double size, double outwards)
 {
     if (text == "default") return limit;

@@ -10,7 +10,7 @@ namespace fppg
 
 void write_wall_particles_vtk(OutputFile& file, const WallParticles& particles)
 {
-    // VTK keeps indices and counts as signed 32-bit numbers, here two a particle.
+    // VTK keeps indices and counts as signed 32-bit numbers, here two per particle.
     const std::size_t n = particles.size();
     if (n > 0x3FFFFFFF)
         throw IoError(fmt::format("{}: {} wall particles, VTK takes 1073741823", file.path(), n));

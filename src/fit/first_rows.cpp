@@ -12,7 +12,7 @@ namespace
 
 // Lengths in dp.
 constexpr double row_distance = 0.93;
-/// Along a row: a triangular lattice of one particle a dp^2 has rows 0.93 dp apart and particles
+/// Along a row: a triangular lattice of one particle per dp^2 has rows 0.93 dp apart and particles
 /// 1.075 dp apart in them. With the dp of the line's own particles, the front that goes on from the
 /// row holds 7 % too many.
 constexpr double row_spacing = 1.075;

@@ -263,7 +263,7 @@ private:
     std::vector<std::uint64_t> touched_;
 };
 
-/// Nodes within 1 dp: two a dp^2 of surface, and those around long sides.
+/// Nodes within 1 dp: two per dp^2 of surface, and those around long sides.
 void check_memory(const TriangleSoup& soup, const LatticeGrid& grid)
 {
     double nodes = 0;

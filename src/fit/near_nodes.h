@@ -26,7 +26,8 @@ struct NearNode
 /// soup     a facet with two equal corners is a line
 /// threads  number of threads; the result does not depend on it
 /// throws   GeometryError when they need more memory than there is
-/// cost     about 0.2 microseconds a node, and 0.1 a facet that is smaller than dp; 12 bytes a node
+/// cost     about 0.2 microseconds per node, and 0.1 per facet that is smaller than dp; 12 bytes
+///          per node
 std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
                                                    const LatticeGrid& grid, int threads);
 

@@ -43,7 +43,7 @@ std::size_t cross_side(const WorkMesh& mesh, SurfaceRay& ray, std::size_t side)
     std::size_t entered = other.neighbours[0] == ray.facet   ? 0
                           : other.neighbours[1] == ray.facet ? 1
                                                              : 2;
-    // Two facets can share two edges; the one walked over is told by its vertices.
+    // Two facets can share two edges; its vertices say which one was crossed.
     if (other.vertices[entered] != facet.vertices[end])
         for (std::size_t s = 0; s < 3; ++s)
             if (other.neighbours[s] == ray.facet && other.vertices[s] == facet.vertices[end])

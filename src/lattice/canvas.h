@@ -19,7 +19,7 @@ struct Brush
     /// As the commands before the draw left it. The draw must outlive the brush.
     explicit Brush(const DrawOp& op);
 
-    /// Under setmknextauto: the brush of the part that is so many mks further.
+    /// Under setmknextauto: the brush of the part that is this many mks further.
     Brush of_part(std::uint32_t steps) const;
 
     const SourceRef* source; ///< of the draw, for messages
@@ -44,7 +44,7 @@ public:
 
     /// throws  CaseError where the machine would start to swap or kill the process
     void paint(const Brush& brush, const SlabRegion& region);
-    /// nodes  one entry a slab of the lattice; clips are not applied
+    /// nodes  one entry per slab of the lattice; clips are not applied
     void paint(const Brush& brush, const std::vector<Spans>& nodes);
 
     /// Particles at their true places and their nodes, which patterns do not leave out.

@@ -16,8 +16,8 @@ struct CavityOptions
 {
     Node seed;
     Vec3 up{0, 0, 1}; ///< of length 1; in 2D with a part in the plane
-    /// Openings up to so many nodes wide are closed; 0: none. A cube with one node more a side has
-    /// to pass to get from one side to the other.
+    /// Openings up to this many nodes wide are closed; 0: none. A cube with one node more per side
+    /// has to pass to get from one side to the other.
     int gap_nodes = 1;
 };
 
@@ -41,7 +41,7 @@ struct CavityOpening
 /// The empty nodes around a seed that drawn nodes enclose.
 struct Cavity
 {
-    std::vector<Spans> nodes; ///< one entry a slab of the lattice
+    std::vector<Spans> nodes; ///< one entry per slab of the lattice
     std::uint64_t node_count = 0;
     std::vector<CavityGap> gaps; ///< in the order of x, y, z of their first nodes
     /// Empty: closed. Else the nodes are those of the basin below the seed (where a drop from it

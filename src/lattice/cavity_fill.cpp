@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "lattice/cavity.h"
 #include "lattice/fill_level.h"
 
@@ -173,11 +174,11 @@ private:
             std::vector<std::string> places;
             for (const CavityGap& gap : cavity.gaps)
                 if (gap.leads_outside && places.size() < gaps_warned_of)
-                    places.push_back(fmt::format("{} nodes near {}", gap.nodes, text(gap.center)));
-            return fmt::format(
-                "; it leaks through an opening {} node{} wide, gapclose=\"{}\" closes: {}",
-                wider.gap_nodes, wider.gap_nodes == 1 ? "" : "s", wider.gap_nodes,
-                fmt::join(places, "; "));
+                    places.push_back(fmt::format("{} near {}", counted(gap.nodes, "node", "nodes"),
+                                                 text(gap.center)));
+            return fmt::format("; it leaks through an opening {} wide, gapclose=\"{}\" closes: {}",
+                               counted(static_cast<std::size_t>(wider.gap_nodes), "node", "nodes"),
+                               wider.gap_nodes, fmt::join(places, "; "));
         }
         return "";
     }
@@ -224,9 +225,9 @@ private:
         for (std::size_t i = 0; i < std::min(n, gaps_warned_of); ++i)
             places.push_back(text(cavity.gaps[i]));
         return fmt::format(
-            "{} gap{} up to {} node{} wide {} closed, so that the fill does not leak: "
-            "{}{}",
-            n, n == 1 ? "" : "s", op_.gap_nodes, op_.gap_nodes == 1 ? "" : "s",
+            "{} up to {} wide {} closed, so that the fill does not leak: {}{}",
+            counted(n, "gap", "gaps"),
+            counted(static_cast<std::size_t>(op_.gap_nodes), "node", "nodes"),
             n == 1 ? "is" : "are", fmt::join(places, "; "),
             n > gaps_warned_of ? fmt::format("; and {} more", n - gaps_warned_of) : "");
     }

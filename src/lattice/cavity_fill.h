@@ -18,7 +18,7 @@ struct CavityFillReport
     std::vector<std::string> warnings; ///< whole sentences
 };
 
-/// The nodes that a fill of a cavity paints; one entry a slab.
+/// The nodes that a fill of a cavity paints; one entry per slab.
 ///
 /// throws GeometryError, without the place of the draw: as find_cavity(), and for a cavity that is
 ///        not closed where the fill would run out, or whose volume it needs (percent); the text

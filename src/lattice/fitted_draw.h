@@ -15,7 +15,7 @@ namespace fppg
 struct NodeShare
 {
     std::uint16_t mk = 0;     ///< absolute
-    std::vector<Spans> nodes; ///< one entry a slab of the lattice
+    std::vector<Spans> nodes; ///< one entry per slab of the lattice
 };
 
 /// What one fitted draw adds to the field.
@@ -25,7 +25,7 @@ struct FittedDraw
     WallParticles particles;       ///< of this body only; `bodies` is 0
     std::vector<Vec3> cut;         ///< places of particles that were left out
     SurfaceParticles second_sheet; ///< taken out of a thin plate
-    std::vector<Spans> volume;     ///< one entry a slab of the lattice
+    std::vector<Spans> volume;     ///< one entry per slab of the lattice
     std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
     std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
     /// Nodes of `volume` and `zone` with another mk than the body's.

@@ -14,7 +14,7 @@ namespace fppg
 struct Limits
 {
     NodeBox box;
-    std::optional<SpanSet> mask; ///< one entry a slab of the lattice
+    std::optional<SpanSet> mask; ///< one entry per slab of the lattice
 
     const SpanSet* mask_used() const { return mask ? &*mask : nullptr; }
     std::vector<Spans> kept(std::vector<Spans> nodes) const;
@@ -23,7 +23,7 @@ struct Limits
 /// Nodes strictly inside a snapped box.
 NodeBox node_box(const BoxRegion& region, const LatticeGrid& grid);
 
-/// The inside of a polyhedron as one entry a slab of the lattice.
+/// The inside of a polyhedron as one entry per slab of the lattice.
 SpanSet mask_of(const Painting& painting, const Brush& brush, const PolyhedronOp& polyhedron);
 
 /// All nodes where there is no region.

@@ -11,10 +11,11 @@
 namespace fppg
 {
 
-/// The nodes up to 0.75 dp around a cylinder and in it, one entry a slab: GenCase v5.4.354 empties
-/// them before it draws one with its inside off the lattice, so that earlier particles at them go,
-/// also behind its faces in solid mode (points on all 4900 nodes around five cylinders: those that
-/// go are these nodes, but for half of those exactly at 0.75 dp). It does so for no other shape.
+/// The nodes up to 0.75 dp around a cylinder and in it, one entry per slab: GenCase v5.4.354
+/// empties them before it draws one with its inside off the lattice, so that earlier particles at
+/// them go, also behind its faces in solid mode (points on all 4900 nodes around five cylinders:
+/// those that go are these nodes, but for half of those exactly at 0.75 dp). It does so for no
+/// other shape.
 std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<ClipPlane>& clips,
                                        const LatticeGrid& grid, int threads);
 
@@ -52,7 +53,7 @@ public:
     /// Keeps the points that lie in the domain and within the clips.
     ///
     /// mk       absolute; 0: void
-    /// returns  their nodes, one entry a slab, to be painted with mk
+    /// returns  their nodes, one entry per slab, to be painted with mk
     std::vector<Spans> draw(const std::vector<Vec3>& points, const std::vector<ClipPlane>& clips,
                             std::uint16_t mk);
 
@@ -78,7 +79,8 @@ private:
     bool is_covered_by_another(const CoveredNode& claim) const;
     /// Index of the first claim of a node that has one, which stands for the node.
     std::size_t claim_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-    /// One entry a particle; is_emptied gets one a claim, for the nodes that are not the lattice's.
+    /// One entry per particle; is_emptied gets one per claim, for the nodes that are not the
+    /// lattice's.
     std::vector<char> staying_particles(std::vector<char>& is_emptied) const;
 
     RunField* field_;

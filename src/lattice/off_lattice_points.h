@@ -33,8 +33,7 @@ std::vector<Vec3> off_lattice_parallelogram(const Vec3& corner, const Vec3& firs
 /// 41 random ones).
 ///
 /// throws  GeometryError when 1-2 is longer than 0-3 by more than 0.05 dp, which GenCase refuses
-/// too
-///         (62 random ones)
+///         too (62 random ones)
 std::vector<Vec3> off_lattice_trapezoid(const std::array<Vec3, 4>& corners, double dp);
 
 /// Points of a square grid in the plane of the triangle that lie in it or on its sides. The grid

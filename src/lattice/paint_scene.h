@@ -11,7 +11,7 @@ namespace fppg
 
 /// Paints the steps of a scene in order, each over what was there.
 ///
-/// fitted  one entry a step: where it is fitted, its draws stand for the shape
+/// fitted  one entry per step: where it is fitted, its draws stand for the shape
 RunField paint_scene(const Scene& scene, std::vector<FittedStep>&& fitted, int threads,
                      const LatticeProgress& progress, LatticeReport& report);
 

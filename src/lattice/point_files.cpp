@@ -4,6 +4,7 @@
 #include "fppg/scene.h"
 #include "fppg/shapes.h"
 
+#include "core/text.h"
 #include "meshes/mesh_library.h"
 #include "nodes/snap.h"
 
@@ -159,9 +160,9 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
         if (near_nodes++ == 0) first = p;
     }
     if (near_nodes > 0)
-        report.warnings.push_back(fmt::format(
-            "{}: {} points are nearer than dp/2 to a particle on the lattice, the first at {}.", at,
-            near_nodes, text(first)));
+        report.warnings.push_back(
+            fmt::format("{}: {} nearer than dp/2 to a particle on the lattice, the first at {}.",
+                        at, counted(near_nodes, "point is", "points are"), text(first)));
     const auto before = [](const Vec3& a, const Vec3& b)
     { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
     std::vector<Vec3> sorted = field.walls.volume.positions;
@@ -171,8 +172,8 @@ void check_places(const std::string& at, const std::vector<Vec3>& points, const 
         if (sorted[i] == sorted[i - 1] && twice++ == 0) first = sorted[i];
     if (twice > 0)
         report.warnings.push_back(
-            fmt::format("{}: {} points are at the place of another one, the first at {}.", at,
-                        twice, text(first)));
+            fmt::format("{}: {} at the place of another one, the first at {}.", at,
+                        counted(twice, "point is", "points are"), text(first)));
 }
 
 } // namespace
@@ -215,8 +216,8 @@ void add_point_files(const Scene& scene, RunField& field, LatticeReport& report)
         check_places(at, points, field, report);
         if (file.mk.kind == MkKind::Fluid)
             mark_water(points, file.mk.mk, def.constants.gravity, field);
-        report.log.push_back(
-            fmt::format("{}: {} particles of mk {}", at, points.size(), file.mk.mk));
+        report.log.push_back(fmt::format(
+            "{}: {} of mk {}", at, counted(points.size(), "particle", "particles"), file.mk.mk));
     }
 }
 

@@ -13,8 +13,8 @@ std::vector<Spans> redraw_nodes(const RunField& field, const RedrawOp& op, const
 
 /// The nodes that one step of a redrawnear recolours (rules D3 to D5): those of the target type,
 /// inside `box`, with a neighbour of the border type. Targets are limited further where there is a
-/// `mask`, one entry a slab (a turned box: 12 of its 15 nodes in GenCase v5.4.354 with void targets
-/// and borders, since nodes beside it are no targets and so act as borders).
+/// `mask`, one entry per slab (a turned box: 12 of its 15 nodes in GenCase v5.4.354 with void
+/// targets and borders, since nodes beside it are no targets and so act as borders).
 std::vector<Spans> redraw_near_nodes(const RunField& field, const RedrawNearOp& op,
                                      const NodeBox& box, const SpanSet* mask,
                                      std::uint16_t mk_bound_first, int threads);

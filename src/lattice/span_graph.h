@@ -20,7 +20,7 @@ public:
         std::uint32_t span = 0;
     };
 
-    /// slabs  as in SpanSet, one entry a slab; all rows lie in [y_begin, y_begin + rows)
+    /// slabs  as in SpanSet, one entry per slab; all rows lie in [y_begin, y_begin + rows)
     SpanGraph(std::vector<Spans> slabs, std::uint32_t y_begin, std::size_t rows, int threads);
 
     std::size_t slab_count() const { return slabs_.size(); }
@@ -98,7 +98,7 @@ private:
     std::vector<Slab> slabs_;
 };
 
-/// The spans that are connected with one of `seeds`; one entry a slab.
+/// The spans that are connected with one of `seeds`; one entry per slab.
 std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<SpanGraph::Id>& seeds,
                                    int threads);
 

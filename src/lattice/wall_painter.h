@@ -46,7 +46,7 @@ private:
     struct Hollow
     {
         std::uint32_t body = 0;
-        std::vector<Spans> nodes; ///< one entry a slab of the lattice
+        std::vector<Spans> nodes; ///< one entry per slab of the lattice
     };
 
     double filled_share(const Hollow& hollow) const;

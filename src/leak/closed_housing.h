@@ -16,8 +16,8 @@ public:
     /// 0.87 of the spacing to a surface. The spacing is dp, more where the box has more than 2^24
     /// nodes.
     ///
-    /// fluid   that has to be enclosed
-    /// plane_y of a case in two dimensions; the flood stays in it
+    /// fluid    that has to be enclosed
+    /// plane_y  of a case in two dimensions; the flood stays in it
     ClosedHousing(const CaseSolids& solids, const std::vector<Vec3>& fluid, double dp,
                   const double* plane_y, int threads);
 

@@ -32,8 +32,7 @@ namespace fppg
 /// xs, ys   rising lines of the grid, `spacing` apart
 /// spacing  metres
 /// returns  z[j * xs.size() + i] at (xs[i], ys[j]), not a number anywhere where steps 1 and 2 give
-/// no
-///          node a height; the same for any number of threads
+///          no node a height; the same for any number of threads
 /// cost     O(nodes) where the points are spread evenly, and O(passes * nodes) outside them
 std::vector<double> heights_at(const std::vector<Vec3>& points, const std::vector<double>& xs,
                                const std::vector<double>& ys, double spacing, int threads);

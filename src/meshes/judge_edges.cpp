@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "meshes/edge_map.h"
 #include "meshes/warning_words.h"
 

@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "core/text.h"
 #include "meshes/facet_checks.h"
 
 #include <fmt/format.h>
@@ -278,15 +279,16 @@ private:
         {
             if (count > 0)
                 out_.warnings.push_back(
-                    fmt::format("{} {} {}.", count, count == 1 ? "shape" : "shapes", what));
+                    fmt::format("{} {}.", counted(count, "shape", "shapes"), what));
         };
         say(too_short_, "of too few points left out");
         say(not_finite_, "with a coordinate that is not finite left out");
         if (others_left_out_ > 0)
-            out_.warnings.push_back(fmt::format(
-                "{} polygons of more than four corners are left out, as GenCase does unless "
-                "triangles, quads and otherpolys are all named; polyselec \"polygons\" takes them.",
-                others_left_out_));
+            out_.warnings.push_back(
+                fmt::format("{} of more than four corners left out, as GenCase does unless "
+                            "triangles, quads and "
+                            "otherpolys are all named; polyselec \"polygons\" takes them.",
+                            counted(others_left_out_, "polygon", "polygons")));
     }
 
     IndexedMesh mesh_;

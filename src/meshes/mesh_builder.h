@@ -61,7 +61,7 @@ struct IndexedMesh
 /// warning.
 ///
 /// throws  GeometryError if a cell names a point that is not there, or if the file has no shape at
-/// all
+///         all
 MeshFile build_mesh(IndexedMesh mesh, const ShapeSelection& selection, const std::string& path,
                     int threads);
 

@@ -51,7 +51,7 @@ inline void flip(SurfaceMesh& mesh, std::size_t f)
 
 /// Drops the marked facets; the edge map is to be built anew.
 ///
-/// is_dropped  one entry a facet, not 0 for those that go
+/// is_dropped  one entry per facet, not 0 for those that go
 void erase_facets(const std::vector<char>& is_dropped, SurfaceMesh& mesh);
 
 } // namespace fppg

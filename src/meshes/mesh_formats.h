@@ -18,7 +18,7 @@ bool is_own_format(MeshFormat format);
 /// The name of a format, "stl"; empty for one that no file name tells.
 std::string_view mesh_format_name(MeshFormat format);
 
-/// The names of all formats that files are told by, for help texts: "STL, PLY, ...".
+/// The names of all formats, for help texts: "STL, PLY, ...".
 std::string mesh_format_list();
 
 } // namespace fppg

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "fppg/error.h"
 #include "meshes/close_cracks.h"
 #include "meshes/drop_copies.h"
@@ -101,8 +102,9 @@ void warn_of_repairs(const FirstPlaces& places, MeshReport& report)
     warn(report.inner_wall_facets > 0,
          [&]
          {
-             return fmt::format("{} facets are walls between two bodies that touch, left out.",
-                                report.inner_wall_facets);
+             return fmt::format(
+                 "{} between two bodies that touch, left out.",
+                 counted(report.inner_wall_facets, "facet is a wall", "facets are walls"));
          });
     warn(report.t_junctions > 0,
          [&]

@@ -12,7 +12,7 @@ namespace fppg
 ///
 /// count      number of shells, as orient_shells() numbers them
 /// threads    number of threads; the result does not depend on it
-/// is_turned  one entry a facet; changes for those that are turned
+/// is_turned  one entry per facet; changes for those that are turned
 void turn_outwards(SurfaceMesh& mesh, std::size_t count, int threads, std::vector<char>& is_turned);
 
 } // namespace fppg

@@ -18,8 +18,8 @@ void weld_equal(const TriangleSoup& soup, int threads, SurfaceMesh& mesh);
 /// is to be built anew.
 ///
 /// distance  metres, above 0
-/// may_move  empty: every vertex; else one entry a vertex: those with 0 stay, and nothing joins
-/// them
+/// may_move  empty: every vertex; else one entry per vertex: those with 0 stay, and nothing joins
+///           them
 void weld_near(double distance, const std::vector<char>& may_move, SurfaceMesh& mesh);
 
 } // namespace fppg

@@ -28,7 +28,7 @@ std::optional<Node> find_node_in(const std::vector<Spans>& slabs, const Vec3& p,
 /// Whether the spans of a slab hold a node.
 bool contains(const Spans& spans, std::uint32_t y, std::uint32_t z);
 
-/// A set as one entry a slab of the lattice.
+/// A set as one entry per slab of the lattice.
 std::vector<Spans> by_slab(SpanSet set, const LatticeGrid& grid);
 
 } // namespace fppg

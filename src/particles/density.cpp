@@ -198,7 +198,7 @@ private:
                                         static_cast<float>(def_.constants.rhop0));
     }
 
-    /// One value a step of depth.
+    /// One value per step of depth.
     void set_by_steps()
     {
         const std::uint32_t most = count_steps();
@@ -245,7 +245,7 @@ private:
         return out;
     }
 
-    /// One value a particle.
+    /// One value per particle.
     void set_one_by_one()
     {
         const std::vector<std::vector<std::uint64_t>> first = first_of_runs();

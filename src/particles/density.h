@@ -38,7 +38,7 @@ struct WaterNodes
 ///
 /// Sets hswl, speed_system, speed_sound, b of `constants`, the depths of the fluid runs, and
 /// rhop_of_depth or rhop of `particles`, and particles.off_lattice.rhop. Runs must be in the
-/// default order (x, y, z) and without those off the lattice; where values are stored one a
+/// default order (x, y, z) and without those off the lattice; where values are stored one per
 /// particle, those of a block's nodes come first.
 ///
 void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,

@@ -30,8 +30,7 @@ Transform motion_of(const ParticleBlock& block);
 /// throws  CaseError if a moved particle leaves the domain, as GenCase does: its places go from the
 ///         first node to pointmax
 /// cost    O(runs); O(particles of the block) where it turns, moves at random or the surface is to
-/// be
-///         found, and 4 bytes a random number
+///         be found, and 4 bytes per random number
 void set_initials(const CaseDef& def, const CaseConstants& constants, CaseParticles& particles);
 
 } // namespace fppg

@@ -15,7 +15,7 @@ namespace fppg
 namespace
 {
 
-/// A stretch of so many particles that together make up for less than half of one is even enough.
+/// A stretch of this many particles that together make up for less than half of one is even enough.
 constexpr std::size_t even_stretch = 40;
 constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 

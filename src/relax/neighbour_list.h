@@ -29,7 +29,7 @@ struct PointArrays
 /// The points along a Z-shaped (Morton) curve over cells of side `cell`: entry k is the index of
 /// the k-th point. Points of one cell keep their order.
 ///
-/// cost  about 20 ns a point and thread, 24 bytes a point while it runs
+/// cost  about 20 ns per point and thread, 24 bytes per point while it runs
 std::vector<std::uint32_t> morton_order(const PointArrays& points, float cell, int threads);
 
 /// For every active point the others within a radius and a skin. Lists stay valid until a point
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> morton_order(const PointArrays& points, float cell, i
 ///
 /// Rows come in the order of a Morton curve; each holds one point and its neighbours, in an order
 /// that depends on the points alone. Fastest when the points themselves are stored along such a
-/// curve (morton_order()). Costs 20 bytes a point and 4 a neighbour.
+/// curve (morton_order()). Costs 20 bytes per point and 4 per neighbour.
 class NeighbourList
 {
 public:
@@ -65,7 +65,7 @@ public:
     std::size_t rows() const { return order_.size(); }
     /// The point that a row belongs to.
     std::uint32_t point(std::size_t row) const { return order_[row]; }
-    /// Its neighbours; empty if it is not active. Behind them so many more indices can be read.
+    /// Its neighbours; empty if it is not active. Behind them this many more indices can be read.
     std::span<const std::uint32_t> neighbours(std::size_t row) const
     {
         const std::uint32_t begin = row % rows_per_chunk == 0 ? 0 : ends_[row - 1];

@@ -67,7 +67,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
     return norm(p - (a + d * t));
 }
 
-/// The feature particle that place_feature_particles() made, told by place and facet.
+/// The feature particle that place_feature_particles() made, found by place and facet.
 FeatureParticle feature_at(const FittedBody& body, FitKind kind, const SlidePlace& place)
 {
     const SurfaceMesh& mesh = body.mesh;

@@ -12,7 +12,7 @@ namespace fppg
 struct PaletteImage
 {
     std::vector<Rgb> colours;
-    std::vector<std::uint8_t> indices; ///< one a pixel, in the order of Image
+    std::vector<std::uint8_t> indices; ///< one per pixel, in the order of Image
 };
 
 /// Chooses 256 colours for an image by median cut (Heckbert 1982) and gives every pixel one of

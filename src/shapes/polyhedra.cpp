@@ -92,8 +92,7 @@ std::vector<PolyhedronOp> make_box(const Vec3& point, const Vec3& extent,
         }
     // The arithmetic is GenCase's, halves included: 375 random boxes, 3375 coordinates. Layers that
     // turn a box over along one axis or three leave nothing inside, along two the box between its
-    // moved sides (240 random boxes of v5.4.354, turned, moved or
-    // scaled).
+    // moved sides (240 random boxes of v5.4.354, turned, moved or scaled).
     const auto grown = [&](double layer)
     {
         const double h = layer * dp;

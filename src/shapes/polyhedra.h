@@ -26,8 +26,7 @@ enum BoxSide
 /// drawn; with `is_solid` it is filled as a prism of four corners (rule S4).
 ///
 /// layers_dp  for every value the drawn sides move outwards by value * dp and the box with them
-/// (rule
-///            S7); one polyhedron a value. Empty: the box itself
+///            (rule S7); one polyhedron per value. Empty: the box itself
 std::vector<PolyhedronOp> make_box(const Vec3& corner, const Vec3& size,
                                    const std::array<bool, 6>& sides, bool is_solid,
                                    const std::vector<double>& layers_dp, double dp);
@@ -86,8 +85,7 @@ enum class QuadKind
 QuadKind quad_kind(const std::array<Vec3, 4>& corners, double dp);
 
 /// Whether a quad counts as one: its last corner is not farther than 0.1 dp from the plane of the
-/// others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp
-/// on quads of one and two dp, two dps).
+/// others (GenCase v5.4.354: peaks of 0.05 to 0.28 dp on quads of one and two dp, two dps).
 bool is_flat_quad(const std::array<Vec3, 4>& corners, double dp);
 
 /// Hides faces of a polyhedron, numbers from 1; any number switches its filling off, also one that

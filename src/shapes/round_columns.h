@@ -20,7 +20,7 @@ inline SlabRegion slabs_of(const NodeBox& box)
     return region;
 }
 
-/// The box of so many nodes around one.
+/// The box of this many nodes around one.
 inline NodeBox around(const Node& center, std::int64_t reach, const LatticeGrid& grid)
 {
     return intersect({{center.x - reach, center.y - reach, center.z - reach},

@@ -1,6 +1,6 @@
 #include "upgrade/edited_text.h"
 
-#include "core/letters.h"
+#include "core/text.h"
 
 #include <algorithm>
 #include <cctype>

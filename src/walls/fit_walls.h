@@ -14,7 +14,7 @@ namespace fppg
 /// plane of the particles.
 ///
 /// progress  may be empty; called with the number of steps done and of all
-/// returns   one entry a step of the scene
+/// returns   one entry per step of the scene
 /// throws    IoError, GeometryError with the place of the draw
 std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const LatticeProgress& progress);
 

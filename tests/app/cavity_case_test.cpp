@@ -520,8 +520,7 @@ TEST(PointsOfACase, AreWarnedOfWhereTheyMeetOthers)
     write_text(folder / "p.csv", csv_of({{0.51, 0.5, 0}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}));
     const RunResult result = run_case(folder, closed_box(R"(<points file="p.csv" mkbound="5" />)"));
     EXPECT_EQ(result.code, 0);
-    EXPECT_TRUE(says(result.output, "1 points are nearer than dp/2 to a particle"))
-        << result.output;
+    EXPECT_TRUE(says(result.output, "1 point is nearer than dp/2 to a particle")) << result.output;
     EXPECT_TRUE(says(result.output, "1 points are at the place of another one"));
 }
 
