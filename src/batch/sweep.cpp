@@ -1,5 +1,6 @@
 #include "batch/sweep.h"
 
+#include "core/text.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ struct FoundCase
 
 bool is_dp(const std::string& name)
 {
-    return name.size() == 2 && std::tolower(name[0]) == 'd' && std::tolower(name[1]) == 'p';
+    return lower_case(name) == "dp";
 }
 
 /// Without ".xml" and "_Def".
@@ -73,9 +74,7 @@ std::vector<FoundCase> cases_of_list(const fs::path& list)
     std::string line;
     for (int number = 1; std::getline(in, line); ++number)
     {
-        const auto is_blank = [](unsigned char c) { return std::isspace(c) != 0; };
-        line.erase(line.begin(), std::find_if_not(line.begin(), line.end(), is_blank));
-        line.erase(std::find_if_not(line.rbegin(), line.rend(), is_blank).base(), line.end());
+        line = std::string(trimmed(line));
         if (line.empty() || line[0] == '#') continue;
         fs::path file = (list.parent_path() / line).lexically_normal();
         if (!file.string().ends_with(".xml")) file += ".xml";

@@ -16,36 +16,21 @@ namespace fppg
 namespace
 {
 
-std::string trimmed(std::string_view text)
-{
-    const auto is_blank = [](char c) { return c == ' ' || (c >= 9 && c <= 13); };
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return std::string(text);
-}
-
 /// Parts between separators, blanks dropped; an empty text has none.
-std::vector<std::string> split(const std::string& text, char separator)
+std::vector<std::string_view> trimmed_parts(std::string_view text, char separator)
 {
-    std::vector<std::string> out;
-    std::size_t begin = 0;
-    if (trimmed(text).empty()) return out;
-    while (begin <= text.size())
-    {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        out.push_back(trimmed(std::string_view(text).substr(begin, end - begin)));
-        begin = end + 1;
-    }
-    return out;
+    if (trimmed(text).empty()) return {};
+    std::vector<std::string_view> parts = split(text, separator);
+    for (std::string_view& part : parts) part = trimmed(part);
+    return parts;
 }
 
 } // namespace
 
 std::optional<long long> whole_number(std::string_view text)
 {
-    const std::string digits = trimmed(text);
-    if (digits.empty()) return 0;
-    text = digits;
+    text = trimmed(text);
+    if (text.empty()) return 0;
     if (text[0] == '+') text.remove_prefix(1);
     long long value = 0;
     const char* last = text.data() + text.size();
@@ -64,7 +49,8 @@ unsigned sum_of_words(const std::string& list,
     for (std::size_t begin = 0; begin <= list.size();)
     {
         const std::size_t end = std::min(list.find_first_of("|^", begin), list.size());
-        const unsigned word = bits_of(trimmed(std::string_view(list).substr(begin, end - begin)));
+        const unsigned word =
+            bits_of(std::string(trimmed(std::string_view(list).substr(begin, end - begin))));
         const bool is_exclusive = begin > 0 && list[begin - 1] == '^';
         bits = is_exclusive ? bits ^ word : bits | word;
         begin = end + 1;
@@ -139,7 +125,7 @@ std::optional<double> AttributeReader::number_if(const Element& e, std::string_v
 int AttributeReader::integer(const Element& e, std::string_view name, int min, int max,
                              bool may_be_expression) const
 {
-    const std::string value = trimmed(raw_text(e, name));
+    const std::string value(trimmed(raw_text(e, name)));
     if (may_be_expression && !value.empty() && value[0] == '#')
     {
         const double v = number(e, name);
@@ -234,15 +220,15 @@ std::vector<std::uint16_t> AttributeReader::number_list(const Element& e,
                  "attribute {}=\"{}\" is not a list of whole numbers, expected one like \"1-3,5\"",
                  name, list));
     };
-    const auto whole = [&](const std::string& part)
+    const auto whole = [&](std::string_view part)
     {
         const std::optional<long long> value = whole_number(part);
         if (part.empty() || !value || *value < 0 || *value > 65000) wrong();
         return static_cast<unsigned>(*value);
     };
-    for (const std::string& part : split(list, ','))
+    for (const std::string_view part : trimmed_parts(list, ','))
     {
-        const std::vector<std::string> limits = split(part, '-');
+        const std::vector<std::string_view> limits = trimmed_parts(part, '-');
         if (limits.empty() || limits.size() > 2) wrong();
         const unsigned first = whole(limits.front());
         const unsigned last = whole(limits.back());

@@ -1,5 +1,6 @@
 #include "casedef/command_table.h"
 
+#include "core/text.h"
 #include "meshes/mesh_formats.h"
 #include "shapes/solid_shape.h"
 
@@ -247,13 +248,11 @@ const CommandRow* find_command(std::string_view name)
 std::size_t allowed_children(const CommandRow& row, std::string_view child)
 {
     if (row.children == any_child) return SIZE_MAX;
-    std::string_view rest = row.children;
-    while (!rest.empty())
+    for (std::string_view name : split(row.children, ' '))
     {
-        const std::size_t end = std::min(rest.find(' '), rest.size());
-        const bool is_repeated = rest[end - 1] == '+';
-        if (rest.substr(0, is_repeated ? end - 1 : end) == child) return is_repeated ? SIZE_MAX : 1;
-        rest.remove_prefix(std::min(end + 1, rest.size()));
+        const bool is_repeated = name.ends_with('+');
+        if (is_repeated) name.remove_suffix(1);
+        if (name == child) return is_repeated ? SIZE_MAX : 1;
     }
     return 0;
 }

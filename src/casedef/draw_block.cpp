@@ -2,6 +2,7 @@
 
 #include "casedef/block_reader.h"
 #include "casedef/transforms.h"
+#include "core/text.h"
 
 #include <cmath>
 #include <string>
@@ -49,11 +50,7 @@ private:
             else
                 parts.back() += c;
         }
-        for (std::string& part : parts)
-        {
-            part.erase(0, part.find_first_not_of(" \t\r\n"));
-            part.erase(part.find_last_not_of(" \t\r\n") + 1);
-        }
+        for (std::string& part : parts) part = std::string(trimmed(part));
         return parts;
     }
 

@@ -1,5 +1,7 @@
 #include "casedef/execution.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -95,7 +97,7 @@ std::string domain_limit(const AttributeReader& read, const Element& e, const st
 {
     std::string bare;
     for (const char c : text)
-        if (c != ' ') bare += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
+        if (c != ' ') bare += lower_case(c);
     std::string_view rest = bare;
     const bool is_default = rest.starts_with("default");
     if (is_default) rest.remove_prefix(7);

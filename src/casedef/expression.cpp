@@ -1,6 +1,7 @@
 #include "casedef/expression.h"
 
 #include "core/float32.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -47,13 +48,6 @@ bool is_letter(char c)
 bool is_name_character(char c)
 {
     return is_letter(c) || is_digit(c) || c == '_';
-}
-
-bool equals_ignoring_case(std::string_view text, std::string_view lower)
-{
-    return std::equal(text.begin(), text.end(), lower.begin(), lower.end(),
-                      [](char a, char b)
-                      { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
 /// A rule broken by the arguments of a function; the parser adds the place.
@@ -389,8 +383,8 @@ private:
         while (is_name_character(peek())) ++at_;
         std::string name = text_.substr(first, at_ - first);
         if (peek() == '(') return parse_call(first, name);
-        if (equals_ignoring_case(name, "true")) return 1;
-        if (equals_ignoring_case(name, "false")) return 0;
+        if (lower_case(name) == "true") return 1;
+        if (lower_case(name) == "false") return 0;
         while (peek() == '[') name += parse_index();
         const auto value = vars_.find(name);
         if (!value)
@@ -499,9 +493,7 @@ double parse_number(const std::string& text, const VariableSource& vars)
                 0, fmt::format("'{}' is {:g}; expected a finite real number", text, value));
         return value;
     }
-    std::string_view number = text;
-    while (!number.empty() && number.front() == ' ') number.remove_prefix(1);
-    while (!number.empty() && number.back() == ' ') number.remove_suffix(1);
+    std::string_view number = trimmed(text, " ");
     const bool has_plus = !number.empty() && number.front() == '+';
     if (has_plus) number.remove_prefix(1);
 

@@ -1,5 +1,7 @@
 #include "casedef/floating_extra.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,10 +46,9 @@ std::optional<Element> start_velocity(const Element& given, const AttributeReade
     return v == Vec3{} ? std::nullopt : std::optional(std::move(out));
 }
 
-bool is_none(std::string text)
+bool is_none(std::string_view text)
 {
-    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
-    return text == "none";
+    return lower_case(text) == "none";
 }
 
 Element table_row(const Element& given, const AttributeReader& read, bool may_leave_out)

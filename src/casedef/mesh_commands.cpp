@@ -4,6 +4,7 @@
 
 #include "casedef/transforms.h"
 #include "casedef/xml_document.h"
+#include "core/text.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_library.h"
 #include "shapes/file_polygons.h"
@@ -33,23 +34,10 @@ struct VtmEntry
     std::string file; ///< beside the VTM file, as GenCase takes it
 };
 
-std::string trimmed(const std::string& text)
-{
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::vector<std::string> names_of(const std::string& list)
 {
     std::vector<std::string> names;
-    std::size_t begin = 0;
-    while (begin <= list.size())
-    {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        names.push_back(trimmed(list.substr(begin, end - begin)));
-        begin = end + 1;
-    }
+    for (const std::string_view part : split(list, ',')) names.emplace_back(trimmed(part));
     return names;
 }
 

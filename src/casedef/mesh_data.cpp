@@ -106,15 +106,9 @@ private:
             ++line_;
             const char separator = line.find(';') != std::string::npos ? ';' : ',';
             while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-            for (std::size_t at = 0; at < line.size();)
-            {
-                const std::size_t end = std::min(line.find(separator, at), line.size());
-                std::string cell = line.substr(at, end - at);
-                cell.erase(0, cell.find_first_not_of(" \t"));
-                cell.erase(cell.find_last_not_of(" \t") + 1);
-                cells_.push_back(std::move(cell));
-                at = end + 1;
-            }
+            std::vector<std::string_view> parts = split(line, separator);
+            if (parts.back().empty()) parts.pop_back();
+            for (const std::string_view part : parts) cells_.emplace_back(trimmed(part, " \t"));
         }
         return cells_;
     }

@@ -1,8 +1,9 @@
 #include "fit/closed_part.h"
 
+#include "core/disjoint_set.h"
+
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace fppg
@@ -91,27 +92,28 @@ void close_holes(const SurfaceMesh& mesh, const std::vector<Rim>& rims, const Ve
     {
         std::size_t end = i;
         while (end < rims.size() && rims[end].group == rims[i].group) ++end;
-        std::map<std::uint32_t, std::uint32_t> parent; // of a vertex, towards one of its loop
-        const auto root = [&](std::uint32_t v)
-        {
-            parent.try_emplace(v, v);
-            while (parent[v] != v) v = parent[v] = parent[parent[v]];
-            return v;
-        };
+        std::vector<std::uint32_t> vertices;
         for (std::size_t r = i; r < end; ++r)
+            for (const std::uint32_t v : {rims[r].from, rims[r].to}) vertices.push_back(v);
+        std::sort(vertices.begin(), vertices.end());
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        const auto number_of = [&](std::uint32_t v)
         {
-            const std::uint32_t a = root(rims[r].from), b = root(rims[r].to);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+            return static_cast<std::uint32_t>(
+                std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+        };
+        DisjointSet loops(vertices.size());
+        for (std::size_t r = i; r < end; ++r)
+            loops.join(number_of(rims[r].from), number_of(rims[r].to));
         struct Centre
         {
             Vec3 sum;
             double count = 0;
         };
-        std::map<std::uint32_t, Centre> centres;
+        std::vector<Centre> centres(vertices.size());
         for (std::size_t r = i; r < end; ++r)
         {
-            Centre& centre = centres[root(rims[r].from)];
+            Centre& centre = centres[loops.find(number_of(rims[r].from))];
             centre.sum = centre.sum + mesh.vertices[rims[r].from] + mesh.vertices[rims[r].to];
             centre.count += 2;
         }
@@ -119,7 +121,7 @@ void close_holes(const SurfaceMesh& mesh, const std::vector<Rim>& rims, const Ve
         group.has_rim = true;
         for (std::size_t r = i; r < end; ++r)
         {
-            const Centre& centre = centres[root(rims[r].from)];
+            const Centre& centre = centres[loops.find(number_of(rims[r].from))];
             const Vec3 c = centre.sum / centre.count - middle;
             const Vec3 a = mesh.vertices[rims[r].to] - middle;
             const Vec3 b = mesh.vertices[rims[r].from] - middle;

@@ -1,7 +1,7 @@
 #include "lattice/span_graph.h"
 
+#include "core/disjoint_set.h"
 #include "core/parallel.h"
-#include "core/raw_array.h"
 
 namespace fppg
 {
@@ -44,45 +44,6 @@ namespace
 /// Slabs whose spans one thread joins.
 constexpr std::size_t slabs_per_block = 16;
 
-/// Sets of spans that are connected, each named by its first span.
-class SpanSets
-{
-public:
-    explicit SpanSets(std::size_t spans) : parent_(spans) {}
-
-    /// Before the spans [begin, end) are joined: each is a set of its own.
-    void part(std::size_t begin, std::size_t end)
-    {
-        for (std::size_t i = begin; i < end; ++i) parent_[i] = i;
-    }
-
-    void join(std::size_t a, std::size_t b)
-    {
-        a = shorten_to_first(a);
-        b = shorten_to_first(b);
-        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-    std::size_t first_of(std::size_t a) const
-    {
-        while (parent_[a] != a) a = parent_[a];
-        return a;
-    }
-
-private:
-    std::size_t shorten_to_first(std::size_t a)
-    {
-        while (parent_[a] != a)
-        {
-            parent_[a] = parent_[parent_[a]];
-            a = parent_[a];
-        }
-        return a;
-    }
-
-    RawArray<std::size_t> parent_;
-};
-
 } // namespace
 
 std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<SpanGraph::Id>& seeds,
@@ -93,7 +54,8 @@ std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<Spa
     if (seeds.empty()) return out;
     std::vector<std::size_t> first(slabs + 1, 0);
     for (std::size_t i = 0; i < slabs; ++i) first[i + 1] = first[i] + graph.spans(i).size();
-    SpanSets sets(first[slabs]);
+    using Sets = DisjointSets<std::size_t>; // of spans, each named by its first one
+    Sets sets(first[slabs], Sets::Unset{});
     const auto join_slabs = [&](std::size_t i)
     {
         for (std::size_t row = 0; row < graph.row_count(); ++row)
@@ -107,7 +69,7 @@ std::vector<Spans> connected_spans(const SpanGraph& graph, const std::vector<Spa
                  {
                      const std::size_t begin = block * slabs_per_block;
                      const std::size_t end = std::min(slabs, begin + slabs_per_block);
-                     sets.part(first[begin], first[end]);
+                     sets.separate(first[begin], first[end]);
                      for (std::size_t i = begin; i < end; ++i)
                      {
                          for (std::size_t row = 1; row < graph.row_count(); ++row)

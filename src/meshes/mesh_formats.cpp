@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "core/file_map.h"
+#include "core/text.h"
 #include "meshes/readers.h"
 
 #include <algorithm>
@@ -66,13 +67,8 @@ constexpr auto table = std::to_array<MeshFormatRow>({
 
 bool has_word(std::string_view words, std::string_view wanted)
 {
-    while (!words.empty())
-    {
-        const std::size_t end = std::min(words.find(' '), words.size());
-        if (words.substr(0, end) == wanted) return true;
-        words.remove_prefix(std::min(end + 1, words.size()));
-    }
-    return false;
+    const std::vector<std::string_view> parts = split(words, ' ');
+    return !wanted.empty() && std::find(parts.begin(), parts.end(), wanted) != parts.end();
 }
 
 const MeshFormatRow& row_of(MeshFormat format)
@@ -111,10 +107,7 @@ std::optional<MeshFormat> mesh_format_named(std::string_view name)
 MeshFormat mesh_format_of(const std::string& path)
 {
     const std::size_t dot = path.rfind('.');
-    std::string ending = dot == std::string::npos ? "" : path.substr(dot + 1);
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c)
-                   { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+    const std::string ending = dot == std::string::npos ? "" : lower_case(path.substr(dot + 1));
     for (const MeshFormatRow& row : table)
         if (has_word(row.endings, ending)) return row.format;
     return table[0].format;

@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "core/text.h"
 #include "meshes/readers.h"
 #include "meshes/text_lines.h"
 
@@ -83,9 +84,7 @@ private:
 
     double number(std::string_view cell, std::size_t column) const
     {
-        while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t'))
-            cell.remove_prefix(1);
-        while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
+        cell = trimmed(cell, " \t");
         if (cell.empty()) return 0;
         double value = 0;
         const char* const begin = cell.data() + (cell.front() == '+' ? 1 : 0);

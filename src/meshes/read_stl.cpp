@@ -13,6 +13,7 @@
 #include "core/file_map.h"
 #include "core/float32.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "fppg/error.h"
 #include "meshes/facet_checks.h"
 
@@ -35,17 +36,12 @@ bool is_space(char c)
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-}
-
 /// True if `word` (lower case) stands at `at`, whatever its case, and ends there.
 bool is_word_at(std::string_view text, std::size_t at, std::string_view word)
 {
     if (text.size() - at < word.size()) return false;
     for (std::size_t i = 0; i < word.size(); ++i)
-        if (lower(text[at + i]) != word[i]) return false;
+        if (lower_case(text[at + i]) != word[i]) return false;
     return at + word.size() == text.size() || is_space(text[at + word.size()]);
 }
 

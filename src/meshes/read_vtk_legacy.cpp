@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "core/text.h"
 #include "meshes/readers.h"
 #include "meshes/text_lines.h"
 
@@ -91,18 +92,13 @@ private:
         {
             // The block ends with an empty line.
             lines_.next_line();
-            while (!lines_.is_at_end() && !is_blank_line(lines_.next_line())) continue;
+            while (!lines_.is_at_end() && !trimmed(lines_.next_line()).empty()) continue;
         }
         else if (key == "FIELD")
             skip_fields();
         else
             lines_.fail_at(key, is_grid_ ? "POINTS, CELLS or CELL_TYPES"
                                          : "POINTS, VERTICES, LINES, POLYGONS or TRIANGLE_STRIPS");
-    }
-
-    static bool is_blank_line(std::string_view line)
-    {
-        return line.find_first_not_of(" \t\r") == std::string_view::npos;
     }
 
     void read_points()

@@ -1,7 +1,8 @@
 #include "relax/regions.h"
 
+#include "core/disjoint_set.h"
+
 #include <algorithm>
-#include <set>
 #include <utility>
 
 namespace fppg
@@ -9,33 +10,24 @@ namespace fppg
 
 std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies)
 {
-    std::vector<std::uint16_t> first_of(65536, 0); // 0: no solid
-    const auto find = [&first_of](std::uint16_t mk)
-    {
-        while (first_of[mk] != mk) mk = first_of[mk];
-        return mk;
-    };
-    const auto join = [&](std::uint16_t a, std::uint16_t b)
-    {
-        for (const std::uint16_t mk : {a, b})
-            if (first_of[mk] == 0) first_of[mk] = mk;
-        a = find(a);
-        b = find(b);
-        first_of[std::max(a, b)] = std::min(a, b);
-    };
+    std::vector<char> is_solid(65536, 0);
+    DisjointSet sets(65536);
     for (const FittedBody& body : bodies)
     {
         if (!body.is_solid) continue;
-        join(body.mk, body.mk);
-        std::set<std::uint16_t> of_parts(body.facet_mk.begin(), body.facet_mk.end());
-        for (const std::uint16_t mk : of_parts) join(body.mk, mk);
+        is_solid[body.mk] = 1;
+        for (const std::uint16_t mk : body.facet_mk)
+        {
+            is_solid[mk] = 1;
+            sets.join(body.mk, mk);
+        }
     }
     std::vector<std::vector<std::uint16_t>> out;
     std::vector<std::size_t> group(65536, 0);
     for (std::uint32_t mk = 1; mk < 65536; ++mk)
     {
-        if (first_of[mk] == 0) continue;
-        const std::uint16_t first = find(static_cast<std::uint16_t>(mk));
+        if (!is_solid[mk]) continue;
+        const std::uint32_t first = sets.find(mk);
         if (first == mk)
         {
             group[mk] = out.size();

@@ -38,6 +38,22 @@ struct SlabRun
     Run run;
 };
 
+/// What look_at(run, found) adds for the runs, chunk by chunk in their order.
+template <typename Found, typename LookAt>
+std::vector<std::vector<Found>> find_in_chunks(const std::vector<SlabRun>& runs,
+                                               const LookAt& look_at, int threads)
+{
+    std::vector<std::vector<Found>> chunks((runs.size() + runs_per_chunk - 1) / runs_per_chunk);
+    parallel_for(chunks.size(), threads,
+                 [&](std::size_t c)
+                 {
+                     const std::size_t end = std::min(runs.size(), (c + 1) * runs_per_chunk);
+                     for (std::size_t i = c * runs_per_chunk; i < end; ++i)
+                         look_at(runs[i], chunks[c]);
+                 });
+    return chunks;
+}
+
 class Relaxation
 {
 public:
@@ -306,8 +322,6 @@ private:
         PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
         for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
-        std::vector<std::vector<Candidate>> chunks((runs.size() + runs_per_chunk - 1) /
-                                                   runs_per_chunk);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
             const double band = region.band[r.run.mk];
@@ -334,13 +348,7 @@ private:
             else
                 blocks.for_each_stretch(r.x, r.run, test);
         };
-        parallel_for(chunks.size(), threads_,
-                     [&](std::size_t c)
-                     {
-                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_per_chunk);
-                         for (std::size_t i = c * runs_per_chunk; i < end; ++i)
-                             look_at(runs[i], chunks[c]);
-                     });
+        const auto chunks = find_in_chunks<Candidate>(runs, look_at, threads_);
         // Per body: whether it has nodes of the region on its inner and its outer side.
         std::vector<std::array<char, 2>> sides(walls.bodies.size());
         for (const auto& chunk : chunks)
@@ -376,7 +384,6 @@ private:
                                             [](double band) { return std::isinf(band); });
         PointGrid moving(reach, movers.size());
         for (const Mover& m : movers) moving.add(place_of(m.node, grid));
-        std::vector<std::vector<Vec3>> chunks((runs.size() + runs_per_chunk - 1) / runs_per_chunk);
         const auto comes_before = [](const Mover& m, const NodeIndex& node)
         { return std::tuple(m.node.x, m.node.y, m.node.z) < std::tuple(node.x, node.y, node.z); };
         const auto look_at = [&](const SlabRun& r, std::vector<Vec3>& out)
@@ -399,13 +406,7 @@ private:
             else
                 blocks.for_each_stretch(r.x, r.run, test);
         };
-        parallel_for(chunks.size(), threads_,
-                     [&](std::size_t c)
-                     {
-                         const std::size_t end = std::min(runs.size(), (c + 1) * runs_per_chunk);
-                         for (std::size_t i = c * runs_per_chunk; i < end; ++i)
-                             look_at(runs[i], chunks[c]);
-                     });
+        const auto chunks = find_in_chunks<Vec3>(runs, look_at, threads_);
         std::vector<Vec3> held;
         for (const auto& chunk : chunks) held.insert(held.end(), chunk.begin(), chunk.end());
         // What an earlier region took off the lattice pushes as well.

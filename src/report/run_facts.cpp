@@ -1,5 +1,7 @@
 #include "report/run_facts.h"
 
+#include "core/text.h"
+
 #include "report/html.h"
 
 #include <fmt/format.h>
@@ -17,11 +19,9 @@ RunFacts read_run_facts(std::string_view text)
     constexpr std::string_view end_of_stage = "-End  time:";
     constexpr std::string_view all = "Time of execution: ";
     RunFacts facts;
-    while (!text.empty())
+    for (const std::string_view part : split(text, '\n'))
     {
-        const std::size_t end = text.find('\n');
-        const std::string line(text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        const std::string line(part);
         const std::size_t stage = line.find(end_of_stage);
         if (line.starts_with(warning))
             facts.warnings.push_back(line.substr(warning.size()));

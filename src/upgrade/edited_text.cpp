@@ -145,12 +145,8 @@ std::vector<const TextNode*> active_children(const TextNode& node, std::string_v
 const TextNode* find_active(const TextNode& node, std::string_view path)
 {
     const TextNode* at = &node;
-    while (at != nullptr && !path.empty())
-    {
-        const std::size_t end = std::min(path.find('/'), path.size());
-        at = at->find(path.substr(0, end));
-        path.remove_prefix(std::min(end + 1, path.size()));
-    }
+    for (const std::string_view name : split(path, '/'))
+        if (at != nullptr && !name.empty()) at = at->find(name);
     return at;
 }
 
