@@ -1,5 +1,6 @@
 #include "app/command_line.h"
 
+#include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/version.h"
 
@@ -12,19 +13,6 @@ namespace fppg
 {
 namespace
 {
-
-std::vector<std::string> split(const std::string& text, char separator)
-{
-    std::vector<std::string> out;
-    std::size_t begin = 0;
-    while (begin <= text.size())
-    {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        out.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return out;
-}
 
 template <typename Number>
 Number number_of(const std::string& option, const std::string& value, const char* expected)
@@ -46,13 +34,13 @@ bool flag_of(const std::string& option, const std::string& value)
 
 void choose_formats(const std::string& list, DropInOptions& options)
 {
-    for (std::string word : split(list, ','))
+    for (std::string_view word : split(list, ','))
     {
         bool on = true;
         if (!word.empty() && (word[0] == '+' || word[0] == '-'))
         {
             on = word[0] == '+';
-            word.erase(0, 1);
+            word.remove_prefix(1);
         }
         const bool all = word == "all";
         if (!all && word != "bi" && word != "vtkcells" && word != "vtkfreept" && word != "vtkall" &&
@@ -108,7 +96,7 @@ void read_option(const std::string& argument, DropInOptions& options)
     }
     else if (name == "-evars")
     {
-        for (const std::string& part : split(value, ':'))
+        for (const std::string_view part : split(value, ':'))
         {
             const std::size_t equals = part.find('=');
             if (equals == std::string::npos || equals == 0)

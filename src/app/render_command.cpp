@@ -3,6 +3,7 @@
 #include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/render.h"
 
@@ -42,18 +43,6 @@ Number number_of(const std::string& option, const std::string& text, std::string
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), n);
     if (error != std::errc() || end != part.data() + part.size()) refuse(option, text, expected);
     return n;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator)
-{
-    std::vector<std::string_view> parts;
-    for (std::size_t begin = 0; begin <= text.size();)
-    {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        parts.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
 }
 
 void read_size(const std::string& text, RenderOptions& options)

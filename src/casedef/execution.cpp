@@ -1,12 +1,11 @@
 #include "casedef/execution.h"
 
+#include "core/finite_number.h"
 #include "core/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <set>
 
 namespace fppg
@@ -107,15 +106,13 @@ std::string domain_limit(const AttributeReader& read, const Element& e, const st
     if (is_default ? has_sign : rest.front() == '+') rest.remove_prefix(1);
     const bool is_percent = is_default && rest.ends_with('%');
     if (is_percent) rest.remove_suffix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if ((is_default && !has_sign) || error != std::errc() || end != rest.data() + rest.size() ||
-        !std::isfinite(value))
+    const std::optional<double> value = finite_number(rest);
+    if ((is_default && !has_sign) || !value)
         read.fail(e, fmt::format("\"{}\" is invalid, expected a number, default, default {} "
                                  "NUMBER or default {} NUMBER%",
                                  text, sign, sign));
     if (!is_default) return bare;
-    return fmt::format("default {} {}{}", sign, value, is_percent ? "%" : "");
+    return fmt::format("default {} {}{}", sign, *value, is_percent ? "%" : "");
 }
 
 } // namespace fppg

@@ -2,13 +2,13 @@
 
 #include "core/binary_items.h"
 #include "core/file_map.h"
+#include "core/finite_number.h"
 #include "core/text.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -116,12 +116,10 @@ private:
     double number(std::size_t column) const
     {
         const std::string& cell = cells_[column];
-        const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
-        double value = 0;
-        const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
-        if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+        const std::optional<double> value = finite_signed_number(cell);
+        if (!value)
             fail(fmt::format("has \"{}\" in column {}, expected a number", cell, column + 1));
-        return value;
+        return *value;
     }
 
     Vec3 vector(std::size_t column) const

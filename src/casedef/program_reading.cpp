@@ -1,11 +1,11 @@
 // What commands read of their elements.
 #include "casedef/program.h"
+#include "core/finite_number.h"
 #include "shapes/polyhedra.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 
@@ -149,14 +149,12 @@ std::vector<Program::Layer> Program::layers_of(const Element& e) const
         std::erase_if(part, [](char c) { return c == ' ' || c == '\t' || c == '*'; });
         begin = end + 1;
         if (part.empty()) continue;
-        double value = 0;
-        const char* first = part.data() + (!part.empty() && part[0] == '+' ? 1 : 0);
-        const auto [stop, error] = std::from_chars(first, part.data() + part.size(), value);
-        if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value))
+        const std::optional<double> value = finite_signed_number(part);
+        if (!value)
             read.fail(
                 *layers,
                 fmt::format("vdp=\"{}\" is invalid, expected numbers like \"0,-1,2.5\"", list));
-        out.push_back({value, is_starred});
+        out.push_back({*value, is_starred});
     }
     if (std::none_of(out.begin(), out.end(), [](const Layer& l) { return l.is_shown; }))
         for (Layer& layer : out) layer.is_shown = true;

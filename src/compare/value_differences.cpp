@@ -1,8 +1,9 @@
 #include "compare/value_differences.h"
 
+#include "core/finite_number.h"
+
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -11,15 +12,6 @@ namespace fppg
 
 namespace
 {
-
-std::optional<double> number_of(const std::string& text)
-{
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return {};
-    return value;
-}
 
 /// The attribute that tells elements of one name apart.
 std::string key_of(const Element& element)
@@ -86,8 +78,8 @@ private:
         ValueDifference difference{place, std::move(a), std::move(b), 1, false};
         if (difference.a && difference.b)
         {
-            const std::optional<double> x = number_of(*difference.a);
-            const std::optional<double> y = number_of(*difference.b);
+            const std::optional<double> x = finite_number(*difference.a);
+            const std::optional<double> y = finite_number(*difference.b);
             if (x && y)
             {
                 const double apart = std::abs(*x - *y);
@@ -115,7 +107,7 @@ private:
         for (const Element* element : {&a, &b})
             for (const Element::Attribute& attribute : element->attributes)
                 if (is_of_vector || attribute.name == name)
-                    if (const std::optional<double> value = number_of(attribute.value))
+                    if (const std::optional<double> value = finite_number(attribute.value))
                         largest = std::max(largest, std::abs(*value));
         const bool is_place = is_of_vector && (a.name == "center" || a.name.starts_with("pos") ||
                                                a.name.starts_with("point"));

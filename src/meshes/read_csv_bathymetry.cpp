@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "core/finite_number.h"
 #include "core/text.h"
 #include "meshes/readers.h"
 #include "meshes/text_lines.h"
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace fppg
@@ -86,13 +86,11 @@ private:
     {
         cell = trimmed(cell, " \t");
         if (cell.empty()) return 0;
-        double value = 0;
-        const char* const begin = cell.data() + (cell.front() == '+' ? 1 : 0);
-        const auto [rest, status] = std::from_chars(begin, cell.data() + cell.size(), value);
-        if (status != std::errc() || rest != cell.data() + cell.size() || !std::isfinite(value))
+        const std::optional<double> value = finite_signed_number(cell);
+        if (!value)
             fail(
                 fmt::format("expected a number in column {}, found '{}'", column + 1, shown(cell)));
-        return value;
+        return *value;
     }
 
     /// The numbers of the next line behind its first cell, which is y where it is asked for.

@@ -1,8 +1,8 @@
+#include "core/finite_number.h"
 #include "fppg/error.h"
 #include "fppg/render.h"
 
 #include <fmt/format.h>
-#include <charconv>
 #include <cmath>
 
 namespace fppg
@@ -10,15 +10,6 @@ namespace fppg
 
 namespace
 {
-
-std::optional<double> number(std::string_view text)
-{
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return {};
-    return value;
-}
 
 } // namespace
 
@@ -37,8 +28,10 @@ ViewDirection parse_view(const std::string& text)
         if (text == preset.name) return preset.view;
     if (const std::size_t comma = text.find(','); comma != std::string::npos)
     {
-        const std::optional<double> azimuth = number(std::string_view(text).substr(0, comma));
-        const std::optional<double> elevation = number(std::string_view(text).substr(comma + 1));
+        const std::optional<double> azimuth =
+            finite_number(std::string_view(text).substr(0, comma));
+        const std::optional<double> elevation =
+            finite_number(std::string_view(text).substr(comma + 1));
         if (azimuth && elevation && std::abs(*elevation) <= 90) return {*azimuth, *elevation};
     }
     throw UsageError(fmt::format(
@@ -53,7 +46,7 @@ CutPlane parse_cut(const std::string& text)
     const std::size_t axis = text.empty() ? std::string::npos : std::string("xyz").find(text[0]);
     const bool has_sign = text.size() > 2 && (text[1] == '<' || text[1] == '>');
     const std::optional<double> at =
-        has_sign ? number(std::string_view(text).substr(2)) : std::optional<double>();
+        has_sign ? finite_number(std::string_view(text).substr(2)) : std::optional<double>();
     if (axis == std::string::npos || !at)
         throw UsageError(
             fmt::format("the cut \"{}\" is unknown, expected for example y>0.3 or z<1", text));
