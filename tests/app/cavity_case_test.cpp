@@ -521,7 +521,7 @@ TEST(PointsOfACase, AreWarnedOfWhereTheyMeetOthers)
     const RunResult result = run_case(folder, closed_box(R"(<points file="p.csv" mkbound="5" />)"));
     EXPECT_EQ(result.code, 0);
     EXPECT_TRUE(says(result.output, "1 point is nearer than dp/2 to a particle")) << result.output;
-    EXPECT_TRUE(says(result.output, "1 points are at the place of another one"));
+    EXPECT_TRUE(says(result.output, "1 point is at the place of another one"));
 }
 
 TEST(FillOfACase, GivesTheSameBytesWithAnyNumberOfThreads)
