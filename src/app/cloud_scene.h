@@ -12,6 +12,9 @@ namespace fppg
 /// Particles that a report page holds of one result at most.
 inline constexpr std::size_t most_in_scene = 200000;
 
+/// Particles of one result that the picture of a page shows at most.
+inline constexpr std::size_t most_in_picture = 1500000;
+
 /// "#rrggbb"
 std::string hex_of(const Rgb& colour);
 

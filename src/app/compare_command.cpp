@@ -25,7 +25,6 @@ namespace
 /// Ways to change that pictures show, in the order of their colours.
 constexpr const char* changes[] = {"missing", "extra", "moved", "another mk"};
 
-constexpr std::size_t most_in_picture = 1500000;
 constexpr std::size_t most_changed = 200000;
 /// In grids, and mapped of the files.
 constexpr std::uint64_t bytes_per_particle = 160;

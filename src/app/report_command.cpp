@@ -30,7 +30,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t most_in_picture = 1500000;
 constexpr std::uint64_t particles_at_once = 4000000;
 
 struct ReportCall

@@ -23,7 +23,7 @@ extern "C" void stop(int)
     if (asks_first.load() && !has_asked.exchange(true)) return;
     remove_temporary_files();
     constexpr char text[] = "\n*** Stopped by the user; no output file was changed.\n";
-    const auto written = write(STDERR_FILENO, text, sizeof text - 1);
+    const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
     static_cast<void>(written);
     _exit(130);
 }

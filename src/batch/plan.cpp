@@ -5,6 +5,7 @@
 #include "fppg/version.h"
 
 #include "batch/child_process.h"
+#include "batch/rates.h"
 #include "core/json.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,6 @@ namespace fs = std::filesystem;
 /// Estimates may be off by a factor of two, and a task also draws a picture.
 constexpr double memory_factor = 2;
 constexpr double least_task_bytes = 256e6;
-constexpr double picture_bytes_a_particle = 200;
 
 void write_script(const fs::path& path, const std::string& text)
 {
@@ -110,9 +110,10 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
     double seconds = 0;
     for (const RunRecord& r : estimates)
     {
-        bytes = std::max(
-            {bytes, memory_factor * r.estimated_memory_bytes,
-             plan.has_pictures ? picture_bytes_a_particle * static_cast<double>(r.np) : 0.0});
+        bytes = std::max({bytes, memory_factor * r.estimated_memory_bytes,
+                          plan.has_pictures
+                              ? rates.picture_bytes_per_particle * static_cast<double>(r.np)
+                              : 0.0});
         seconds = std::max(seconds, r.estimated_seconds);
     }
     const fs::path at(folder);

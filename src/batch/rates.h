@@ -8,12 +8,13 @@ namespace fppg
 /// another machine is usual.
 struct Rates
 {
-    double base_bytes = 8e6;               ///< of the program itself
-    double bytes_per_thread = 2e6;         ///< pieces of files being filled
-    double bytes_per_run = 100;            ///< of nodes in a column: while drawn, as particles
-    double bytes_per_triangle = 600;       ///< of mesh files, with the trees to search them
-    double bytes_a_wall_particle = 600;    ///< off the lattice, placed
-    double bytes_a_relaxed_particle = 500; ///< besides, with the band around it
+    double base_bytes = 8e6;                 ///< of the program itself
+    double bytes_per_thread = 2e6;           ///< pieces of files being filled
+    double bytes_per_run = 100;              ///< of nodes in a column: while drawn, as particles
+    double bytes_per_triangle = 600;         ///< of mesh files, with the trees to search them
+    double bytes_a_wall_particle = 600;      ///< off the lattice, placed
+    double bytes_a_relaxed_particle = 500;   ///< besides, with the band around it
+    double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
     double seconds_to_start = 0.01;
     double seconds_a_wall_particle = 6e-6;     ///< placed, with its zone of the lattice; one thread

@@ -3,6 +3,7 @@
 #include "fppg/files.h"
 #include "fppg/version.h"
 
+#include "core/file_map.h"
 #include "core/json.h"
 #include "report/html.h"
 #include "report/result_look.h"
@@ -11,8 +12,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace fppg
 {
@@ -96,19 +95,13 @@ std::string to_json(const std::vector<BatchRun>& runs, const std::vector<RunReco
     return json.text(1) + "\n";
 }
 
-std::string read_whole(const fs::path& path)
-{
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 ResultLook look_of(const BatchRun& run, const RunRecord& record)
 {
     ResultLook look;
     if (record.state == RunState::Done && !record.picture.empty())
     {
         look = read_look(read_whole(look_path(run)));
-        look.picture = read_whole(fs::path(run.output).parent_path() / record.picture);
+        look.picture = read_whole((fs::path(run.output).parent_path() / record.picture).string());
         look.note = fmt::format(": {} particles", grouped_digits(record.np));
     }
     look.name = run.name;

@@ -4,6 +4,8 @@
 
 #include "batch/child_process.h"
 #include "batch/content_hash.h"
+#include "batch/rates.h"
+#include "core/file_map.h"
 #include "core/json.h"
 
 #include <fmt/format.h>
@@ -12,8 +14,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <thread>
 
@@ -27,21 +27,13 @@ namespace fs = std::filesystem;
 /// What a child counts where nothing is known of it: an estimate, or a run whose estimate failed,
 /// which fails as early itself.
 constexpr double small_bytes = 32e6;
-/// A picture needs the particles, their spheres and the tree over them; of large results it shows
-/// a part, and they are measured piece by piece.
-constexpr double picture_bytes_a_particle = 200;
+/// A picture shows a part of large results, and they are measured piece by piece.
 constexpr std::uint64_t picture_particles = 4000000;
 /// Of all runs together in the 3-D view of the report.
 constexpr std::size_t view_particles = 1000000;
 constexpr auto poll_interval = std::chrono::milliseconds(5);
 /// Between two requests to stop; the first one ends a relaxation early, the second the program.
 constexpr auto stop_interval = std::chrono::milliseconds(200);
-
-std::string read_whole(const std::string& path)
-{
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 /// Takes what `fppg estimate --json` printed; the run goes on without it where it is no JSON.
 void read_estimate(const std::string& printed, RunRecord& record)
@@ -218,8 +210,9 @@ private:
     {
         if (job.step == Step::Run) return std::max(small_bytes, job.record.estimated_memory_bytes);
         if (job.step == Step::Picture)
-            return small_bytes + picture_bytes_a_particle * static_cast<double>(std::min(
-                                                                job.record.np, picture_particles));
+            return small_bytes +
+                   rates.picture_bytes_per_particle *
+                       static_cast<double>(std::min(job.record.np, picture_particles));
         return small_bytes;
     }
 
@@ -285,10 +278,8 @@ private:
         for (const auto& input : job.record.inputs)
             if (input.first != definition) paths.push_back(input.first);
         job.record.inputs.clear();
-        std::error_code ignored;
         for (const std::string& path : paths)
-            if (fs::is_regular_file(path, ignored))
-                job.record.inputs.emplace_back(path, content_hash(path));
+            if (is_file(path)) job.record.inputs.emplace_back(path, content_hash(path));
     }
 
     void take_result(Job& job)

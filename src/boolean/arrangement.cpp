@@ -24,11 +24,6 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b)
     return static_cast<std::uint64_t>(a) << 32 | b;
 }
 
-double squared(const Vec3& v)
-{
-    return dot(v, v);
-}
-
 class Arranger
 {
 public:

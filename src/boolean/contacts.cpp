@@ -14,11 +14,6 @@ namespace fppg
 namespace
 {
 
-double squared(const Vec3& v)
-{
-    return dot(v, v);
-}
-
 Box3 box_around(const std::array<Vec3, 3>& corners, double reach)
 {
     Box3 box;

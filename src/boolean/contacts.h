@@ -9,6 +9,12 @@
 namespace fppg
 {
 
+/// The square of a vector's length.
+inline double squared(const Vec3& v)
+{
+    return dot(v, v);
+}
+
 /// Several meshes with one numbering of vertices, sides and facets.
 struct MeshSet
 {

@@ -45,10 +45,6 @@ bool is_letter(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
-bool is_name_character(char c)
-{
-    return is_letter(c) || is_digit(c) || c == '_';
-}
 
 /// A rule broken by the arguments of a function; the parser adds the place.
 struct FunctionError
@@ -470,6 +466,11 @@ private:
 };
 
 } // namespace
+
+bool is_name_character(char c)
+{
+    return is_letter(c) || is_digit(c) || c == '_';
+}
 
 double evaluate_expression(std::string_view text, const VariableSource& vars, Blanks blanks)
 {

@@ -23,6 +23,9 @@ struct ExpressionError : std::runtime_error
     std::size_t column;
 };
 
+/// Letters, digits and `_`.
+bool is_name_character(char c);
+
 /// The value of a variable: a number or a text.
 using VariableValue = std::variant<double, std::string>;
 

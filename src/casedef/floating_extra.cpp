@@ -73,7 +73,8 @@ void remove_free_axes(std::vector<Element>& rows)
                               [&](const Element::Attribute& a) { return a.name == axis; });
 }
 
-Element table(const Element& given, const AttributeReader& read, std::vector<std::string>& warnings)
+Element table_with_rows(const Element& given, const AttributeReader& read,
+                        std::vector<std::string>& warnings)
 {
     Element out = named(given.name);
     const std::string file = read.text_or(given, "file", "");
@@ -104,7 +105,7 @@ std::optional<Element> floating_extra(const Element& given, const AttributeReade
     if (name == "linearvelini" || name == "angularvelini") return start_velocity(given, read);
     if (name == "linearvel" || name == "angularvel" || name == "linearforce" ||
         name == "angularforce")
-        return table(given, read, warnings);
+        return table_with_rows(given, read, warnings);
     read.fail(given, "is not known in <floating>");
 }
 

@@ -14,11 +14,6 @@ namespace fppg
 namespace
 {
 
-bool is_name_character(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 void check_name(std::string_view name)
 {
     constexpr std::array reserved{"all", "none", "true", "false", "e"};

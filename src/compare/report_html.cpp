@@ -14,7 +14,7 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t values_shown = 300;
+constexpr std::size_t values_in_page = 300;
 constexpr std::size_t mks_with_histograms = 12;
 
 /// Bars of A and B side by side; either may be missing.
@@ -99,7 +99,7 @@ std::string values_table(const Comparison& comparison)
     if (comparison.values.empty()) return "<p>None.</p>\n";
     std::string html =
         "<div class=\"scroll\"><table class=\"left\"><tr><th>where</th><th>A</th><th>B</th></tr>\n";
-    for (std::size_t i = 0; i < std::min(values_shown, comparison.values.size()); ++i)
+    for (std::size_t i = 0; i < std::min(values_in_page, comparison.values.size()); ++i)
     {
         const ValueDifference& value = comparison.values[i];
         html += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td></tr>\n",
@@ -107,8 +107,8 @@ std::string values_table(const Comparison& comparison)
                             escaped_html(value.b.value_or("none")));
     }
     html += "</table></div>\n";
-    if (comparison.values.size() > values_shown)
-        html += fmt::format("<p>And {} more.</p>\n", comparison.values.size() - values_shown);
+    if (comparison.values.size() > values_in_page)
+        html += fmt::format("<p>And {} more.</p>\n", comparison.values.size() - values_in_page);
     return html;
 }
 

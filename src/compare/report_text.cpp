@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr std::size_t findings_shown = 40;
-constexpr std::size_t values_shown = 40;
+constexpr std::size_t values_in_text = 40;
 
 std::string whole(std::uint64_t n)
 {
@@ -132,7 +132,7 @@ std::string to_text(const Comparison& comparison)
         text += fmt::format("  {:<8}  mk {}: {}\n", change_name(p.kind),
                             p.mk[p.kind == ChangeKind::Extra ? 1 : 0], describe_change(p));
     if (!comparison.values.empty()) text += "Values in Case.bi4 and Case.xml, constants first:\n";
-    const std::size_t values = std::min(values_shown, comparison.values.size());
+    const std::size_t values = std::min(values_in_text, comparison.values.size());
     for (std::size_t i = 0; i < values; ++i)
     {
         const ValueDifference& value = comparison.values[i];

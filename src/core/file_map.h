@@ -34,4 +34,10 @@ private:
     std::vector<char> buffer_;
 };
 
+/// Whether there is a file, no folder or device, of this name.
+bool is_file(const std::string& path);
+
+/// The bytes of a file; none where it cannot be read.
+std::string read_whole(const std::string& path);
+
 } // namespace fppg

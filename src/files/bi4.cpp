@@ -39,9 +39,7 @@ namespace
 static_assert(std::endian::native == std::endian::little,
               "values are copied into the file as they lie in memory");
 
-constexpr std::uint64_t max_particles = 4294967294U;
-/// 28 bytes of Posd and Rhop and 4 of Idp a particle: one MiB.
-constexpr std::uint64_t particles_per_piece = 32768;
+constexpr std::uint64_t max_bi4_particles = 4294967294U;
 
 enum class Bi4Type : std::int32_t
 {
@@ -355,11 +353,11 @@ void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream
 void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConstants& constants,
                const FileOrigin& origin, int threads, std::uint64_t limit_of_32_bit_sizes)
 {
-    if (particles.np > max_particles)
+    if (particles.np > max_bi4_particles)
         throw IoError(
             fmt::format("cannot write '{}': {} particles, but the format holds at most "
                         "{} (ids have 32 bits)",
-                        file.path(), particles.np, max_particles));
+                        file.path(), particles.np, max_bi4_particles));
     Bi4Layout layout = lay_out(particles, constants, origin, false);
     if (layout.size >= limit_of_32_bit_sizes) layout = lay_out(particles, constants, origin, true);
 

@@ -20,11 +20,11 @@
 #include "core/text.h"
 #include "files/case_motion.h"
 #include "files/vres_xml.h"
+#include "files/xml_tags.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <initializer_list>
 #include <map>
 #include <set>
 
@@ -34,28 +34,10 @@ namespace fppg
 namespace
 {
 
-std::string number(double value)
-{
-    return fmt::format("{}", value);
-}
-
 template <typename Integer>
 std::string integer(Integer value)
 {
     return fmt::format("{}", static_cast<std::uint64_t>(value));
-}
-
-Element tag(std::string name, std::initializer_list<Element::Attribute> attributes = {})
-{
-    Element element;
-    element.name = std::move(name);
-    element.attributes = attributes;
-    return element;
-}
-
-Element vector_tag(std::string name, const Vec3& v)
-{
-    return tag(std::move(name), {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}});
 }
 
 Element with_units(Element element, std::string units)

@@ -1,7 +1,7 @@
 #include "fppg/error.h"
 #include "fppg/files.h"
 
-#include "files/vtk.h"
+#include "files/vtk_cells.h"
 
 #include <fmt/format.h>
 
@@ -12,24 +12,17 @@ namespace fppg
 namespace
 {
 
-/// Cells of one kind, VERTICES or LINES, and the values of each.
-struct CellPart
+struct FeatureCells : VtkCells
 {
-    std::string connectivity;
-    std::string mk;
     std::string body;
     std::string length;
-    std::uint64_t cells = 0;
-    std::uint64_t numbers = 0; ///< indices and counts
 
-    void begin(std::size_t vertices, std::size_t body_index, const FittedBody& of, double metres)
+    void begin_feature(std::size_t vertices, std::size_t body_index, const FittedBody& of,
+                       double metres)
     {
-        append_big_endian(connectivity, static_cast<std::uint32_t>(vertices));
-        append_big_endian(mk, static_cast<std::uint32_t>(of.mk));
+        begin(vertices, of.mk);
         append_big_endian(body, static_cast<std::uint32_t>(body_index));
         append_big_endian(length, static_cast<float>(metres));
-        numbers += vertices + 1;
-        ++cells;
     }
 };
 
@@ -78,20 +71,21 @@ void write_features_vtk(OutputFile& file, const FittedWalls& walls)
                                   file.path(), numbers));
 
     PointList points;
-    CellPart vertices;
-    CellPart lines;
+    FeatureCells vertices;
+    FeatureCells lines;
     for (std::size_t b = 0; b < walls.bodies.size(); ++b)
     {
         const FittedBody& body = walls.bodies[b];
         points.begin_body(body.mesh);
         for (const std::uint32_t vertex : body.features.singular)
         {
-            vertices.begin(1, b, body, 0);
+            vertices.begin_feature(1, b, body, 0);
             append_big_endian(vertices.connectivity, points.index_of(vertex));
         }
         for (const FeatureLine& line : body.features.lines)
         {
-            lines.begin(line.vertices.size() + (line.is_closed ? 1 : 0), b, body, line.length);
+            lines.begin_feature(line.vertices.size() + (line.is_closed ? 1 : 0), b, body,
+                                line.length);
             for (const std::uint32_t vertex : line.vertices)
                 append_big_endian(lines.connectivity, points.index_of(vertex));
             if (line.is_closed)
@@ -102,15 +96,8 @@ void write_features_vtk(OutputFile& file, const FittedWalls& walls)
     file.append(fmt::format("{}POINTS {} float\n", vtk_head, points.count()));
     file.append(points.bytes());
     file.append("\n");
-    const auto write_cells = [&](const char* name, const CellPart& part)
-    {
-        if (part.cells == 0) return;
-        file.append(fmt::format("{} {} {}\n", name, part.cells, part.numbers));
-        file.append(part.connectivity);
-        file.append("\n");
-    };
-    write_cells("VERTICES", vertices);
-    write_cells("LINES", lines);
+    vertices.write(file, "VERTICES");
+    lines.write(file, "LINES");
     const std::uint64_t cells = vertices.cells + lines.cells;
     file.append(fmt::format("CELL_DATA {}\nSCALARS Mk int\nLOOKUP_TABLE default\n", cells));
     file.append(vertices.mk + lines.mk);

@@ -9,6 +9,9 @@
 namespace fppg
 {
 
+/// Particles that a thread takes at once.
+inline constexpr std::size_t particles_per_chunk = 65536;
+
 /// Reads positions from a file of DualSPHysics' binary container (JPartDataBi4): array Posd, or Pos
 /// in single precision.
 ///

@@ -1,22 +1,16 @@
 #include "files/particle_source.h"
 
 #include "casedef/xml_document.h"
+#include "core/file_map.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
-#include <filesystem>
 
 namespace fppg
 {
 
 namespace
 {
-
-bool is_file(const std::string& path)
-{
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
-}
 
 std::string without_end(const std::string& text, std::size_t length)
 {

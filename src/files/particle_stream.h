@@ -9,6 +9,11 @@
 namespace fppg
 {
 
+/// Of the files that are written in pieces: one MiB of the 32 bytes of Posd, Rhop and Idp in
+/// Case.bi4; one MiB or two in VTK, of 27 bytes per particle, 12 more with velocities, 16 with
+/// normals and 20 with walls.
+inline constexpr std::uint64_t particles_per_piece = 32768;
+
 /// Consecutive particles of one run. Their places among the particles of the run are
 /// [offset, offset + count).
 struct ParticleSegment

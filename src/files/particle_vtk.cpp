@@ -17,10 +17,7 @@ namespace fppg
 namespace
 {
 
-/// 27 bytes per particle, 12 more with velocities, 16 with normals and 20 with walls: one MiB or
-/// two.
-constexpr std::uint64_t particles_per_piece = 32768;
-constexpr std::uint64_t max_particles = 2147483647U;
+constexpr std::uint64_t max_vtk_particles = 2147483647U;
 
 /// A part of the file: a line or more of text, then `width` bytes per particle.
 struct Part
@@ -281,11 +278,11 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
     const std::uint64_t first = selection == VtkSelection::Fluid ? n_bound : 0;
     const std::uint64_t last = selection == VtkSelection::Bound ? n_bound : particles.np;
     const std::uint64_t n = last - first;
-    if (n > max_particles)
+    if (n > max_vtk_particles)
         throw IoError(
             fmt::format("cannot write '{}': {} particles, but legacy VTK holds at most "
                         "{} (indices have 32 bits)",
-                        file.path(), n, max_particles));
+                        file.path(), n, max_vtk_particles));
     const bool has_normals = selection == VtkSelection::Bound && !particles.bound_normals.empty();
     std::uint64_t mk_width = has_normals ? 2 : 1;
     for (const ParticleBlock& block : particles.blocks)

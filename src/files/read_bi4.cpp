@@ -12,8 +12,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t particles_per_chunk = 65536;
-
 template <typename T>
 void copy_positions(std::string_view data, std::vector<Vec3>& positions, int threads)
 {

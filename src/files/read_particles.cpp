@@ -1,6 +1,7 @@
 #include "fppg/read_particles.h"
 
 #include "casedef/xml_document.h"
+#include "core/file_map.h"
 #include "core/parallel.h"
 #include "files/case_facts.h"
 #include "files/particle_readers.h"
@@ -9,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 namespace fppg
@@ -17,14 +17,6 @@ namespace fppg
 
 namespace
 {
-
-constexpr std::size_t particles_per_chunk = 65536;
-
-bool is_file(const std::string& path)
-{
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
-}
 
 /// `text` without `end`, if it ends so.
 std::optional<std::string> without(const std::string& text, std::string_view end)

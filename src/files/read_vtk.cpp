@@ -14,8 +14,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t particles_per_chunk = 65536;
-
 template <typename Integer>
 void copy_integers(const VtkWalk& walk, const char* name, const VtkArray& array, std::size_t n,
                    std::vector<Integer>& out, int threads)

@@ -25,7 +25,7 @@ void append(std::string& out, T value)
 }
 
 /// The cells of all shapes in the order points, lines, faces, as in the legacy files.
-struct Cells
+struct ShapeCells
 {
     std::string points;
     std::uint64_t n_points = 0;
@@ -48,16 +48,16 @@ std::uint8_t cell_type(std::size_t corners)
     return corners < types.size() ? types[corners] : std::uint8_t{7};
 }
 
-Cells cells_of(const std::vector<ShapePolygons>& shapes)
+ShapeCells cells_of(const std::vector<ShapePolygons>& shapes)
 {
-    Cells out;
+    ShapeCells out;
     const CornerNumbers corners = number_corners(shapes);
     out.n_points = corners.places.size();
     for (const std::array<float, 3>& place : corners.places)
         for (const float coordinate : place) append(out.points, coordinate);
     for (std::size_t kind = 0; kind < 3; ++kind)
     {
-        Cells::Part& part = out.parts[kind];
+        ShapeCells::Part& part = out.parts[kind];
         for (std::size_t s = 0; s < shapes.size(); ++s)
             for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
             {
@@ -101,7 +101,7 @@ std::string array_line(const char* type, const char* name, std::uint64_t place)
 }
 
 /// What both formats begin with, up to the points.
-std::string shared_part(const Cells& cells, Appended& appended)
+std::string shared_part(const ShapeCells& cells, Appended& appended)
 {
     const auto array = [](const std::string& attributes, std::uint64_t place)
     {
@@ -135,14 +135,14 @@ void write_file(OutputFile& file, const char* type, const std::string& piece,
 
 void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes)
 {
-    const Cells cells = cells_of(shapes);
+    const ShapeCells cells = cells_of(shapes);
     Appended appended;
     std::string piece = fmt::format(
         "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" "
         "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
         cells.n_points, cells.parts[0].cells, cells.parts[1].cells, cells.parts[2].cells);
     piece += shared_part(cells, appended);
-    const auto add = [&](const char* name, const Cells::Part& part)
+    const auto add = [&](const char* name, const ShapeCells::Part& part)
     {
         piece += fmt::format("      <{}>\n", name);
         piece += array_line("Int32", "connectivity", appended.add(part.connectivity));
@@ -158,9 +158,9 @@ void write_shapes_vtp(OutputFile& file, const std::vector<ShapePolygons>& shapes
 
 void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes)
 {
-    const Cells cells = cells_of(shapes);
-    Cells::Part all;
-    for (const Cells::Part& part : cells.parts)
+    const ShapeCells cells = cells_of(shapes);
+    ShapeCells::Part all;
+    for (const ShapeCells::Part& part : cells.parts)
     {
         all.connectivity += part.connectivity;
         for (std::size_t i = 0; i < part.offsets.size(); i += sizeof(std::int32_t))
@@ -177,11 +177,11 @@ void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes
     std::string piece = fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                                     cells.n_points, all.cells);
     piece += shared_part(cells, appended);
-    piece += "      <Cells>\n";
+    piece += "      <ShapeCells>\n";
     piece += array_line("Int32", "connectivity", appended.add(all.connectivity));
     piece += array_line("Int32", "offsets", appended.add(all.offsets));
     piece += array_line("UInt8", "types", appended.add(all.types));
-    piece += "      </Cells>\n";
+    piece += "      </ShapeCells>\n";
     write_file(file, "UnstructuredGrid", piece, appended);
 }
 

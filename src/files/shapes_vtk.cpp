@@ -1,5 +1,5 @@
 #include "files/corner_numbers.h"
-#include "files/vtk.h"
+#include "files/vtk_cells.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
@@ -10,31 +10,24 @@ namespace fppg
 namespace
 {
 
-/// The cells of one kind (VERTICES, LINES or POLYGONS) of all shapes.
-struct CellPart
+/// Of all shapes.
+struct LegacyShapeCells : VtkCells
 {
-    std::string connectivity;
-    std::uint64_t cells = 0;
-    std::uint64_t numbers = 0; ///< indices and counts
-    std::string mk;
     std::string object_id;
 };
 
-CellPart collect_cells(const std::vector<ShapePolygons>& shapes, const CornerNumbers& corners,
-                       std::size_t kind)
+LegacyShapeCells collect_cells(const std::vector<ShapePolygons>& shapes,
+                               const CornerNumbers& corners, std::size_t kind)
 {
-    CellPart part;
+    LegacyShapeCells part;
     for (std::size_t s = 0; s < shapes.size(); ++s)
         for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
         {
             if (cell_kind(cell.size()) != kind) continue;
-            append_big_endian(part.connectivity, static_cast<std::uint32_t>(cell.size()));
+            part.begin(cell.size(), shapes[s].mk);
             for (const std::uint32_t v : cell)
                 append_big_endian(part.connectivity, corners.numbers[s][v]);
-            append_big_endian(part.mk, static_cast<std::uint32_t>(shapes[s].mk));
             append_big_endian(part.object_id, shapes[s].object_id);
-            part.numbers += cell.size() + 1;
-            ++part.cells;
         }
     return part;
 }
@@ -55,12 +48,9 @@ void write_shapes_vtk(OutputFile& file, const std::vector<ShapePolygons>& shapes
     std::string mk;
     std::string object_id;
     std::uint64_t cells = 0;
-    const auto write_part = [&](const char* name, const CellPart& part)
+    const auto write_part = [&](const char* name, const LegacyShapeCells& part)
     {
-        if (part.cells == 0) return;
-        file.append(fmt::format("{} {} {}\n", name, part.cells, part.numbers));
-        file.append(part.connectivity);
-        file.append("\n");
+        part.write(file, name);
         mk += part.mk;
         object_id += part.object_id;
         cells += part.cells;

@@ -1,5 +1,6 @@
 #include "files/vres_xml.h"
 #include "files/vtk.h"
+#include "files/xml_tags.h"
 #include "fppg/files.h"
 
 #include <fmt/format.h>
@@ -8,25 +9,6 @@ namespace fppg
 {
 namespace
 {
-
-std::string number(double value)
-{
-    return fmt::format("{}", value);
-}
-
-Element tag(std::string name)
-{
-    Element element;
-    element.name = std::move(name);
-    return element;
-}
-
-Element vector_tag(std::string name, const Vec3& v)
-{
-    Element out = tag(std::move(name));
-    out.attributes = {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}};
-    return out;
-}
 
 void add_box(Element& out, const ZoneBox& box, bool is_2d)
 {
@@ -151,7 +133,7 @@ namespace
 {
 
 /// Cells of equal size for a picture of boxes.
-struct Cells
+struct ZoneCells
 {
     std::string points;
     std::string zones;
@@ -195,7 +177,7 @@ std::array<Vec3, 4> rectangle(const ZoneBox& box)
     return {c, c + box.edges[0], c + box.edges[0] + box.edges[2], c + box.edges[2]};
 }
 
-void add_rectangle(Cells& cells, const ZoneBox& box, std::size_t zone)
+void add_rectangle(ZoneCells& cells, const ZoneBox& box, std::size_t zone)
 {
     const std::array<Vec3, 4> p = rectangle(box);
     for (std::size_t i = 0; i < 4; ++i) cells.add({p[i], p[(i + 1) % 4]}, zone);
@@ -214,7 +196,7 @@ std::array<std::array<Vec3, 4>, 6> faces(const ZoneBox& box)
              {a, a + z, a + y + z, a + y}}};
 }
 
-void add_faces(Cells& cells, const ZoneBox& box, std::size_t zone, bool as_lines)
+void add_faces(ZoneCells& cells, const ZoneBox& box, std::size_t zone, bool as_lines)
 {
     for (const std::array<Vec3, 4>& face : faces(box))
     {
@@ -229,7 +211,7 @@ void add_faces(Cells& cells, const ZoneBox& box, std::size_t zone, bool as_lines
 void write_zone_vtk(OutputFile& file, const VresDef& vres, std::size_t id)
 {
     const VresZone& zone = vres.zones[id];
-    Cells cells;
+    ZoneCells cells;
     const auto add = [&](const ZoneBox& box, double grow)
     {
         const ZoneBox shown = grow != 0 ? resized(box, grow, vres.is_2d) : box;
@@ -255,7 +237,7 @@ void write_zone_vtk(OutputFile& file, const VresDef& vres, std::size_t id)
 
 void write_zones_vtk(OutputFile& file, const VresDef& vres)
 {
-    Cells cells;
+    ZoneCells cells;
     for (std::size_t id = 0; id < vres.zones.size(); ++id)
     {
         const VresZone& zone = vres.zones[id];

@@ -10,6 +10,25 @@
 namespace fppg
 {
 
+/// In the plane of a facet.
+struct ChartPoint
+{
+    double x, y;
+};
+
+/// A place where a particle may be missing.
+struct ChartHole
+{
+    double distance; ///< to the nearest particle, metres
+    std::uint32_t order;
+    SurfaceRay place;
+
+    bool operator<(const ChartHole& other) const
+    {
+        return distance != other.distance ? distance < other.distance : order > other.order;
+    }
+};
+
 namespace
 {
 
@@ -17,32 +36,14 @@ namespace
 // at one particle a dp squared.
 constexpr double front_spacing = 1.075;
 constexpr double least_distance = 0.86;
-constexpr double same_site = 0.25;         ///< a front meets a particle where it would put one
-constexpr double clearly_taken = 0.50;     ///< the walk there can be saved
-constexpr double reach = ChartGrid::reach; ///< of everything that looks for neighbours
+constexpr double same_site = 0.25;     ///< a front meets a particle where it would put one
+constexpr double clearly_taken = 0.50; ///< the walk there can be saved
+constexpr double neighbour_reach = ChartGrid::reach; ///< of everything that looks for neighbours
 
 constexpr float square(double x)
 {
     return static_cast<float>(x * x);
 }
-
-struct PlanePoint
-{
-    double x, y;
-};
-
-/// A place where a particle may be missing.
-struct Hole
-{
-    double distance; ///< to the nearest particle, metres
-    std::uint32_t order;
-    SurfaceRay place;
-
-    bool operator<(const Hole& other) const
-    {
-        return distance != other.distance ? distance < other.distance : order > other.order;
-    }
-};
 
 /// The two sides of a thin plate do not count as neighbours, however thin it is and wherever on the
 /// other side a particle is: each side is covered by its own.
@@ -72,16 +73,16 @@ EightNumbers turned_by_sixths(double along, double left)
 
 /// Keeps of a convex polygon what is nearer to the origin than to a point over `other`, which is
 /// at a distance of the origin whose square is `squared`.
-void clip(std::vector<PlanePoint>& polygon, const PlanePoint& other, double squared,
-          std::vector<PlanePoint>& spare)
+void clip(std::vector<ChartPoint>& polygon, const ChartPoint& other, double squared,
+          std::vector<ChartPoint>& spare)
 {
     const double limit = 0.5 * squared;
-    const auto excess = [&](const PlanePoint& p) { return p.x * other.x + p.y * other.y - limit; };
+    const auto excess = [&](const ChartPoint& p) { return p.x * other.x + p.y * other.y - limit; };
     spare.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i)
     {
-        const PlanePoint& a = polygon[i];
-        const PlanePoint& b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const ChartPoint& a = polygon[i];
+        const ChartPoint& b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
         const double ea = excess(a);
         const double eb = excess(b);
         if (ea <= 0) spare.push_back(a);
@@ -148,8 +149,8 @@ struct ChartFiller::Work
     std::vector<Vec3> normals; ///< of all in the grid
     NearPoints near;
     mutable NearPoints looked_at;
-    std::vector<PlanePoint> polygon, spare;
-    std::priority_queue<Hole> holes;
+    std::vector<ChartPoint> polygon, spare;
+    std::priority_queue<ChartHole> holes;
     std::uint32_t order = 0;
 
     void start(std::uint32_t which)
@@ -278,11 +279,11 @@ struct ChartFiller::Work
         const Vec3 x_axis = any_direction(mesh.facets[facet]);
         const Vec3 y_axis = cross(normal, x_axis);
         // In dp around the particle.
-        grid.find_near(position, reach, near);
+        grid.find_near(position, neighbour_reach, near);
         constexpr double box = 1.3;
         const double limit = state.hole_radius * state.hole_radius;
         polygon.assign({{-box, -box}, {box, -box}, {box, box}, {-box, box}});
-        const auto is_far = [&](const PlanePoint& p) { return p.x * p.x + p.y * p.y > limit; };
+        const auto is_far = [&](const ChartPoint& p) { return p.x * p.x + p.y * p.y > limit; };
         // The nearest first, after which there is mostly nothing left to cut.
         for (const bool is_close : {true, false})
         {
@@ -292,13 +293,13 @@ struct ChartFiller::Work
                 const double squared = dot(offset, offset);
                 if ((squared < 1.7) != is_close || squared < 1e-9 || is_other_sheet_at(normal, n))
                     continue;
-                const PlanePoint q{dot(offset, x_axis), dot(offset, y_axis)};
+                const ChartPoint q{dot(offset, x_axis), dot(offset, y_axis)};
                 if (q.x * q.x + q.y * q.y < 0.04 * squared) continue;
                 clip(polygon, q, squared, spare);
             }
             if (std::none_of(polygon.begin(), polygon.end(), is_far)) return;
         }
-        for (const PlanePoint& p : polygon)
+        for (const ChartPoint& p : polygon)
         {
             if (!is_far(p)) continue;
             const double length = std::sqrt(p.x * p.x + p.y * p.y);
@@ -324,9 +325,9 @@ struct ChartFiller::Work
     {
         const Vec3& normal = mesh.facets[at.facet].normal;
         const bool has_sheets = !state.charts.is_crumbs(chart);
-        double best = reach * reach * dp * dp;
+        double best = neighbour_reach * neighbour_reach * dp * dp;
         grid.for_each_near(
-            at.position, reach, looked_at,
+            at.position, neighbour_reach, looked_at,
             [&](std::uint32_t index, const Vec3&, double squared)
             {
                 if (squared < best && !(has_sheets && is_other_sheet(normal, normals[index])))
@@ -391,9 +392,9 @@ struct ChartFiller::Work
         for (int i = 0; i < 8 && at.facet != no_index; ++i, step *= 0.8)
         {
             const Vec3& normal = mesh.facets[at.facet].normal;
-            double best = reach * reach * dp * dp;
+            double best = neighbour_reach * neighbour_reach * dp * dp;
             Vec3 towards{};
-            grid.for_each_near(at.position, reach, looked_at,
+            grid.for_each_near(at.position, neighbour_reach, looked_at,
                                [&](std::uint32_t index, const Vec3& offset, double squared)
                                {
                                    if (squared >= best || is_other_sheet(normal, normals[index]))
@@ -429,7 +430,7 @@ struct ChartFiller::Work
     {
         while (!holes.empty())
         {
-            Hole hole = holes.top();
+            ChartHole hole = holes.top();
             holes.pop();
             const double distance = own_sheet_distance(hole.place);
             if (distance <= state.hole_radius * dp) continue;

@@ -172,7 +172,7 @@ double measure_overlap(const TriangleSoup& body, int threads)
 }
 
 /// No node of a solid is nearer to its surface than this, 0.4 dp.
-constexpr std::uint32_t least_distance = distance_units / 5 * 2;
+constexpr std::uint32_t least_node_distance = distance_units / 5 * 2;
 
 /// A number for each node such that those below any bound are spread evenly over any plane of the
 /// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
@@ -331,7 +331,7 @@ public:
           options_(options),
           threads_(threads),
           // The nodes of a solid stop a fill themselves.
-          within_(options.is_solid ? least_distance : half_dp),
+          within_(options.is_solid ? least_node_distance : half_dp),
           beyond_(half_dp + 1)
     {
     }

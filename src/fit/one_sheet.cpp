@@ -16,7 +16,7 @@ namespace
 
 /// Two particles on either side of a plate lie up to this far apart, dp: its thickness and half a
 /// spacing along it.
-constexpr double reach_dp = 1.2;
+constexpr double sheet_reach_dp = 1.2;
 /// Tells the sides of a surface that faces itself; no plane of a drawing is likely to contain it.
 constexpr Vec3 staying_side{0.36, 0.48, 0.8};
 /// A corner of a plate lies this far from the nearest particle on its sides, dp.
@@ -173,7 +173,7 @@ private:
 
     void take_behind_others()
     {
-        const double reach = reach_dp * options_.dp;
+        const double reach = sheet_reach_dp * options_.dp;
         const std::size_t n = is_taken_.size();
         FacingCells facing(reach);
         for (std::size_t i = 0; i < n; ++i)

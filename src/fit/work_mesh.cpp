@@ -18,7 +18,7 @@ struct Piece
 };
 
 /// One side of a piece, to be sorted so that the sides of one edge lie together.
-struct Side
+struct PieceSide
 {
     std::uint32_t low, high; ///< vertices
     std::uint32_t piece;
@@ -28,7 +28,7 @@ struct Side
     auto key() const { return std::tie(low, high, piece, side); }
 };
 
-Side side_of(const Piece& piece, std::uint32_t index, std::uint32_t s)
+PieceSide side_of(const Piece& piece, std::uint32_t index, std::uint32_t s)
 {
     const auto a = piece.vertices[s];
     const auto b = piece.vertices[(s + 1) % 3];
@@ -105,7 +105,7 @@ public:
 private:
     double length_squared(const Piece& piece, std::size_t s) const
     {
-        const Side side = side_of(piece, 0, static_cast<std::uint32_t>(s));
+        const PieceSide side = side_of(piece, 0, static_cast<std::uint32_t>(s));
         const Vec3 d = vertices_[side.high] - vertices_[side.low];
         return dot(d, d);
     }
@@ -116,8 +116,8 @@ private:
         std::size_t best = 0;
         for (std::size_t s = 1; s < 3; ++s)
         {
-            const Side a = side_of(piece, 0, static_cast<std::uint32_t>(s));
-            const Side b = side_of(piece, 0, static_cast<std::uint32_t>(best));
+            const PieceSide a = side_of(piece, 0, static_cast<std::uint32_t>(s));
+            const PieceSide b = side_of(piece, 0, static_cast<std::uint32_t>(best));
             if (std::make_tuple(length_squared(piece, s), a.low, a.high) >
                 std::make_tuple(length_squared(piece, best), b.low, b.high))
                 best = s;
@@ -131,7 +131,7 @@ private:
         for (std::uint32_t i = 0; i < pieces_.size(); ++i)
             for (std::uint32_t s = 0; s < 3; ++s) sides_.push_back(side_of(pieces_[i], i, s));
         std::sort(sides_.begin(), sides_.end(),
-                  [](const Side& a, const Side& b) { return a.key() < b.key(); });
+                  [](const PieceSide& a, const PieceSide& b) { return a.key() < b.key(); });
     }
 
     /// A mark holds for all pieces at an edge; a piece with a mark is cut at its longest side too.
@@ -163,7 +163,7 @@ private:
         for_each_edge(
             [&](std::size_t begin, std::size_t end)
             {
-                const Side& first = sides_[begin];
+                const PieceSide& first = sides_[begin];
                 if (!marked_[first.piece][first.side]) return;
                 const auto name = static_cast<std::uint32_t>(vertices_.size());
                 vertices_.push_back(0.5 * (vertices_[first.low] + vertices_[first.high]));
@@ -222,8 +222,8 @@ private:
             [&](std::size_t begin, std::size_t end)
             {
                 if (end - begin != 2) return;
-                const Side& a = sides_[begin];
-                const Side& b = sides_[begin + 1];
+                const PieceSide& a = sides_[begin];
+                const PieceSide& b = sides_[begin + 1];
                 if (a.runs_up == b.runs_up || pieces_[a.piece].is_border[a.side] ||
                     pieces_[b.piece].is_border[b.side])
                     return;
@@ -249,7 +249,7 @@ private:
     std::vector<Vec3> vertices_;
     double longest_squared_;
     std::vector<Piece> pieces_;
-    std::vector<Side> sides_;
+    std::vector<PieceSide> sides_;
     std::vector<std::array<char, 3>> marked_;
     std::vector<std::array<std::uint32_t, 3>> midpoints_;
 };

@@ -4,12 +4,12 @@
 
 #include "core/parallel.h"
 #include "lattice/fill_level.h"
+#include "lattice/point_text.h"
 #include "lattice/span_graph.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <queue>
 #include <tuple>
 
@@ -19,7 +19,6 @@ namespace
 {
 
 using Slabs = std::vector<Spans>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The spans moved by some rows, those before row 0 left out.
 Spans moved_rows(const Spans& spans, int by)
@@ -85,11 +84,6 @@ private:
         return at >= 0 && at < static_cast<std::int64_t>(slabs.size())
                    ? slabs[static_cast<std::size_t>(at)]
                    : none;
-    }
-
-    std::string text(const Vec3& p) const
-    {
-        return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
     }
 
     Vec3 place(double x, double y, double z) const

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "lattice/cavity.h"
 #include "lattice/fill_level.h"
+#include "lattice/point_text.h"
 
 #include <fmt/format.h>
 
@@ -23,11 +24,6 @@ constexpr std::size_t gaps_warned_of = 5;
 constexpr int widest_leak_nodes = 12;
 /// Of all sets of spans that are held at the same time, a column of the box.
 constexpr double bytes_per_column = 160;
-
-std::string text(const Vec3& p)
-{
-    return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
-}
 
 std::string text(const CavityGap& gap)
 {

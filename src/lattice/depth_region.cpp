@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "nodes/snap.h"
+#include "shapes/planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,7 @@ namespace fppg
 namespace
 {
 
-struct Plane
-{
-    Vec3 normal; ///< of length one
-    double offset = 0;
-};
-
+/// Its normal has length one.
 Plane plane_of(const Vec3& normal, const Vec3& point)
 {
     const double length = norm(normal);
@@ -67,11 +63,6 @@ double distance_to(const Vec3& p, const std::array<Vec3, 3>& t)
 Plane side_plane(const Vec3& a, const Vec3& b, const Vec3& raised, const Vec3& normal)
 {
     return plane_of(cross(b - a, raised + normal - a), a);
-}
-
-double value_at(const Plane& plane, const Vec3& p)
-{
-    return dot(plane.normal, p) + plane.offset;
 }
 
 /// Where a row along x passes a facet.
@@ -187,7 +178,7 @@ public:
                 for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
                 {
                     const Vec3 p{x, node_at(y, 1), node_at(z, 2)};
-                    if (value_at(f.plane, p) > 0) continue;
+                    if (f.plane.value(p) > 0) continue;
                     double& d = depth[static_cast<std::size_t>(y - box_.begin[1]) * height +
                                       static_cast<std::size_t>(z - box_.begin[2])];
                     d = std::min(d, distance_to(p, f.corners));
@@ -259,9 +250,9 @@ private:
             for (std::int64_t z = f.reach.begin[2]; z < f.reach.end[2]; ++z)
             {
                 Vec3 p{x_begin, node_at(y, 1), node_at(z, 2)};
-                p.x += length * (-value_at(plane, p) / (plane.normal.x * length));
+                p.x += length * (-plane.value(p) / (plane.normal.x * length));
                 if (std::any_of(sides.begin(), sides.end(),
-                                [&p](const Plane& side) { return value_at(side, p) > 0; }))
+                                [&p](const Plane& side) { return side.value(p) > 0; }))
                     continue;
                 out.push_back({static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), p.x,
                                plane.normal.x < 0});

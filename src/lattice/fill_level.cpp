@@ -3,15 +3,12 @@
 #include "core/parallel.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace fppg
 {
 namespace
 {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The number of nodes up to a height and the height of the highest of them.
 struct Sum

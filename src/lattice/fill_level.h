@@ -4,9 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace fppg
 {
+
+/// Higher than every node.
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Heights of nodes along a direction, in dp from the node (0, 0, 0) of the lattice. Heights that
 /// differ by less than `tolerance` are one layer.

@@ -3,6 +3,7 @@
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
+#include "lattice/off_lattice_points.h"
 #include "meshes/point_grid.h"
 #include "nodes/snap.h"
 
@@ -14,12 +15,10 @@ namespace fppg
 namespace
 {
 
-/// Two particles, or a particle and a node, are never nearer, dp.
-constexpr double nearest_dp = 0.75;
 /// Distance from the plane of a 2D case up to which particles are moved into it, dp.
 constexpr double plane_distance_dp = 0.1;
 
-bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+bool is_in_off_lattice_domain(const Vec3& p, const LatticeGrid& grid)
 {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -130,7 +129,7 @@ std::vector<Spans> OffLatticePainter::draw(const std::vector<Vec3>& points,
             if (!(std::abs(p.y - grid.origin.y) <= plane_distance_dp * grid.dp)) continue;
             p.y = grid.origin.y;
         }
-        if (!is_in_domain(p, grid)) continue;
+        if (!is_in_off_lattice_domain(p, grid)) continue;
         bool has_node = false;
         for_each_node(p, grid,
                       [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, bool)

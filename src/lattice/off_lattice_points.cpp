@@ -19,7 +19,6 @@ namespace fppg
 namespace
 {
 
-constexpr double nearest_dp = 0.75;
 /// Steps of angles are taken in degrees and then turned into radians: their rounding decides
 /// whether there is a particle at a pole.
 constexpr double radian = std::numbers::pi / 180;

@@ -9,6 +9,9 @@
 namespace fppg
 {
 
+/// Two particles, or a particle and a node, are never nearer, dp.
+inline constexpr double nearest_dp = 0.75;
+
 /// The places of particles that `setfrdrawmode auto="true"` draws off the lattice, in GenCase's
 /// order of drawing, before clips and the limits of the domain.
 ///

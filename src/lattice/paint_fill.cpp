@@ -21,11 +21,11 @@ namespace
 /// An index of all columns of a fill's box is kept while it runs.
 void check_columns(const Painting& painting, const Brush& brush, const NodeBox& box)
 {
-    constexpr double bytes_per_column = 40;
+    constexpr double bytes_per_indexed_column = 40;
     if (box.is_empty()) return;
     const double columns = static_cast<double>(box.end[0] - box.begin[0]) *
                            static_cast<double>(box.end[1] - box.begin[1]);
-    if (columns * bytes_per_column > static_cast<double>(available_memory()))
+    if (columns * bytes_per_indexed_column > static_cast<double>(available_memory()))
         throw CaseError(
             painting.def.file, brush.source->line,
             fmt::format("<{}>: the fill reaches over {:g} columns of nodes, more than fit into "

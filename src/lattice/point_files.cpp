@@ -5,7 +5,9 @@
 #include "fppg/shapes.h"
 
 #include "core/text.h"
+#include "lattice/point_text.h"
 #include "meshes/mesh_library.h"
+#include "nodes/domain.h"
 #include "nodes/snap.h"
 
 #include <fmt/format.h>
@@ -17,27 +19,6 @@ namespace fppg
 {
 namespace
 {
-
-/// Rounding of the place of a point, dp.
-constexpr double place_tolerance = 1e-6;
-
-std::string text(const Vec3& p)
-{
-    return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
-}
-
-/// Between the first and the last nodes, and in 2D in the plane.
-bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
-{
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
-        if (!(index >= -place_tolerance &&
-              index <= grid.n[static_cast<std::size_t>(axis)] - 1 + place_tolerance))
-            return false;
-    }
-    return true;
-}
 
 /// The run that a node is in; null: nothing is there.
 const Run* run_at(const RunField& field, const Node& n)

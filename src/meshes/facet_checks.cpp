@@ -16,7 +16,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t facets_per_block = 16384;
 /// So far from zero nothing that is simulated can be; the number is most likely damaged.
 constexpr double huge_coordinate = 1e10;
 

@@ -18,15 +18,6 @@ namespace
 /// Room for what float rounds away in coordinates between -1 and 1 and in Embree's own arithmetic.
 constexpr double rounding_room = 1.0 / (1 << 20);
 
-struct ReleaseDevice
-{
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene
-{
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-
 void check(RTCDevice device)
 {
     const RTCError code = rtcGetDeviceError(device);
@@ -40,6 +31,15 @@ void check(RTCDevice device)
 /// as boxes with callbacks, because triangles rounded to float would miss what doubles still hit.
 struct MeshQuery::Scene
 {
+    struct ReleaseDevice
+    {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    };
+    struct ReleaseScene
+    {
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+
     TriangleSoup soup;
     Vec3 centre;
     double scale = 1; ///< half the largest extent of the mesh

@@ -28,7 +28,6 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::size_t header_bytes = 84; // 80 of comment, 4 of count
 constexpr std::size_t facet_bytes = 50;  // normal, three corners, two bytes of attribute
-constexpr std::size_t facets_per_block = 16384;
 constexpr std::size_t text_bytes_per_chunk = std::size_t{1} << 20;
 
 bool is_space(char c)

@@ -17,7 +17,6 @@ namespace
 
 /// A stretch of this many particles that together make up for less than half of one is even enough.
 constexpr std::size_t even_stretch = 40;
-constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 /// The share of the kernel's integral that is farther than a radius, by the rule of rectangles.
 double share_beyond(double radius, double h, bool is_2d)
@@ -157,7 +156,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
             excess[i] =
                 static_cast<float>(excess_at(band, i, list.neighbours(row), wide, cut_off, even));
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     CountChange change;
     change.is_removed.assign(band.moving, 0);
     double sum = 0;

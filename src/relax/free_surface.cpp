@@ -8,8 +8,6 @@ namespace fppg
 namespace
 {
 
-constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
-
 /// Which of the six neighbours along the axes a particle has, as bits.
 unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)
 {
@@ -58,7 +56,7 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
                 if ((found >> side & 1) == 0 && !is_explained(i, side)) is_surface[i] = 1;
             }
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     // A little less than 2 h, where the kernel has ended: rows at just that distance are free.
     const auto reach = static_cast<float>(1.999 * options.h_dp);
     parallel_for(
@@ -77,7 +75,7 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
                 if (x * x + y * y + z * z < reach * reach) band.is_held[i] = 1;
             }
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     return static_cast<std::size_t>(std::count(band.is_held.begin(), band.is_held.end(), 1));
 }
 

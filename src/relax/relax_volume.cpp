@@ -22,15 +22,13 @@ namespace
 
 // All lengths below are in dp, unless they are of Vec3.
 
-constexpr float momentum = 0.9f;
+constexpr float volume_momentum = 0.9f;
 constexpr float longest_step = 0.1f;
 constexpr int most_iterations = 100;
 /// The count is fitted at these iterations: when forces have evened out what they can.
 constexpr int first_count_change = 5;
 constexpr int count_change_interval = 5;
 constexpr int last_count_change = 15;
-
-constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 /// What one chunk of particles adds up to.
 struct ChunkSums
@@ -84,12 +82,14 @@ ChunkSums add_up(const std::vector<ChunkSums>& chunks)
 template <typename Body>
 ChunkSums sum_over_chunks(std::size_t n, int threads, const Body& body)
 {
-    std::vector<ChunkSums> chunks((n + chunk_size - 1) / chunk_size);
+    std::vector<ChunkSums> chunks((n + NeighbourList::rows_per_chunk - 1) /
+                                  NeighbourList::rows_per_chunk);
     parallel_for(chunks.size(), threads,
                  [&](std::size_t c)
                  {
-                     const std::size_t end = std::min(n, (c + 1) * chunk_size);
-                     for (std::size_t k = c * chunk_size; k < end; ++k) body(k, chunks[c]);
+                     const std::size_t end = std::min(n, (c + 1) * NeighbourList::rows_per_chunk);
+                     for (std::size_t k = c * NeighbourList::rows_per_chunk; k < end; ++k)
+                         body(k, chunks[c]);
                  });
     return add_up(chunks);
 }
@@ -260,7 +260,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
     const int last = options.iterations > 0 ? options.iterations : most_iterations;
     std::vector<double> variations;
-    float kept = momentum;
+    float kept = volume_momentum;
     renew_walls(band, list, wall_reach, true, surroundings.closest, threads);
     for (int iteration = 1; iteration <= last; ++iteration)
     {
@@ -278,7 +278,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
             renew_walls(band, list, wall_reach, false, surroundings.closest, threads);
         const ChunkSums sums = accelerate(band, list, forces, step_length, kept, threads);
         if (sums.count == 0) break;
-        kept = sums.work < 0 ? 0 : momentum;
+        kept = sums.work < 0 ? 0 : volume_momentum;
         const ChunkSums steps = move(band, guard, options, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;

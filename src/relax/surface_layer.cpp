@@ -15,13 +15,10 @@ namespace
 {
 
 constexpr float skin = 0.4f; // dp
-constexpr double momentum = 0.9;
+constexpr double layer_momentum = 0.9;
 constexpr double largest_step = 0.1; // dp
 /// How far within a feature edge particles are kept, dp.
 constexpr double inside_border = 1e-10;
-/// Particles that one thread takes at a time.
-constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
-
 constexpr std::size_t prefetch_ahead = 8;
 
 /// Particles whose normals oppose by more than 120 degrees are on two sheets, as in fitting: were
@@ -49,15 +46,15 @@ void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order, in
     RawArray<T> sorted(n);
     parallel_for(
         n, threads, [&](std::size_t k) { std::construct_at(&sorted[k], values[order[k]]); },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     values.resize(n);
     parallel_for(
-        n, threads, [&](std::size_t k) { values[k] = sorted[k]; }, chunk_size);
+        n, threads, [&](std::size_t k) { values[k] = sorted[k]; }, NeighbourList::rows_per_chunk);
 }
 
 std::size_t chunks_of(std::size_t n)
 {
-    return (n + chunk_size - 1) / chunk_size;
+    return (n + NeighbourList::rows_per_chunk - 1) / NeighbourList::rows_per_chunk;
 }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
@@ -196,7 +193,7 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
             else
                 p.place.facet = work_.locate(p.place.facet, p.place.position);
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     sites_ = make_feature_sites(body.mesh, work_, on_features, threads);
     velocities_.resize(particles_.size());
     sort();
@@ -212,7 +209,7 @@ void SurfaceLayer::sort()
     parallel_for(
         n, threads_,
         [&](std::size_t i) { set_vector(points_, i, local(particles_[i].place.position)); },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     const auto order = morton_order(points_, 2, threads_);
     reorder(particles_, order, threads_);
     for (PointArrays* v : {&points_, &velocities_})
@@ -246,7 +243,7 @@ void SurfaceLayer::build_list()
             normals[i] = {static_cast<float>(normal.x), static_cast<float>(normal.y),
                           static_cast<float>(normal.z)};
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     const auto is_own_sheet = [&](std::uint32_t i, std::uint32_t j)
     {
         const float cosine =
@@ -265,8 +262,9 @@ LayerState SurfaceLayer::look_around()
     parallel_for(states.size(), threads_,
                  [&](std::size_t c)
                  {
-                     const std::size_t begin = c * chunk_size;
-                     const std::size_t end = std::min(begin + chunk_size, list_.rows());
+                     const std::size_t begin = c * NeighbourList::rows_per_chunk;
+                     const std::size_t end =
+                         std::min(begin + NeighbourList::rows_per_chunk, list_.rows());
                      forces_of_.compute(list_, begin, end, points_, forces_, nearest_squared_);
                      LayerState& state = states[c];
                      for (std::size_t row = begin; row < end; ++row)
@@ -296,7 +294,7 @@ Vec3 SurfaceLayer::intended_step(std::size_t i, bool is_restart) const
 {
     const Vec3& normal = work_.facets[particles_[i].place.facet].normal;
     Vec3 step = vector_at(forces_, i) * step_over_force_;
-    if (!is_restart) step = step + vector_at(velocities_, i) * momentum;
+    if (!is_restart) step = step + vector_at(velocities_, i) * layer_momentum;
     step = step - normal * dot(step, normal);
     const double length = norm(step);
     return length > largest_step ? step * (largest_step / length) : step;
@@ -338,8 +336,9 @@ double SurfaceLayer::step(bool is_restart)
     parallel_for(outcomes.size(), threads_,
                  [&](std::size_t c)
                  {
-                     const std::size_t end = std::min((c + 1) * chunk_size, particles_.size());
-                     for (std::size_t i = c * chunk_size; i < end; ++i)
+                     const std::size_t end =
+                         std::min((c + 1) * NeighbourList::rows_per_chunk, particles_.size());
+                     for (std::size_t i = c * NeighbourList::rows_per_chunk; i < end; ++i)
                      {
                          if (i + prefetch_ahead < end) prefetch_facet(i + prefetch_ahead);
                          if (!particles_[i].is_moving) continue;
@@ -484,7 +483,7 @@ std::vector<char> SurfaceLayer::find_near_holes(float radius)
                 return;
             }
         },
-        chunk_size);
+        NeighbourList::rows_per_chunk);
     return is_near_hole;
 }
 

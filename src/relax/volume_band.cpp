@@ -14,7 +14,6 @@ namespace
 /// Walls are looked for again when a particle has moved so far: on a wall of curvature radius R
 /// the plane is off by 0.02 / R.
 constexpr float wall_renewal = 0.2f;
-constexpr std::size_t chunk_size = NeighbourList::rows_per_chunk;
 
 void append(PointArrays& points, std::span<const Vec3> positions, const Vec3& origin, double dp)
 {
@@ -165,7 +164,8 @@ void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_fi
 {
     if (!closest) return;
     constexpr std::uint32_t none = 0xFFFFFFFF;
-    const std::size_t chunks = (list.rows() + chunk_size - 1) / chunk_size;
+    const std::size_t chunks =
+        (list.rows() + NeighbourList::rows_per_chunk - 1) / NeighbourList::rows_per_chunk;
     // Particles that come to where walls meet are given a place for them after the loop, in order.
     std::vector<std::vector<std::pair<std::uint32_t, MeetingWalls>>> newly_met(chunks);
     // A wall that was near to the last particle of the chunk cannot be much farther from the next.
@@ -188,9 +188,10 @@ void renew_walls(Band& band, const NeighbourList& list, double reach, bool is_fi
     parallel_for(chunks, threads,
                  [&](std::size_t chunk)
                  {
-                     const std::size_t end = std::min(list.rows(), (chunk + 1) * chunk_size);
+                     const std::size_t end =
+                         std::min(list.rows(), (chunk + 1) * NeighbourList::rows_per_chunk);
                      std::uint32_t last = none;
-                     for (std::size_t row = chunk * chunk_size; row < end; ++row)
+                     for (std::size_t row = chunk * NeighbourList::rows_per_chunk; row < end; ++row)
                          look(row, chunk, last);
                  });
     for (const auto& chunk : newly_met)

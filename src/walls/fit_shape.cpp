@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
+#include "nodes/domain.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,18 +18,6 @@ namespace
 {
 
 constexpr std::size_t particles_per_chunk = 4096;
-
-/// Between the first and the last nodes of the lattice, with room for rounding.
-bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
-{
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
-        if (!(index >= -1e-6 && index <= grid.n[static_cast<std::size_t>(axis)] - 1 + 1e-6))
-            return false;
-    }
-    return true;
-}
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 {
