@@ -48,12 +48,14 @@ struct MeshReport
     double joined_within = 0;          ///< metres; the largest distance for that
     std::size_t duplicate_facets = 0;  ///< dropped: same three corners as an earlier one
     std::size_t inner_wall_facets = 0; ///< dropped: coincident opposite facets between two bodies
+    std::size_t partition_facets = 0;  ///< dropped: walls of one facet inside a solid
     std::size_t degenerate_facets = 0; ///< dropped: no area after welding
     std::size_t flipped_facets = 0; ///< turned to agree with their neighbours or to look outwards
     std::size_t open_edges = 0;
     std::size_t non_manifold_edges = 0;
     std::size_t clashing_edges = 0; ///< two facets that run the same way: a one-sided surface
     std::size_t t_junctions = 0; ///< vertices found inside an open edge; its facet is split there
+    Vec3 first_junction;         ///< the first of these vertices
     std::size_t self_intersections =
         0;                  ///< facet pairs without a common vertex that cross; counted on request
     std::size_t shells = 0; ///< parts connected through edges with two facets
@@ -68,6 +70,11 @@ struct MeshIntakeOptions
 {
     /// Metres. 0: corners with equal coordinates only, unless the facets do not meet at all.
     double weld_distance = 0;
+    /// Metres: the particle distance that the mesh is used at. Cracks up to 0.15 dp wide are
+    /// closed. 0: unknown; cracks up to 1e-4 of the longest extent are.
+    double dp = 0;
+    /// The mesh bounds a solid: walls of one facet that part its inside are dropped.
+    bool is_solid = false;
     bool count_self_intersections = false;
 };
 
@@ -80,11 +87,13 @@ struct MeshIntakeOptions
 /// Without a weld distance, a mesh with a quarter of its edges open is welded within 1e-6, 1e-5 or
 /// 1e-4 of its longest extent, the first of them that leaves a tenth of these edges open at most.
 /// A vertex inside an open edge (a T-junction) splits the facet of that edge, so that no false hole
-/// is left. Facets are turned to agree across edges within a shell, the fewer to the more. A closed
-/// shell whose volume is negative and that no other shell holds is turned as a whole, together with
-/// the shells that it holds, so that normals look outwards and cavities stay cavities; a shell with
-/// small holes counts as closed where its facets' areas, as vectors, sum to less than a tenth of
-/// its area.
+/// is left. Without a weld distance, ends of open edges that lie within a crack's width of one
+/// another or of an open edge are then joined with it, the narrowest cracks first, where that
+/// leaves fewer edges open and none with more facets than before. Facets are turned to agree across
+/// edges within a shell, the fewer to the more. A closed shell whose volume is negative and that no
+/// other shell holds is turned as a whole, together with the shells that it holds, so that normals
+/// look outwards and cavities stay cavities; a shell with small holes counts as closed where its
+/// facets' areas, as vectors, sum to less than a tenth of its area.
 ///
 /// soup     at least one facet, coordinates finite and below 1e90 in size
 /// threads  number of threads; the result does not depend on it

@@ -206,9 +206,11 @@ Inspection inspect_mesh(const InspectOptions& options)
                 fmt::format("has no surface, only {} points and {} lines, which a case draws on "
                             "the lattice",
                             found.points, found.polylines));
-        const SurfaceMesh mesh = repair_mesh(
-            file.soup, {.weld_distance = options.weld_distance, .count_self_intersections = true},
-            options.threads, found.report);
+        const SurfaceMesh mesh = repair_mesh(file.soup,
+                                             {.weld_distance = options.weld_distance,
+                                              .dp = options.dp,
+                                              .count_self_intersections = true},
+                                             options.threads, found.report);
         found.facets = mesh.facets.size();
         found.vertices = mesh.vertices.size();
         for (std::size_t e = 0; e < mesh.edges.size(); ++e)

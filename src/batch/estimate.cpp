@@ -160,7 +160,8 @@ private:
         if (shape.soup.size() == 0) return count;
         const double dp = def_.grid.dp;
         MeshReport report;
-        const SurfaceMesh mesh = repair_mesh(shape.soup, {}, options_.threads, report);
+        const SurfaceMesh mesh = repair_mesh(shape.soup, {.dp = dp, .is_solid = shape.is_solid},
+                                             options_.threads, report);
         const Features features =
             find_features(mesh, {.angle_deg = settings.feature_angle_deg, .dp = dp});
         double length = 0;

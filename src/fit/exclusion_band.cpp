@@ -1,6 +1,7 @@
 #include "fppg/exclusion_band.h"
 
 #include "core/parallel.h"
+#include "core/text.h"
 #include "fit/closed_part.h"
 #include "fit/near_nodes.h"
 #include "fit/wall_section.h"
@@ -290,14 +291,24 @@ std::vector<Span> clip(const std::vector<Span>& spans, const WideGrid& wide,
     return result;
 }
 
+std::string why_no_volume(const MeshReport& report)
+{
+    if (report.open_edges > 0) return counted(report.open_edges, "edge is open", "edges are open");
+    if (report.non_manifold_edges > 0)
+        return fmt::format("more than two facets meet at {}",
+                           counted(report.non_manifold_edges, "edge", "edges"));
+    if (report.clashing_edges > 0) return "it has one side only";
+    return "the volumes of its parts cancel out";
+}
+
 void warn(const ClosedPart& part, const MeshReport& report, double area, double overlap,
           ExclusionBand& zone)
 {
     if (!zone.has_inside)
         zone.warnings.push_back(fmt::format(
-            "The mesh of {} facets bounds no volume: {} edges are open; its surface is covered on "
-            "both sides and it has no inside.",
-            report.facets_read, report.open_edges));
+            "The mesh of {} facets bounds no volume: {}; its surface is covered on both sides and "
+            "it has no inside.",
+            report.facets_read, why_no_volume(report)));
     else if (zone.sheet_facets > 0)
         zone.warnings.push_back(fmt::format(
             "{} of {} facets bound no volume; they are covered as sheets and are not part of the "

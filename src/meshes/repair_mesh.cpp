@@ -9,6 +9,7 @@
 #include "meshes/drop_degenerate.h"
 #include "meshes/edge_map.h"
 #include "meshes/facet_pairs.h"
+#include "meshes/inner_walls.h"
 #include "meshes/judge_edges.h"
 #include "meshes/measure_facets.h"
 #include "meshes/mesh_facets.h"
@@ -35,19 +36,12 @@ void check_input(const TriangleSoup& soup)
                 fmt::format("facet {} has a coordinate that is not finite", i / 3 + 1));
 }
 
-/// Where the warnings say that something was found first.
-struct FirstPlaces
-{
-    Vec3 junction;
-    Vec3 flipped;
-};
-
 /// Splits facets at vertices inside their edges.
-void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report, FirstPlaces& places)
+void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report)
 {
-    const std::vector<Junction> junctions = find_t_junctions(mesh, threads);
+    const std::vector<Junction> junctions = find_t_junctions(mesh, 0, threads);
     if (junctions.empty()) return;
-    places.junction = mesh.vertices[junctions.front().vertex];
+    report.first_junction = mesh.vertices[junctions.front().vertex];
     report.t_junctions = junctions.size();
     split_at(junctions, mesh);
     const std::size_t copies = report.duplicate_facets;
@@ -57,7 +51,7 @@ void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report, Firs
 }
 
 void sum_up(const SurfaceMesh& mesh, const std::vector<char>& is_turned, MeshReport& report,
-            FirstPlaces& places)
+            Vec3& first_flipped)
 {
     for (const Facet& facet : mesh.facets)
         for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
@@ -68,11 +62,11 @@ void sum_up(const SurfaceMesh& mesh, const std::vector<char>& is_turned, MeshRep
         report.area += mesh.areas[f];
         if (is_turned[f] == 0) continue;
         ++report.flipped_facets;
-        places.flipped = mesh.vertices[mesh.facets[f][0]];
+        first_flipped = mesh.vertices[mesh.facets[f][0]];
     }
 }
 
-void warn_of_repairs(const FirstPlaces& places, MeshReport& report)
+void warn_of_repairs(const Vec3& first_flipped, MeshReport& report)
 {
     const auto warn = [&](bool is_so, const auto& text)
     {
@@ -106,19 +100,27 @@ void warn_of_repairs(const FirstPlaces& places, MeshReport& report)
                  "{} between two bodies that touch, left out.",
                  counted(report.inner_wall_facets, "facet is a wall", "facets are walls"));
          });
+    warn(report.partition_facets > 0,
+         [&]
+         {
+             return fmt::format(
+                 "{} inside the solid, between parts of it, left out.",
+                 counted(report.partition_facets, "facet is a wall", "facets are walls"));
+         });
     warn(report.t_junctions > 0,
          [&]
          {
              return fmt::format(
                  "{} inside an edge of another facet, the first {}; these facets are split there.",
-                 counted(report.t_junctions, "vertex lies", "vertices lie"), near(places.junction));
+                 counted(report.t_junctions, "vertex lies", "vertices lie"),
+                 near(report.first_junction));
          });
     warn(report.flipped_facets > 0,
          [&]
          {
              return fmt::format("{} inwards, the first {}; turned.",
                                 counted(report.flipped_facets, "facet looks", "facets look"),
-                                near(places.flipped));
+                                near(first_flipped));
          });
 }
 
@@ -146,13 +148,15 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     drop_copies(mesh, threads, report);
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);
-    FirstPlaces places;
-    split_at_junctions(mesh, threads, report, places);
+    split_at_junctions(mesh, threads, report);
+    if (options.weld_distance == 0) close_open_ends(options.dp, mesh, threads, report);
+    if (options.is_solid) report.partition_facets = drop_partitions(mesh, threads);
+    Vec3 first_flipped;
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
     turn_outwards(mesh, report.shells, threads, is_turned);
     measure_facets(mesh, threads);
-    sum_up(mesh, is_turned, report, places);
-    warn_of_repairs(places, report);
+    sum_up(mesh, is_turned, report, first_flipped);
+    warn_of_repairs(first_flipped, report);
     judge_edges(mesh, report);
     if (options.count_self_intersections)
     {

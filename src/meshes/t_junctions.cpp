@@ -13,7 +13,7 @@
 namespace fppg
 {
 
-std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, int threads)
+std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double distance, int threads)
 {
     std::vector<std::uint32_t> open;
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
@@ -26,8 +26,8 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, int threads)
     {
         const Vec3 &a = mesh.vertices[mesh.edges[open[i]][0]],
                    &b = mesh.vertices[mesh.edges[open[i]][1]];
-        room[i] = std::min(float_step * std::max(largest_coordinate(a), largest_coordinate(b)),
-                           0.01 * norm(b - a));
+        const double rounding = float_step * std::max(largest_coordinate(a), largest_coordinate(b));
+        room[i] = std::min(std::max(rounding, distance), 0.01 * norm(b - a));
         for (const Vec3& end : {a, b})
             for (const double sign : {-1.0, 1.0})
                 boxes[i].add(end + sign * Vec3{room[i], room[i], room[i]});

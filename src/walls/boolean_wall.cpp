@@ -89,7 +89,7 @@ std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination
 }
 
 CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                            int threads)
+                            double dp, int threads)
 {
     CombinedParts out;
     std::vector<BooleanPart> operands;
@@ -98,7 +98,8 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
         MeshReport report;
         try
         {
-            out.meshes.push_back(repair_mesh(part.soup, {}, threads, report));
+            out.meshes.push_back(
+                repair_mesh(part.soup, {.dp = dp, .is_solid = part.is_solid}, threads, report));
         }
         catch (const GeometryError& e)
         {
@@ -120,7 +121,7 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
                        const FitSettings& settings, const LatticeGrid& grid,
                        const std::vector<ClipPlane>& clips, int threads)
 {
-    CombinedParts combined = combine_parts(parts, tree, threads);
+    CombinedParts combined = combine_parts(parts, tree, grid.dp, threads);
     FittedDraw out =
         fit_body(body_of(parts, tree, combined, settings, grid), settings, grid, clips, threads);
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());

@@ -38,9 +38,10 @@ struct CombinedParts
     std::vector<std::string> warnings;
 };
 
+/// dp      metres; cracks of parts narrower than 0.15 dp are closed
 /// throws  GeometryError that names the part, or for a result without a facet
 CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                            int threads);
+                            double dp, int threads);
 
 /// Puts particles on the true surface of a combination of parts and finds the nodes inside and
 /// around it.

@@ -199,7 +199,8 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     FittedBody body;
     body.is_solid = shape.is_solid;
     body.round = shape.round;
-    body.mesh = repair_mesh(shape.soup, {}, threads, body.report);
+    body.mesh =
+        repair_mesh(shape.soup, {.dp = grid.dp, .is_solid = shape.is_solid}, threads, body.report);
     body.features = find_features(body.mesh, feature_options(settings, grid));
     return fit_body(std::move(body), settings, grid, clips, threads);
 }

@@ -28,7 +28,7 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
             return out;
         }
         const CombinedParts combined =
-            combine_parts(parts, step.combination->boolean->tree, threads);
+            combine_parts(parts, step.combination->boolean->tree, scene.def->grid.dp, threads);
         StepSurface out;
         out.shape.soup = soup_of(combined.result.mesh);
         for (const std::uint32_t owner : combined.result.owners)
