@@ -8,6 +8,7 @@
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
+#include "walls/touching_shells.h"
 
 #include <algorithm>
 #include <utility>
@@ -201,6 +202,7 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     body.round = shape.round;
     body.mesh =
         repair_mesh(shape.soup, {.dp = grid.dp, .is_solid = shape.is_solid}, threads, body.report);
+    unite_touching_shells(body.mesh, body.report, grid.dp, threads);
     body.features = find_features(body.mesh, feature_options(settings, grid));
     return fit_body(std::move(body), settings, grid, clips, threads);
 }
