@@ -44,12 +44,13 @@ struct SurfaceMesh
 struct MeshReport
 {
     std::size_t facets_read = 0;
-    std::size_t joined_corners = 0;    ///< moved onto another corner, as facets did not meet
-    double joined_within = 0;          ///< metres; the largest distance for that
-    std::size_t duplicate_facets = 0;  ///< dropped: same three corners as an earlier one
-    std::size_t inner_wall_facets = 0; ///< dropped: coincident opposite facets between two bodies
-    std::size_t partition_facets = 0;  ///< dropped: walls of one facet inside a solid
-    std::size_t degenerate_facets = 0; ///< dropped: no area after welding
+    std::size_t joined_corners = 0;     ///< moved onto another corner, as facets did not meet
+    double joined_within = 0;           ///< metres; the largest distance for that
+    std::size_t duplicate_facets = 0;   ///< dropped: same three corners as an earlier one
+    std::size_t inner_wall_facets = 0;  ///< dropped: coincident opposite facets between two bodies
+    std::size_t inner_shell_facets = 0; ///< dropped: of closed shells inside others of a solid
+    std::size_t partition_facets = 0;   ///< dropped: walls of one facet inside a solid
+    std::size_t degenerate_facets = 0;  ///< dropped: no area after welding
     std::size_t flipped_facets = 0; ///< turned to agree with their neighbours or to look outwards
     std::size_t open_edges = 0;
     std::size_t non_manifold_edges = 0;
@@ -73,7 +74,8 @@ struct MeshIntakeOptions
     /// Metres: the particle distance that the mesh is used at. Cracks up to 0.15 dp wide are
     /// closed. 0: unknown; cracks up to 1e-4 of the longest extent are.
     double dp = 0;
-    /// The mesh bounds a solid: walls of one facet that part its inside are dropped.
+    /// The mesh bounds a solid: what has the inside on both of its faces is dropped, walls of one
+    /// facet that part it and closed shells inside others.
     bool is_solid = false;
     bool count_self_intersections = false;
 };

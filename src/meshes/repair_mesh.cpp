@@ -9,6 +9,7 @@
 #include "meshes/drop_degenerate.h"
 #include "meshes/edge_map.h"
 #include "meshes/facet_pairs.h"
+#include "meshes/inner_shells.h"
 #include "meshes/inner_walls.h"
 #include "meshes/judge_edges.h"
 #include "meshes/measure_facets.h"
@@ -48,6 +49,21 @@ void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report)
     build_edges(mesh, threads);
     drop_copies(mesh, threads, report);
     report.duplicate_facets = copies; // these are pieces of facets, not of the file
+}
+
+void drop_inner_shells(SurfaceMesh& mesh, int threads, std::vector<char>& is_turned,
+                       MeshReport& report)
+{
+    std::vector<char> is_inner;
+    report.inner_shell_facets = find_inner_shells(mesh, report.shells, threads, is_inner);
+    if (report.inner_shell_facets == 0) return;
+    erase_facets(is_inner, mesh);
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < is_inner.size(); ++f)
+        if (is_inner[f] == 0) is_turned[kept++] = is_turned[f];
+    is_turned.resize(kept);
+    build_edges(mesh, threads);
+    orient_shells(mesh, report.shells);
 }
 
 void sum_up(const SurfaceMesh& mesh, const std::vector<char>& is_turned, MeshReport& report,
@@ -107,6 +123,13 @@ void warn_of_repairs(const Vec3& first_flipped, MeshReport& report)
                  "{} inside the solid, between parts of it, left out.",
                  counted(report.partition_facets, "facet is a wall", "facets are walls"));
          });
+    warn(report.inner_shell_facets > 0,
+         [&]
+         {
+             return fmt::format(
+                 "{} to closed parts inside others that face the same way, left out.",
+                 counted(report.inner_shell_facets, "facet belongs", "facets belong"));
+         });
     warn(report.t_junctions > 0,
          [&]
          {
@@ -154,6 +177,7 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     Vec3 first_flipped;
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
     turn_outwards(mesh, report.shells, threads, is_turned);
+    if (options.is_solid) drop_inner_shells(mesh, threads, is_turned, report);
     measure_facets(mesh, threads);
     sum_up(mesh, is_turned, report, first_flipped);
     warn_of_repairs(first_flipped, report);

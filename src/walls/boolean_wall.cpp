@@ -98,8 +98,8 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
         MeshReport report;
         try
         {
-            out.meshes.push_back(
-                repair_mesh(part.soup, {.dp = dp, .is_solid = part.is_solid}, threads, report));
+            out.meshes.push_back(repair_mesh(part.soup, {.dp = dp, .is_solid = !part.may_be_sheet},
+                                             threads, report));
         }
         catch (const GeometryError& e)
         {

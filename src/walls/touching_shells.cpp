@@ -72,7 +72,8 @@ std::vector<EdgeSide> find_crowded_sides(const SurfaceMesh& mesh)
     return sides;
 }
 
-/// From a side to another one at its edge, turning inwards, radians; a facet in the same place is a whole turn away.
+/// From a side to another one at its edge, turning inwards, radians; a facet in the same place is a
+/// whole turn away.
 double angle_inwards(const SurfaceMesh& mesh, const EdgeSide& from, const EdgeSide& to)
 {
     const Vec3 along =
