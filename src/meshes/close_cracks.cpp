@@ -124,9 +124,9 @@ void close_open_ends(double dp, SurfaceMesh& mesh, int threads, MeshReport& repo
     std::size_t open = count_open(mesh);
     if (open == 0) return;
     const double size = longest_extent(mesh);
-    const double widest = dp > 0 ? 0.15 * dp : 1e-4 * size;
-    std::vector<double> distances{1e-6 * size, 1e-5 * size, 1e-4 * size};
-    if (dp > 0) distances.insert(distances.end(), {0.015 * dp, 0.05 * dp, 0.15 * dp});
+    const double widest = 0.15 * dp;
+    std::vector<double> distances{1e-6 * size,  1e-5 * size, 1e-4 * size,
+                                  0.1 * widest, widest / 3,  widest};
     std::sort(distances.begin(), distances.end());
     for (const double distance : distances)
     {

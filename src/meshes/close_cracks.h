@@ -16,9 +16,9 @@ void join_rounded_corners(SurfaceMesh& mesh, int threads, MeshReport& report);
 void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report);
 
 /// Joins ends of open edges with other ends, or splits the open edges that they lie inside, up to
-/// 0.15 dp away or, where dp is 0, up to 1e-4 of the longest extent; never more than a tenth of the
-/// mean length of open edges. In steps from narrow to wide, each taken over if it leaves fewer
-/// edges open and no more than before with more than two facets. Keeps the edge map.
+/// 0.15 dp away, but never more than a tenth of the mean length of open edges. In steps from narrow
+/// to wide, each taken over if it leaves fewer edges open and no more than before with more than
+/// two facets. Keeps the edge map.
 void close_open_ends(double dp, SurfaceMesh& mesh, int threads, MeshReport& report);
 
 } // namespace fppg

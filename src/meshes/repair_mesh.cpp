@@ -172,7 +172,8 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
     drop_loose_slivers(mesh, threads, report);
     split_at_junctions(mesh, threads, report);
-    if (options.weld_distance == 0) close_open_ends(options.dp, mesh, threads, report);
+    if (options.weld_distance == 0 && options.dp > 0)
+        close_open_ends(options.dp, mesh, threads, report);
     if (options.is_solid) report.partition_facets = drop_partitions(mesh, threads);
     Vec3 first_flipped;
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
