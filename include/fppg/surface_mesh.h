@@ -72,7 +72,7 @@ struct MeshIntakeOptions
     /// Metres. 0: corners with equal coordinates only, unless the facets do not meet at all.
     double weld_distance = 0;
     /// Metres: the particle distance that the mesh is used at. Cracks up to 0.15 dp wide are
-    /// closed. 0: unknown; cracks up to 1e-4 of the longest extent are.
+    /// closed. 0: unknown; none is closed.
     double dp = 0;
     /// The mesh bounds a solid: what has the inside on both of its faces is dropped, walls of one
     /// facet that part it and closed shells inside others.
