@@ -66,8 +66,10 @@ template <typename RankOf>
 void find_best(const Side& home_side, const Side& other_side, std::vector<std::uint32_t>& best,
                const RankOf& rank_of, int threads)
 {
-    const auto& [home, partners] = home_side;
-    const auto& [other, other_partners] = other_side;
+    const CellGrid& home = home_side.grid;
+    const CellGrid& other = other_side.grid;
+    const std::vector<std::uint32_t>& partners = home_side.partners;
+    const std::vector<std::uint32_t>& other_partners = other_side.partners;
     const auto search = [&](std::uint32_t i, const CellGrid::Stretch* stretches, std::size_t n)
     {
         best[i] = no_partner;

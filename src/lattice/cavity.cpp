@@ -322,9 +322,10 @@ private:
         Reach out;
         while (!queue.empty())
         {
-            const auto [height, slab, span] = queue.top();
+            const auto [height, top_slab, span] = queue.top();
             if (height >= out.height) break;
             queue.pop();
+            const auto slab = top_slab; // clang 14 captures no structured binding
             const Id id{slab, span};
             const Reach from = reached[slab][span];
             if (height > from.height) continue;
