@@ -186,7 +186,8 @@ std::vector<Vec3> box_section(const PolyhedronOp& box, const LatticeGrid& grid)
         if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
     }
     if (lines.empty()) return {};
-    auto [first, next] = lines.front();
+    auto first = lines.front().first;
+    auto next = lines.front().second;
     if (position_of(next).x < position_of(first).x) std::swap(first, next);
     lines.erase(lines.begin());
     std::vector<Vec3> corners{position_of(first)};
