@@ -9,6 +9,7 @@
 #include "lattice/depth_region.h"
 #include "lattice/paint_off_lattice.h"
 #include "meshes/mesh_library.h"
+#include "meshes/repaired_solid.h"
 #include "nodes/snap.h"
 #include "scene/surfaces.h"
 #include "shapes/file_polygons.h"
@@ -58,10 +59,15 @@ void paint_by_depth(Painting& painting, const Brush& brush, const MeshFileOp& op
     painting.canvas.paint(brush, depth_region(moved, op, painting.grid(), threads));
 }
 
+/// The inside of a file as of a fitted body: of the repaired mesh (facets that face inwards, copies
+/// and what lies inside another part count as there).
 void paint_inside(Painting& painting, const Brush& brush, const TriangleSoup& moved)
 {
-    painting.canvas.paint(
-        brush, region_of(inside_spans(moved, painting.grid(), painting.canvas.threads())));
+    const LatticeGrid& grid = painting.grid();
+    const int threads = painting.canvas.threads();
+    MeshReport report;
+    if (const auto solid = repaired_solid(moved, grid.dp, threads, report))
+        painting.canvas.paint(brush, region_of(inside_spans(soup_of(*solid), grid, threads)));
 }
 
 /// The sides of all triangles and quads, as lines; but the triangles of bent quads in
