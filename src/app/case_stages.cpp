@@ -128,15 +128,7 @@ void relax(CaseRunState& run, MadeCase& made)
 {
     if (made.field.walls.bodies.empty()) return;
     log_fitted_walls(made.field, run.log);
-    if (relaxes(made.def, made.field))
-        run.stage("Relax",
-                  [&]
-                  {
-                      RelaxOutcome done =
-                          run_relaxation(made.def, made.field, made.output, run.threads, run.log);
-                      made.relax_history = std::move(done.history);
-                      for (std::string& w : done.warnings) run.warn(std::move(w));
-                  });
+    if (relaxes(made.def, made.field)) run.stage("Relax", [&] { run_relaxation(run, made); });
     for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))
         run.warn(fmt::format("{}: {}", made.def.file, w));
 }

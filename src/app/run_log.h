@@ -40,6 +40,9 @@ private:
     std::string text_;
 };
 
+/// throws  IoError if what was printed up to now did not reach standard output, as on a full disk
+void expect_printed();
+
 /// Prints the event of a run that failed. For callers that asked for JSON.
 void print_json_error(std::string_view text, int code);
 

@@ -214,6 +214,11 @@ void save_particles(CaseRunState& run, const MadeCase& made, const FileOrigin& o
     if (run.options.save_bi4)
         write(run, made, ".bi4", "<double>",
               [&](OutputFile& f) { write_bi4(f, particles, made.constants, origin, run.threads); });
+    else if (std::error_code ignored; fs::exists(made.output + ".bi4", ignored))
+        run.warn(
+            fmt::format("{}.bi4 is of an earlier run and stays, as -save leaves bi out; it does "
+                        "not belong to the new {}.xml.",
+                        made.output, made.output));
     const auto picture =
         [&](bool wanted, const char* ending, VtkSelection selection, std::uint64_t count)
     {
