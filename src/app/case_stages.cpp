@@ -10,7 +10,9 @@
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
+#include "batch/particle_limit.h"
 #include "core/text.h"
+#include "lattice/mesh_units.h"
 
 #include <fmt/format.h>
 
@@ -110,6 +112,10 @@ void draw(CaseRunState& run, MadeCase& made)
                   run.log.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1,
                                            grid.n[1] - 1, grid.n[2] - 1));
                   for (const std::string& line : made.def.list_log) run.log.line(line);
+                  expect_metres(made.scene, run.threads);
+                  CaseOptions options = case_options(run.options);
+                  options.meshes = made.scene.meshes;
+                  expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(), report);

@@ -1,3 +1,4 @@
+#include "core/regular_file.h"
 #include "core/signals_blocked.h"
 #include "core/temporary_files.h"
 #include "fppg/error.h"
@@ -47,6 +48,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
 {
     struct stat status = {};
     if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) fail(path_, EISDIR);
+    // A rename would put a file in the place of /dev/null.
+    expect_regular_file(path_);
     const std::filesystem::path full(path_);
     remove_dead_parts(full.parent_path().string(), short_name(full), false);
     // A stop signal between the making of the file and its entry in the registry would leave it.

@@ -6,6 +6,7 @@
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/limits.h"
+#include "lattice/mesh_units.h"
 #include "lattice/redraw.h"
 #include "scene/surfaces.h"
 
@@ -153,7 +154,9 @@ void paint(Painting& painting, const Brush& brush, const CavityFillOp& op)
     }
     catch (const GeometryError& e)
     {
-        throw GeometryError(fmt::format("{}: {}", place, e.what()));
+        throw GeometryError(
+            fmt::format("{}: {}{}", place, e.what(),
+                        suspected_units(painting.scene, painting.canvas.threads())));
     }
 }
 
