@@ -101,16 +101,9 @@ void draw(CaseRunState& run, MadeCase& made)
     run.stage("Draw",
               [&]
               {
-                  const LatticeGrid& grid = made.def.grid;
                   run.log.line("List of available variables: " + made.def.variables_log);
                   run.log.line();
-                  run.log.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})",
-                                           made.def.case_pos_min.x, made.def.case_pos_min.y,
-                                           made.def.case_pos_min.z, made.def.case_pos_max.x,
-                                           made.def.case_pos_max.y, made.def.case_pos_max.z));
-                  run.log.line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
-                  run.log.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1,
-                                           grid.n[1] - 1, grid.n[2] - 1));
+                  log_domain(made.def, run.log);
                   for (const std::string& line : made.def.list_log) run.log.line(line);
                   expect_metres(made.scene, run.threads);
                   CaseOptions options = case_options(run.options);
@@ -121,6 +114,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   made.field = draw_scene(made.scene, run.threads, draw_progress(), report);
                   enter_zone(made);
                   made.mesh_files = std::move(report.mesh_files);
+                  for (const CavityFilled& fill : report.fills) log_fill(fill, run.log);
                   for (const std::string& line : report.log) run.log.line(line);
                   made.node_files = std::move(report.node_files);
                   for (std::string& w : made.def.warnings) run.diagnose(std::move(w));

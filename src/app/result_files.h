@@ -28,7 +28,8 @@ public:
         const Stopwatch time;
         OutputFile& file = add(path);
         body(file);
-        log.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+        log.text_line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+        log.fact("file", {{"path", file.path()}, {"seconds", time.seconds()}});
     }
 
     /// Adds a copy of a file.

@@ -43,6 +43,14 @@ void RunLog::line(std::string_view text)
         print_json({{"event", "log"}, {"text", std::string(text)}});
 }
 
+void RunLog::fact(std::string_view event, const Json& fields) const
+{
+    if (style_ != LogStyle::Json) return;
+    Json json = {{"event", std::string(event)}};
+    for (const auto& [name, value] : fields.members()) json[name] = value;
+    print_json(json);
+}
+
 void RunLog::warning(std::string_view text)
 {
     keep(fmt::format("*** WARNING: {}", text), style_ != LogStyle::Json);

@@ -146,8 +146,10 @@ void paint(Painting& painting, const Brush& brush, const CavityFillOp& op)
     {
         const std::vector<Spans> nodes =
             fill_cavity(painting.canvas.field(), op, painting.canvas.threads(), said);
+        said.filled.line = brush.source->line;
         for (const std::string& line : said.log)
-            painting.report.log.push_back(fmt::format("{}: {}", place, line));
+            said.filled.log.push_back(fmt::format("{}: {}", place, line));
+        painting.report.fills.push_back(std::move(said.filled));
         for (const std::string& w : said.warnings)
             painting.report.warnings.push_back(fmt::format("{}: {}", place, w));
         painting.canvas.paint(brush, nodes);

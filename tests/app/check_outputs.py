@@ -18,6 +18,7 @@ import time
 import unittest
 
 PROGRAM, SHIM = sys.argv[1:3]
+os.environ["SOURCE_DATE_EPOCH"] = "86400"
 HEAD = """<case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" />
 <hswl value="0" auto="true" /><gamma value="7" /><coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />
 </constantsdef><mkconfig boundcount="240" fluidcount="9" /><geometry><definition dp="0.05">
