@@ -6,6 +6,10 @@
 #include "app/stop_signals.h"
 #include "app/subcommands.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <new>
@@ -18,22 +22,50 @@ namespace
 /// Whoever asked for JSON lines gets the error as one.
 bool wants_json = false;
 
+/// Whether both streams end in one place, as on a terminal or after 2>&1.
+bool are_one(int a, int b)
+{
+    struct stat first = {};
+    struct stat second = {};
+    return ::fstat(a, &first) == 0 && ::fstat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/// Tells standard output, where callers of GenCase look for it, and standard error, where scripts
+/// do; once where both are one.
 int fail(const char* text, int code)
 {
-    std::fflush(stdout);
     if (wants_json)
-    {
         fppg::print_json_error(text, code);
-        return code;
-    }
-    std::printf("\n*** Error: %s\n\nFinished execution (code=%d).\n", text, code);
+    else
+        std::printf("\n*** Error: %s\n\nFinished execution (code=%d).\n", text, code);
+    const bool is_told = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (!is_told || !are_one(STDOUT_FILENO, STDERR_FILENO))
+        std::fprintf(stderr, "*** Error: %s\n", text);
     return code;
+}
+
+/// A file that the program opens must not become its standard output because the caller closed
+/// that.
+void open_missing_streams()
+{
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
+}
+
+int run(const std::vector<std::string>& arguments)
+{
+    if (!arguments.empty())
+        if (const fppg::Subcommand command = fppg::find_subcommand(arguments.front()))
+            return command({arguments.begin() + 1, arguments.end()});
+    return fppg::run_drop_in(fppg::parse_command_line(arguments));
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
+    open_missing_streams();
     fppg::catch_stop_signals();
     try
     {
@@ -41,10 +73,9 @@ int main(int argc, char** argv)
         wants_json =
             std::any_of(arguments.begin(), arguments.end(),
                         [](const std::string& a) { return a == "-log-json" || a == "--log-json"; });
-        if (!arguments.empty())
-            if (const fppg::Subcommand run = fppg::find_subcommand(arguments.front()))
-                return run({arguments.begin() + 1, arguments.end()});
-        return fppg::run_drop_in(fppg::parse_command_line(arguments));
+        const int code = run(arguments);
+        fppg::expect_printed();
+        return code;
     }
     catch (const fppg::Error& error)
     {
@@ -58,6 +89,8 @@ int main(int argc, char** argv)
     }
     catch (const std::exception& error)
     {
+        // fmt::print() throws this where it cannot write.
+        if (std::ferror(stdout) != 0) return fail("standard output cannot be written", 4);
         return fail(error.what(), 5);
     }
 }

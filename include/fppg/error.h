@@ -51,12 +51,18 @@ public:
     int exit_code() const override { return 4; }
 };
 
-/// The user asked to stop (Ctrl-C or SIGTERM); outputs of before are untouched.
+/// A signal asked to stop, SIGINT where it is Ctrl-C; outputs of before are untouched.
 class Interrupted : public Error
 {
 public:
-    Interrupted() : Error("stopped by the user; no output file was changed") {}
-    int exit_code() const override { return 130; }
+    explicit Interrupted(int signal)
+        : Error("stopped by the user; no output file was changed"), signal_(signal)
+    {
+    }
+    int exit_code() const override { return 128 + signal_; }
+
+private:
+    int signal_;
 };
 
 } // namespace fppg

@@ -15,7 +15,8 @@ namespace fppg
 /// A file that is not there until it is whole: written under the temporary name
 /// `.<name>.part-<process id>` in the same folder, given its name by commit(). Destroyed without
 /// commit(): the temporary file is removed and an older file of that name is untouched. A signal
-/// handler removes the temporary files of all objects by src/files/output_file_registry.h.
+/// handler removes the temporary files of all objects by src/core/temporary_files.h; those of a
+/// killed process go when the file is written the next time.
 class OutputFile
 {
 public:
@@ -33,6 +34,8 @@ public:
     /// Writes at the end of what append() wrote so far. throws IoError
     void append(const void* data, std::size_t bytes);
     void append(const std::string& text) { append(text.data(), text.size()); }
+    /// Nothing more is written; holds no descriptor from here on. throws IoError
+    void finish();
     /// Gives the file its name. throws IoError
     void commit();
 

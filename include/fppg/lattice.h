@@ -87,11 +87,24 @@ struct NodeFile
     std::vector<Vec3> points;        ///< by z, then y, then x
 };
 
+/// What a `<fill>` of `<fppg>` found and did.
+struct CavityFilled
+{
+    int line = 0; ///< of the definition
+    std::uint64_t cavity_nodes = 0;
+    std::uint64_t nodes = 0;       ///< filled
+    double litres_per_node = 0;    ///< in 2D a metre of width
+    std::optional<double> open_at; ///< metres, the lowest way out; none where it is closed
+    double level = 0;              ///< metres, along its up
+    std::vector<std::string> log;  ///< the same in words, with its gaps
+};
+
 /// What the lattice stage says besides the nodes.
 struct LatticeReport
 {
     std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
-    std::vector<std::string> log;        ///< lines about the fills of cavities
+    std::vector<std::string> log;        ///< lines about files of points
+    std::vector<CavityFilled> fills;     ///< in the order of the commands
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<MeshFileUse> mesh_files; ///< in order of use, each once

@@ -191,7 +191,7 @@ private:
         std::size_t refused = 0;
         for (const BatchRun& run : plan_.runs)
         {
-            if (stop.is_asked()) throw Interrupted();
+            if (stop.is_asked()) throw Interrupted(stop.signal());
             std::vector<std::string> words{run.definition, run.output};
             words.insert(words.end(), run.options.begin(), run.options.end());
             const DropInOptions options = parse_command_line(words);
@@ -247,7 +247,7 @@ private:
         write_summary(out_, plan_.runs, records);
         const BatchCounts counts = count_states(records);
         tell(counts);
-        if (stop.is_asked()) return 130;
+        if (stop.is_asked()) return 128 + stop.signal();
         return counts.failed + counts.open > 0 ? 1 : 0;
     }
 
@@ -279,7 +279,7 @@ private:
                                          : ProgressStyle::Lines,
                           1);
         const BatchCounts counts = count_states(run_batch(one, run_options, progress));
-        if (stop.is_asked()) return 130;
+        if (stop.is_asked()) return 128 + stop.signal();
         return counts.done == 1 ? 0 : 1;
     }
 
@@ -307,7 +307,7 @@ private:
             run_options.resumes = false;
             Progress progress(ProgressStyle::Quiet, plan_.runs.size());
             estimates = estimate_runs(plan_.runs, run_options, progress);
-            if (stop.is_asked()) throw Interrupted();
+            if (stop.is_asked()) throw Interrupted(stop.signal());
         }
         write_plan(out_, plan_);
         const std::string script = write_slurm_scripts(out_, plan_, estimates);

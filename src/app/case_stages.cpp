@@ -10,7 +10,9 @@
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
+#include "batch/particle_limit.h"
 #include "core/text.h"
+#include "lattice/mesh_units.h"
 
 #include <fmt/format.h>
 
@@ -99,22 +101,20 @@ void draw(CaseRunState& run, MadeCase& made)
     run.stage("Draw",
               [&]
               {
-                  const LatticeGrid& grid = made.def.grid;
                   run.log.line("List of available variables: " + made.def.variables_log);
                   run.log.line();
-                  run.log.line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})",
-                                           made.def.case_pos_min.x, made.def.case_pos_min.y,
-                                           made.def.case_pos_min.z, made.def.case_pos_max.x,
-                                           made.def.case_pos_max.y, made.def.case_pos_max.z));
-                  run.log.line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
-                  run.log.line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1,
-                                           grid.n[1] - 1, grid.n[2] - 1));
+                  log_domain(made.def, run.log);
                   for (const std::string& line : made.def.list_log) run.log.line(line);
+                  expect_metres(made.scene, run.threads);
+                  CaseOptions options = case_options(run.options);
+                  options.meshes = made.scene.meshes;
+                  expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(), report);
                   enter_zone(made);
                   made.mesh_files = std::move(report.mesh_files);
+                  for (const CavityFilled& fill : report.fills) log_fill(fill, run.log);
                   for (const std::string& line : report.log) run.log.line(line);
                   made.node_files = std::move(report.node_files);
                   for (std::string& w : made.def.warnings) run.diagnose(std::move(w));
@@ -128,15 +128,7 @@ void relax(CaseRunState& run, MadeCase& made)
 {
     if (made.field.walls.bodies.empty()) return;
     log_fitted_walls(made.field, run.log);
-    if (relaxes(made.def, made.field))
-        run.stage("Relax",
-                  [&]
-                  {
-                      RelaxOutcome done =
-                          run_relaxation(made.def, made.field, made.output, run.threads, run.log);
-                      made.relax_history = std::move(done.history);
-                      for (std::string& w : done.warnings) run.warn(std::move(w));
-                  });
+    if (relaxes(made.def, made.field)) run.stage("Relax", [&] { run_relaxation(run, made); });
     for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))
         run.warn(fmt::format("{}: {}", made.def.file, w));
 }

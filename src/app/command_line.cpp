@@ -250,8 +250,9 @@ std::string help_text()
         "\n"
         "Exit code: 0 done (with or without warnings), 2 wrong usage, 3 the case or its geometry "
         "is wrong or not\n"
-        "supported yet, 4 a file cannot be read or written, 5 a fault of the program, 130 stopped "
-        "by Ctrl-C.\n",
+        "supported yet, 4 a file cannot be read or written, 5 a fault of the program, 128 + N "
+        "stopped by signal N\n"
+        "(130: Ctrl-C, 143: SIGTERM): the files of before stay as they were.\n",
         version);
 }
 

@@ -8,10 +8,12 @@
 #include "app/save_result.h"
 #include "app/templates_command.h"
 #include "app/threads.h"
+#include "files/output_lock.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace fppg
 {
@@ -124,14 +126,16 @@ int run_case(const DropInOptions& options)
     log.line(full_name());
     log.line(std::string(full_name().size(), '='));
     log.line(fmt::format("OmpThreads: {}", run.threads));
+    std::optional<OutputLock> lock;
     try
     {
         prepare_folder(options);
+        lock.emplace(options.output);
         make_zones(run, made);
     }
     catch (const std::exception& error)
     {
-        write_failed_log(run, error);
+        if (lock) write_failed_log(run, error);
         throw;
     }
     print_warnings(run);
@@ -140,6 +144,7 @@ int run_case(const DropInOptions& options)
     log.line();
     log.line("Finished execution (code=0).");
     run.files.add(options.output + ".out").append(log.text());
+    expect_printed();
     run.files.commit(options.save_three_vtk);
     const CaseParticles& particles = made.particles;
     log.finished(total.seconds(), {{"particles", particles.np},

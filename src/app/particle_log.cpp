@@ -12,6 +12,71 @@
 namespace fppg
 {
 
+namespace
+{
+
+/// What log_particles() prints, as fields.
+void log_facts(const CaseDef& def, const CaseParticles& particles, const CaseConstants& constants,
+               const RunLog& log)
+{
+    constexpr std::array names{"fixed", "moving", "floating", "fluid"};
+    Json blocks = Json::array();
+    for (const ParticleBlock& block : particles.blocks)
+        blocks.push_back(
+            {{"type", names[static_cast<std::size_t>(block.type)]},
+             {"mk", block.mk},
+             {block.type == ParticleType::Fluid ? "mkfluid" : "mkbound", block.mk_type},
+             {"first_id", block.begin},
+             {"count", block.count}});
+    log.fact("particles", {{"particles", particles.np},
+                           {"fixed", particles.n_fixed},
+                           {"moving", particles.n_moving},
+                           {"floating", particles.n_floating},
+                           {"fluid", particles.n_fluid},
+                           {"blocks", blocks},
+                           {"depth", constants.hswl},
+                           {"speed_system", constants.speed_system},
+                           {"speed_sound", constants.speed_sound},
+                           {"h", def.h}});
+}
+
+} // namespace
+
+std::array<double, 3> coordinates(const Vec3& p)
+{
+    return {p.x, p.y, p.z};
+}
+
+void log_domain(const CaseDef& def, RunLog& log)
+{
+    const LatticeGrid& grid = def.grid;
+    const Vec3& low = def.case_pos_min;
+    const Vec3& high = def.case_pos_max;
+    log.text_line(fmt::format("Case limits: ({:g},{:g},{:g}) - ({:g},{:g},{:g})", low.x, low.y,
+                              low.z, high.x, high.y, high.z));
+    log.text_line(fmt::format("Distance between points (Dp): {:g}", grid.dp));
+    log.text_line(fmt::format("Case domain: (0,0,0)-({},{},{})", grid.n[0] - 1, grid.n[1] - 1,
+                              grid.n[2] - 1));
+    log.fact("domain", {{"min", coordinates(low)},
+                        {"max", coordinates(high)},
+                        {"dp", grid.dp},
+                        {"nodes", grid.n}});
+}
+
+void log_fill(const CavityFilled& fill, RunLog& log)
+{
+    for (const std::string& line : fill.log) log.text_line(line);
+    const auto litres = [&](std::uint64_t nodes)
+    { return static_cast<double>(nodes) * fill.litres_per_node; };
+    log.fact("fill", {{"line", fill.line},
+                      {"cavity_nodes", fill.cavity_nodes},
+                      {"cavity_litres", litres(fill.cavity_nodes)},
+                      {"open_at", fill.open_at ? Json(*fill.open_at) : Json()},
+                      {"nodes", fill.nodes},
+                      {"litres", litres(fill.nodes)},
+                      {"level", fill.level}});
+}
+
 void log_particles(const CaseDef& def, const CaseParticles& particles,
                    const CaseConstants& constants, RunLog& log)
 {
@@ -27,7 +92,7 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
         Group{"Moving-Boundary", "Moving...", ParticleType::Moving, particles.n_moving},
         Group{"Floating-Boundary", "Floating.", ParticleType::Floating, particles.n_floating},
         Group{"Fluid", "Fluid....", ParticleType::Fluid, particles.n_fluid}};
-    log.line("List of Points:");
+    log.text_line("List of Points:");
     std::array<std::size_t, 4> blocks{};
     std::vector<std::string> summary;
     for (const Group& group : groups)
@@ -40,10 +105,10 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
             if (block.type != group.type) continue;
             if (mks.empty())
             {
-                log.line(fmt::format("Points -> {} particles:", group.title));
+                log.text_line(fmt::format("Points -> {} particles:", group.title));
                 begin = block.begin;
             }
-            log.line(fmt::format("  block[{:3}] (mk:{:3}): {:6}", b, block.mk, block.count));
+            log.text_line(fmt::format("  block[{:3}] (mk:{:3}): {:6}", b, block.mk, block.count));
             mks.push_back(block.mk);
             ++blocks[static_cast<std::size_t>(group.type)];
         }
@@ -53,36 +118,37 @@ void log_particles(const CaseDef& def, const CaseParticles& particles,
                                             thousands(group.count), begin, begin + group.count - 1,
                                             mks.size(), format_ranges(mks)));
     }
-    log.line();
-    log.line("Particle summary:");
-    for (const std::string& line : summary) log.line(line);
-    log.line();
-    log.line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})",
-                         thousands(particles.np), thousands(particles.np - particles.n_fluid),
-                         thousands(particles.n_fixed), thousands(particles.n_moving),
-                         thousands(particles.n_floating), thousands(particles.n_fluid)));
-    log.line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})",
-                         particles.blocks.size(), blocks[0] + blocks[1] + blocks[2], blocks[0],
-                         blocks[1], blocks[2], blocks[3]));
-    log.line();
+    log.text_line();
+    log.text_line("Particle summary:");
+    for (const std::string& line : summary) log.text_line(line);
+    log.text_line();
+    log.text_line(fmt::format("Total particles: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                              thousands(particles.np), thousands(particles.np - particles.n_fluid),
+                              thousands(particles.n_fixed), thousands(particles.n_moving),
+                              thousands(particles.n_floating), thousands(particles.n_fluid)));
+    log.text_line(fmt::format("Total MK blocks: {} (bound={} (fx={} mv={} ft={}) fluid={})",
+                              particles.blocks.size(), blocks[0] + blocks[1] + blocks[2], blocks[0],
+                              blocks[1], blocks[2], blocks[3]));
+    log.text_line();
     const ConstantsDef& c = def.constants;
     const char* depth_source = c.rhop_gradient != 3 && particles.n_floating > 0
                                    ? "automatic from the height of water+floating bodies"
                                    : "automatic";
-    log.line(
+    log.text_line(
         fmt::format("Maximum depth: {:g} ({})", constants.hswl, c.hswl ? "fixed" : depth_source));
-    log.line(fmt::format("Speed of system: {:g} ({})", constants.speed_system,
-                         c.speed_system ? "fixed" : "automatic"));
-    log.line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
-                         c.speed_sound ? "fixed" : "automatic"));
+    log.text_line(fmt::format("Speed of system: {:g} ({})", constants.speed_system,
+                              c.speed_system ? "fixed" : "automatic"));
+    log.text_line(fmt::format("Speed of sound: {:g} ({})", constants.speed_sound,
+                              c.speed_sound ? "fixed" : "automatic"));
+    log_facts(def, particles, constants, log);
     const std::vector<ParticleType>& types = particles.off_lattice_points.types;
     if (std::find(types.begin(), types.end(), ParticleType::Fluid) != types.end())
         log.line(def.hydrostatic_off_lattice
                      ? "Density of fluid of <setfrdrawmode>: hydrostatic (<offlattice>)"
                      : "Density of fluid of <setfrdrawmode>: rhop0, as GenCase gives it");
-    log.line();
+    log.text_line();
     const double hdp = def.h / def.grid.dp;
-    log.line(
+    log.text_line(
         fmt::format("Coefh:{:.6f} (hdp:{:.6f})", hdp / std::sqrt(def.grid.is_2d ? 2.0 : 3.0), hdp));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/lattice.h"
 #include "fppg/particles.h"
 
 #include "app/run_log.h"
@@ -10,6 +11,14 @@
 
 namespace fppg
 {
+
+std::array<double, 3> coordinates(const Vec3& p);
+
+/// Prints limits, dp and nodes of the domain.
+void log_domain(const CaseDef& def, RunLog& log);
+
+/// Prints the volume of a cavity, and how far it was filled.
+void log_fill(const CavityFilled& fill, RunLog& log);
 
 /// Prints the blocks of particles, their sums, and the constants that follow from them, in the
 /// words that callers of GenCase look for.

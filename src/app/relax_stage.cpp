@@ -3,9 +3,8 @@
 #include "fppg/files.h"
 #include "fppg/relax_walls.h"
 
-#include "app/run_log.h"
+#include "app/run_state.h"
 #include "app/stage_bar.h"
-#include "app/stop_signals.h"
 #include "app/stopwatch.h"
 #include "app/thousands.h"
 
@@ -81,21 +80,18 @@ void log_fitted_walls(const RunField& field, RunLog& log)
     log.line();
 }
 
-RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::string& output,
-                            int threads, RunLog& log)
+void run_relaxation(CaseRunState& run, MadeCase& made)
 {
-    const StopSignalsAsk stop;
-    RelaxOutcome done;
     RelaxReport report;
     const Stopwatch time;
     int snapshots = 0;
     TimeLeft left;
-    done.history = "what,iteration,particles,mean,deviation,largest_step_dp\n";
+    made.relax_history = "what,iteration,particles,mean,deviation,largest_step_dp\n";
     const auto observe = [&](const RelaxStep& step)
     {
         const double now = time.seconds();
         left.note(step, now);
-        done.history +=
+        made.relax_history +=
             fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
                         step.particles, step.mean, step.variation, step.largest_step_dp);
         const double rest = left.seconds(step, now);
@@ -103,25 +99,21 @@ RelaxOutcome run_relaxation(const CaseDef& def, RunField& field, const std::stri
             now + rest > 0 ? now / (now + rest) : 0,
             fmt::format("{}: {} of at most {}, variation {:.3f}, largest step {:.3f} dp", step.what,
                         step.iteration, step.last_iteration, step.variation, step.largest_step_dp));
-        return !stop.is_asked();
+        return true;
     };
     const auto snapshot = [&](int iteration, const WallParticles& particles)
     {
-        OutputFile file(fmt::format("{}_Relax_{:04}.vtk", output, iteration));
+        OutputFile& file = run.files.add(fmt::format("{}_Relax_{:04}.vtk", made.output, iteration));
         write_wall_particles_vtk(file, particles);
-        file.commit();
+        file.finish();
         ++snapshots;
     };
-    relax_walls(def, field, threads, observe, report, snapshot);
-    for (const RelaxedPart& part : report.parts) log_relaxed(part, log);
+    relax_walls(made.def, made.field, run.threads, observe, report, snapshot);
+    for (const RelaxedPart& part : report.parts) log_relaxed(part, run.log);
     if (snapshots > 0)
-        log.line(fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", output, snapshots));
-    for (const std::string& w : report.warnings)
-        done.warnings.push_back(fmt::format("{}:{}", def.file, w));
-    if (report.is_stopped)
-        done.warnings.emplace_back(
-            "The relaxation was stopped by the user; the files hold the particles of that moment.");
-    return done;
+        run.log.line(
+            fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", made.output, snapshots));
+    for (const std::string& w : report.warnings) run.warn(fmt::format("{}:{}", made.def.file, w));
 }
 
 } // namespace fppg

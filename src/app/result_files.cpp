@@ -4,7 +4,11 @@
 
 #include "app/stop_signals.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -28,12 +32,45 @@ bool ResultFiles::has(const std::string& path) const
                        [&](const OutputFile& f) { return f.path() == path; });
 }
 
+namespace
+{
+
+/// The order in which files get their names: Case.bi4 and Case.xml last and side by side.
+int rank(const OutputFile& file)
+{
+    return file.path().ends_with(".xml") ? 2 : file.path().ends_with(".bi4") ? 1 : 0;
+}
+
+} // namespace
+
+/// Were a run killed between the two renames, a new Case.bi4 would stand beside the old Case.xml:
+/// nobody, the solver neither, would see that. Without Case.xml all do.
+void ResultFiles::remove_old_xml() const
+{
+    for (const OutputFile& file : files_)
+    {
+        if (!file.path().ends_with(".bi4")) continue;
+        const std::string xml = file.path().substr(0, file.path().size() - 4) + ".xml";
+        if (has(xml) && ::unlink(xml.c_str()) != 0 && errno != ENOENT)
+            throw IoError(fmt::format("cannot write '{}': {}", xml, std::strerror(errno)));
+    }
+}
+
 void ResultFiles::commit(bool three_vtk)
 {
     std::vector<std::string> pictures;
     const StopSignalsIgnored ignored;
+    for (OutputFile& file : files_) file.finish();
+    std::stable_sort(files_.begin(), files_.end(),
+                     [](const OutputFile& a, const OutputFile& b) { return rank(a) < rank(b); });
+    bool has_old_xml = true;
     for (OutputFile& file : files_)
     {
+        if (has_old_xml && rank(file) > 0)
+        {
+            remove_old_xml();
+            has_old_xml = false;
+        }
         file.commit();
         if (file.path().ends_with(".vtk")) pictures.push_back(file.path());
     }

@@ -28,7 +28,8 @@ public:
         const Stopwatch time;
         OutputFile& file = add(path);
         body(file);
-        log.line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+        log.text_line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
+        log.fact("file", {{"path", file.path()}, {"seconds", time.seconds()}});
     }
 
     /// Adds a copy of a file.
@@ -45,12 +46,15 @@ public:
     /// None is left; nothing of them stays on the disk.
     void clear() { files_.clear(); }
 
-    /// Gives all their names; a stop is held off meanwhile. `three_vtk`: three copies of every
-    /// .vtk, as GenCase makes them for its test runs.
+    /// Gives all their names, Case.bi4 and Case.xml last and side by side; a stop is held off
+    /// meanwhile. The old Case.xml goes before the new Case.bi4 comes. `three_vtk`: three copies of
+    /// every .vtk, as GenCase makes them for its test runs.
     void commit(bool three_vtk);
 
 private:
     std::vector<OutputFile> files_;
+
+    void remove_old_xml() const;
 };
 
 } // namespace fppg

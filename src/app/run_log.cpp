@@ -2,10 +2,13 @@
 
 #include "app/stage_bar.h"
 #include "core/json.h"
+#include "fppg/error.h"
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 namespace fppg
 {
@@ -40,6 +43,14 @@ void RunLog::line(std::string_view text)
         print_json({{"event", "log"}, {"text", std::string(text)}});
 }
 
+void RunLog::fact(std::string_view event, const Json& fields) const
+{
+    if (style_ != LogStyle::Json) return;
+    Json json = {{"event", std::string(event)}};
+    for (const auto& [name, value] : fields.members()) json[name] = value;
+    print_json(json);
+}
+
 void RunLog::warning(std::string_view text)
 {
     keep(fmt::format("*** WARNING: {}", text), style_ != LogStyle::Json);
@@ -67,6 +78,15 @@ void RunLog::finished(double seconds,
     Json json = {{"event", "finished"}, {"code", 0}, {"seconds", seconds}};
     for (const auto& [name, count] : counts) json[name] = count;
     print_json(json);
+}
+
+void expect_printed()
+{
+    errno = 0;
+    const bool is_flushed = std::fflush(stdout) == 0;
+    if (is_flushed && std::ferror(stdout) == 0) return;
+    throw IoError(fmt::format("standard output cannot be written: {}",
+                              errno != 0 ? std::strerror(errno) : "a part of it is lost"));
 }
 
 void print_json_error(std::string_view text, int code)

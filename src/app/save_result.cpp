@@ -4,6 +4,7 @@
 #include "fppg/version.h"
 
 #include "app/debug_vtk.h"
+#include "app/particle_log.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -214,6 +215,11 @@ void save_particles(CaseRunState& run, const MadeCase& made, const FileOrigin& o
     if (run.options.save_bi4)
         write(run, made, ".bi4", "<double>",
               [&](OutputFile& f) { write_bi4(f, particles, made.constants, origin, run.threads); });
+    else if (std::error_code ignored; fs::exists(made.output + ".bi4", ignored))
+        run.warn(
+            fmt::format("{}.bi4 is of an earlier run and stays, as -save leaves bi out; it does "
+                        "not belong to the new {}.xml.",
+                        made.output, made.output));
     const auto picture =
         [&](bool wanted, const char* ending, VtkSelection selection, std::uint64_t count)
     {
@@ -230,12 +236,14 @@ void save_particles(CaseRunState& run, const MadeCase& made, const FileOrigin& o
 
 void log_limits(RunLog& log, const CaseParticles& particles)
 {
-    log.line();
-    log.line("Particle limits:");
+    log.text_line();
+    log.text_line("Particle limits:");
     for (int axis = 0; axis < 3; ++axis)
-        log.line(fmt::format("  {} range: {:g} to {:g} [m]", "XYZ"[axis], particles.pos_min[axis],
-                             particles.pos_max[axis]));
-    log.line();
+        log.text_line(fmt::format("  {} range: {:g} to {:g} [m]", "XYZ"[axis],
+                                  particles.pos_min[axis], particles.pos_max[axis]));
+    log.text_line();
+    log.fact("limits",
+             {{"min", coordinates(particles.pos_min)}, {"max", coordinates(particles.pos_max)}});
 }
 
 } // namespace

@@ -1,11 +1,13 @@
 #include "app/stop_signals.h"
 
-#include "files/output_file_registry.h"
+#include "core/temporary_files.h"
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <cstring>
 
 namespace fppg
 {
@@ -14,26 +16,76 @@ namespace
 
 std::atomic<bool> is_ignored{false};
 std::atomic<bool> asks_first{false};
-std::atomic<bool> has_asked{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait for a lock");
+std::atomic<int> asked_by{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
 
-extern "C" void stop(int)
+constexpr std::array stops{SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGXCPU,
+                           SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM};
+constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
+
+void print_stop(const char* who)
+{
+    constexpr const char* before = "\n*** Stopped by ";
+    constexpr const char* after = "; no output file was changed.\n";
+    for (const char* text : {before, who, after})
+    {
+        const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+        static_cast<void>(written);
+    }
+}
+
+const char* name_of_stop(int signal)
+{
+    switch (signal)
+    {
+        case SIGINT:
+            return "the user";
+        case SIGTERM:
+            return "SIGTERM";
+        case SIGHUP:
+            return "SIGHUP";
+        case SIGPIPE:
+            return "SIGPIPE (nobody reads the output)";
+        case SIGXCPU:
+            return "SIGXCPU (the limit of processor time)";
+        default:
+            return "a signal";
+    }
+}
+
+extern "C" void stop(int signal)
 {
     if (is_ignored.load()) return;
-    if (asks_first.load() && !has_asked.exchange(true)) return;
+    int none = 0;
+    if (asks_first.load() && asked_by.compare_exchange_strong(none, signal)) return;
     remove_temporary_files();
-    constexpr char text[] = "\n*** Stopped by the user; no output file was changed.\n";
-    const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
-    static_cast<void>(written);
-    _exit(130);
+    print_stop(name_of_stop(signal));
+    _exit(128 + signal);
+}
+
+extern "C" void clean_up(int signal)
+{
+    remove_temporary_files();
+    // SA_RESETHAND: this ends the program as if nobody had caught it.
+    raise(signal);
 }
 
 } // namespace
 
 void catch_stop_signals()
 {
-    std::signal(SIGINT, stop);
-    std::signal(SIGTERM, stop);
+    const auto set = [](int signal, void (*handler)(int), int flags)
+    {
+        struct sigaction old = {};
+        if (sigaction(signal, nullptr, &old) != 0 || old.sa_handler == SIG_IGN) return;
+        struct sigaction action = {};
+        action.sa_handler = handler;
+        action.sa_flags = flags;
+        sigfillset(&action.sa_mask);
+        sigaction(signal, &action, nullptr);
+    };
+    for (const int signal : stops) set(signal, stop, SA_RESTART);
+    for (const int signal : crashes) set(signal, clean_up, static_cast<int>(SA_RESETHAND));
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
@@ -48,7 +100,7 @@ StopSignalsIgnored::~StopSignalsIgnored()
 
 StopSignalsAsk::StopSignalsAsk()
 {
-    has_asked.store(false);
+    asked_by.store(0);
     asks_first.store(true);
 }
 StopSignalsAsk::~StopSignalsAsk()
@@ -57,7 +109,11 @@ StopSignalsAsk::~StopSignalsAsk()
 }
 bool StopSignalsAsk::is_asked() const
 {
-    return has_asked.load();
+    return asked_by.load() != 0;
+}
+int StopSignalsAsk::signal() const
+{
+    return asked_by.load();
 }
 
 } // namespace fppg

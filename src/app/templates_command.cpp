@@ -1,5 +1,6 @@
 #include "app/templates_command.h"
 
+#include "core/regular_file.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 bool has_bytes(const fs::path& file, std::string_view bytes)
 {
+    expect_regular_file(file.string());
     std::ifstream in(file, std::ios::binary);
     const std::string found((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     return found == bytes;

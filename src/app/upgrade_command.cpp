@@ -1,6 +1,7 @@
 #include "app/upgrade_command.h"
 
 #include "app/subcommand_line.h"
+#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
@@ -30,6 +31,7 @@ struct UpgradeCall
 
 std::string read_text(const std::string& path)
 {
+    expect_regular_file(path);
     std::ifstream in(path, std::ios::binary);
     if (!in || fs::is_directory(path))
         throw IoError(

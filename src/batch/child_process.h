@@ -26,7 +26,7 @@ public:
 
     /// Whether it has ended; does not wait.
     bool has_ended();
-    /// Asks it to end (SIGTERM); a program that is asked twice ends at once.
+    /// Asks it to end (SIGTERM).
     void stop();
 
     // Once it has ended.

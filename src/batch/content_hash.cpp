@@ -1,5 +1,6 @@
 #include "batch/content_hash.h"
 
+#include "core/regular_file.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@ namespace fppg
 
 std::string content_hash(const std::string& path)
 {
+    expect_regular_file(path);
     std::ifstream in(path, std::ios::binary);
     if (!in) throw IoError(fmt::format("cannot read '{}'", path));
     std::uint64_t hash = 14695981039346656037U;

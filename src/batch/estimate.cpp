@@ -5,8 +5,10 @@
 #include "fppg/lattice.h"
 #include "fppg/scene.h"
 
+#include "batch/particle_limit.h"
 #include "batch/rates.h"
 #include "core/json.h"
+#include "lattice/mesh_units.h"
 #include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
@@ -48,6 +50,10 @@ public:
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
         scene_ = make_scene(def_);
+        expect_metres(scene_, options_.threads);
+        CaseOptions coarse = options_.case_options;
+        coarse.meshes = scene_.meshes;
+        expect_particles_fit(path, coarse, def_, options_.threads);
         out_.definition = path;
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;

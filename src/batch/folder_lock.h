@@ -1,12 +1,13 @@
 #pragma once
 
+#include "core/file_lock.h"
+
 #include <string>
 
 namespace fppg
 {
 
-/// Keeps other batches out of a folder of results as long as it lives; the system gives the lock
-/// back when the program ends, however it ends.
+/// Keeps other batches out of a folder of results as long as it lives.
 class FolderLock
 {
 public:
@@ -15,12 +16,9 @@ public:
     /// throws     IoError if another batch holds the folder (names its process and machine), or the
     ///            file cannot be made
     FolderLock(const std::string& folder, bool is_shared);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
 
 private:
-    int file_ = -1;
+    FileLock lock_;
 };
 
 } // namespace fppg

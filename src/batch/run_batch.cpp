@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -333,9 +334,9 @@ private:
         record.exit_code = child.exit_code();
         record.seconds = child.seconds();
         record.memory_bytes = static_cast<double>(child.peak_bytes());
-        // A relaxation that was asked to stop ends well, with what it had reached.
-        const bool is_cut_short = text.find("was stopped by the user") != std::string::npos;
-        if (record.exit_code == 130 || is_stopped_ || is_cut_short)
+        const bool is_asked_to_stop =
+            record.exit_code == 128 + SIGINT || record.exit_code == 128 + SIGTERM;
+        if (is_asked_to_stop || is_stopped_)
         {
             record.state = RunState::Stopped;
         }

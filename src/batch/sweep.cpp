@@ -1,5 +1,6 @@
 #include "batch/sweep.h"
 
+#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
 
@@ -68,6 +69,7 @@ std::vector<FoundCase> cases_of_folder(const fs::path& folder, const fs::path& o
 
 std::vector<FoundCase> cases_of_list(const fs::path& list)
 {
+    expect_regular_file(list.string());
     std::ifstream in(list);
     if (!in) throw IoError(fmt::format("cannot read '{}'", list.string()));
     std::vector<FoundCase> found;

@@ -16,6 +16,7 @@
 #include "casedef/variable_commands.h"
 #include "casedef/vres.h"
 #include "casedef/xml_document.h"
+#include "core/most_particles.h"
 #include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
@@ -385,20 +386,17 @@ private:
             const double n = std::floor((high[axis] - grid.origin[axis]) / grid.dp);
             // Four thousand million nodes an axis: the index type of the lattice.
             if (!(n < 4.0e9))
-                read_.fail(
-                    e,
-                    fmt::format(
-                        "the domain has {:g} nodes along {}, more than 4e9; dp = {:g} is too small "
-                        "for it",
-                        n, "xyz"[axis], grid.dp));
+                read_.fail(e, fmt::format("the domain has {:g} nodes along {}, more than 4e9; "
+                                          "dp={:g} and larger ones "
+                                          "fit",
+                                          n, "xyz"[axis], dp_rounded_up(grid.dp * n / 4.0e9)));
             grid.n[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(std::max(1.0, n));
         }
         if (grid.is_2d) grid.n[1] = 1;
         if (grid.n[0] > 200'000'000)
-            read_.fail(e,
-                       fmt::format(
-                           "the domain has {} nodes along x, more than this program can hold (2e8)",
-                           grid.n[0]));
+            read_.fail(e, fmt::format("the domain has {} nodes along x, more than this program can "
+                                      "hold (2e8); dp={:g} and larger ones fit",
+                                      grid.n[0], dp_rounded_up(grid.dp * grid.n[0] / 2e8)));
         def_.case_pos_min = grid.origin;
         def_.case_pos_max = high;
     }

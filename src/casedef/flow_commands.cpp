@@ -18,6 +18,7 @@ void run_named_list(Program& p, const Element& e)
                           ? p.read.integer(e, "times", 0, 1'000'000'000, true)
                           : 1;
     const bool is_printed = p.read.plain_flag_or(*found->second, "printcall", true);
+    p.expect_few_commands(e, *found->second, times);
     for (int i = 0; i < times; ++i)
     {
         // An empty list counts too: each call leaves a line in the log.

@@ -3,6 +3,7 @@
 #include "core/binary_items.h"
 #include "core/file_map.h"
 #include "core/finite_number.h"
+#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
 
@@ -40,8 +41,10 @@ std::string wrong_steps(const MeshValues& mesh)
 class TextReader
 {
 public:
-    explicit TextReader(const std::string& path) : path_(path), in_(path, std::ios::binary)
+    explicit TextReader(const std::string& path) : path_(path)
     {
+        expect_regular_file(path);
+        in_.open(path, std::ios::binary);
         if (!in_) throw IoError(fmt::format("{}: cannot open the file", path));
     }
 

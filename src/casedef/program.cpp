@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <utility>
 
 namespace fppg
@@ -92,6 +93,44 @@ void Program::count_command(const Element& e)
     if (++commands_run > max_commands)
         read.fail(e, fmt::format("more than {} commands were run, the lists seem to be endless",
                                  max_commands));
+}
+
+/// So many commands a list runs for sure: calls under a condition, and calls that a variable
+/// repeats, may be none; of lists that call themselves the depth is limited.
+double Program::least_commands_in(const Element& list)
+{
+    const auto [known, is_new] = commands_in_lists_.emplace(&list, 0);
+    if (!is_new) return known->second;
+    double all = 0;
+    for (const Element& e : list.children)
+    {
+        if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
+        if (e.find_attribute("if") != nullptr) continue;
+        const std::string* name = e.name == "runlist" ? e.find_attribute("name") : nullptr;
+        const auto called = name != nullptr ? lists.find(*name) : lists.end();
+        ++all;
+        if (called == lists.end()) continue;
+        double times = 1;
+        const std::string* text = e.find_attribute("times");
+        if (text != nullptr && !text->empty())
+        {
+            const char* end = text->data() + text->size();
+            const auto read_times = std::from_chars(text->data(), end, times);
+            if (read_times.ec != std::errc() || read_times.ptr != end || !(times > 0)) times = 0;
+        }
+        all += times * (1 + least_commands_in(*called->second));
+    }
+    commands_in_lists_[&list] = all;
+    return all;
+}
+
+void Program::expect_few_commands(const Element& e, const Element& list, int times)
+{
+    const double all = static_cast<double>(commands_run) + times * (1 + least_commands_in(list));
+    if (all > static_cast<double>(max_commands))
+        read.fail(e, fmt::format("{:.4g} commands or more would be run, expected at most {}: the "
+                                 "lists call one another too often",
+                                 all, max_commands));
 }
 
 void Program::run_command(const Element& e)

@@ -51,6 +51,8 @@ struct Program
     void run_list(const Element& list, const std::string& name);
     /// Stops lists without an end.
     void count_command(const Element& e);
+    /// Refuses calls of a list that would run too many commands, before the first one.
+    void expect_few_commands(const Element& e, const Element& list, int times);
 
     MkValue mk_value(const Element& e, MkKind kind, int mk_type) const;
     void set_mk(const Element& e, MkKind kind, int mk_type);
@@ -147,6 +149,9 @@ struct Program
     std::size_t commands_run = 0;
 
 private:
+    std::map<const Element*, double> commands_in_lists_;
+
+    double least_commands_in(const Element& list);
     void run_command(const Element& e);
     bool has_quads_move_clips(const PolyhedronOp& polyhedron) const;
     /// GenCase v5.4.354 resets the matrix while it looks for where a quad off the lattice, or a

@@ -1,6 +1,7 @@
 #include "casedef/xml_document.h"
 
 #include "casedef/lenient_xml.h"
+#include "core/regular_file.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -133,6 +134,7 @@ Element parse_document(std::string text, const std::string& name)
 
 Element read_document(const std::string& path)
 {
+    expect_regular_file(path);
     std::ifstream in(path, std::ios::binary);
     if (!in) throw IoError(fmt::format("{}: cannot open the file: {}", path, std::strerror(errno)));
     std::ostringstream text;

@@ -168,4 +168,47 @@ std::vector<BinaryItem> read_binary_items(std::string_view bytes, const std::str
     return ItemReader(bytes, path, file_code).run();
 }
 
+namespace
+{
+
+template <typename T>
+double as_double(std::string_view data)
+{
+    T value;
+    std::memcpy(&value, data.data(), sizeof value);
+    return static_cast<double>(value);
+}
+
+std::optional<double> number_in(const BinaryValue& value)
+{
+    const auto has = [&](int type, std::size_t bytes)
+    { return value.type == type && value.data.size() == bytes; };
+    if (has(7, 4)) return as_double<std::int32_t>(value.data);
+    if (has(8, 4)) return as_double<std::uint32_t>(value.data);
+    if (has(9, 8)) return as_double<std::int64_t>(value.data);
+    if (has(10, 8)) return as_double<std::uint64_t>(value.data);
+    if (has(11, 4)) return as_double<float>(value.data);
+    if (has(12, 8)) return as_double<double>(value.data);
+    return {};
+}
+
+} // namespace
+
+const BinaryValue* find_value(const std::vector<BinaryItem>& items, std::string_view name)
+{
+    for (const BinaryItem& item : items)
+    {
+        for (const BinaryValue& value : item.values)
+            if (value.name == name) return &value;
+        if (const BinaryValue* found = find_value(item.items, name)) return found;
+    }
+    return nullptr;
+}
+
+std::optional<double> find_number(const std::vector<BinaryItem>& items, std::string_view name)
+{
+    const BinaryValue* value = find_value(items, name);
+    return value == nullptr ? std::nullopt : number_in(*value);
+}
+
 } // namespace fppg

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,5 +43,11 @@ struct BinaryItem
 ///            that is none
 std::vector<BinaryItem> read_binary_items(std::string_view bytes, const std::string& path,
                                           std::string_view file_code);
+
+/// The first value of that name in the items and those in them, or nullptr.
+const BinaryValue* find_value(const std::vector<BinaryItem>& items, std::string_view name);
+
+/// The same as a number, where it is one.
+std::optional<double> find_number(const std::vector<BinaryItem>& items, std::string_view name);
 
 } // namespace fppg

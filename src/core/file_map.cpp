@@ -1,5 +1,7 @@
 #include "core/file_map.h"
 
+#include "core/regular_file.h"
+
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -59,6 +61,7 @@ std::vector<char> read_to_the_end(int descriptor, const std::string& path)
 
 FileMap::FileMap(const std::string& path)
 {
+    expect_regular_file(path);
     const Descriptor descriptor(path);
     struct stat info = {};
     if (::fstat(descriptor.get(), &info) != 0)

@@ -8,8 +8,8 @@
 namespace fppg
 {
 
-/// The bytes of a file for reading: mapped where the system can map it, read into memory where it
-/// cannot (pipes, files of no stated size).
+/// The bytes of a regular file for reading: mapped where the system can map it, read into memory
+/// where it cannot (files of no stated size).
 class FileMap
 {
 public:

@@ -162,6 +162,14 @@ const Json& Json::at(std::string_view name) const
     return items_[static_cast<std::size_t>(found - names_.begin())];
 }
 
+std::vector<std::pair<std::string, Json>> Json::members() const
+{
+    if (kind_ != Kind::Object) throw JsonError("expected an object");
+    std::vector<std::pair<std::string, Json>> out;
+    for (std::size_t i = 0; i < items_.size(); ++i) out.emplace_back(names_[i], items_[i]);
+    return out;
+}
+
 const std::vector<Json>& Json::items() const
 {
     if (kind_ != Kind::Array) throw JsonError("expected an array");

@@ -101,6 +101,10 @@ public:
     ///
     /// throws  JsonError where this is none
     const std::vector<Json>& items() const;
+    /// Names and values of an object, in order.
+    ///
+    /// throws  JsonError where this is none
+    std::vector<std::pair<std::string, Json>> members() const;
 
     /// Each throws JsonError where the value is of another type.
     void get_to(bool& value) const;

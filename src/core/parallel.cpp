@@ -1,7 +1,8 @@
 #include "core/parallel.h"
 
+#include "core/signals_blocked.h"
+
 #include <omp.h>
-#include <signal.h>
 
 #include <algorithm>
 
@@ -30,31 +31,13 @@ void acquire_from_others([[maybe_unused]] const ChunkedLoop& loop)
 #endif
 }
 
-/// While it lives, new threads block all signals: those are for the threads of the program, which
-/// may wait for them.
-class SignalsForCallerOnly
-{
-public:
-    SignalsForCallerOnly()
-    {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
-    }
-    ~SignalsForCallerOnly() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-    SignalsForCallerOnly(const SignalsForCallerOnly&) = delete;
-    SignalsForCallerOnly& operator=(const SignalsForCallerOnly&) = delete;
-
-private:
-    sigset_t before_{};
-};
-
 /// OpenMP keeps the threads of a team for the next loop of the same caller.
 void start_team(int threads)
 {
     thread_local int started = 1;
     if (threads <= started) return;
-    const SignalsForCallerOnly blocked;
+    // Signals are for the threads of the program, which may wait for them.
+    const SignalsBlocked blocked;
     // GCC leaves an empty region out, and the team would start later, with signals.
 #pragma omp parallel num_threads(threads)
     {

@@ -18,6 +18,7 @@
 // Vel is zero but where `<initials>` sets it, and a reserved file reads as zeros: only pieces with
 // such particles are written.
 
+#include "core/most_particles.h"
 #include "core/parallel.h"
 #include "files/particle_stream.h"
 #include "fppg/error.h"
@@ -39,7 +40,6 @@ namespace
 static_assert(std::endian::native == std::endian::little,
               "values are copied into the file as they lie in memory");
 
-constexpr std::uint64_t max_bi4_particles = 4294967294U;
 
 enum class Bi4Type : std::int32_t
 {
@@ -353,11 +353,11 @@ void write_piece(OutputFile& file, const Bi4Layout& layout, const ParticleStream
 void write_bi4(OutputFile& file, const CaseParticles& particles, const CaseConstants& constants,
                const FileOrigin& origin, int threads, std::uint64_t limit_of_32_bit_sizes)
 {
-    if (particles.np > max_bi4_particles)
+    if (particles.np > most_particles)
         throw IoError(
             fmt::format("cannot write '{}': {} particles, but the format holds at most "
                         "{} (ids have 32 bits)",
-                        file.path(), particles.np, max_bi4_particles));
+                        file.path(), particles.np, most_particles));
     Bi4Layout layout = lay_out(particles, constants, origin, false);
     if (layout.size >= limit_of_32_bit_sizes) layout = lay_out(particles, constants, origin, true);
 

@@ -30,6 +30,34 @@ std::uint64_t whole_number(const Element& element, const char* name, std::uint64
     return value;
 }
 
+/// A place of `<positions>`; nothing where it is not there or no place.
+std::optional<Vec3> place(const Element* positions, const char* name)
+{
+    const Element* element = positions != nullptr ? positions->find_child(name) : nullptr;
+    if (element == nullptr) return {};
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const std::string* text = element->find_attribute(std::string(1, "xyz"[axis]));
+        if (text == nullptr) return {};
+        const char* end = text->data() + text->size();
+        const auto read = std::from_chars(text->data(), end, p[axis]);
+        if (read.ec != std::errc() || read.ptr != end) return {};
+    }
+    return p;
+}
+
+/// Between which particles lie, as GenCase v5.4 writes it into `<_summary>`.
+Box3 limits_of(const Element& particles)
+{
+    const Element* summary = particles.find_child("_summary");
+    const Element* positions = summary != nullptr ? summary->find_child("positions") : nullptr;
+    const std::optional<Vec3> least = place(positions, "posmin");
+    const std::optional<Vec3> greatest = place(positions, "posmax");
+    if (!least || !greatest) return {};
+    return {*least, *greatest};
+}
+
 std::optional<ParticleType> type_of(const std::string& name)
 {
     static constexpr std::string_view names[] = {"fixed", "moving", "floating", "fluid"};
@@ -46,6 +74,8 @@ CaseFacts case_facts(const Element& root, const std::string& path)
     const Element* execution = root.find_child("execution");
     if (execution == nullptr) return facts;
     if (const Element* particles = execution->find_child("particles"))
+    {
+        facts.limits = limits_of(*particles);
         for (const Element& block : particles->children)
         {
             const std::optional<ParticleType> type = type_of(block.name);
@@ -57,6 +87,7 @@ CaseFacts case_facts(const Element& root, const std::string& path)
             range.type = *type;
             facts.ranges.push_back(range);
         }
+    }
     std::sort(facts.ranges.begin(), facts.ranges.end(),
               [](const IdRange& a, const IdRange& b) { return a.begin < b.begin; });
     const Element* constants = execution->find_child("constants");

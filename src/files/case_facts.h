@@ -23,7 +23,8 @@ struct IdRange
 struct CaseFacts
 {
     std::vector<IdRange> ranges; ///< sorted
-    double dp = 0;               ///< 0 where it does not say
+    double dp = 0;               ///< metres; 0 where it does not say
+    Box3 limits; ///< of the places of all particles, metres; empty where it does not say
 };
 
 /// Reads them from the tree of Case.xml; `path` is for messages.

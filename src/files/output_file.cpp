@@ -1,16 +1,15 @@
-#include "files/output_file_registry.h"
+#include "core/regular_file.h"
+#include "core/signals_blocked.h"
+#include "core/temporary_files.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <array>
-#include <atomic>
 #include <cerrno>
-#include <climits>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -21,41 +20,6 @@ namespace fppg
 namespace
 {
 
-/// The places of the registry. A path is written only while its slot is Reserved and read by a
-/// signal handler only while it is Live.
-enum SlotState
-{
-    Free,
-    Reserved,
-    Live,
-};
-struct Slot
-{
-    std::atomic<int> state{Free};
-    std::array<char, PATH_MAX> path{};
-};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
-std::array<Slot, 64> slots;
-
-int register_temporary(const std::string& path)
-{
-    if (path.size() >= PATH_MAX) return -1;
-    for (std::size_t i = 0; i < slots.size(); ++i)
-    {
-        int expected = Free;
-        if (!slots[i].state.compare_exchange_strong(expected, Reserved)) continue;
-        std::memcpy(slots[i].path.data(), path.c_str(), path.size() + 1);
-        slots[i].state.store(Live);
-        return static_cast<int>(i);
-    }
-    return -1;
-}
-
-void unregister_temporary(int slot) noexcept
-{
-    if (slot >= 0) slots[static_cast<std::size_t>(slot)].state.store(Free);
-}
-
 [[noreturn]] void fail(const std::string& path, int error)
 {
     std::string text = fmt::format("cannot write '{}': {}", path, std::strerror(error));
@@ -63,46 +27,20 @@ void unregister_temporary(int slot) noexcept
     throw IoError(text);
 }
 
-/// `.<name>.part-<pid>` beside the file. A name is cut where the longer one would not be allowed.
+/// A name is cut where the longer one of its temporary file would not be allowed.
+std::string short_name(const std::filesystem::path& path)
+{
+    return path.filename().string().substr(0, 200);
+}
+
+/// `.<name>.part-<pid>` beside the file.
 std::string temporary_name(const std::string& path, int attempt)
 {
     const std::filesystem::path full(path);
-    std::string name =
-        fmt::format(".{}.part-{}", full.filename().string().substr(0, 200), ::getpid());
+    std::string name = fmt::format(".{}.part-{}", short_name(full), ::getpid());
     if (attempt > 0) name += fmt::format("-{}", attempt);
     return (full.parent_path() / name).string();
 }
-
-} // namespace
-
-void remove_temporary_files() noexcept
-{
-    const int saved_errno = errno;
-    for (Slot& slot : slots)
-        if (slot.state.load() == Live) ::unlink(slot.path.data());
-    errno = saved_errno;
-}
-
-namespace
-{
-
-/// Keeps signals from this thread while it lives; the program's other threads never take any.
-class SignalsBlocked
-{
-public:
-    SignalsBlocked()
-    {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_BLOCK, &all, &before_);
-    }
-    ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-    SignalsBlocked(const SignalsBlocked&) = delete;
-    SignalsBlocked& operator=(const SignalsBlocked&) = delete;
-
-private:
-    sigset_t before_;
-};
 
 } // namespace
 
@@ -110,6 +48,10 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
 {
     struct stat status = {};
     if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) fail(path_, EISDIR);
+    // A rename would put a file in the place of /dev/null.
+    expect_regular_file(path_);
+    const std::filesystem::path full(path_);
+    remove_dead_parts(full.parent_path().string(), short_name(full), false);
     // A stop signal between the making of the file and its entry in the registry would leave it.
     const SignalsBlocked blocked;
     // A process of the same id may have been killed here before, and two cases of one process may
@@ -126,6 +68,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
     }
     if (descriptor_ < 0) fail(path_, errno);
     registry_slot_ = register_temporary(temporary_path_);
+    // Tells other machines that this process lives; where there are no locks, none asks.
+    (void)::flock(descriptor_, LOCK_EX | LOCK_NB);
 }
 
 OutputFile::~OutputFile()
@@ -135,7 +79,7 @@ OutputFile::~OutputFile()
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
-      temporary_path_(std::move(other.temporary_path_)),
+      temporary_path_(std::exchange(other.temporary_path_, {})),
       descriptor_(std::exchange(other.descriptor_, -1)),
       registry_slot_(std::exchange(other.registry_slot_, -1)),
       end_(other.end_)
@@ -147,7 +91,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept
     if (this == &other) return *this;
     discard();
     path_ = std::move(other.path_);
-    temporary_path_ = std::move(other.temporary_path_);
+    temporary_path_ = std::exchange(other.temporary_path_, {});
     descriptor_ = std::exchange(other.descriptor_, -1);
     registry_slot_ = std::exchange(other.registry_slot_, -1);
     end_ = other.end_;
@@ -156,9 +100,10 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept
 
 void OutputFile::discard() noexcept
 {
-    if (descriptor_ < 0) return;
-    ::close(std::exchange(descriptor_, -1));
+    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+    if (temporary_path_.empty()) return;
     ::unlink(temporary_path_.c_str());
+    temporary_path_.clear();
     unregister_temporary(std::exchange(registry_slot_, -1));
 }
 
@@ -212,21 +157,27 @@ void OutputFile::append(const void* data, std::size_t bytes)
     end_ += bytes;
 }
 
+void OutputFile::finish()
+{
+    if (descriptor_ < 0) return;
+    // Some file systems report a failed write only here. After EINTR the descriptor is closed.
+    if (::close(std::exchange(descriptor_, -1)) == 0 || errno == EINTR) return;
+    const int error = errno;
+    discard();
+    fail(path_, error);
+}
+
 void OutputFile::commit()
 {
-    // Some file systems report a failed write only here. After EINTR the descriptor is closed.
-    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
+    finish();
+    if (::rename(temporary_path_.c_str(), path_.c_str()) != 0)
     {
         const int error = errno;
-        ::unlink(temporary_path_.c_str());
-        unregister_temporary(std::exchange(registry_slot_, -1));
+        discard();
         fail(path_, error);
     }
-    const int result = ::rename(temporary_path_.c_str(), path_.c_str());
-    const int error = errno;
-    if (result != 0) ::unlink(temporary_path_.c_str());
+    temporary_path_.clear();
     unregister_temporary(std::exchange(registry_slot_, -1));
-    if (result != 0) fail(path_, error);
 }
 
 } // namespace fppg

@@ -2,6 +2,7 @@
 
 #include "casedef/xml_document.h"
 #include "core/file_map.h"
+#include "files/result_pair.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -53,13 +54,12 @@ void ParticleSource::open_bi4(const std::string& stem)
 {
     path_ = stem + ".bi4";
     xml_path_ = stem + ".xml";
-    if (!is_file(xml_path_))
-        throw IoError(fmt::format("'{}' has no mk of its own, and '{}', which has, is not there",
-                                  path_, xml_path_));
+    expect_case_xml({path_, xml_path_});
     xml_ = read_xml(xml_path_);
     facts_ = case_facts(*xml_, xml_path_);
     file_ = std::make_unique<FileMap>(path_);
     bi4_ = view_bi4(file_->bytes(), path_);
+    expect_one_run({path_, xml_path_}, facts_, bi4_);
     size_ = bi4_.size();
     is_single_ = bi4_.is_single();
     points_ = is_single_ ? bi4_.pos : bi4_.posd;

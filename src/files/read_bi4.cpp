@@ -1,6 +1,4 @@
-#include "core/file_map.h"
 #include "core/parallel.h"
-#include "files/bi4_view.h"
 #include "files/particle_readers.h"
 
 #include <cstring>
@@ -26,11 +24,9 @@ void copy_positions(std::string_view data, std::vector<Vec3>& positions, int thr
 
 } // namespace
 
-void read_bi4(const std::string& path, ParticleCloud& cloud, std::vector<std::uint32_t>& idp,
-              int threads)
+void copy_particles(const Bi4View& view, ParticleCloud& cloud, std::vector<std::uint32_t>& idp,
+                    int threads)
 {
-    const FileMap file(path);
-    const Bi4View view = view_bi4(file.bytes(), path);
     const std::size_t n = view.size();
     idp.resize(n);
     if (n > 0) std::memcpy(idp.data(), view.idp.data(), 4 * n);

@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "files/case_facts.h"
 #include "files/particle_readers.h"
+#include "files/result_pair.h"
 #include "files/typical_distance.h"
 #include "fppg/error.h"
 
@@ -54,12 +55,13 @@ ParticleCloud read_case(const std::string& stem, int threads)
     ParticleCloud cloud;
     cloud.file = stem + ".bi4";
     const std::string xml = stem + ".xml";
-    if (!is_file(xml))
-        throw IoError(fmt::format("'{}' has no mk of its own, and '{}', which has, is not there",
-                                  cloud.file, xml));
+    expect_case_xml({cloud.file, xml});
     const CaseFacts facts = case_facts(read_xml(xml), xml);
     std::vector<std::uint32_t> idp;
-    read_bi4(cloud.file, cloud, idp, threads);
+    const FileMap file(cloud.file);
+    const Bi4View view = view_bi4(file.bytes(), cloud.file);
+    expect_one_run({cloud.file, xml}, facts, view);
+    copy_particles(view, cloud, idp, threads);
     set_mk_and_type(facts, xml, idp, cloud, threads);
     cloud.dp = facts.dp > 0 ? facts.dp : guess_dp(cloud.positions, threads);
     return cloud;

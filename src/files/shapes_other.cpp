@@ -177,11 +177,11 @@ void write_shapes_vtu(OutputFile& file, const std::vector<ShapePolygons>& shapes
     std::string piece = fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                                     cells.n_points, all.cells);
     piece += shared_part(cells, appended);
-    piece += "      <ShapeCells>\n";
+    piece += "      <Cells>\n";
     piece += array_line("Int32", "connectivity", appended.add(all.connectivity));
     piece += array_line("Int32", "offsets", appended.add(all.offsets));
     piece += array_line("UInt8", "types", appended.add(all.types));
-    piece += "      </ShapeCells>\n";
+    piece += "      </Cells>\n";
     write_file(file, "UnstructuredGrid", piece, appended);
 }
 

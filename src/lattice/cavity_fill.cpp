@@ -183,6 +183,11 @@ private:
     {
         const auto share = [&](std::uint64_t nodes)
         { return 100 * static_cast<double>(nodes) / static_cast<double>(cavity.node_count); };
+        report_.filled.cavity_nodes = cavity.node_count;
+        report_.filled.nodes = level.nodes;
+        report_.filled.litres_per_node = litres_per_node();
+        report_.filled.level = metres(level.height);
+        if (cavity.opening) report_.filled.open_at = metres(cavity.opening->height);
         std::string up;
         if (op_.up != Vec3{0, 0, 1}) up = " along " + text(op_.up);
         report_.log.push_back(fmt::format(

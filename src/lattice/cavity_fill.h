@@ -14,6 +14,7 @@ namespace fppg
 /// What a fill says, without its place in the definition.
 struct CavityFillReport
 {
+    CavityFilled filled;               ///< without line and log
     std::vector<std::string> log;      ///< volume of the cavity, level, what was filled; its gaps
     std::vector<std::string> warnings; ///< whole sentences
 };

@@ -1,6 +1,7 @@
 #include "lattice/draw_checks.h"
 
 #include "core/text.h"
+#include "lattice/mesh_units.h"
 #include "meshes/open_edges.h"
 #include "meshes/repaired_solid.h"
 #include "nodes/snap.h"
@@ -17,24 +18,14 @@ namespace fppg
 namespace
 {
 
-/// The largest or smallest extent over the axes that count.
-struct Extents
-{
-    double largest = 0;
-    double smallest = std::numeric_limits<double>::infinity();
-};
-
+/// Over the axes that count.
 template <typename IsFlat>
-Extents extents_of(const Vec3& low, const Vec3& high, const IsFlat& is_flat)
+double smallest_extent(const Box3& box, const IsFlat& is_flat)
 {
-    Extents out;
+    double smallest = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
-    {
-        if (is_flat(axis)) continue;
-        out.largest = std::max(out.largest, high[axis] - low[axis]);
-        out.smallest = std::min(out.smallest, high[axis] - low[axis]);
-    }
-    return out;
+        if (!is_flat(axis)) smallest = std::min(smallest, box.max[axis] - box.min[axis]);
+    return smallest;
 }
 
 } // namespace
@@ -53,33 +44,24 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
         !state.clips.empty())
         return;
     const LatticeGrid& grid = def_.grid;
-    const auto flat = [this](int axis) { return is_flat(axis); };
-    const Extents size = extents_of(bounds.min, bounds.max, flat);
-    const Extents domain = extents_of(def_.case_pos_min, def_.case_pos_max, flat);
+    const double thickness = smallest_extent(bounds, [this](int axis) { return is_flat(axis); });
     if (const auto* mesh = shape_as<MeshFileOp>(op))
     {
-        const bool is_large = size.largest > 100 * domain.largest;
-        if (is_large || (100 * size.largest < domain.largest && size.largest < 4 * grid.dp))
+        if (const std::optional<std::string> wrong = wrong_units(def_, mesh->file, bounds))
         {
-            warn(op.source, Kind::Size,
-                 fmt::format(
-                     "{} is {:g} m wide in a domain of {:g} m with dp = {:g} m; if the file "
-                     "is in other units (mm), <drawscale x=\"{}\" y=\"{}\" z=\"{}\" /> turns "
-                     "them into metres",
-                     mesh->file, size.largest, domain.largest, grid.dp, is_large ? "0.001" : "1000",
-                     is_large ? "0.001" : "1000", is_large ? "0.001" : "1000"));
+            warn(op.source, Kind::Size, *wrong);
             return;
         }
     }
     if (const auto* shape = std::get_if<Shape>(&op.what);
-        shape != nullptr && is_body(*shape, state.mode) && size.smallest > 0 &&
-        size.smallest < grid.dp * (1 - 1e-9))
+        shape != nullptr && is_body(*shape, state.mode) && thickness > 0 &&
+        thickness < grid.dp * (1 - 1e-9))
         warn(
             op.source, Kind::Thin,
             fmt::format("the body is {:g} m thick, less than dp = {:g} m, so its particles are as "
                         "thick as one or two of them; a dp of {:g} or less resolves it, and size 0 "
                         "draws a single layer on purpose",
-                        size.smallest, grid.dp, size.smallest / 2));
+                        thickness, grid.dp, thickness / 2));
     for (int axis = 0; axis < 3; ++axis)
     {
         if (is_flat(axis)) continue;

@@ -6,6 +6,7 @@
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/limits.h"
+#include "lattice/mesh_units.h"
 #include "lattice/redraw.h"
 #include "scene/surfaces.h"
 
@@ -145,15 +146,19 @@ void paint(Painting& painting, const Brush& brush, const CavityFillOp& op)
     {
         const std::vector<Spans> nodes =
             fill_cavity(painting.canvas.field(), op, painting.canvas.threads(), said);
+        said.filled.line = brush.source->line;
         for (const std::string& line : said.log)
-            painting.report.log.push_back(fmt::format("{}: {}", place, line));
+            said.filled.log.push_back(fmt::format("{}: {}", place, line));
+        painting.report.fills.push_back(std::move(said.filled));
         for (const std::string& w : said.warnings)
             painting.report.warnings.push_back(fmt::format("{}: {}", place, w));
         painting.canvas.paint(brush, nodes);
     }
     catch (const GeometryError& e)
     {
-        throw GeometryError(fmt::format("{}: {}", place, e.what()));
+        throw GeometryError(
+            fmt::format("{}: {}{}", place, e.what(),
+                        suspected_units(painting.scene, painting.canvas.threads())));
     }
 }
 

@@ -15,43 +15,6 @@
 namespace fppg
 {
 
-namespace
-{
-
-template <typename T>
-double as_double(std::string_view data)
-{
-    T value;
-    std::memcpy(&value, data.data(), sizeof value);
-    return static_cast<double>(value);
-}
-
-std::optional<double> number_in(const BinaryValue& value)
-{
-    const auto has = [&](int type, std::size_t bytes)
-    { return value.type == type && value.data.size() == bytes; };
-    if (has(7, 4)) return as_double<std::int32_t>(value.data);
-    if (has(8, 4)) return as_double<std::uint32_t>(value.data);
-    if (has(9, 8)) return as_double<std::int64_t>(value.data);
-    if (has(10, 8)) return as_double<std::uint64_t>(value.data);
-    if (has(11, 4)) return as_double<float>(value.data);
-    if (has(12, 8)) return as_double<double>(value.data);
-    return {};
-}
-
-std::optional<double> find_number(const std::vector<BinaryItem>& items, std::string_view name)
-{
-    for (const BinaryItem& item : items)
-    {
-        for (const BinaryValue& value : item.values)
-            if (value.name == name) return number_in(value);
-        if (const std::optional<double> found = find_number(item.items, name)) return found;
-    }
-    return {};
-}
-
-} // namespace
-
 PartFile::PartFile(const std::string& path)
     : path_(path), file_(path), view_(view_bi4(file_.bytes(), path))
 {

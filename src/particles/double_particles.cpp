@@ -2,6 +2,10 @@
 
 #include "fppg/error.h"
 
+#include "core/most_particles.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace fppg
@@ -147,10 +151,14 @@ bool double_particles(const CaseDef& def, CaseParticles& particles)
                                                   : constants.lattice_bound) != 1;
     };
     if (std::none_of(particles.blocks.begin(), particles.blocks.end(), doubles)) return false;
-    if (particles.np * 2 >= UINT32_MAX)
-        throw CaseError(def.file, 0,
-                        "<lattice> makes two particles of one, which are more than the file format "
-                        "holds (4,294,967,294); a larger dp gives fewer");
+    if (particles.np * 2 > most_particles)
+        throw CaseError(
+            def.file, 0,
+            fmt::format(
+                "<lattice> makes two particles of one, which are more than the file format "
+                "holds ({}); dp={:g} and larger ones fit",
+                most_particles_text,
+                dp_that_fits(def.grid.dp, 2 * static_cast<double>(particles.np), def.grid.is_2d)));
     Doubler doubler(particles);
     doubler.rhop0 = static_cast<float>(constants.rhop0);
     for (ParticleBlock& block : particles.blocks) doubler.take(block, doubles(block));

@@ -2,6 +2,7 @@
 #include "fppg/error.h"
 #include "fppg/particles.h"
 
+#include "core/most_particles.h"
 #include "core/parallel.h"
 #include "particles/density.h"
 #include "particles/double_particles.h"
@@ -157,14 +158,13 @@ private:
             for (ParticleBlock& block : out_.blocks) block.count += off_lattice_of_mk_[block.mk];
         std::uint64_t all = 0;
         for (const ParticleBlock& block : out_.blocks) all += block.count;
-        // Ids in Case.bi4 are 32-bit numbers, the last of which means none.
-        if (all >= UINT32_MAX)
+        if (all > most_particles)
             throw CaseError(
                 def_.file, 0,
-                fmt::format(
-                    "the case has {} particles, the file format holds at most 4,294,967,294; a "
-                    "larger dp gives fewer",
-                    all));
+                fmt::format("the case has {} particles, the file format holds at most "
+                            "{}; dp={:g} and larger ones fit",
+                            all, most_particles_text,
+                            dp_that_fits(def_.grid.dp, static_cast<double>(all), def_.grid.is_2d)));
         int moving = 0;
         for (std::size_t b = 0; b < n; ++b)
         {

@@ -48,6 +48,27 @@ def run_on_a_terminal(program, work, *arguments):
     return process.returncode, out, shown.decode()
 
 
+def check_facts(work, events):
+    """The numbers of a run are fields, not lines of text."""
+    by_name = {event["event"]: event for event in events}
+    particles = by_name["particles"]
+    assert sum(block["count"] for block in particles["blocks"]) == particles["particles"], particles
+    for block in particles["blocks"]:
+        assert block["type"] in ("fixed", "moving", "floating", "fluid") and "first_id" in block, block
+        assert ("mkfluid" if block["type"] == "fluid" else "mkbound") in block, block
+    assert particles["speed_sound"] > particles["speed_system"] > 0 and particles["depth"] > 0, particles
+    domain = by_name["domain"]
+    assert domain["dp"] > 0 and len(domain["nodes"]) == len(domain["min"]) == len(domain["max"]) == 3, domain
+    limits = by_name["limits"]
+    assert all(low <= high for low, high in zip(limits["min"], limits["max"])), limits
+    files = [event["path"] for event in events if event["event"] == "file"]
+    assert {"json/Case.bi4", "json/Case.xml"} <= set(files), files
+    assert all(os.path.isfile(os.path.join(work, path)) for path in files), files
+    text = "\n".join(event["text"] for event in events if event["event"] == "log")
+    for word in ("Total particles", "Case.bi4", "Particle limits", "Case domain"):
+        assert word not in text, text
+
+
 def main(program, cases, work):
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
@@ -72,6 +93,16 @@ def main(program, cases, work):
     last = events[-1]
     assert last["event"] == "finished" and last["code"] == 0, last
     assert last["particles"] == last["fixed"] + last["moving"] + last["floating"] + last["fluid"] > 0, last
+
+    check_facts(work, events)
+    assert run(program, work, "templates", "templates")[0] == 0
+    code, out, _ = run(program, os.path.join(work, "templates"), "FillCavity_Def", "out/Case", "-log-json")
+    fills = [event for event in map(json.loads, out.splitlines()) if event["event"] == "fill"]
+    assert code == 0 and fills, out
+    for fill in fills:
+        assert 0 < fill["litres"] <= fill["cavity_litres"] * (1 + 1e-9) and fill["line"] > 0, fill
+        assert fill["litres"] / fill["nodes"] - fill["cavity_litres"] / fill["cavity_nodes"] < 1e-9, fill
+        assert isinstance(fill["level"], float) and "open_at" in fill, fill
 
     code, out, _ = run(program, work, "missing_Def", "none/Case", "--log-json")
     events = [json.loads(line) for line in out.splitlines()]

@@ -732,8 +732,10 @@ TEST(FppgStopped, LeavesNoTemporaryFileAndTheOldOnes)
     for (const int signal : {SIGINT, SIGTERM})
     {
         const RunResult result = stopped(folder, signal, is_writing);
-        EXPECT_EQ(result.code, 130) << result.output;
-        EXPECT_TRUE(contains(result.output, "Stopped by the user; no output file was changed"))
+        EXPECT_EQ(result.code, 128 + signal) << result.output;
+        EXPECT_TRUE(contains(result.output, signal == SIGINT
+                                                ? "Stopped by the user; no output file was changed"
+                                                : "Stopped by SIGTERM; no output file was changed"))
             << result.output;
         EXPECT_EQ(contents(folder / "out") == before, true);
         EXPECT_EQ(temporary_files(folder.path()), std::vector<std::string>());

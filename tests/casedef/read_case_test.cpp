@@ -936,13 +936,25 @@ TEST(Runlist, RunsAListAsOftenAsItSays)
     EXPECT_EQ(shape_as<PointsOp>(def.ops[2])->points[0].x, 2);
 }
 
-TEST(Runlist, StopsAtSomeNumberOfCallsEvenOfAnEmptyList)
+TEST(Runlist, RefusesTooManyCallsEvenOfAnEmptyList)
 {
     CaseText text;
     text.lists =
         R"(<list name="A"><runlist name="B" times="1000000000" /></list><list name="B" printcall="false" />)";
     text.mainlist = R"(<runlist name="A" times="1000000000" />)";
-    EXPECT_NE(error_of(text).find("commands were run"), std::string::npos);
+    EXPECT_NE(
+        error_of(text).find("<runlist>: 1e+18 commands or more would be run, expected at most "
+                            "10000000"),
+        std::string::npos);
+}
+
+TEST(Runlist, StopsAtSomeNumberOfCallsUnderAConditionOrByAVariable)
+{
+    CaseText text;
+    text.lists =
+        R"(<list name="A"><runlist name="B" times="#1000*1000" /></list><list name="B" printcall="false" />)";
+    text.mainlist = R"(<runlist name="A" times="1000000" />)";
+    EXPECT_NE(error_of(text).find(" commands or more would be run"), std::string::npos);
 }
 
 TEST(Printf, FillsInVariables)

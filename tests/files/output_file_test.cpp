@@ -1,5 +1,5 @@
+#include "core/temporary_files.h"
 #include "files/helpers.h"
-#include "files/output_file_registry.h"
 #include "fppg/error.h"
 
 #include <sys/resource.h>

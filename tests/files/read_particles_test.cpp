@@ -251,11 +251,23 @@ TEST(ReadParticles, NamesAnIdThatNoBlockHolds)
     const TestFolder folder;
     write_case(folder, "Case", small_particles());
     std::string xml = read_whole(folder / "Case.xml");
+    const std::size_t place = xml.find("begin=\"", xml.rfind("<floating"));
+    ASSERT_NE(place, std::string::npos);
+    save(folder / "Case.xml", xml.insert(place + 7, "9"));
+    EXPECT_THAT([&] { read_particles(folder / "Case", false, 1); },
+                ThrowsMessage<CaseError>(HasSubstr("no block of <particles> holds the id ")));
+}
+
+TEST(ReadParticles, RefusesACaseOfOtherCounts)
+{
+    const TestFolder folder;
+    write_case(folder, "Case", small_particles());
+    std::string xml = read_whole(folder / "Case.xml");
     const std::size_t place = xml.find("count=\"4\"", xml.rfind("<floating"));
     ASSERT_NE(place, std::string::npos);
     save(folder / "Case.xml", xml.replace(place, 9, "count=\"2\""));
     EXPECT_THAT([&] { read_particles(folder / "Case", false, 1); },
-                ThrowsMessage<CaseError>(HasSubstr("no block of <particles> holds the id 7")));
+                ThrowsMessage<IoError>(HasSubstr("are not of one run: ")));
 }
 
 TEST(ReadParticles, RefusesAsciiVtkAndVtkWithoutMk)
