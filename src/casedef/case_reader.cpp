@@ -8,6 +8,7 @@
 #include "casedef/fit_block.h"
 #include "casedef/floatings.h"
 #include "casedef/initials.h"
+#include "casedef/known_names.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
 #include "casedef/patterns.h"
@@ -115,6 +116,8 @@ public:
                                            text != nullptr ? *text : ""});
         }
         def_.variables_log = variables_.describe_all();
+        for (std::string& warning : unknown_names(root, def_.file))
+            def_.warnings.push_back(std::move(warning));
         return std::move(def_);
     }
 
