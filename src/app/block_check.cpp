@@ -90,8 +90,9 @@ public:
         cell_ =
             def.grid.dp * std::max(1.0, std::ceil(std::sqrt((size[a_] / def.grid.dp + 3) *
                                                             (size[b_] / def.grid.dp + 3) / 1e7)));
-        na_ = static_cast<std::size_t>(size[a_] / cell_) + 3;
-        nb_ = static_cast<std::size_t>(size[b_] / cell_) + 3;
+        // With an empty column at each end.
+        na_ = static_cast<std::size_t>(size[a_] / cell_) + 4;
+        nb_ = static_cast<std::size_t>(size[b_] / cell_) + 4;
         lowest_.assign(na_ * nb_, std::numeric_limits<double>::infinity());
         for (const ParticleBlock& block : particles.blocks)
             if (block.type != ParticleType::Fluid)
@@ -110,9 +111,9 @@ public:
             if (run.count == 0) continue;
             if (axis_ == 2 && !run.is_off_lattice)
             {
-                const Vec3 first = place_in_run(particles_, block, run, 0);
-                const Vec3 last = place_in_run(particles_, block, run, run.count - 1);
-                f(height(first) < height(last) ? first : last, std::uint64_t{run.count});
+                const bool is_last = block.run_descending == (up_ > 0);
+                f(place_in_run(particles_, block, run, is_last ? run.count - 1 : 0),
+                  std::uint64_t{run.count});
                 continue;
             }
             for (std::uint32_t k = 0; k < run.count; ++k)
@@ -132,16 +133,19 @@ private:
     }
     double& at(const Vec3& p) { return lowest_[index(p)]; }
 
-    /// Each column takes the lowest of those around it.
+    /// Each column takes the lowest of those around it, first along one axis, then the other.
     void widen()
     {
-        std::vector<double> wide = lowest_;
-        for (std::size_t i = 0; i < na_; ++i)
-            for (std::size_t j = 0; j < nb_; ++j)
-                for (std::size_t k = i - (i > 0); k <= std::min(i + 1, na_ - 1); ++k)
-                    for (std::size_t l = j - (j > 0); l <= std::min(j + 1, nb_ - 1); ++l)
-                        wide[i * nb_ + j] = std::min(wide[i * nb_ + j], lowest_[k * nb_ + l]);
-        lowest_ = std::move(wide);
+        const std::vector<double> own = lowest_;
+        for (std::size_t i = nb_; i + nb_ < own.size(); ++i)
+            lowest_[i] = std::min({own[i - nb_], own[i], own[i + nb_]});
+        double before = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i + 1 < lowest_.size(); ++i)
+        {
+            const double here = lowest_[i];
+            lowest_[i] = std::min({before, here, lowest_[i + 1]});
+            before = here;
+        }
     }
 
     const CaseParticles& particles_;

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <string_view>
+#include <utility>
 
 namespace fppg
 {
@@ -268,27 +268,30 @@ constexpr auto sections = std::to_array<NameRow>({
 
 using Names = std::vector<std::string_view>;
 
-/// By "name" or "parent/name".
-const std::map<std::string_view, Names>& names_by_element()
+/// The names that stand in an element, "name" or "parent/name"; null: there is none of them.
+const std::string_view* find_names(std::string_view element)
 {
-    static const std::map<std::string_view, Names> all = []
+    using Entry = std::pair<std::string_view, const NameRow*>;
+    static const std::vector<Entry> all = []
     {
-        std::map<std::string_view, Names> out;
+        std::vector<Entry> out;
         for (const NameRow& row : table)
-            for (const std::string_view element : split(row.elements, ' '))
-                out[element] = row.names.empty() ? Names{} : split(row.names, ' ');
+            for (const std::string_view name : split(row.elements, ' '))
+                out.emplace_back(name, &row);
+        std::sort(out.begin(), out.end());
         return out;
     }();
-    return all;
+    const auto found =
+        std::lower_bound(all.begin(), all.end(), element,
+                         [](const Entry& e, std::string_view wanted) { return e.first < wanted; });
+    return found == all.end() || found->first != element ? nullptr : &found->second->names;
 }
 
 /// Null: the element is not known, so that it is for others to judge.
-const Names* names_of(const std::string& parent, const std::string& name)
+const std::string_view* names_of(const std::string& parent, const std::string& name)
 {
-    const auto& all = names_by_element();
-    auto found = all.find(parent + '/' + name);
-    if (found == all.end()) found = all.find(name);
-    return found == all.end() ? nullptr : &found->second;
+    const std::string_view* there = find_names(parent + '/' + name);
+    return there != nullptr ? there : find_names(name);
 }
 
 /// DesignSPHysics and examples of DualSPHysics name draws by objname, and mks by name.
@@ -301,9 +304,11 @@ bool is_remark(const std::string& element, std::string_view attribute)
            (attribute.find(':') != std::string_view::npos && !attribute.starts_with("fppg:"));
 }
 
-void look_at_attributes(const Element& e, Names known, const std::string& file,
+void look_at_attributes(const Element& e, std::string_view names, const std::string& file,
                         std::vector<std::string>& out)
 {
+    if (e.attributes.empty()) return;
+    Names known = names.empty() ? Names{} : split(names, ' ');
     if (e.name.starts_with("draw")) known.push_back("fppg:name");
     if (e.name.starts_with("drawfile")) known.push_back("fppg:fill");
     for (const Element::Attribute& a : e.attributes)
@@ -335,8 +340,8 @@ void look_at_section(const Element& e, const std::string& file, std::vector<std:
 void look_at(const Element& e, const std::string& parent, const std::string& file,
              std::vector<std::string>& out)
 {
-    const Names* known = names_of(parent, e.name);
-    const bool may_be_any = known != nullptr && !known->empty() && known->front() == "*";
+    const std::string_view* known = names_of(parent, e.name);
+    const bool may_be_any = known != nullptr && known->starts_with('*');
     if (known != nullptr && !may_be_any) look_at_attributes(e, *known, file, out);
     look_at_section(e, file, out);
     // What stands in them is for the solver or belongs to nobody.
