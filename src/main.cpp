@@ -44,6 +44,7 @@ int main(int argc, char** argv)
         if (!arguments.empty())
             if (const fppg::Subcommand run = fppg::find_subcommand(arguments.front()))
                 return run({arguments.begin() + 1, arguments.end()});
+        if (!arguments.empty()) fppg::refuse_mistyped_subcommand(arguments.front());
         return fppg::run_drop_in(fppg::parse_command_line(arguments));
     }
     catch (const fppg::Error& error)

@@ -176,12 +176,15 @@ bool is_open_along(const Element& e, char axis)
 std::string lines_of(const CaseDef& def, std::uint16_t mk, SourceRef& first)
 {
     std::set<int> lines;
+    const auto add = [&](const SourceRef& source)
+    {
+        if (lines.empty()) first = source;
+        lines.insert(source.line);
+    };
     for (const DrawOp& op : def.ops)
-        if (op.state != nullptr && op.state->mk.mk == mk && op.state->draw_points)
-        {
-            if (lines.empty()) first = op.source;
-            lines.insert(op.source.line);
-        }
+        if (op.state != nullptr && op.state->mk.mk == mk && op.state->draw_points) add(op.source);
+    for (const PointFile& file : def.point_files)
+        if (file.mk.mk == mk) add(file.source);
     return lines.size() < 2 ? "" : fmt::format(" (drawn on the lines {})", fmt::join(lines, ", "));
 }
 
@@ -277,8 +280,7 @@ std::vector<std::string> check_floor(const CaseDef& def, const CaseParticles& pa
         out.push_back(fmt::format(
             "{}:{}: <{}>: {} of {} particles of mkfluid {}{} have no wall below them ({} m), so "
             "gravity takes them out of the domain; expected walls under all of the fluid",
-            def.file, first.line, first.command.empty() ? "mainlist" : first.command, lost,
-            block.count, block.mk_type, lines, where));
+            def.file, first.line, first.command, lost, block.count, block.mk_type, lines, where));
     }
     return out;
 }

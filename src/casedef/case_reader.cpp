@@ -292,12 +292,10 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c))
                 continue;
-            static const std::set<std::string> known{"newvarcte", "newvarstrcte", "newvar",
-                                                     "newvarstr", "setvar",       "setvarstr"};
-            if (!known.contains(c.name))
-                read_.fail(c,
-                           "is not known in <predefinition>, expected newvarcte, newvarstrcte, "
-                           "newvar, newvarstr, setvar or setvarstr");
+            static const std::vector<std::string_view> known{
+                "newvarcte", "newvarstrcte", "newvar", "newvarstr", "setvar", "setvarstr"};
+            if (std::find(known.begin(), known.end(), c.name) == known.end())
+                read_.fail_unknown_element(c, "predefinition", known);
             commands_.run(c, def_.list_log);
         }
     }

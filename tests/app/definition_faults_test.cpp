@@ -215,6 +215,88 @@ CaseText united_boxes(const std::string& after_geometry)
     return text;
 }
 
+/// The case fails with these words.
+void expect_error(const CaseText& text, const std::string& words)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "part.stl", "");
+    write_text(folder / "wheel.stl", "");
+    const RunResult result = run(folder, text);
+    EXPECT_NE(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, words)) << result.output << "\nexpected: " << words;
+}
+
+void expect_error_of_command(const std::string& command, const std::string& words)
+{
+    CaseText text = tank();
+    text.mainlist += command;
+    expect_error(text, words);
+}
+
+TEST(DidYouMean, NamesTheNearestCommandElementAndAttribute)
+{
+    expect_error_of_command("<drawbx />", "<drawbx>: is not a command (did you mean drawbox?)");
+    expect_error_of_command("<drawfilestll />", "(did you mean drawfilestl?)");
+    expect_error_of_command(R"(<drawfilestl fiel="part.stl" />)",
+                            "attribute 'file' is missing; it has fiel, did you mean file?");
+    expect_error_of_command(R"(<drawbox><boxfil>solid</boxfil></drawbox>)",
+                            "<boxfil>: <drawbox> has no such element (did you mean boxfill?), "
+                            "expected boxfill, endpoint, layers, point, size");
+    expect_error_of_command(R"(<runlist name="wals" />)", "there is no list named 'wals'");
+    expect_error(tank_with_body(R"(<motion><objreel ref="5" /></motion>)"),
+                 "<objreel>: is not known in <motion> (did you mean objreal?), expected objreal, "
+                 "obj, begin, wait, ");
+    expect_error(tank_with_body(R"(<initials><velocty mkfluid="0" /></initials>)"),
+                 "(did you mean velocity?)");
+    expect_error(tank_with_body(R"(<fppg><bodyfited mkbound="0" /></fppg>)"),
+                 "(did you mean bodyfitted?)");
+}
+
+TEST(DidYouMean, NamesTheMeshFilesThatLieThere)
+{
+    expect_error_of_command(R"(<drawfilestl file="weel.stl" />)",
+                            "lie part.stl, wheel.stl (did you mean wheel.stl?)");
+    expect_error_of_command(R"(<drawfilestl file="parts/wheel.stl" />)",
+                            "there is no folder parts");
+}
+
+TEST(DidYouMean, NamesTheDefinitionAndTheSubcommand)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Tank_Def.xml", tank().text());
+    const auto output_of = [&](const std::vector<std::string>& arguments)
+    { return Process(FPPG_PROGRAM, arguments, folder.path().string()).wait().output; };
+    EXPECT_TRUE(contains(output_of({"Tnak_Def", "out"}), "(did you mean Tank_Def.xml?)"))
+        << output_of({"Tnak_Def", "out"});
+    EXPECT_TRUE(contains(output_of({"inpsect", "part.stl"}),
+                         "\"inpsect\" is no subcommand (did you mean inspect?)"))
+        << output_of({"inpsect", "part.stl"});
+    EXPECT_TRUE(contains(output_of({"Tank_Def.xml", "out"}), "code=0"))
+        << output_of({"Tank_Def.xml", "out"});
+}
+
+TEST(Tags, ThatAreNotClosedAreNamedWithTheirLine)
+{
+    CaseText text = tank();
+    text.mainlist = "<setmkbound mk=\"0\">\n" + text.mainlist;
+    expect_error(text,
+                 "Case_Def.xml:7: this is not well-formed XML: <setmkbound> is opened here "
+                 "and is not closed before </mainlist> of line 9");
+    text = tank();
+    text.mainlist += "</drawbox>";
+    expect_error(text,
+                 "Case_Def.xml:7: this is not well-formed XML: </drawbox> closes nothing; the "
+                 "tag that is open is <mainlist> of line 6, expected </mainlist>");
+    text = tank();
+    text.mainlist += "<!-- no end";
+    expect_error(text,
+                 "Case_Def.xml:7: this is not well-formed XML: the comment that is opened "
+                 "here has no end -->");
+    text = tank();
+    text.mainlist += "<drawbox mk=\"1 >";
+    expect_error(text, "this is not well-formed XML: the tag <");
+}
+
 TEST(Union, OfAFixedAndAMovingPartIsTold)
 {
     expect_warning(united_boxes(motion_of(1)),
