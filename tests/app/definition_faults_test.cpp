@@ -275,6 +275,34 @@ TEST(DidYouMean, NamesTheDefinitionAndTheSubcommand)
         << output_of({"Tank_Def.xml", "out"});
 }
 
+TEST(Subcommands, HaveHelpInWords)
+{
+    const TemporaryFolder folder;
+    for (const char* name :
+         {"batch", "compare", "inspect", "leak", "render", "report", "templates", "upgrade"})
+    {
+        const std::string help =
+            Process(FPPG_PROGRAM, {name, "--help"}, folder.path().string()).wait().output;
+        EXPECT_TRUE(contains(help, "Usage: fppg " + std::string(name))) << help;
+        for (const char* jargon :
+             {"(1x)", "UINT", "INT in", "FLOAT", "REQUIRED", "Excludes", ":TEXT"})
+            EXPECT_FALSE(contains(help, jargon)) << name << " has " << jargon << '\n' << help;
+    }
+}
+
+TEST(Subcommands, SayWhatAnOptionExpects)
+{
+    const TemporaryFolder folder;
+    const auto output_of = [&](const std::vector<std::string>& arguments)
+    { return Process(FPPG_PROGRAM, arguments, folder.path().string()).wait().output; };
+    EXPECT_TRUE(contains(output_of({"inspect", "a.stl", "--dp", "-1"}),
+                         "--dp: \"-1\" is invalid, expected above 0"))
+        << output_of({"inspect", "a.stl", "--dp", "-1"});
+    EXPECT_TRUE(contains(output_of({"compare", "a", "b", "--quite"}), "(did you mean --quiet?)"));
+    EXPECT_TRUE(contains(output_of({"compare", "a", "b", "--threads", "5000"}),
+                         "\"5000\" is invalid, expected 0 to 4096"));
+}
+
 TEST(Tags, ThatAreNotClosedAreNamedWithTheirLine)
 {
     CaseText text = tank();
