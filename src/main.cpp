@@ -56,8 +56,11 @@ void open_missing_streams()
 int run(const std::vector<std::string>& arguments)
 {
     if (!arguments.empty())
+    {
         if (const fppg::Subcommand command = fppg::find_subcommand(arguments.front()))
             return command({arguments.begin() + 1, arguments.end()});
+        fppg::refuse_mistyped_subcommand(arguments.front());
+    }
     return fppg::run_drop_in(fppg::parse_command_line(arguments));
 }
 

@@ -5,6 +5,7 @@
 #include "fppg/read_shapes.h"
 #include "fppg/relax_walls.h"
 
+#include "app/block_check.h"
 #include "app/fit_check.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -47,6 +48,24 @@ LatticeProgress draw_progress()
         StageBar::show(static_cast<double>(done) / static_cast<double>(all),
                        fmt::format("{} of {}", done, all));
     };
+}
+
+/// Checks for what GenCase accepts in silence. What no zone of a case with `<vres>` has is told
+/// with the last one.
+void check_blocks(CaseRunState& run, const MadeCase& made)
+{
+    const CaseDef& def = made.def;
+    for (const ParticleBlock& block : made.particles.blocks)
+        if (block.count > 0) run.mks.insert(block.mk);
+    const auto tell = [&](std::vector<std::string> found)
+    {
+        for (std::string& w : found) run.diagnose(std::move(w));
+    };
+    tell(check_motion(def, made.particles));
+    tell(check_floor(def, made.particles));
+    if (def.vres.is_active() && def.zone + 1 < def.vres.zones.size()) return;
+    tell(check_mks(def, run.mks));
+    tell(check_unions(def));
 }
 
 /// The polygons that norgeometry asks for: those of a shape file of this run, or of a file that
@@ -158,8 +177,8 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   log_floatings(floatings, run.log);
                   for (const std::string& w : floatings.warnings) run.warn(w);
                   for (std::string& w : warnings) run.warn(std::move(w));
-                  for (std::string& w : check_motion(made.def, made.particles))
-                      run.diagnose(std::move(w));
+                  for (const std::string& w : floatings.light_or_heavy) run.diagnose(w);
+                  check_blocks(run, made);
               });
     if (run.options.strict && !run.diagnostics.empty())
         throw CaseError(

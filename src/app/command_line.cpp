@@ -1,11 +1,14 @@
 #include "app/command_line.h"
 
+#include "core/nearest_word.h"
 #include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/version.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -69,6 +72,91 @@ FitChoice fit_choice_of(const std::string& value, bool has_value)
         fmt::format("-fit: \"{}\" is invalid, expected -fit, -fit:raw or -fit:off", value));
 }
 
+/// An option of a run and what may stand behind it.
+struct OptionForm
+{
+    enum class Value
+    {
+        None,
+        Optional, ///< one of a few words
+        Needed,
+    };
+    std::string_view name;
+    Value value = Value::None;
+    std::string_view example{}; ///< of a value
+};
+
+constexpr std::array<OptionForm, 18> option_forms{{
+    {"h"},
+    {"help"},
+    {"ver"},
+    {"version"},
+    {"info"},
+    {"templates"},
+    {"overwrite"},
+    {"clean"},
+    {"strict"},
+    {"quiet"},
+    {"log-json"},
+    {"fit", OptionForm::Value::Optional, "raw"},
+    {"dp", OptionForm::Value::Needed, "0.01"},
+    {"evars", OptionForm::Value::Needed, "A=1"},
+    {"threads", OptionForm::Value::Needed, "4"},
+    {"save", OptionForm::Value::Needed, "all"},
+    {"save3vtk", OptionForm::Value::Needed, "1"},
+    {"createdirs", OptionForm::Value::Needed, "1"},
+}};
+
+const OptionForm* form_of(std::string_view name)
+{
+    const auto* form = std::find_if(option_forms.begin(), option_forms.end(),
+                                    [&](const OptionForm& f) { return f.name == name; });
+    return form == option_forms.end() ? nullptr : form;
+}
+
+/// Arguments such as `--dp 0.01`, `--dp=0.01` and `--fit raw` in GenCase's form, `-dp:0.01`.
+std::vector<std::string> in_gencase_form(const std::vector<std::string>& arguments)
+{
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+    {
+        const std::string& a = arguments[i];
+        const std::size_t equals = a.find_first_of("=:");
+        const bool is_long = a.starts_with("--");
+        const bool has_next = i + 1 < arguments.size();
+        const std::size_t begin = is_long ? 2 : 1;
+        const OptionForm* form = a.size() > begin && a[0] == '-'
+                                     ? form_of(a.substr(begin, is_long ? equals - begin : a.size()))
+                                     : nullptr;
+        if (form == nullptr || (!is_long && form->value != OptionForm::Value::Needed))
+            out.push_back(a);
+        else if (is_long && equals != std::string::npos)
+            out.push_back(fmt::format("-{}:{}", form->name, a.substr(equals + 1)));
+        else if (!is_long || (form->value == OptionForm::Value::Needed && !has_next))
+            throw UsageError(fmt::format("{} needs a value: -{}:{} or --{} {}", a, form->name,
+                                         has_next ? arguments[i + 1] : std::string(form->example),
+                                         form->name,
+                                         has_next ? arguments[i + 1] : std::string(form->example)));
+        else if (form->value == OptionForm::Value::Needed ||
+                 (form->value == OptionForm::Value::Optional && has_next &&
+                  (arguments[i + 1] == "raw" || arguments[i + 1] == "off")))
+            out.push_back(fmt::format("-{}:{}", form->name, arguments[++i]));
+        else
+            out.push_back(fmt::format(
+                "{}{}", form->name == "help" || form->name == "version" ? "--" : "-", form->name));
+    }
+    return out;
+}
+
+/// " (did you mean -strict?)"
+std::string nearest_option(std::string_view name)
+{
+    std::vector<std::string_view> names;
+    for (const OptionForm& form : option_forms) names.push_back(form.name);
+    const std::string_view nearest = nearest_word(trimmed(name, "-"), names);
+    return nearest.empty() ? std::string() : fmt::format(" (did you mean -{}?)", nearest);
+}
+
 void read_option(const std::string& argument, DropInOptions& options)
 {
     const std::size_t colon = argument.find(':');
@@ -129,8 +217,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     else if (name == "-debug")
         options.debug = number_of<int>(name, value, "a debug level");
     else
-        throw UsageError(
-            fmt::format("the option {} is unknown; {} lists all options", argument, "fppg --help"));
+        throw UsageError(fmt::format("the option {} is unknown{}; {} lists all options", argument,
+                                     nearest_option(name), "fppg --help"));
 }
 
 std::string file_name(const std::string& path)
@@ -145,7 +233,7 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
 {
     DropInOptions options;
     std::vector<std::string> names;
-    for (const std::string& a : arguments)
+    for (const std::string& a : in_gencase_form(arguments))
     {
         if (a.size() > 1 && a[0] == '-')
             read_option(a, options);
@@ -170,7 +258,9 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
         throw UsageError(fmt::format(
             "\"{}\" is one name too many, expected a definition and an output name", names[2]));
     options.input = names[0];
-    options.output = names.back();
+    // GenCase wants the name without its ending; with it the same file is meant.
+    if (options.input.ends_with(".xml")) options.input.resize(options.input.size() - 4);
+    options.output = names.size() == 1 ? options.input : names[1];
     const std::size_t star = options.output.find('*');
     if (names.size() == 2 && star != std::string::npos)
         options.output.replace(star, 1, file_name(options.input));
@@ -209,12 +299,14 @@ std::string help_text()
         "  fppg upgrade DEFINITION              old definitions in the forms of v5.4\n"
         "  fppg templates FOLDER                writes case templates and the schema of cases\n"
         "\n"
-        "Both names are given without extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "
+        "Names need no extension: DEFINITION.xml is read; OUTPUT.xml, OUTPUT.bi4, "
         "OUTPUT.out and\n"
         "pictures OUTPUT_*.vtk are written. Called as GenCase_linux64 it behaves the same.\n"
         "\n"
-        "Options (GenCase's own, but for -fit, -strict, -quiet, -log-json, vtkfeatures and "
-        "-overwrite):\n"
+        "Options, each as -name:value or --name value (GenCase's own, but for -fit, -strict, "
+        "-quiet, "
+        "-log-json,\n"
+        "vtkfeatures and -overwrite):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -fit                   body-fitted walls: every boundary mk gets its particles on its "

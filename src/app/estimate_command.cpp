@@ -36,8 +36,6 @@ int run_estimate(const std::vector<std::string>& arguments)
     DropInOptions run = parse_command_line(of_run);
     if (run.action != DropInOptions::Action::Run || run.input != run.output)
         throw UsageError("expected the name of one case definition; see fppg estimate --help");
-    if (run.input.ends_with(".xml")) run.input.resize(run.input.size() - 4);
-    run.output = run.input;
     EstimateOptions options;
     options.case_options = case_options(run);
     options.threads = run.threads > 0 ? run.threads : default_threads();

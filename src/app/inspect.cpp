@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,8 @@ constexpr double most_line_particles = 1e7;
 /// Beyond this, particles on the surface are not placed: it would take longer than a few seconds.
 constexpr double most_fitted_particles = 2e6;
 constexpr std::size_t thickness_samples = 20000;
+/// From here on a dp is more likely a mistake than meant.
+constexpr double questionable_particles = 1e10;
 
 struct UnitGuess
 {
@@ -67,7 +70,7 @@ void describe_features(const SurfaceMesh& mesh, Inspection& found)
             found.shortest_line > 0 ? std::min(found.shortest_line, line.length) : line.length;
         found.short_lines += static_cast<std::size_t>(line.length < options.dp);
     }
-    if (!(options.dp > 0)) return;
+    if (!(options.dp > 0) || !found.question.empty()) return;
     if (found.line_length > most_line_particles * options.dp)
     {
         found.corner_particles = static_cast<double>(found.singular_points);
@@ -166,9 +169,61 @@ std::string whole(double count)
     return count < 1e15 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
-std::string place(const Vec3& p)
+/// Formats lengths of a file, areas and volumes, each with its unit; what is rounding beside the
+/// size of the mesh is 0.
+class Lengths
 {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+public:
+    explicit Lengths(const Inspection& found)
+        : unit_(found.unit),
+          size_(norm(found.report.bounds.max - found.report.bounds.min) +
+                norm(found.report.bounds.min))
+    {
+    }
+
+    std::string length(double v) const { return fmt::format("{:.6g} {}", clean(v, 1), unit_); }
+    std::string area(double v) const { return fmt::format("{:.6g} {}^2", clean(v, 2), unit_); }
+    std::string volume(double v) const { return fmt::format("{:.6g} {}^3", clean(v, 3), unit_); }
+    std::string place(const Vec3& p) const { return triple(p, ", ", "(", ")"); }
+    std::string size(const Vec3& p) const { return triple(p, " x ", "", ""); }
+
+private:
+    double clean(double v, int power) const
+    {
+        return std::abs(v) <= 1e-12 * std::pow(size_, power) ? 0 : v;
+    }
+    std::string triple(const Vec3& p, const char* between, const char* before,
+                       const char* behind) const
+    {
+        return fmt::format("{}{:.6g}{}{:.6g}{}{:.6g}{} {}", before, clean(p.x, 1), between,
+                           clean(p.y, 1), between, clean(p.z, 1), behind, unit_);
+    }
+
+    std::string unit_;
+    double size_;
+};
+
+/// " (0.0012 m^3)" of what is measured in another unit; power 1 to 3.
+std::string in_metres(const Inspection& found, double value, int power)
+{
+    if (found.unit == "m") return "";
+    return fmt::format(" ({:.6g} m{})", value * std::pow(metres_of_unit(found.unit), power),
+                       power == 1 ? "" : fmt::format("^{}", power));
+}
+
+/// What to ask of a dp that makes more particles than a computer holds.
+std::string question_of(const Inspection& found)
+{
+    const double dp = found.options.dp;
+    const double most = std::max(found.surface_particles, found.volume_particles);
+    if (most < questionable_particles) return "";
+    const bool is_volume = found.volume_particles >= found.surface_particles;
+    const double least = dp * std::pow(most / 1e8, is_volume ? 1.0 / 3 : 0.5);
+    return fmt::format(
+        "dp {:g} {} makes {} particles in {}, so none was placed: is dp in the unit "
+        "of the file ({})? From dp = {:.2g} {} on it is less than a hundred million",
+        dp, found.unit, whole(most), is_volume ? "the volume" : "the surface", found.unit, least,
+        found.unit);
 }
 
 Json as_json(const Vec3& p)
@@ -218,16 +273,17 @@ Inspection inspect_mesh(const InspectOptions& options)
                 found.open_edges.push_back(
                     {mesh.vertices[mesh.edges[e][0]], mesh.vertices[mesh.edges[e][1]]});
         const UnitGuess guess = guess_unit(found.report.bounds, options.dp);
-        found.unit = guess.unit;
-        found.unit_reason = guess.reason;
-        describe_features(mesh, found);
+        found.unit = options.unit.empty() ? guess.unit : options.unit;
+        found.unit_reason = options.unit.empty() ? guess.reason : "";
         if (options.dp > 0)
         {
             found.surface_particles = found.report.area / (options.dp * options.dp);
             found.volume_particles =
                 std::abs(found.report.volume) / (options.dp * options.dp * options.dp);
-            find_thin_places(mesh, found);
+            found.question = question_of(found);
         }
+        describe_features(mesh, found);
+        if (options.dp > 0 && found.question.empty()) find_thin_places(mesh, found);
     }
     catch (const GeometryError& error)
     {
@@ -236,14 +292,59 @@ Inspection inspect_mesh(const InspectOptions& options)
     return found;
 }
 
+double metres_of_unit(std::string_view unit)
+{
+    return unit == "m" ? 1 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : unit == "in" ? 0.0254 : 0;
+}
+
+namespace
+{
+
+using Line = std::function<void(const char*, const std::string&)>;
+
+void write_particles(const Inspection& found, const Lengths& in, const Line& line)
+{
+    const MeshReport& report = found.report;
+    line("With dp", in.length(found.options.dp) + in_metres(found, found.options.dp, 1));
+    line("  on the surface",
+         fmt::format("{} particles (area / dp^2)", whole(found.surface_particles)));
+    if (found.question.empty())
+        line("  on lines", fmt::format("{} particles, and {} on corners",
+                                       whole(found.line_particles), whole(found.corner_particles)));
+    if (found.fitted_particles)
+        line("  with -fit",
+             fmt::format("{} particles on the surface besides those on lines and corners",
+                         *found.fitted_particles));
+    if (!report.is_watertight)
+        line("",
+             "not watertight: what -fit takes for its inside is a guess, an open sheet has "
+             "none");
+    line("  in the volume",
+         fmt::format("{} particles (volume / dp^3)", whole(found.volume_particles)));
+    if (!found.question.empty()) return;
+    line("  short lines", fmt::format("{} shorter than dp", found.short_lines));
+    line("  thin places",
+         found.thinnest > 0 || found.thin_share > 0
+             ? fmt::format("{:.2g} % of the area is thinner than dp, the least {} near {}",
+                           100 * found.thin_share, in.length(found.thinnest),
+                           in.place(found.thinnest_at))
+             : "none found");
+}
+
+} // namespace
+
 std::string to_text(const Inspection& found)
 {
     const MeshReport& report = found.report;
-    const Vec3 extent = report.bounds.max - report.bounds.min;
+    const Lengths in(found);
     std::string text;
-    const auto line = [&text](const char* name, const std::string& value)
+    const Line line = [&text](const char* name, const std::string& value)
     { text += fmt::format("{:<18}{}\n", name, value); };
+    if (!found.question.empty()) line("Question", found.question);
     line("File", fmt::format("{} ({})", found.options.path, found.format));
+    line("Unit", found.unit_reason.empty() ? found.unit
+                                           : fmt::format("probably {} (--unit says which). {}",
+                                                         found.unit, found.unit_reason));
     line("Facets", found.facets == report.facets_read
                        ? fmt::format("{}", found.facets)
                        : fmt::format("{} of {} read", found.facets, report.facets_read));
@@ -253,48 +354,24 @@ std::string to_text(const Inspection& found)
     line("Shells", fmt::format("{}", report.shells));
     line("Watertight", report.is_watertight ? "yes" : "no");
     for (const auto& [a, b] : found.open_edges)
-        line("  open edge", fmt::format("{} to {}", place(a), place(b)));
+        line("  open edge", fmt::format("{} to {}", in.place(a), in.place(b)));
     if (report.open_edges > found.open_edges.size())
         line("", fmt::format("and {} more", report.open_edges - found.open_edges.size()));
     line("Bounding box",
-         fmt::format("{} to {}", place(report.bounds.min), place(report.bounds.max)));
-    line("Size", fmt::format("{:.6g} x {:.6g} x {:.6g}", extent.x, extent.y, extent.z));
-    line("Unit", fmt::format("probably {}. {}", found.unit, found.unit_reason));
-    line("Volume", fmt::format("{:.6g}{}", report.volume,
-                               report.is_watertight ? "" : " (not watertight: a guess)"));
-    line("Area", fmt::format("{:.6g}", report.area));
+         fmt::format("{} to {}", in.place(report.bounds.min), in.place(report.bounds.max)));
+    line("Size", in.size(report.bounds.max - report.bounds.min));
+    line("Volume", in.volume(report.volume) + in_metres(found, report.volume, 3) +
+                       (report.is_watertight ? "" : " (not watertight: a guess)"));
+    line("Area", in.area(report.area) + in_metres(found, report.area, 2));
     line("Crossing facets", fmt::format("{} pairs", report.self_intersections));
     line("Feature lines",
-         fmt::format("{} ({} closed), {:.6g} long, at {:g} degrees", found.lines,
-                     found.closed_lines, found.line_length, found.options.angle_deg));
+         fmt::format("{} ({} closed), {} long, at {:g} degrees", found.lines, found.closed_lines,
+                     in.length(found.line_length), found.options.angle_deg));
     if (found.lines > 0)
-        line("", fmt::format("shortest {:.4g}, longest {:.4g}", found.shortest_line,
-                             found.longest_line));
+        line("", fmt::format("shortest {}, longest {}", in.length(found.shortest_line),
+                             in.length(found.longest_line)));
     line("Singular points", fmt::format("{}", found.singular_points));
-    if (found.options.dp > 0)
-    {
-        text += fmt::format("With dp {:g}, in the unit of the file:\n", found.options.dp);
-        line("  on the surface",
-             fmt::format("{} particles (area / dp^2)", whole(found.surface_particles)));
-        line("  on lines", fmt::format("{} particles, and {} on corners",
-                                       whole(found.line_particles), whole(found.corner_particles)));
-        if (found.fitted_particles)
-            line("  with -fit",
-                 fmt::format("{} particles on the surface besides those on lines and corners",
-                             *found.fitted_particles));
-        if (!report.is_watertight)
-            line("",
-                 "not watertight: what -fit takes for its inside is a guess, an open sheet has "
-                 "none");
-        line("  in the volume",
-             fmt::format("{} particles (volume / dp^3)", whole(found.volume_particles)));
-        line("  short lines", fmt::format("{} shorter than dp", found.short_lines));
-        line("  thin places",
-             found.thinnest > 0 || found.thin_share > 0
-                 ? fmt::format("{:.2g} % of the area is thinner than dp, the least {:.4g} near {}",
-                               100 * found.thin_share, found.thinnest, place(found.thinnest_at))
-                 : "none found");
-    }
+    if (found.options.dp > 0) write_particles(found, in, line);
     for (const std::string& warning : found.file_warnings) line("Warning", warning);
     for (const std::string& warning : report.warnings) line("Warning", warning);
     return text;
@@ -326,8 +403,9 @@ std::string to_json(const Inspection& found)
     json["flipped_facets"] = report.flipped_facets;
     json["self_intersections"] = report.self_intersections;
     json["bounds"] = {{"min", as_json(report.bounds.min)}, {"max", as_json(report.bounds.max)}};
-    json["unit_guess"] = found.unit;
-    json["unit_reason"] = found.unit_reason;
+    json[found.options.unit.empty() ? "unit_guess" : "unit"] = found.unit;
+    if (found.options.unit.empty()) json["unit_reason"] = found.unit_reason;
+    if (!found.question.empty()) json["question"] = found.question;
     json["volume"] = report.volume;
     json["area"] = report.area;
     json["features"] = {{"angle_deg", found.options.angle_deg},    {"lines", found.lines},

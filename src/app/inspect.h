@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fppg/surface_mesh.h"
@@ -10,12 +11,16 @@
 namespace fppg
 {
 
+/// Metres of a unit of InspectOptions; 0: there is no such unit.
+double metres_of_unit(std::string_view unit);
+
 /// What `fppg inspect` is asked. Lengths are in the unit of the file, which no format says.
 struct InspectOptions
 {
     std::string path;
     double dp = 0; ///< 0: nothing is said about particles and thin places
     double angle_deg = 30;
+    std::string unit{};       ///< of the file: "m", "cm", "mm" or "in"; empty: it is guessed
     double weld_distance = 0; ///< 0: corners with equal coordinates only
     int threads = 1;
 };
@@ -32,8 +37,10 @@ struct Inspection
     std::size_t facets = 0;
     std::size_t vertices = 0;
     std::vector<std::array<Vec3, 2>> open_edges; ///< the first few, by vertices
-    std::string unit;                            ///< a guess: "m" or "mm"
-    std::string unit_reason;                     ///< a whole sentence
+    std::string unit;                            ///< that of the options, or a guess: "m" or "mm"
+    std::string unit_reason;                     ///< of a guess: a whole sentence
+    /// A dp that makes so many particles that none was placed for a look: a whole sentence.
+    std::string question;
 
     std::size_t lines = 0;
     std::size_t closed_lines = 0;

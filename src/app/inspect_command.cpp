@@ -23,6 +23,8 @@ int run_inspect(const std::vector<std::string>& arguments)
     bool as_json = false;
     app.add_option("mesh", inspect.path, "a mesh file: " + mesh_format_list()).required();
     app.add_option("--dp", inspect.dp, "particle distance, in the unit of the file").positive();
+    app.add_option("--unit", inspect.unit, "what a length in the file is; it is guessed otherwise")
+        .one_of({"m", "cm", "mm", "in"});
     app.add_option("--angle", inspect.angle_deg, "feature angle, degrees")
         .range(0.0, 179.999)
         .shows_default();

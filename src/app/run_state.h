@@ -13,6 +13,8 @@
 #include "app/stopwatch.h"
 
 #include <array>
+#include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +31,7 @@ struct CaseRunState
     ResultFiles files;
     std::vector<std::string> warnings;
     std::vector<std::string> diagnostics; ///< those that -strict takes for errors
+    std::set<std::uint16_t> mks;          ///< absolute, with particles in any zone
 
     void warn(std::string text)
     {

@@ -22,7 +22,10 @@ struct Shape
     double volume = 0; ///< metres cubed, in 2D metres squared; 0: there is none
 };
 
-/// Compares the masses of fitted floating bodies with those of their shapes.
+/// Of the mass of a body on the lattice, whose particles stand for whole cells.
+constexpr double largest_on_lattice = 0.05;
+
+/// Compares the masses of floating bodies with those of their shapes.
 class MassCheck
 {
 public:
@@ -49,11 +52,14 @@ public:
     void note(const FloatingBody& body, const FloatingDef& f, const Shape& shape)
     {
         const ParticleBlock& block = particles_.blocks[body.block];
-        if (!f.rhop_body || f.mass_body || !(shape.volume > 0) || !is_fitted(block)) return;
+        if (!f.rhop_body || f.mass_body || !(shape.volume > 0)) return;
+        const bool on_lattice = !is_fitted(block);
         const double expected = *f.rhop_body * shape.volume;
         const double share = body.mass_body / expected - 1;
-        if (!is_off(share)) return;
-        (is_hollow(block.mk) ? hollow_ : cut_)
+        if (on_lattice ? std::abs(share) <= largest_on_lattice : !is_off(share)) return;
+        (on_lattice            ? on_lattice_
+         : is_hollow(block.mk) ? hollow_
+                               : cut_)
             .add(block.mk_type, share,
                  fmt::format("particles have {:.4g} kg at {:g} kg/m^3, while its {} has {:.4g} {} "
                              "and {:.4g} kg",
@@ -77,6 +83,17 @@ public:
         tell(hollow_, "as no draw fills them");
         tell(cut_, "as the domain, later draws or touching bodies cut them");
         return out;
+    }
+
+    /// Of bodies on the lattice.
+    std::vector<std::string> light_or_heavy() const
+    {
+        if (on_lattice_.is_empty()) return {};
+        return {
+            fmt::format("{}: floating bodies have another mass than their shapes, as they are "
+                        "hollow or only a few dp thick, {}; expected at most {:g} % off: "
+                        "<fppg><floatings exact=\"true\"> takes the mass of the shape.",
+                        def_.file, on_lattice_.text("mkbound"), 100 * largest_on_lattice)};
     }
 
 private:
@@ -108,6 +125,7 @@ private:
     const FittedWalls& walls_;
     DeviationGroup hollow_;
     DeviationGroup cut_;
+    DeviationGroup on_lattice_;
 };
 
 std::string text_of(const FloatingBody& body)
@@ -203,6 +221,7 @@ SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
             check.note(body, *f, {shape->shape, shape->volume});
     }
     out.warnings = check.warnings();
+    out.light_or_heavy = check.light_or_heavy();
     return out;
 }
 

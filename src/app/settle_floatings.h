@@ -31,6 +31,9 @@ struct SettledFloatings
     /// Bodies with fitted walls whose mass by their density is more than 2 % off that of their
     /// shape, as they are hollow or cut.
     std::vector<std::string> warnings;
+    /// Bodies on the lattice whose mass by their density is more than 5 % off that of their shape:
+    /// so GenCase gives them to the solver without a word.
+    std::vector<std::string> light_or_heavy;
 };
 
 /// Finds mass, centre and inertia of all floating bodies: of their particles, as they go into

@@ -1,12 +1,62 @@
 #include "app/subcommand_line.h"
 
+#include "core/finite_number.h"
+#include "core/nearest_word.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <functional>
+#include <optional>
+
 namespace fppg
 {
+
+namespace
+{
+
+/// A check of a number, which the help words as "(0 to 10)" behind what the option does.
+void check_number(CLI::Option& option, const std::function<bool(double)>& holds,
+                  const std::string& words)
+{
+    const auto fault = [holds, words](const std::string& text)
+    {
+        const std::optional<double> number = finite_number(text);
+        return number && holds(*number)
+                   ? std::string()
+                   : fmt::format("\"{}\" is invalid, expected {}", text, words);
+    };
+    option.check(CLI::Validator(fault, ""));
+    option.description(fmt::format("{} ({})", option.get_description(), words));
+}
+
+/// Help in words: `--threads N  ... (0 to 4096, default 0)`.
+class HelpText : public CLI::Formatter
+{
+    std::string make_option_usage(const CLI::Option* option) const override
+    {
+        const bool is_list = option->get_expected_max() > 1;
+        const std::string name = option->get_name(true) + (is_list ? "..." : "");
+        return option->get_required() ? name : "[" + name + "]";
+    }
+
+    std::string make_option_opts(const CLI::Option* option) const override
+    {
+        if (option->get_positional() || option->get_expected_max() == 0) return "";
+        const std::string type = option->get_type_name();
+        return type == "FLOAT" ? " NUMBER" : type == "INT" || type == "UINT" ? " N" : " TEXT";
+    }
+
+    std::string make_option_desc(const CLI::Option* option) const override
+    {
+        const std::string standard = option->get_default_str();
+        return option->get_description() +
+               (standard.empty() ? "" : fmt::format(" (default {})", standard));
+    }
+};
+
+} // namespace
 
 SubcommandOption& SubcommandOption::required()
 {
@@ -28,31 +78,39 @@ SubcommandOption& SubcommandOption::may_be_repeated()
 
 SubcommandOption& SubcommandOption::range(int least, int most)
 {
-    option_->check(CLI::Range(least, most));
+    check_number(
+        *option_, [=](double n) { return n >= least && n <= most; },
+        fmt::format("{} to {}", least, most));
     return *this;
 }
 
 SubcommandOption& SubcommandOption::range(double least, double most)
 {
-    option_->check(CLI::Range(least, most));
+    check_number(
+        *option_, [=](double n) { return n >= least && n <= most; },
+        fmt::format("{:g} to {:g}", least, most));
     return *this;
 }
 
 SubcommandOption& SubcommandOption::not_negative()
 {
-    option_->check(CLI::NonNegativeNumber);
+    check_number(
+        *option_, [](double n) { return n >= 0; }, "0 or more");
     return *this;
 }
 
 SubcommandOption& SubcommandOption::positive()
 {
-    option_->check(CLI::PositiveNumber);
+    check_number(
+        *option_, [](double n) { return n > 0; }, "above 0");
     return *this;
 }
 
 SubcommandOption& SubcommandOption::one_of(const std::vector<std::string>& words)
 {
-    option_->check(CLI::IsMember(words));
+    option_->check(CLI::IsMember(words).description(""));
+    option_->description(
+        fmt::format("{} ({})", option_->get_description(), fmt::join(words, " or ")));
     return *this;
 }
 
@@ -77,6 +135,9 @@ SubcommandOption& SubcommandOption::shows_default()
 SubcommandLine::SubcommandLine(const std::string& what, const std::string& name)
     : app_(std::make_unique<CLI::App>(what, name))
 {
+    app_->formatter(std::make_shared<HelpText>());
+    app_->get_formatter()->label("OPTIONS", "options");
+    app_->get_formatter()->label("Positionals", "Arguments");
 }
 
 SubcommandLine::~SubcommandLine() = default;
@@ -128,6 +189,19 @@ bool SubcommandLine::read(const std::vector<std::string>& arguments)
     {
         fmt::print("{}", app_->help());
         return false;
+    }
+    catch (const CLI::ExtrasError& error)
+    {
+        std::vector<std::string> known;
+        for (const CLI::Option* option : app_->get_options())
+            for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+        const std::vector<std::string_view> views(known.begin(), known.end());
+        std::string hint;
+        for (const std::string& extra : app_->remaining())
+            if (hint.empty() && extra.starts_with('-'))
+                hint = did_you_mean(extra.substr(0, extra.find_first_of("=:")), views);
+        throw UsageError(
+            fmt::format("{}{}; {} --help shows the form", error.what(), hint, app_->get_name()));
     }
     catch (const CLI::ParseError& error)
     {

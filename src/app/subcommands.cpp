@@ -9,6 +9,15 @@
 #include "app/report_command.h"
 #include "app/templates_command.h"
 #include "app/upgrade_command.h"
+#include "core/nearest_word.h"
+#include "fppg/error.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 namespace fppg
 {
@@ -35,6 +44,21 @@ Subcommand find_subcommand(const std::string& name)
     for (const Entry& entry : entries)
         if (name == entry.name) return entry.run;
     return nullptr;
+}
+
+void refuse_mistyped_subcommand(const std::string& argument)
+{
+    std::error_code ignored;
+    if (argument.starts_with('-') || std::filesystem::exists(argument, ignored) ||
+        std::filesystem::exists(argument + ".xml", ignored))
+        return;
+    std::vector<std::string_view> names;
+    for (const Entry& entry : entries) names.emplace_back(entry.name);
+    if (nearest_word(argument, names).empty()) return;
+    throw UsageError(
+        fmt::format("\"{}\" is no subcommand{}, and there is no definition {}.xml; "
+                    "fppg --help lists the subcommands",
+                    argument, did_you_mean(argument, names), argument));
 }
 
 } // namespace fppg

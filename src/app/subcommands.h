@@ -14,4 +14,10 @@ using Subcommand = int (*)(const std::vector<std::string>& arguments);
 /// that is called like a subcommand can be given as `./render`.
 Subcommand find_subcommand(const std::string& name);
 
+/// For a first argument that is no subcommand, no option and no definition, but nearly a
+/// subcommand.
+///
+/// throws  UsageError that names it
+void refuse_mistyped_subcommand(const std::string& argument);
+
 } // namespace fppg

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/expression.h"
+#include "core/nearest_word.h"
 #include "core/text.h"
 
 #include <fmt/format.h>
@@ -23,6 +24,19 @@ std::vector<std::string_view> trimmed_parts(std::string_view text, char separato
     std::vector<std::string_view> parts = split(text, separator);
     for (std::string_view& part : parts) part = trimmed(part);
     return parts;
+}
+
+std::string list_of(const std::vector<std::string_view>& known)
+{
+    return known.empty() ? std::string("none") : fmt::format("{}", fmt::join(known, ", "));
+}
+
+/// "; it has fiel: did you mean file?" of what is there in the place of a missing name.
+std::string meant_by(std::string_view missing, const std::vector<std::string_view>& there)
+{
+    const std::string_view nearest = nearest_word(missing, there);
+    return nearest.empty() ? std::string()
+                           : fmt::format("; it has {}, did you mean {}?", nearest, missing);
 }
 
 } // namespace
@@ -63,6 +77,20 @@ void AttributeReader::fail(const Element& e, const std::string& text) const
     throw CaseError(file_, e.line, fmt::format("<{}>: {}", e.name, text));
 }
 
+void AttributeReader::fail_unknown_element(const Element& e, std::string_view parent,
+                                           const std::vector<std::string_view>& known) const
+{
+    fail(e, fmt::format("is not known in <{}>{}, expected {}", parent, did_you_mean(e.name, known),
+                        list_of(known)));
+}
+
+void AttributeReader::fail_unknown_attribute(const Element& e, const Element::Attribute& a,
+                                             const std::vector<std::string_view>& known) const
+{
+    fail(e, fmt::format("attribute {}=\"{}\" is not known{}, expected {}", a.name, a.value,
+                        did_you_mean(a.name, known), list_of(known)));
+}
+
 void AttributeReader::fail_unsupported(const Element& e, const std::string& what) const
 {
     fail(e, what.empty() ? "not supported yet" : what + " is not supported yet");
@@ -71,8 +99,12 @@ void AttributeReader::fail_unsupported(const Element& e, const std::string& what
 const std::string& AttributeReader::raw_text(const Element& e, std::string_view name) const
 {
     const std::string* value = e.find_attribute(name);
-    if (value == nullptr) fail(e, fmt::format("attribute '{}' is missing", name));
-    return *value;
+    if (value != nullptr) return *value;
+    std::vector<std::string_view> there;
+    for (const Element::Attribute& a : e.attributes) there.push_back(a.name);
+    // A coordinate is near every other.
+    fail(e, fmt::format("attribute '{}' is missing{}", name,
+                        name.size() > 1 ? meant_by(name, there) : ""));
 }
 
 std::string AttributeReader::text(const Element& e, std::string_view name) const
@@ -176,8 +208,11 @@ Vec3 AttributeReader::vec3_or(const Element& e, const Vec3& otherwise) const
 const Element& AttributeReader::child(const Element& e, std::string_view name) const
 {
     const Element* c = e.find_child(name);
-    if (c == nullptr) fail(e, fmt::format("the element <{}> is missing in it", name));
-    return *c;
+    if (c != nullptr) return *c;
+    std::vector<std::string_view> there;
+    for (const Element& other : e.children)
+        if (other.kind == Element::Kind::Tag) there.push_back(other.name);
+    fail(e, fmt::format("the element <{}> is missing in it{}", name, meant_by(name, there)));
 }
 
 std::vector<Vec3> AttributeReader::points(const Element& e) const

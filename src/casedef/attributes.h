@@ -48,6 +48,13 @@ public:
     /// throws CaseError: "file:line: <element>: text"
     [[noreturn]] void fail(const Element& e, const std::string& text) const;
 
+    /// An element that its parent does not know: the nearest known name is named, and all of them.
+    [[noreturn]] void fail_unknown_element(const Element& e, std::string_view parent,
+                                           const std::vector<std::string_view>& known) const;
+    /// The same of an attribute.
+    [[noreturn]] void fail_unknown_attribute(const Element& e, const Element::Attribute& a,
+                                             const std::vector<std::string_view>& known) const;
+
     /// A command, attribute or value that GenCase knows and this program does not do yet.
     [[noreturn]] void fail_unsupported(const Element& e, const std::string& what = "") const;
 

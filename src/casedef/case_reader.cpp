@@ -8,6 +8,7 @@
 #include "casedef/fit_block.h"
 #include "casedef/floatings.h"
 #include "casedef/initials.h"
+#include "casedef/known_names.h"
 #include "casedef/motion.h"
 #include "casedef/normals.h"
 #include "casedef/patterns.h"
@@ -116,6 +117,8 @@ public:
                                            text != nullptr ? *text : ""});
         }
         def_.variables_log = variables_.describe_all();
+        for (std::string& warning : unknown_names(root, def_.file))
+            def_.warnings.push_back(std::move(warning));
         return std::move(def_);
     }
 
@@ -290,12 +293,10 @@ private:
         {
             if (c.kind != Element::Kind::Tag || c.name.starts_with('_') || !read_.is_active(c))
                 continue;
-            static const std::set<std::string> known{"newvarcte", "newvarstrcte", "newvar",
-                                                     "newvarstr", "setvar",       "setvarstr"};
-            if (!known.contains(c.name))
-                read_.fail(c,
-                           "is not known in <predefinition>, expected newvarcte, newvarstrcte, "
-                           "newvar, newvarstr, setvar or setvarstr");
+            static const std::vector<std::string_view> known{
+                "newvarcte", "newvarstrcte", "newvar", "newvarstr", "setvar", "setvarstr"};
+            if (std::find(known.begin(), known.end(), c.name) == known.end())
+                read_.fail_unknown_element(c, "predefinition", known);
             commands_.run(c, def_.list_log);
         }
     }

@@ -245,6 +245,13 @@ const CommandRow* find_command(std::string_view name)
     return is_own_format(*format) ? &own_mesh_file : &mesh_file;
 }
 
+std::vector<std::string_view> command_names()
+{
+    std::vector<std::string_view> names{"drawfilestl", "drawfileply", "drawfileobj", "drawfileoff"};
+    for (const CommandRow& row : table) names.push_back(row.name);
+    return names;
+}
+
 std::size_t allowed_children(const CommandRow& row, std::string_view child)
 {
     if (row.children == any_child) return SIZE_MAX;

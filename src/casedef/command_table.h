@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 namespace fppg
 {
@@ -22,6 +23,9 @@ struct CommandRow
 /// The row of a command; null: there is none of this name. `drawfileply` and the like are found
 /// by the table of mesh formats.
 const CommandRow* find_command(std::string_view name);
+
+/// All names of commands.
+std::vector<std::string_view> command_names();
 
 /// How many such child elements a command may have: none, 1, or SIZE_MAX for any number. Commands
 /// that read their children one by one refuse all others, as GenCase does; the rest pass over them.

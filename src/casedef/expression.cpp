@@ -1,6 +1,7 @@
 #include "casedef/expression.h"
 
 #include "core/float32.h"
+#include "core/nearest_word.h"
 #include "core/text.h"
 
 #include <fmt/format.h>
@@ -454,7 +455,9 @@ private:
         if (!expected.empty())
             return fmt::format("the function '{}' has {} values; expected {}", name, count,
                                expected);
-        return fmt::format("there is no function '{}'", name);
+        std::vector<std::string_view> names;
+        for (const Function& f : functions) names.push_back(f.name);
+        return fmt::format("there is no function '{}'{}", name, did_you_mean(name, names));
     }
 
     std::string_view original_;

@@ -106,7 +106,10 @@ std::optional<Element> floating_extra(const Element& given, const AttributeReade
     if (name == "linearvel" || name == "angularvel" || name == "linearforce" ||
         name == "angularforce")
         return table_with_rows(given, read, warnings);
-    read.fail(given, "is not known in <floating>");
+    read.fail_unknown_element(given, "floating",
+                              {"massbody", "masspart", "center", "inertia", "inertiafull",
+                               "translationDOF", "rotationDOF", "linearvelini", "angularvelini",
+                               "linearvel", "angularvel", "linearforce", "angularforce"});
 }
 
 } // namespace fppg

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/variable_commands.h"
+#include "core/nearest_word.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,13 @@ void run_named_list(Program& p, const Element& e)
 {
     const std::string& list = p.read.text(e, "name");
     const auto found = p.lists.find(list);
-    if (found == p.lists.end()) p.read.fail(e, fmt::format("there is no list named '{}'", list));
+    if (found == p.lists.end())
+    {
+        std::vector<std::string_view> names;
+        for (const auto& [name, ignored] : p.lists) names.push_back(name);
+        p.read.fail(e,
+                    fmt::format("there is no list named '{}'{}", list, did_you_mean(list, names)));
+    }
     const int times = !p.read.text_or(e, "times", "").empty()
                           ? p.read.integer(e, "times", 0, 1'000'000'000, true)
                           : 1;

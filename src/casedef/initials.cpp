@@ -48,10 +48,10 @@ public:
         else if (e.name == "moverandom")
             op.what = random_move(e);
         else
-            read_.fail(e,
-                       "is not known in <initials>, expected velocity, velwave, velmesh, "
-                       "densityuniform, densitygradient, densitydepth, densitymesh, move, "
-                       "moverandom or rotateaxis");
+            read_.fail_unknown_element(
+                e, "initials",
+                {"velocity", "velwave", "velmesh", "densityuniform", "densitygradient",
+                 "densitydepth", "densitymesh", "move", "moverandom", "rotateaxis"});
         const bool moves = std::holds_alternative<MoveParticles>(op.what);
         op.mk = mk(e, moves);
         op.only = read_only_pos(e, read_);
@@ -317,10 +317,7 @@ void require_known_children(const Element& e, const std::vector<std::string_view
     {
         if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
         if (std::find(known.begin(), known.end(), c.name) == known.end())
-            read.fail(c, known.empty()
-                             ? fmt::format("is not known in <{}>, expected nothing in it", e.name)
-                             : fmt::format("is not known in <{}>, expected {}", e.name,
-                                           fmt::join(known, ", ")));
+            read.fail_unknown_element(c, e.name, known);
     }
 }
 

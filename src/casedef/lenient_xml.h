@@ -24,4 +24,15 @@ struct StrictXml
 /// still count. Behind the root anything may follow, well-formed or not.
 StrictXml strict_xml(const std::string& text);
 
+/// What is wrong with the tags of a text that is no XML.
+struct TagFault
+{
+    int line = 0;     ///< from 1
+    std::string text; ///< names the tag and where it was opened; empty: tags are not what is wrong
+};
+
+/// Finds the first tag that is not closed, or closed in the wrong place, or has no end, up to the
+/// end of the root.
+TagFault find_tag_fault(const std::string& strict_text);
+
 } // namespace fppg

@@ -95,6 +95,13 @@ int take_number(Element& e, const char* name, int min, int max, const AttributeR
     return value;
 }
 
+std::vector<std::string_view> names_in_motion()
+{
+    std::vector<std::string_view> names{"objreal", "obj", "begin"};
+    for (const Movement& m : movements()) names.push_back(m.name);
+    return names;
+}
+
 /// An object (or `<motion>` itself) and those in it. `references` holds those seen.
 void check(Element& e, const AttributeReader& read, std::set<int>& references)
 {
@@ -122,7 +129,8 @@ void check(Element& e, const AttributeReader& read, std::set<int>& references)
         {
             const auto found = std::find_if(movements().begin(), movements().end(),
                                             [&](const Movement& m) { return m.name == c.name; });
-            if (found == movements().end()) read.fail(c, "is not known in <motion>");
+            if (found == movements().end())
+                read.fail_unknown_element(c, "motion", names_in_motion());
             const int id = take_number(c, "id", -largest, largest, read);
             if (id == 0) read.fail(c, "id=\"0\" is invalid, expected 1 or more");
             if (is_null(c))

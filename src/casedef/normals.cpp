@@ -188,8 +188,7 @@ private:
         own.insert(own.end(), {"active", "if", "comment"});
         for (const Element::Attribute& a : e.attributes)
             if (!a.name.starts_with('_') && std::find(own.begin(), own.end(), a.name) == own.end())
-                read_.fail(e, fmt::format("attribute '{}' is not known, expected {}", a.name,
-                                          fmt::join(own, ", ")));
+                read_.fail_unknown_attribute(e, a, own);
     }
 
     /// Whether a child is there with its attribute; one without it has no effect, and a warning

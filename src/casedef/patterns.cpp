@@ -84,7 +84,7 @@ PatternTable read_patterns(const Element& patterns, const AttributeReader& read)
     for (const Element& e : patterns.children)
     {
         if (e.kind != Element::Kind::Tag || e.name.starts_with('_')) continue;
-        if (e.name != "pattern") read.fail(e, "is not known in <patterns>, expected pattern");
+        if (e.name != "pattern") read.fail_unknown_element(e, "patterns", {"pattern"});
         const std::string& name = read.text(e, "name");
         if (!out.emplace(lower_case(name), std::make_shared<DrawPattern>(read_pattern(e, read)))
                  .second)

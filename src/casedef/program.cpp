@@ -1,6 +1,8 @@
 #include "casedef/program.h"
 
 #include "casedef/command_table.h"
+#include "core/nearest_word.h"
+#include "core/text.h"
 #include "meshes/mesh_library.h"
 #include "shapes/file_polygons.h"
 #include "shapes/off_lattice_parts.h"
@@ -19,6 +21,15 @@ namespace
 constexpr int max_list_depth = 100;
 constexpr std::size_t max_commands = 10'000'000;
 
+std::vector<std::string_view> children_of(const CommandRow& row)
+{
+    if (row.children.empty()) return {};
+    std::vector<std::string_view> names = split(row.children, ' ');
+    for (std::string_view& name : names)
+        if (name.ends_with('+')) name.remove_suffix(1);
+    return names;
+}
+
 /// throws CaseError for an element that the command does not have, or has once only
 void check_children(const CommandRow& row, const Element& e, const AttributeReader& read)
 {
@@ -29,7 +40,13 @@ void check_children(const CommandRow& row, const Element& e, const AttributeRead
             child.name.starts_with("fppg:"))
             continue;
         const std::size_t allowed = allowed_children(row, child.name);
-        if (allowed == 0) read.fail(child, fmt::format("<{}> has no such element", e.name));
+        if (allowed == 0)
+            read.fail(child,
+                      fmt::format("<{}> has no such element{}, expected {}", e.name,
+                                  did_you_mean(child.name, children_of(row)),
+                                  row.children.empty()
+                                      ? "none"
+                                      : fmt::format("{}", fmt::join(children_of(row), ", "))));
         if (++found[child.name] > allowed)
             read.fail(child, fmt::format("<{}> has it already, expected one", e.name));
     }
@@ -61,9 +78,9 @@ void Program::run(const Element& commands)
         }
         else if (e.name != "mainlist")
             def.warnings.push_back(
-                fmt::format("{}:{}: <{}>: is not known in <commands> and has no effect, as with "
+                fmt::format("{}:{}: <{}>: is not known in <commands> and has no effect{}, as with "
                             "GenCase; expected list or mainlist.",
-                            def.file, e.line, e.name));
+                            def.file, e.line, e.name, did_you_mean(e.name, {"list", "mainlist"})));
         else if (main == nullptr)
             main = &e;
         else
@@ -137,7 +154,8 @@ void Program::run_command(const Element& e)
 {
     const CommandRow* row = find_command(e.name);
     if (row == nullptr)
-        read.fail(e, "is not a command, see the templates for the commands of a list");
+        read.fail(e, fmt::format("is not a command{}, see the templates for the commands of a list",
+                                 did_you_mean(e.name, command_names())));
     if (!read.is_active(e)) return;
     count_command(e);
     check_children(*row, e, read);

@@ -101,16 +101,14 @@ private:
     {
         for (const Element& c : e.children)
             if (c.kind == Element::Kind::Tag && !c.name.starts_with('_') && !known.contains(c.name))
-                read_.fail(c, fmt::format("is not known in <{}>, expected {}", e.name,
-                                          fmt::join(known, ", ")));
+                read_.fail_unknown_element(c, e.name, {known.begin(), known.end()});
     }
 
     void check_attributes(const Element& e, const std::set<std::string>& known) const
     {
         for (const Element::Attribute& a : e.attributes)
             if (!known.contains(a.name) && a.name != "comment" && !a.name.starts_with('_'))
-                read_.fail(e, fmt::format("attribute '{}' is not known, expected {}", a.name,
-                                          fmt::join(known, ", ")));
+                read_.fail_unknown_attribute(e, a, {known.begin(), known.end()});
     }
 
     double value_of(const Element& e, const char* name, double otherwise) const

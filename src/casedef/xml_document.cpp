@@ -1,6 +1,7 @@
 #include "casedef/xml_document.h"
 
 #include "casedef/lenient_xml.h"
+#include "core/nearby_files.h"
 #include "core/regular_file.h"
 #include "fppg/error.h"
 
@@ -122,9 +123,15 @@ Element parse_document(std::string text, const std::string& name)
         throw CaseError(name, 0,
                         "the file is empty, expected an XML document with the root <case>");
     if (error != tinyxml2::XML_SUCCESS)
+    {
+        const TagFault fault = find_tag_fault(strict.text);
+        if (!fault.text.empty())
+            throw CaseError(name, fault.line,
+                            fmt::format("this is not well-formed XML: {}", fault.text));
         throw CaseError(name, document.ErrorLineNum(),
                         fmt::format("this is not well-formed XML ({})",
                                     tinyxml2::XMLDocument::ErrorIDToName(error)));
+    }
     if (document.RootElement() == nullptr)
         throw CaseError(name, 0, "there is no element, expected the root <case>");
     Element out;
@@ -136,7 +143,12 @@ Element read_document(const std::string& path)
 {
     expect_regular_file(path);
     std::ifstream in(path, std::ios::binary);
-    if (!in) throw IoError(fmt::format("{}: cannot open the file: {}", path, std::strerror(errno)));
+    if (!in)
+    {
+        const int why = errno;
+        throw IoError(fmt::format("{}: cannot open the file: {}{}", path, std::strerror(why),
+                                  why == ENOENT ? what_lies_at({path}) : ""));
+    }
     std::ostringstream text;
     text << in.rdbuf();
     if (in.bad() || (text.fail() && in.peek() != EOF))

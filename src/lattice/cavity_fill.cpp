@@ -123,13 +123,18 @@ private:
                 // Half a node is what rounding can be about.
                 if (wanted > count + 0.5)
                 {
-                    const std::string holds =
-                        fmt::format("it holds {:.6g} {}, {:g} are wanted",
-                                    litres(cavity.node_count), litre_name(), op_.amount);
-                    if (cavity.opening) fail_open(cavity, "below it " + holds);
-                    throw GeometryError(
-                        fmt::format("the cavity of the seed {} is full: {}{}", text(op_.seed),
-                                    holds, cavity.gaps.empty() ? "" : "; " + closed_gaps(cavity)));
+                    const std::string holds = fmt::format(
+                        "the cavity of the seed {} holds {:.6g} {}{}, {:g} are wanted",
+                        text(op_.seed), litres(cavity.node_count), litre_name(),
+                        cavity.opening ? fmt::format(" up to its lowest way out at height {:g} "
+                                                     "near {}",
+                                                     metres(cavity.opening->height),
+                                                     text(cavity.opening->place))
+                                       : "",
+                        op_.amount);
+                    if (cavity.opening) throw GeometryError(holds + narrowest_place());
+                    throw GeometryError(holds +
+                                        (cavity.gaps.empty() ? "" : "; " + closed_gaps(cavity)));
                 }
                 return level_of_count(cavity.nodes, heights_, wanted, threads_);
             }
@@ -191,8 +196,8 @@ private:
         std::string up;
         if (op_.up != Vec3{0, 0, 1}) up = " along " + text(op_.up);
         report_.log.push_back(fmt::format(
-            "cavity of {} nodes, {:.6g} {}, {}", cavity.node_count, litres(cavity.node_count),
-            litre_name(),
+            "the cavity holds {:.6g} {}, {} nodes, {}", litres(cavity.node_count), litre_name(),
+            cavity.node_count,
             cavity.opening
                 ? fmt::format("open from height {:g} on near {}", metres(cavity.opening->height),
                               text(cavity.opening->place))

@@ -4,9 +4,12 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
+#include "core/nearby_files.h"
+
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <system_error>
 
 namespace fppg
 {
@@ -19,9 +22,10 @@ std::string MeshLibrary::find(const SourceRef& source, const std::string& name) 
     if (is_here && places_ == MeshPlaces::WorkingDirectoryFirst) return name;
     if (std::filesystem::exists(beside, ignored)) return beside;
     if (is_here) return name;
-    throw IoError(fmt::format("{}:{}: <{} file=\"{}\">: cannot open the file: there is no {}{}",
+    throw IoError(fmt::format("{}:{}: <{} file=\"{}\">: cannot open the file: there is no {}{}{}",
                               definition_, source.line, source.command, name, name,
-                              beside == name ? "" : " and no " + beside));
+                              beside == name ? "" : " and no " + beside,
+                              what_lies_at({name, beside})));
 }
 
 const MeshFile& MeshLibrary::read_drawn(const SourceRef& source, const MeshFileOp& op,

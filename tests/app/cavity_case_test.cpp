@@ -86,7 +86,7 @@ TEST(FillOfACase, FillsAShareOfABoxAndSaysSo)
     EXPECT_EQ(fluid.size(), 243u);
     for (const Vec3& p : fluid) EXPECT_LT(p.z, 0.31);
     const std::string log = read_text(folder / "out/Case.out");
-    EXPECT_TRUE(says(log, "<fill>: cavity of 729 nodes, 729 litres, closed"));
+    EXPECT_TRUE(says(log, "<fill>: the cavity holds 729 litres, 729 nodes, closed"));
     EXPECT_TRUE(
         says(log, "<fill>: filled 243 nodes, 243 litres, 33.33 % of the cavity, level 0.3"));
 }

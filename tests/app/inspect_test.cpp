@@ -170,6 +170,37 @@ TEST(Inspect, GuessesMillimetresFromTheSizeAndFromDp)
     EXPECT_EQ(inspect_mesh({.path = small.path(), .dp = 0.0005}).unit, "mm");
 }
 
+TEST(Inspect, NamesUnitsInEveryLine)
+{
+    const TemporaryFile file = file_of(box({0, 0, 0}, {200, 100, 50}));
+    const std::string text = to_text(inspect_mesh({.path = file.path(), .dp = 10, .unit = "mm"}));
+    for (const char* line :
+         {"Unit              mm\n", "Size              200 x 100 x 50 mm\n",
+          "Volume            1e+06 mm^3 (0.001 m^3)\n", "Area              70000 mm^2 (0.07 m^2)\n",
+          "(0, 0, 0) mm to (200, 100, 50) mm\n", "With dp           10 mm (0.01 m)\n",
+          "longest 200 mm\n"})
+        EXPECT_TRUE(has(text, line)) << line << text;
+}
+
+TEST(Inspect, QuestionsADpThatMakesTenThousandMillionParticles)
+{
+    const TemporaryFile file = file_of(box({0, 0, 0}, {200, 100, 50}));
+    const std::string text = to_text(inspect_mesh({.path = file.path(), .dp = 0.01}));
+    EXPECT_TRUE(has(text,
+                    "Question          dp 0.01 mm makes 1000000000000 particles in the volume, "
+                    "so none was placed: is dp in the unit of the file (mm)? From dp = 0.22 "
+                    "mm on"))
+        << text;
+    EXPECT_FALSE(has(text, "on corners"));
+}
+
+TEST(Inspect, PrintsRoundingAsZero)
+{
+    const TemporaryFile file = file_of(box({1e-17, -3e-18, 0}, {1, 1, 1}));
+    const std::string text = to_text(inspect_mesh({.path = file.path()}));
+    EXPECT_TRUE(has(text, "(0, 0, 0) m to (1, 1, 1) m")) << text;
+}
+
 TEST(Inspect, NamesTheFirstOpenEdges)
 {
     TriangleSoup soup = box({0, 0, 0}, {1, 1, 1});

@@ -299,7 +299,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "<bodyfit>: is not known in <fppg>, expected bodyfitted, boolean, fluidband, fill, "
                 "floatings, offlattice, points"},
         Mistake{"UnknownInOfflattice", R"(<fppg><offlattice hydrostatics="1" /></fppg>)",
-                "<offlattice>: attribute hydrostatics=\"1\" is not known, expected hydrostatic"},
+                "<offlattice>: attribute hydrostatics=\"1\" is not known (did you mean "
+                "hydrostatic?), expected hydrostatic"},
         Mistake{
             "UnknownAttribute", R"(<fppg><bodyfitted angle="30" /></fppg>)",
             "<bodyfitted>: attribute angle=\"30\" is not known, expected mkbound, featureangle,"},
