@@ -124,10 +124,10 @@ void draw(CaseRunState& run, MadeCase& made)
                   run.log.line();
                   log_domain(made.def, run.log);
                   for (const std::string& line : made.def.list_log) run.log.line(line);
-                  expect_metres(made.scene, run.threads);
                   CaseOptions options = case_options(run.options);
                   options.meshes = made.scene.meshes;
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads);
+                  expect_metres(made.scene, run.threads);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(), report);

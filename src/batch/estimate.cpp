@@ -50,10 +50,10 @@ public:
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
         scene_ = make_scene(def_);
-        expect_metres(scene_, options_.threads);
         CaseOptions coarse = options_.case_options;
         coarse.meshes = scene_.meshes;
         expect_particles_fit(path, coarse, def_, options_.threads);
+        expect_metres(scene_, options_.threads);
         out_.definition = path;
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;

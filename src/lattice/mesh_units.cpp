@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 #include "fppg/mesh.h"
 
+#include "core/memory.h"
 #include "core/most_particles.h"
 #include "scene/surfaces.h"
 #include "shapes/shape.h"
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 namespace fppg
@@ -34,15 +36,32 @@ Box3 bounds_of(const MeshFile& mesh, const Transform& transform)
     return bounds;
 }
 
-double area_of(const MeshFile& mesh, const Transform& transform)
+double area_of(const TriangleSoup& soup, const Transform& transform)
 {
     double area = 0;
-    const std::vector<Vec3>& v = mesh.soup.vertices;
+    const std::vector<Vec3>& v = soup.vertices;
     for (std::size_t f = 0; f + 2 < v.size(); f += 3)
     {
         const Vec3 a = transform(v[f]);
         area += norm(cross(transform(v[f + 1]) - a, transform(v[f + 2]) - a)) / 2;
     }
+    return area;
+}
+
+/// Of the true surface that a draw leaves, m^2. Of a shape in a small box not more than that box's:
+/// its surface is only made where it matters.
+double area_of(const Scene& scene, const DrawOp& draw, double small, int threads)
+{
+    if (const auto* op = shape_as<MeshFileOp>(draw))
+        return area_of(mesh_of(scene, draw, threads)->soup, op->transform);
+    const Box3 box = bounds_of(std::get<Shape>(draw.what), scene.def->grid.dp);
+    if (box.is_empty()) return 0;
+    const Vec3 size = box.max - box.min;
+    const double of_box = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    if (of_box < small) return of_box;
+    double area = 0;
+    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
+        area += area_of(shape.soup, {});
     return area;
 }
 
@@ -62,18 +81,39 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
            fit_settings(def.fit, state.mk.mk) != nullptr && state.mode != DrawMode::Wire;
 }
 
-void expect_few_on_surface(const Scene& scene, const DrawOp& draw, const MeshFileOp& op,
-                           double area)
+/// Body-fitted walls are laid whole before what is outside the domain goes.
+void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
+    constexpr double bytes_per_particle = 100; // the least that laying them needs
     const double dp = scene.def->grid.dp;
+    const auto memory = static_cast<double>(available_memory());
+    const double most = std::min(static_cast<double>(most_particles), memory / bytes_per_particle);
+    const double area = area_of(scene, draw, most * dp * dp, threads);
     const double count = area / (dp * dp);
-    if (count <= static_cast<double>(most_particles)) return;
-    throw GeometryError(
-        fmt::format("{}: {} has a surface of {:.4g} m^2, for which body-fitted walls need {:.2g} "
-                    "particles with "
-                    "dp={:g}; the file format holds at most {}; dp={:g} and larger ones fit",
-                    place_of(*scene.def, draw.source), op.file, area, count, dp,
-                    most_particles_text, dp_that_fits(dp, count, false)));
+    if (count <= most) return;
+    const auto* op = shape_as<MeshFileOp>(draw);
+    throw GeometryError(fmt::format(
+        "{}: {} has a surface of {:.4g} m^2, for which body-fitted walls need {:.2g} particles "
+        "with "
+        "dp={:g}; {}; dp={:g} and larger ones fit",
+        place_of(*scene.def, draw.source), op != nullptr ? op->file : "it", area, count, dp,
+        count > static_cast<double>(most_particles)
+            ? fmt::format("the file format holds at most {}", most_particles_text)
+            : fmt::format("this machine has {:.3g} GB of memory free", memory * 1e-9),
+        dp_rounded_up(dp * std::sqrt(count / most))));
+}
+
+/// A mesh file whose size does not go with that of the domain.
+void expect_size(const Scene& scene, const DrawOp& draw, bool may_be_small, int threads)
+{
+    const auto* op = shape_as<MeshFileOp>(draw);
+    if (op == nullptr) return;
+    const CaseDef& def = *scene.def;
+    const Box3 bounds = bounds_of(*mesh_of(scene, draw, threads), op->transform);
+    if (bounds.is_empty()) return;
+    const std::optional<std::string> wrong = wrong_units(def, op->file, bounds);
+    if (wrong && (!may_be_small || largest_extent(def.grid, bounds) > 4 * def.grid.dp))
+        throw GeometryError(fmt::format("{}: {}", place_of(def, draw.source), *wrong));
 }
 
 } // namespace
@@ -95,25 +135,18 @@ std::optional<std::string> wrong_units(const CaseDef& def, const std::string& fi
 
 void expect_metres(const Scene& scene, int threads)
 {
-    const CaseDef& def = *scene.def;
     const bool fills = has_fills(scene);
     for (const SceneStep& step : scene.steps)
     {
-        const auto* op = step.combination ? nullptr : shape_as<MeshFileOp>(*step.draw);
-        if (op == nullptr) continue;
+        if (step.combination || !std::holds_alternative<Shape>(step.draw->what)) continue;
         const DrawState& state = *step.draw->state;
-        const bool fitted = is_fitted(def, state);
+        const bool fitted = is_fitted(*scene.def, state);
         if (!(fitted || fills) || !state.draw_points || state.mk.kind == MkKind::Void ||
             !state.clips.empty())
             continue;
-        const MeshFile& mesh = *mesh_of(scene, *step.draw, threads);
-        const Box3 bounds = bounds_of(mesh, op->transform);
-        if (bounds.is_empty()) continue;
-        const std::optional<std::string> wrong = wrong_units(def, op->file, bounds);
-        const bool is_large = largest_extent(def.grid, bounds) > def.grid.dp * 4;
-        if (wrong && (fills || is_large))
-            throw GeometryError(fmt::format("{}: {}", place_of(def, step.draw->source), *wrong));
-        if (fitted) expect_few_on_surface(scene, *step.draw, *op, area_of(mesh, op->transform));
+        expect_size(scene, *step.draw, !fills, threads);
+        // Parts of a combination are cut before they are laid.
+        if (fitted && !step.is_part) expect_few_on_surface(scene, *step.draw, threads);
     }
 }
 

@@ -16,10 +16,11 @@ namespace fppg
 std::optional<std::string> wrong_units(const CaseDef& def, const std::string& file,
                                        const Box3& bounds, double factor = 100);
 
-/// Refuses mesh files in other units before anything is laid, where that would take long or end
-/// with another message: a body-fitted file 100 times as large as the domain, one whose surface
-/// needs more particles than the file format holds, and a file of wrong size in a case with
-/// `<fppg><fill>`. Clipped draws pass. What is drawn on the lattice only gets a warning, later.
+/// Refuses what would take long to lay, or end with another message, before anything is laid: a
+/// body-fitted mesh file 100 times as large as the domain, a file of wrong size in a case with
+/// `<fppg><fill>` (files in other units), and a body-fitted shape whose surface needs more
+/// particles than the file format or the memory holds. Clipped draws pass. What is drawn on the
+/// lattice only gets a warning, later.
 ///
 /// throws  GeometryError with the place of the draw; as MeshLibrary::read()
 void expect_metres(const Scene& scene, int threads);

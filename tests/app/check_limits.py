@@ -237,8 +237,17 @@ class Units(Limits):
     def test_a_surface_of_too_many_particles_names_the_dp_that_fits(self):
         self.write_case('<setmkbound mk="0" /><drawfilestl file="mm.stl"><drawscale x="0.6" y="0.6" z="0.6" />'
                         "</drawfilestl>", "0.005")
-        self.expect_refused(3, "mm.stl has a surface of ", FORMAT, "; dp=0.0068 and larger ones fit",
+        self.expect_refused(3, "mm.stl has a surface of ", FORMAT, " and larger ones fit",
                             calls=[("Case_Def", "out/Case", "-fit")])
+
+    def test_surfaces_of_shapes_are_judged_too(self):
+        place = '<point x="-500" y="-500" z="-500" />'
+        for draw in ('<drawbox><boxfill>all</boxfill>' + place + '<size x="1000" y="1000" z="1000" /></drawbox>',
+                     '<drawtriangle>' + place + '<point x="500" y="-500" z="0" /><point x="0" y="500" z="9" />'
+                     '</drawtriangle>'):
+            self.write_case('<setmkbound mk="0" />' + draw, "0.005")
+            self.expect_refused(3, "it has a surface of ", FORMAT, " and larger ones fit",
+                                calls=[("Case_Def", "out/Case", "-fit")])
 
 
 if __name__ == "__main__":
