@@ -63,6 +63,10 @@ struct RenderOptions
     std::vector<std::uint16_t> mks; ///< only these; empty: all
     double radius_dp = 0.5;         ///< of a sphere, dp of its case; above 0
     int samples = 2;                ///< rays per pixel along each axis, 1 to 8
+    /// Fixed walls between the camera and fluid, moving or floating parts are left out.
+    bool opens_walls = false;
+    bool has_scale_bar = false; ///< at the lower left: a round length, with its unit
+    bool has_legend = false;    ///< what the colours stand for, at the upper left
 };
 
 /// Reads a view: iso, front, back, left, right, top, bottom, or "azimuth,elevation" in degrees.
@@ -72,8 +76,13 @@ ViewDirection parse_view(const std::string& text);
 /// Reads a cut plane such as "y>0.3" or "z<1". throws UsageError
 CutPlane parse_cut(const std::string& text);
 
-/// The colour of a mk or of a kind; the same in every picture. Values of no kind are grey.
-Rgb colour_of_mk(std::uint16_t mk);
+/// The colour of a mk by what it is: fluid blue, fixed grey, moving orange to yellow, floating red;
+/// shades by mk. The same in every picture.
+///
+/// type  as ParticleType; others: not known, by GenCase's usual numbers of mk
+Rgb colour_of_mk(std::uint16_t mk, std::uint8_t type);
+inline constexpr std::uint8_t unknown_type = 255;
+/// The colour of a kind. Values of no kind are grey.
 Rgb colour_of_kind(std::uint8_t kind);
 
 /// Draws particles as spheres on white: orthographic, two lights that move with the camera, one

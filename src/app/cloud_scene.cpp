@@ -22,7 +22,8 @@ SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
         ScenePart& part = parts[cloud.mk[i]];
         if (part.positions.empty())
         {
-            part.colour = hex_of(colour_of_mk(cloud.mk[i]));
+            part.colour = hex_of(
+                colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]));
             part.label = fmt::format("mk {}", cloud.mk[i]);
             if (!cloud.type.empty())
                 part.label += fmt::format(" {}", particle_type_name(cloud.type[i]));

@@ -1,5 +1,7 @@
 #include "app/compare_command.h"
 
+#include "compare/report_words.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 
@@ -101,6 +103,7 @@ RenderOptions picture_options(const Comparison& comparison)
     options.width = 1600;
     options.height = 700;
     if (comparison.is_2d) options.view = parse_view("front");
+    options.has_scale_bar = true;
     return options;
 }
 
@@ -190,7 +193,14 @@ std::vector<std::pair<std::string, std::string>> mk_legend(const Comparison& com
 {
     std::vector<std::pair<std::string, std::string>> legend;
     for (const MkComparison& of : comparison.mks)
-        legend.emplace_back(hex_of(colour_of_mk(of.mk)), fmt::format("mk {}", of.mk));
+    {
+        // What it is in A, or where A has none in B.
+        const int type = of.type[0] >= 0 ? of.type[0] : of.type[1];
+        legend.emplace_back(
+            hex_of(colour_of_mk(of.mk, type < 0 ? unknown_type : static_cast<std::uint8_t>(type))),
+            fmt::format("mk {}{}", of.mk,
+                        type < 0 ? "" : fmt::format(" {}", particle_type_name(type))));
+    }
     if (legend.size() > 30) legend.resize(30);
     return legend;
 }

@@ -1,8 +1,10 @@
 #include "app/render_command.h"
 
+#include "app/cloud_scene.h"
 #include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "compare/report_words.h"
 #include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/render.h"
@@ -11,8 +13,11 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <filesystem>
 
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace fppg
 {
@@ -81,6 +86,14 @@ void read_mks(const std::string& text, RenderOptions& options)
     }
 }
 
+/// A picture whose name says another format would be a PNG that nobody opens as such.
+void refuse_other_formats(const std::string& output)
+{
+    const std::string ending = lower_case(std::filesystem::path(output).extension().string());
+    if (!ending.empty() && ending != ".png")
+        refuse("--output", output, "a name that ends in .png, the format that is written");
+}
+
 /// Reads the arguments; false when only the help was asked for.
 bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
 {
@@ -95,6 +108,8 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     std::string mks;
     std::string colour = "mk";
     std::vector<std::string> cuts;
+    bool is_closed = false;
+    bool is_bare = false;
     RenderOptions& options = call.options;
     app.add_option("CASE", call.cases, "one case or two").required().expected(1, 2);
     app.add_option("-o,--output", call.output, "the picture, .png").required();
@@ -111,10 +126,18 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_option("--size", size, "in pixels (default 1600x1200)");
     app.add_option("--radius", options.radius_dp, "of the spheres, in dp (default 0.5)");
     app.add_option("--samples", options.samples, "rays per pixel along each axis (default 2)");
+    app.add_flag(
+        "--closed", is_closed,
+        "fixed walls in front of fluid and moving parts stay; by default they are left out, "
+        "unless --cut or --mk is given");
+    app.add_flag("--bare", is_bare, "no scale bar and no legend");
     app.add_flag("--palette", call.has_palette, "256 colours, for a smaller file");
     app.add_option("--threads", call.threads,
                    "default 0: what the machine or its scheduler allows");
     if (!app.read(arguments)) return false;
+    refuse_other_formats(call.output);
+    options.opens_walls = !is_closed && cuts.empty() && mks.empty();
+    options.has_scale_bar = options.has_legend = !is_bare;
     if (!size.empty()) read_size(size, options);
     if (!center.empty()) read_center(center, options);
     if (!mks.empty()) read_mks(mks, options);
@@ -145,20 +168,24 @@ void print_colours(const std::vector<ParticleCloud>& clouds, const RenderOptions
     std::vector<bool> is_wanted(65536, options.mks.empty());
     for (const std::uint16_t mk : options.mks) is_wanted[mk] = true;
     const bool is_by_mk = options.colour == RenderColour::Mk;
-    std::vector<bool> is_there(65536, false);
+    std::map<unsigned, std::pair<Rgb, std::string>> found;
     for (const ParticleCloud& cloud : clouds)
         for (std::size_t i = 0; i < cloud.mk.size(); ++i)
-            if (is_wanted[cloud.mk[i]]) is_there[is_by_mk ? cloud.mk[i] : cloud.kind[i]] = true;
-    for (std::size_t value = 0; value < is_there.size(); ++value)
-    {
-        if (!is_there[value]) continue;
-        const Rgb colour = is_by_mk ? colour_of_mk(static_cast<std::uint16_t>(value))
-                                    : colour_of_kind(static_cast<std::uint8_t>(value));
-        const std::string name = is_by_mk                   ? fmt::format("mk {}", value)
-                                 : value < std::size(kinds) ? std::string(kinds[value])
-                                                            : fmt::format("kind {}", value);
-        fmt::print("  #{:02x}{:02x}{:02x}  {}\n", colour[0], colour[1], colour[2], name);
-    }
+        {
+            const unsigned value = is_by_mk ? cloud.mk[i] : cloud.kind[i];
+            if (!is_wanted[cloud.mk[i]] || found.contains(value)) continue;
+            const std::uint8_t type = cloud.type.empty() ? unknown_type : cloud.type[i];
+            if (is_by_mk)
+                found[value] = {colour_of_mk(cloud.mk[i], type),
+                                fmt::format("mk {} {}", value,
+                                            cloud.type.empty() ? "" : particle_type_name(type))};
+            else
+                found[value] = {colour_of_kind(cloud.kind[i]), value < std::size(kinds)
+                                                                   ? std::string(kinds[value])
+                                                                   : fmt::format("kind {}", value)};
+        }
+    for (const auto& [value, entry] : found)
+        fmt::print("  {}  {}\n", hex_of(entry.first), trimmed(entry.second));
 }
 
 } // namespace

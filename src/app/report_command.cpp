@@ -153,8 +153,9 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
         const ParticleCloud picture =
             thinned_cloud(source, result.bounds.min, result.dp, most_in_picture);
         RenderOptions options;
-        options.width = 480;
-        options.height = 360;
+        options.width = 800;
+        options.height = 600;
+        options.opens_walls = options.has_scale_bar = options.has_legend = true;
         if (result.is_2d) options.view = parse_view("front");
         look.picture = png_bytes(render_particles({picture}, options, call.threads), true);
         look.set = to_json(

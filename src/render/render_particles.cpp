@@ -2,13 +2,17 @@
 
 #include "core/parallel.h"
 #include "fppg/error.h"
+#include "render/labels.h"
+#include "render/open_walls.h"
 #include "render/sphere_scene.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace fppg
 {
@@ -195,6 +199,13 @@ Lights place_lights(const CameraAxes& axes)
     return {direction(-0.45, 0.75, 0.75), direction(0.8, 0.1, 0.6)};
 }
 
+Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
+{
+    return colour == RenderColour::Kind
+               ? colour_of_kind(cloud.kind[i])
+               : colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]);
+}
+
 /// One cloud, ready for rays.
 struct Panel
 {
@@ -221,8 +232,7 @@ struct Panel
         {
             const Vec3f p = to_float((cloud.positions[i] - camera.middle) / camera.scale);
             spheres.push_back({p.x, p.y, p.z, static_cast<float>(radius)});
-            colours.push_back(options.colour == RenderColour::Mk ? colour_of_mk(cloud.mk[i])
-                                                                 : colour_of_kind(cloud.kind[i]));
+            colours.push_back(colour_of(cloud, i, options.colour));
         }
         start = static_cast<float>(camera.reach);
         room = static_cast<float>(std::max(0.02 * radius, 1e-6 * camera.reach));
@@ -329,6 +339,76 @@ struct Tile
     int y = 0;
 };
 
+/// What a colour stands for, by mk or kind.
+using Legend = std::map<unsigned, std::pair<Rgb, std::string>>;
+
+Legend legend_of(const std::vector<ParticleCloud>& clouds,
+                 const std::vector<std::vector<std::uint32_t>>& chosen, RenderColour colour)
+{
+    static constexpr const char* kinds[] = {"corner", "edge", "surface", "volume"};
+    static constexpr const char* types[] = {"fixed", "moving", "floating", "fluid"};
+    Legend legend;
+    for (std::size_t c = 0; c < clouds.size(); ++c)
+        for (const std::uint32_t i : chosen[c])
+        {
+            const ParticleCloud& cloud = clouds[c];
+            const unsigned value = colour == RenderColour::Kind ? cloud.kind[i] : cloud.mk[i];
+            if (legend.contains(value)) continue;
+            std::string name = fmt::format("mk {}", value);
+            if (colour == RenderColour::Kind)
+                name = value < std::size(kinds) ? kinds[value] : fmt::format("kind {}", value);
+            else if (!cloud.type.empty() && cloud.type[i] < std::size(types))
+                name += fmt::format(" {}", types[cloud.type[i]]);
+            legend.emplace(value, std::pair(colour_of(cloud, i, colour), std::move(name)));
+        }
+    return legend;
+}
+
+/// Pixels of a dot of a letter.
+int letter_size(const Image& image)
+{
+    return std::max(1, std::min(image.width, image.height) / 350);
+}
+
+void draw_legend(Image& image, const Legend& legend)
+{
+    const int size = letter_size(image);
+    const int row = (letter_rows + 4) * size;
+    int y = row / 2;
+    std::size_t drawn = 0;
+    for (const auto& [value, entry] : legend)
+    {
+        if (y + 2 * row > image.height)
+        {
+            draw_text(image, row / 2, y, size, fmt::format("and {} more", legend.size() - drawn));
+            return;
+        }
+        fill_rectangle(image, row / 2, y, letter_rows * size, letter_rows * size, entry.first);
+        draw_text(image, row / 2 + row, y, size, entry.second);
+        y += row;
+        ++drawn;
+    }
+}
+
+/// A length of 1, 2 or 5 times a power of ten, a sixth to a third of the picture.
+void draw_scale_bar(Image& image, const Camera& camera)
+{
+    const double pixel_m = camera.pixel * camera.scale;
+    const double most = pixel_m * image.width / 4;
+    const double power = std::pow(10, std::floor(std::log10(most)));
+    const double length = power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
+    const int size = letter_size(image);
+    const auto width = static_cast<int>(std::lround(length / pixel_m));
+    const int x = 4 * size;
+    const int y = image.height - 6 * size;
+    fill_rectangle(image, x, y, width, size, {0, 0, 0});
+    for (const int end : {x, x + width - size})
+        fill_rectangle(image, end, y - 2 * size, size, 5 * size, {0, 0, 0});
+    const bool is_small = length < 0.0999;
+    draw_text(image, x + 2 * size, y - (letter_rows + 3) * size, size,
+              fmt::format("{:g} {}", is_small ? 1000 * length : length, is_small ? "mm" : "m"));
+}
+
 void draw_tile(const Panel& panel, RTCScene scene, const RenderOptions& options, const Tile& tile,
                Image& image)
 {
@@ -395,6 +475,11 @@ Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOpt
     for (const ParticleCloud& cloud : clouds)
     {
         chosen.push_back(choose(cloud, options));
+        if (options.opens_walls)
+        {
+            const CameraAxes axes = camera_axes(options.view);
+            open_walls(cloud, axes.towards, axes.right, axes.up, chosen.back());
+        }
         has_any = has_any || !chosen.back().empty();
     }
     if (!has_any)
@@ -431,6 +516,8 @@ Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOpt
         for (int y = 0; y < options.height; ++y)
             image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) +
                          static_cast<std::size_t>(c * panel_width)] = separator;
+    if (options.has_scale_bar) draw_scale_bar(image, camera);
+    if (options.has_legend) draw_legend(image, legend_of(clouds, chosen, options.colour));
     return image;
 }
 

@@ -56,10 +56,17 @@ CutPlane parse_cut(const std::string& text)
     return cut;
 }
 
-Rgb colour_of_mk(std::uint16_t mk)
+Rgb colour_of_mk(std::uint16_t mk, std::uint8_t type)
 {
     // Fluids have mk 1 to 10 in GenCase's numbering (0 is never given), boundaries follow.
     static constexpr Rgb fluids[] = {{62, 137, 202}, {92, 186, 190}, {115, 130, 205}};
+    static constexpr Rgb greys[] = {{176, 172, 166}, {148, 150, 152}, {198, 192, 182}};
+    static constexpr Rgb moving[] = {{222, 148, 66}, {214, 186, 74}, {205, 120, 60}};
+    static constexpr Rgb floating[] = {{196, 78, 74}, {205, 110, 140}, {160, 70, 50}};
+    if (type == 0) return greys[(mk + 2U) % std::size(greys)];
+    if (type == 1) return moving[(mk + 2U) % std::size(moving)];
+    if (type == 2) return floating[(mk + 2U) % std::size(floating)];
+    if (type == 3) return fluids[(mk + 2U) % std::size(fluids)];
     static constexpr Rgb boundaries[] = {{176, 172, 166}, {222, 148, 66},  {196, 78, 74},
                                          {112, 160, 84},  {150, 108, 176}, {214, 186, 74},
                                          {120, 92, 72},   {205, 120, 160}, {80, 130, 130}};

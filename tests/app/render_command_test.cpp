@@ -56,6 +56,15 @@ TEST(RenderCommand, ExplainsAnUnknownView)
         ThrowsMessage<UsageError>(HasSubstr("the view \"sideways\" is unknown")));
 }
 
+TEST(RenderCommand, RefusesANameOfAnotherFormat)
+{
+    EXPECT_THAT(
+        [] {
+            run_render({"Case", "-o", "a.jpg"});
+        },
+        ThrowsMessage<UsageError>(HasSubstr("ends in .png, the format that is written")));
+}
+
 TEST(RenderCommand, NamesAMissingCaseAndLeavesNoFile)
 {
     const TestFolder folder;

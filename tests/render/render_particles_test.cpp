@@ -106,8 +106,8 @@ TEST(RenderParticles, ShowsTwoSpheresWhereTheyAreInTheirColours)
 {
     const Image image = render_particles({two_spheres()}, small_front(), 1);
     // 4 m over 94 % of 200 pixels: the centres are 141 pixels apart around the middle.
-    EXPECT_TRUE(has_hue(image.at(30, 50), colour_of_mk(1)));
-    EXPECT_TRUE(has_hue(image.at(170, 50), colour_of_mk(12)));
+    EXPECT_TRUE(has_hue(image.at(30, 50), colour_of_mk(1, unknown_type)));
+    EXPECT_TRUE(has_hue(image.at(170, 50), colour_of_mk(12, unknown_type)));
     EXPECT_EQ(image.at(100, 50), white);
     EXPECT_EQ(image.at(0, 0), white);
     EXPECT_EQ(image.at(199, 99), white);
@@ -180,7 +180,7 @@ TEST(RenderParticles, SeesEachSideFromItsPreset)
         options.width = 100;
         options.view = parse_view(view);
         const Image image = render_particles({faces}, options, 1);
-        EXPECT_TRUE(has_hue(image.at(50, 50), colour_of_mk(mk))) << view;
+        EXPECT_TRUE(has_hue(image.at(50, 50), colour_of_mk(mk, unknown_type))) << view;
     }
 }
 
@@ -191,9 +191,9 @@ TEST(RenderParticles, HasXToTheRightAndYUpwardsFromAbove)
     options.view = parse_view("top");
     const Image image =
         render_particles({cloud_of({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}}, {1, 12, 13})}, options, 1);
-    EXPECT_TRUE(has_hue(image.at(30, 170), colour_of_mk(1)));
-    EXPECT_TRUE(has_hue(image.at(170, 170), colour_of_mk(12)));
-    EXPECT_TRUE(has_hue(image.at(30, 30), colour_of_mk(13)));
+    EXPECT_TRUE(has_hue(image.at(30, 170), colour_of_mk(1, unknown_type)));
+    EXPECT_TRUE(has_hue(image.at(170, 170), colour_of_mk(12, unknown_type)));
+    EXPECT_TRUE(has_hue(image.at(30, 30), colour_of_mk(13, unknown_type)));
 }
 
 TEST(RenderParticles, KeepsOnlyWhatCutsAndMksLeave)
@@ -280,6 +280,80 @@ TEST(RenderParticles, SaysWhatIsWrongWithItsOptions)
     options.width = 5;
     EXPECT_THAT([&] { render_particles({two_spheres()}, options, 1); },
                 ThrowsMessage<UsageError>(HasSubstr("5 x 100 pixels")));
+}
+
+/// A tank of fixed walls around a block of fluid, as seen from (-x, -y, +z); dp 1.
+ParticleCloud tank_of_water()
+{
+    ParticleCloud cloud = cloud_of({}, {});
+    for (int x = 0; x < 21; ++x)
+        for (int y = 0; y < 21; ++y)
+            for (int z = 0; z < 21; ++z)
+            {
+                const bool is_wall = x == 0 || x == 20 || y == 0 || y == 20 || z == 0;
+                if (!is_wall && (x < 6 || x > 14 || y < 6 || y > 14 || z > 8)) continue;
+                cloud.positions.push_back({double(x), double(y), double(z)});
+                cloud.mk.push_back(static_cast<std::uint16_t>(is_wall ? 10 : 1));
+                cloud.type.push_back(static_cast<std::uint8_t>(is_wall ? 0 : 3));
+            }
+    return cloud;
+}
+
+TEST(RenderParticles, OpensTheWallsInFrontOfTheFluid)
+{
+    const auto blue = [](const Image& image)
+    {
+        return std::count_if(image.pixels.begin(), image.pixels.end(),
+                             [](const Rgb& p) { return p[2] > p[0] + 30; });
+    };
+    for (const char* view : {"front", "left", "iso"})
+    {
+        RenderOptions options = small_front();
+        options.view = parse_view(view);
+        const auto closed = blue(render_particles({tank_of_water()}, options, 1));
+        options.opens_walls = true;
+        const auto open = blue(render_particles({tank_of_water()}, options, 1));
+        EXPECT_GT(open, 300) << view;
+        EXPECT_GT(open, 2 * closed) << view;
+    }
+    // Without types nothing is known to be a wall.
+    RenderOptions options = small_front();
+    ParticleCloud cloud = tank_of_water();
+    cloud.type.clear();
+    const Image plain = render_particles({cloud}, options, 1);
+    options.opens_walls = true;
+    EXPECT_EQ(render_particles({cloud}, options, 1).pixels, plain.pixels);
+}
+
+TEST(RenderParticles, ColoursByRoleFirst)
+{
+    const auto [r, g, b] = colour_of_mk(14, 3);
+    EXPECT_GT(b, r + 50) << "fluid is blue";
+    for (const auto mk : std::initializer_list<std::uint16_t>{1, 11, 12, 90})
+    {
+        const Rgb grey = colour_of_mk(mk, 0);
+        EXPECT_LT(std::abs(grey[0] - grey[2]), 20) << "fixed is grey";
+        for (const auto type : std::initializer_list<std::uint8_t>{1, 2})
+            EXPECT_GT(colour_of_mk(mk, type)[0], colour_of_mk(mk, type)[2] + 50) << "warm";
+    }
+}
+
+TEST(RenderParticles, HasAScaleBarOfARoundLengthAndALegend)
+{
+    RenderOptions options = small_front();
+    const Image bare = render_particles({two_spheres()}, options, 1);
+    options.has_scale_bar = true;
+    const Image barred = render_particles({two_spheres()}, options, 1);
+    // 4 m of spheres fill 188 of 200 pixels; the bar is 1 m.
+    int black = 0;
+    for (int x = 0; x < 200; ++x)
+        black += static_cast<int>(barred.at(x, 94) == Rgb{0, 0, 0} && bare.at(x, 94) == white);
+    EXPECT_NEAR(black, 47, 2);
+    options.has_scale_bar = false;
+    options.has_legend = true;
+    const Image named = render_particles({two_spheres()}, options, 1);
+    EXPECT_EQ(named.at(7, 8), colour_of_mk(1, unknown_type));
+    EXPECT_EQ(named.at(7, 19), colour_of_mk(12, unknown_type));
 }
 
 TEST(ParseView, ListsTheViewsWhenOneIsUnknown)
