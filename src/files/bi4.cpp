@@ -40,7 +40,6 @@ namespace
 static_assert(std::endian::native == std::endian::little,
               "values are copied into the file as they lie in memory");
 
-
 enum class Bi4Type : std::int32_t
 {
     Text = 1,
