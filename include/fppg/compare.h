@@ -154,8 +154,9 @@ struct Comparison
     double dp = 0;           ///< metres; that of A, or of B where A does not say
     double same_place_m = 0; ///< metres
     bool is_2d = false;
-    bool has_geometry = false;             ///< that distances are taken to
-    std::vector<MkComparison> mks;         ///< by mk
+    std::array<bool, 2> is_on_lattice{true, true}; ///< or body-fitted, wholly or in part
+    bool has_geometry = false;                     ///< that distances are taken to
+    std::vector<MkComparison> mks;                 ///< by mk
     std::vector<ValueDifference> values;   ///< of constants first, then in the order of Case.xml
     std::vector<Finding> findings;         ///< largest first
     std::vector<ChangedParticle> examples; ///< by kind, largest first
@@ -166,6 +167,8 @@ struct Comparison
     std::size_t blocks = 0; ///< in which the particles were worked through; not part of a report
 
     bool is_equal() const { return findings.empty(); }
+    /// One on the lattice and one body-fitted: their particles stand at other places by design.
+    bool is_of_two_modes() const { return is_on_lattice[0] != is_on_lattice[1]; }
 };
 
 /// Compares two results of one case, ours or GenCase's, however many particles they have.
@@ -180,7 +183,8 @@ struct Comparison
 ///
 /// name_a, name_b  as read_particles() takes them: a case without extension, or one file
 /// returns  the same for any number of threads and any `particles_at_once`
-/// throws   CompareError if a file cannot be read or is not whole, or a particle is not at a
+/// throws   CompareError if a file cannot be read or is not whole, the results are not of one case
+///          (no mk in common, or hardly any space), or a particle is not at a
 ///          finite place
 /// cost     Files are mapped, never copied. Space is cut into slabs across its longest axis, so
 ///          that a slab and 9 dp on both sides hold `particles_at_once` particles of both files at

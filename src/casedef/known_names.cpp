@@ -25,7 +25,7 @@ struct NameRow
 
 /// Attributes of all elements of xml-templates/fppg.xsd. tests/templates/check_known_names.py
 /// writes this table, and holds it against the schema.
-constexpr auto table = std::to_array<NameRow>({
+constexpr auto attribute_table = std::to_array<NameRow>({
     // clang-format off
     {"",
 "boxfaces boxfill casedef/floatings casedef/motion clipbox clipplane clipreset "
@@ -275,7 +275,7 @@ const std::string_view* find_names(std::string_view element)
     static const std::vector<Entry> all = []
     {
         std::vector<Entry> out;
-        for (const NameRow& row : table)
+        for (const NameRow& row : attribute_table)
             for (const std::string_view name : split(row.elements, ' '))
                 out.emplace_back(name, &row);
         std::sort(out.begin(), out.end());

@@ -4,6 +4,7 @@
 #include "compare/first_few.h"
 #include "compare/measure.h"
 #include "compare/pair_particles.h"
+#include "compare/relation.h"
 #include "compare/report_words.h"
 #include "compare/slabs.h"
 #include "compare/value_differences.h"
@@ -135,6 +136,14 @@ public:
         describe_files();
         set_frame();
         list_mks();
+        if (const std::string why = why_unrelated(out_); !why.empty())
+            throw CompareError(
+                fmt::format("'{}' and '{}' are not comparable, expected two results "
+                            "of one case: {}",
+                            sources_[0].path(), sources_[1].path(), why));
+        for (std::size_t f = 0; f < 2; ++f)
+            out_.is_on_lattice[f] =
+                is_on_lattice(sources_[f], out_.files[f].dp > 0 ? out_.files[f].dp : out_.dp);
         TriangleSoup soup = read_geometry(options.geometry, options.threads);
         soup.vertices.insert(soup.vertices.end(), options.surface.vertices.begin(),
                              options.surface.vertices.end());

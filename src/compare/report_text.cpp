@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fppg
@@ -71,6 +73,68 @@ std::string quality_table(const Comparison& comparison)
     return text_table(rows, 2, "  ");
 }
 
+/// What matters of a result on the lattice and one that is body-fitted.
+std::string modes_table(const Comparison& comparison)
+{
+    const bool has_geometry = comparison.has_geometry;
+    const double dp = comparison.dp;
+    const double cell = comparison.is_2d ? dp * dp : dp * dp * dp;
+    std::vector<std::vector<std::string>> rows{{"mk", "type", "A", "B", "B - A",
+                                                comparison.is_2d ? "m^2 A" : "m^3 A", "B",
+                                                "apart, dp", "at most"}};
+    if (has_geometry) rows.front().insert(rows.front().end(), {"to surface, dp A", "B"});
+    for (const MkComparison& of : comparison.mks)
+    {
+        const auto a = static_cast<double>(of.count[0]);
+        const auto b = static_cast<double>(of.count[1]);
+        const std::uint64_t paired = of.same + of.moved;
+        rows.push_back(
+            {whole(of.mk), type_of(of), whole(of.count[0]), whole(of.count[1]),
+             a > 0 ? fmt::format("{:+.2f} %", 100 * (b / a - 1)) : "-",
+             fmt::format("{:.5g}", a * cell), fmt::format("{:.5g}", b * cell),
+             paired == 0 ? "-"
+                         : fmt::format("{:.3f}", of.moved_dp.mean * static_cast<double>(of.moved) /
+                                                     static_cast<double>(paired)),
+             of.moved > 0 ? fmt::format("{:.3f}", of.moved_dp.largest) : "-"});
+        if (has_geometry)
+            for (const Statistics& d : of.distance_dp) rows.back().push_back(mean_and_deviation(d));
+    }
+    return text_table(rows, 2, "  ");
+}
+
+/// Whether a finding says more than that particles of a fitted result stand elsewhere.
+bool matters_between_modes(const Finding& finding)
+{
+    static constexpr std::array<std::string_view, 8> of_places{
+        "count", "missing", "extra", "moved", "ids", "density", "normal", "values"};
+    return std::find(of_places.begin(), of_places.end(), finding.category) == of_places.end();
+}
+
+std::string findings_text(const Comparison& comparison)
+{
+    std::vector<Finding> findings = comparison.findings;
+    std::string text;
+    if (comparison.is_of_two_modes())
+    {
+        std::erase_if(findings, [](const Finding& f) { return !matters_between_modes(f); });
+        text = fmt::format(
+            "{} is on the lattice, {} is body-fitted or moved off it: their particles stand at "
+            "other "
+            "places by design. Counts, volumes (particles times dp^{}) and distances "
+            "between nearest particles:\n{}",
+            comparison.is_on_lattice[0] ? "A" : "B", comparison.is_on_lattice[0] ? "B" : "A",
+            comparison.is_2d ? 2 : 3, modes_table(comparison));
+        if (findings.empty()) return text;
+    }
+    text += "Different, largest first (share of the particles, or of the value):\n";
+    const std::size_t shown = std::min(findings_shown, findings.size());
+    for (std::size_t i = 0; i < shown; ++i)
+        text += fmt::format("  {:>8.3g} %  {:<8}  {}\n", 100 * findings[i].size,
+                            findings[i].category, findings[i].text);
+    if (shown < findings.size()) text += fmt::format("  and {} more\n", findings.size() - shown);
+    return text;
+}
+
 } // namespace
 
 std::string to_text(const Comparison& comparison)
@@ -91,22 +155,10 @@ std::string to_text(const Comparison& comparison)
             "them and of the case is the same.\n",
             comparison.same_place_m);
     else
-    {
-        text +=
-            fmt::format("Different, largest first (share of the particles, or of the value):\n");
-        const std::size_t shown = std::min(findings_shown, comparison.findings.size());
-        for (std::size_t i = 0; i < shown; ++i)
-        {
-            const Finding& finding = comparison.findings[i];
-            text += fmt::format("  {:>8.3g} %  {:<8}  {}\n", 100 * finding.size, finding.category,
-                                finding.text);
-        }
-        if (shown < comparison.findings.size())
-            text += fmt::format("  and {} more\n", comparison.findings.size() - shown);
-    }
+        text += findings_text(comparison);
     if (!comparison.mks.empty())
     {
-        text += "Particles:\n" + counts_table(comparison);
+        if (!comparison.is_of_two_modes()) text += "Particles:\n" + counts_table(comparison);
         text += fmt::format(
             "Distance to the nearest particle in dp, and Shepard sum ({}, h = 1.3 dp){}; mean and "
             "standard deviation:\n",
@@ -127,10 +179,13 @@ std::string to_text(const Comparison& comparison)
                 has_alone = true;
             }
     if (has_alone) text += "\n";
-    if (!comparison.examples.empty()) text += "Examples:\n";
-    for (const ChangedParticle& p : comparison.examples)
-        text += fmt::format("  {:<8}  mk {}: {}\n", change_name(p.kind),
-                            p.mk[p.kind == ChangeKind::Extra ? 1 : 0], describe_change(p));
+    if (!comparison.examples.empty() && !comparison.is_of_two_modes())
+    {
+        text += "Examples:\n";
+        for (const ChangedParticle& p : comparison.examples)
+            text += fmt::format("  {:<8}  mk {}: {}\n", change_name(p.kind),
+                                p.mk[p.kind == ChangeKind::Extra ? 1 : 0], describe_change(p));
+    }
     if (!comparison.values.empty()) text += "Values in Case.bi4 and Case.xml, constants first:\n";
     const std::size_t values = std::min(values_in_text, comparison.values.size());
     for (std::size_t i = 0; i < values; ++i)

@@ -111,6 +111,56 @@ TEST(CompareResults, CallsAParticleThatWentFartherThanDpMissingAndExtra)
     EXPECT_EQ(mk_of(found, 1).moved, 0U);
 }
 
+TEST(CompareResults, RefusesResultsOfOtherCases)
+{
+    const TestFolder folder;
+    write_particles(folder / "a.vtk", box_of(8, 8, 8));
+    std::vector<TestParticle> far = box_of(8, 8, 8);
+    for (TestParticle& p : far) p.position.x += 100;
+    write_particles(folder / "far.vtk", far);
+    std::vector<TestParticle> other = box_of(8, 8, 8);
+    for (TestParticle& p : other) p.mk = 20;
+    write_particles(folder / "other.vtk", other);
+    const auto error_of = [&](const char* name)
+    {
+        try
+        {
+            compare_results(folder / "a.vtk", folder / name, {});
+        }
+        catch (const CompareError& error)
+        {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_NE(error_of("far.vtk").find("are not comparable, expected two results of one case: the "
+                                       "boxes around their particles share 0 %"),
+              std::string::npos)
+        << error_of("far.vtk");
+    EXPECT_NE(error_of("other.vtk").find("they have no mk in common"), std::string::npos)
+        << error_of("other.vtk");
+}
+
+TEST(CompareResults, SaysWhatMattersBetweenTheLatticeAndAFittedResult)
+{
+    const TestFolder folder;
+    write_particles(folder / "lattice.vtk", box_of(8, 8, 8));
+    std::vector<TestParticle> fitted = box_of(8, 8, 8);
+    for (TestParticle& p : fitted)
+        if (p.mk == 10) p.position.x += 0.3 * std::sin(double(p.id));
+    fitted.pop_back();
+    write_particles(folder / "fitted.vtk", fitted);
+    const Comparison found = compare_results(folder / "lattice.vtk", folder / "fitted.vtk", {});
+    EXPECT_TRUE(found.is_of_two_modes());
+    const std::string text = to_text(found);
+    EXPECT_NE(text.find("A is on the lattice, B is body-fitted or moved off it"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("-0.39 %"), std::string::npos) << text;
+    EXPECT_EQ(text.find(" moved, by"), std::string::npos) << text;
+    const Comparison same = compare_results(folder / "lattice.vtk", folder / "lattice.vtk", {});
+    EXPECT_FALSE(same.is_of_two_modes());
+}
+
 TEST(CompareResults, NamesSwappedIds)
 {
     std::vector<TestParticle> changed = box_of(6, 5, 4);

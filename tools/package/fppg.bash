@@ -13,10 +13,10 @@ _fppg()
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
-        *:inspect) options="--dp --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
+        *:inspect) options="--dp --unit --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:render)
-            options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette
+            options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette --closed --bare
                 --threads --help" ;;
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
