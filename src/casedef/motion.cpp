@@ -23,12 +23,12 @@ struct Movement
 
 const std::vector<Movement>& movements()
 {
-    using Names = std::vector<std::string_view>;
-    static const Names xyz{"x", "y", "z"};
-    static const Names ang{"ang"};
-    static const Names v{"v"};
-    static const Names name{"name"};
-    static const Names columns{"name", "fields", "fieldtime"};
+    using Attributes = std::vector<std::string_view>;
+    static const Attributes xyz{"x", "y", "z"};
+    static const Attributes ang{"ang"};
+    static const Attributes v{"v"};
+    static const Attributes name{"name"};
+    static const Attributes columns{"name", "fields", "fieldtime"};
     static const std::vector<Movement> all{
         {"wait", {}},
         {"mvnull", {}},
