@@ -304,18 +304,32 @@ bool is_remark(const std::string& element, std::string_view attribute)
            (attribute.find(':') != std::string_view::npos && !attribute.starts_with("fppg:"));
 }
 
+/// Whether a word is one of a list separated by blanks.
+bool is_listed(std::string_view list, std::string_view word)
+{
+    for (std::size_t at = list.find(word); at != std::string_view::npos;
+         at = list.find(word, at + 1))
+    {
+        const std::size_t end = at + word.size();
+        if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' '))
+            return true;
+    }
+    return false;
+}
+
 void look_at_attributes(const Element& e, std::string_view names, const std::string& file,
                         std::vector<std::string>& out)
 {
-    if (e.attributes.empty()) return;
-    Names known = names.empty() ? Names{} : split(names, ' ');
-    if (e.name.starts_with("draw")) known.push_back("fppg:name");
-    if (e.name.starts_with("drawfile")) known.push_back("fppg:fill");
+    const bool is_draw = e.name.starts_with("draw");
+    const bool is_file = e.name.starts_with("drawfile");
     for (const Element::Attribute& a : e.attributes)
     {
-        if (is_remark(e.name, a.name) ||
-            std::find(known.begin(), known.end(), a.name) != known.end())
+        if (is_listed(names, a.name) || is_remark(e.name, a.name) ||
+            (is_draw && a.name == "fppg:name") || (is_file && a.name == "fppg:fill"))
             continue;
+        Names known = names.empty() ? Names{} : split(names, ' ');
+        if (is_draw) known.push_back("fppg:name");
+        if (is_file) known.push_back("fppg:fill");
         out.push_back(fmt::format(
             "{}:{}: <{}>: attribute {}=\"{}\" is not known and has no effect{}, expected {}", file,
             e.line, e.name, a.name, a.value, did_you_mean(a.name, known),
