@@ -253,9 +253,10 @@ void WallPainter::finish()
         walls.cut_bodies.push_back(all.bodies[i]);
     }
     anchors_.clear();
-    if (walls.cut.empty()) return;
-    all.erase(is_cut_);
+    if (!walls.cut.empty()) all.erase(is_cut_);
     is_cut_.clear();
+    hold_beside_second_sheets();
+    if (walls.cut.empty()) return;
     const double reach = held_distance_dp * field_->grid.dp;
     PointGrid cut(reach, walls.cut.size());
     Box3 cut_box;
@@ -274,6 +275,32 @@ void WallPainter::finish()
                               {
                                   if (walls.cut_bodies[c] == all.bodies[i]) all.held[i] = 1;
                               });
+        },
+        1024);
+}
+
+void WallPainter::hold_beside_second_sheets()
+{
+    FittedWalls& walls = field_->walls;
+    const WallParticles& second = walls.second_sheets;
+    if (second.size() == 0) return;
+    WallParticles& all = walls.particles;
+    const double reach = held_distance_dp * field_->grid.dp;
+    PointGrid grid(reach, second.size());
+    for (const Vec3& p : second.positions) grid.add(p);
+    parallel_for(
+        all.size(), threads_,
+        [&](std::size_t i)
+        {
+            const SurfaceMesh& mesh = walls.bodies[all.bodies[i]].mesh;
+            const Vec3& normal = mesh.normals[all.facets[i]];
+            grid.for_each_near(all.positions[i], reach,
+                               [&](std::uint32_t c, double)
+                               {
+                                   if (second.bodies[c] == all.bodies[i] &&
+                                       dot(mesh.normals[second.facets[c]], normal) > 0)
+                                       all.held[i] = 1;
+                               });
         },
         1024);
 }

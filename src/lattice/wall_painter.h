@@ -52,6 +52,8 @@ private:
     double filled_share(const Hollow& hollow) const;
     void hand_over_shares();
     void cut_by(const FittedDraw& draw);
+    /// What is left of a sheet beside the part that was taken out would flow into its place.
+    void hold_beside_second_sheets();
     void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
 
     RunField* field_;

@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -230,6 +232,46 @@ TEST(FittedPlate, ThinnerThanHalfADpHasOneSheetByDefault)
     EXPECT_NEAR(particles_a_dp2(0.008, "both"), 2, 0.3);
     EXPECT_NEAR(particles_a_dp2(0.012, ""), 2, 0.3);
     EXPECT_NEAR(particles_a_dp2(0.012, "one"), 1, 0.12);
+}
+
+/// A blade along y whose two sides meet at 8 degrees, as text of an STL file.
+std::string blade()
+{
+    const std::array<std::array<double, 2>, 3> profile{{{0, 0.1}, {0.4, 0.072}, {0.4, 0.128}}};
+    std::string text = "solid blade\n";
+    const auto add = [&](const std::array<std::array<double, 3>, 3>& corners)
+    {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (const auto& c : corners) text += fmt::format("vertex {} {} {}\n", c[0], c[1], c[2]);
+        text += "endloop\nendfacet\n";
+    };
+    const auto at = [&](std::size_t i, double y) {
+        return std::array<double, 3>{profile[i % 3][0], y, profile[i % 3][1]};
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        add({at(i, 0), at(i + 1, 0.4), at(i + 1, 0)});
+        add({at(i, 0), at(i, 0.4), at(i + 1, 0.4)});
+    }
+    add({at(0, 0), at(1, 0), at(2, 0)});
+    add({at(0, 0.4), at(2, 0.4), at(1, 0.4)});
+    return text + "endsolid blade\n";
+}
+
+TEST(FittedPlate, KeepsParticlesApartWhereTheSidesOfABladeMeet)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "blade.stl", blade());
+    const RunResult result =
+        run_case(folder, floating(R"(<drawfilestl file="blade.stl" autofill="true" />)"), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const ParticleCloud cloud = fppg::read_particles(folder / "Case", false, 1);
+    ASSERT_GT(cloud.positions.size(), 500u);
+    double nearest = 1;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            nearest = std::min(nearest, norm(cloud.positions[i] - cloud.positions[k]));
+    EXPECT_GT(nearest / dp, 0.5);
 }
 
 // -- warnings about counts and volumes
