@@ -235,14 +235,20 @@ TEST(FittedPlate, ThinnerThanHalfADpHasOneSheetByDefault)
 }
 
 /// A blade along y whose two sides meet at 8 degrees, as text of an STL file.
-std::string blade()
+///
+/// is_inwards  its facets face inwards
+std::string blade(bool is_inwards = false)
 {
     const std::array<std::array<double, 2>, 3> profile{{{0, 0.1}, {0.4, 0.072}, {0.4, 0.128}}};
     std::string text = "solid blade\n";
     const auto add = [&](const std::array<std::array<double, 3>, 3>& corners)
     {
         text += "facet normal 0 0 0\nouter loop\n";
-        for (const auto& c : corners) text += fmt::format("vertex {} {} {}\n", c[0], c[1], c[2]);
+        for (std::size_t n = 0; n < 3; ++n)
+        {
+            const auto& c = corners[is_inwards ? 2 - n : n];
+            text += fmt::format("vertex {} {} {}\n", c[0], c[1], c[2]);
+        }
         text += "endloop\nendfacet\n";
     };
     const auto at = [&](std::size_t i, double y) {
@@ -272,6 +278,23 @@ TEST(FittedPlate, KeepsParticlesApartWhereTheSidesOfABladeMeet)
         for (std::size_t k = 0; k < i; ++k)
             nearest = std::min(nearest, norm(cloud.positions[i] - cloud.positions[k]));
     EXPECT_GT(nearest / dp, 0.5);
+}
+
+TEST(FillInside, FillsABodyAndItsReversedCopyAsOneSolidAndSaysSo)
+{
+    const std::string draw = R"(<drawfilestl file="blade.stl" fppg:fill="inside" />)";
+    std::array<std::size_t, 2> particles{};
+    for (const bool has_copy : {false, true})
+    {
+        const TemporaryFolder folder;
+        write_text(folder / "blade.stl", has_copy ? blade() + blade(true) : blade());
+        const RunResult result = run_case(folder, floating(draw), {});
+        ASSERT_EQ(result.code, 0) << result.output;
+        particles[has_copy ? 1 : 0] = count(folder);
+        EXPECT_EQ(contains(result.output, "the inside on both"), has_copy) << result.output;
+    }
+    EXPECT_EQ(particles[0], particles[1]);
+    EXPECT_GT(particles[0], 0u);
 }
 
 // -- warnings about counts and volumes
