@@ -3,7 +3,6 @@
 #include "core/text.h"
 #include "lattice/mesh_units.h"
 #include "meshes/open_edges.h"
-#include "meshes/repaired_solid.h"
 #include "nodes/snap.h"
 #include "shapes/shape.h"
 
@@ -81,7 +80,7 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
 }
 
 void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
-                              const TriangleSoup& soup)
+                              const TriangleSoup& soup, const MeshReport& repairs)
 {
     if (!op.autofill && !op.fill_inside && !op.advanced) return;
     const std::uint64_t open = open_edge_count(soup);
@@ -91,17 +90,16 @@ void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
                          "its inside is not certain; close the mesh (fppg inspect shows "
                          "where) or draw it without autofill, advanced or fppg:fill",
                          op.file, open));
-    if (!op.fill_inside && !op.advanced) return;
-    MeshReport report;
-    if (open > 0 || !repaired_solid(soup, def_.grid.dp, 1, report)) return;
-    const bool is_mixed = report.flipped_facets > 0 && report.flipped_facets < report.facets_read;
-    const std::uint64_t twice = report.duplicate_facets + report.inner_shell_facets;
+    if (open > 0 || (!op.fill_inside && !op.advanced)) return;
+    const bool is_mixed =
+        repairs.flipped_facets > 0 && repairs.flipped_facets < repairs.facets_read;
+    const std::uint64_t twice = repairs.duplicate_facets + repairs.inner_shell_facets;
     if (is_mixed || twice > 0)
         warn(source, Kind::Open,
              fmt::format(
                  "{} has closed parts that face inwards or lie in one another ({}); {}", op.file,
                  is_mixed
-                     ? counted(report.flipped_facets, "facet faces inwards", "facets face inwards")
+                     ? counted(repairs.flipped_facets, "facet faces inwards", "facets face inwards")
                      : counted(twice, "facet has the inside on both of its faces",
                                "facets have the inside on both of their faces"),
                  op.fill_inside ? "all are filled as one solid"

@@ -25,8 +25,12 @@ public:
     /// dp, a shape that reaches beyond the nodes of the domain. Not for clipped draws.
     void check_shape(const DrawOp& op, const Box3& bounds);
 
-    /// A file that is to be filled, with open edges.
-    void check_closed(const SourceRef& source, const MeshFileOp& op, const TriangleSoup& soup);
+    /// A file that is to be filled, with open edges, or with parts that face inwards or lie in one
+    /// another.
+    ///
+    /// repairs  of the file as a solid; not looked at for autofill alone
+    void check_closed(const SourceRef& source, const MeshFileOp& op, const TriangleSoup& soup,
+                      const MeshReport& repairs);
 
     /// The nodes that a fill added, slab by slab, at the border of the domain.
     void check_fill(const SourceRef& source, const DrawState& state,

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace fppg
 {
@@ -59,15 +60,25 @@ void paint_by_depth(Painting& painting, const Brush& brush, const MeshFileOp& op
     painting.canvas.paint(brush, depth_region(moved, op, painting.grid(), threads));
 }
 
+/// A file as a solid, for fppg:fill and for what is said of advanced mode; nothing for other draws.
+std::optional<SurfaceMesh> check_solid(Painting& painting, const Brush& brush, const MeshFileOp& op,
+                                       const TriangleSoup& moved)
+{
+    MeshReport repairs;
+    std::optional<SurfaceMesh> solid;
+    if (op.fill_inside || op.advanced)
+        solid = repaired_solid(moved, painting.grid().dp, painting.canvas.threads(), repairs);
+    painting.checks.check_closed(*brush.source, op, moved, repairs);
+    return solid;
+}
+
 /// The inside of a file as of a fitted body: of the repaired mesh (facets that face inwards, copies
 /// and what lies inside another part count as there).
-void paint_inside(Painting& painting, const Brush& brush, const TriangleSoup& moved)
+void paint_inside(Painting& painting, const Brush& brush, const std::optional<SurfaceMesh>& solid)
 {
-    const LatticeGrid& grid = painting.grid();
-    const int threads = painting.canvas.threads();
-    MeshReport report;
-    if (const auto solid = repaired_solid(moved, grid.dp, threads, report))
-        painting.canvas.paint(brush, region_of(inside_spans(soup_of(*solid), grid, threads)));
+    if (solid)
+        painting.canvas.paint(brush, region_of(inside_spans(soup_of(*solid), painting.grid(),
+                                                            painting.canvas.threads())));
 }
 
 /// The sides of all triangles and quads, as lines; but the triangles of bent quads in
@@ -133,7 +144,7 @@ void paint_off_lattice_file(Painting& painting, const Brush& brush, const MeshFi
 {
     paint_off_lattice_mesh(painting, brush, op, file);
     const TriangleSoup moved = moved_soup(file.soup, op.transform, painting.canvas.threads());
-    if (op.fill_inside) paint_inside(painting, brush, moved);
+    if (op.fill_inside) paint_inside(painting, brush, check_solid(painting, brush, op, moved));
     if (op.autofill) autofill(painting, brush, op, file, moved);
 }
 
@@ -151,17 +162,18 @@ void paint_on_lattice(Painting& painting, const Brush& brush, const MeshFileOp& 
     }
     // The corners themselves are needed for the inside only.
     TriangleSoup moved;
+    std::optional<SurfaceMesh> solid;
     if (op.advanced || op.fill_inside || op.autofill)
     {
         moved = moved_soup(file.soup, op.transform, threads);
-        painting.checks.check_closed(*brush.source, op, moved);
+        solid = check_solid(painting, brush, op, moved);
     }
     if (op.advanced)
     {
         paint_by_depth(painting, brush, op, std::move(moved));
         return;
     }
-    if (op.fill_inside) paint_inside(painting, brush, moved);
+    if (op.fill_inside) paint_inside(painting, brush, solid);
     paint_triangles(painting, brush, snapped_facets(painting, op, file.soup));
     if (op.autofill && !op.fill_inside) autofill(painting, brush, op, file, moved);
 }
@@ -203,7 +215,7 @@ public:
         for (const std::string& other : op_.joined)
             for_each_polygon(joined_file(painting_, brush_, op_, other), op_, painting_.grid().dp,
                              [&](const std::vector<std::uint32_t>& corners) { count(corners); });
-        if (op_.advanced || op_.autofill) painting_.checks.check_closed(*brush_.source, op_, moved);
+        if (op_.advanced || op_.autofill) check_solid(painting_, brush_, op_, moved);
         if (op_.advanced)
             paint_by_depth(painting_, brush_.of_part(part_), op_, moved);
         else if (op_.autofill)

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "core/parallel.h"
+#include "meshes/inside_test.h"
 #include "meshes/mesh_facets.h"
-#include "meshes/mesh_query.h"
 
 namespace fppg
 {
@@ -13,20 +13,17 @@ namespace fppg
 namespace
 {
 
-/// How often the shells that count wind around a point, without one of them: the sum of signed
-/// crossings on which two of three axes agree; 0 where none do.
+/// How many times the other closed shells wind around a point.
 int winding_of_others(const MeshQuery& query, const SurfaceMesh& mesh,
-                      const std::vector<char>& counts, std::uint32_t own, const Vec3& p)
+                      const std::vector<char>& is_closed, std::uint32_t own, const Vec3& p)
 {
-    int sums[3] = {0, 0, 0};
-    for (int axis = 0; axis < 3; ++axis)
-        for (const Crossing& crossing : query.crossings(p, axis))
-        {
-            const std::uint32_t shell = mesh.shells[crossing.facet];
-            if (shell != own && counts[shell] != 0) sums[axis] -= crossing.step;
-        }
-    if (sums[0] == sums[1] || sums[0] == sums[2]) return sums[0];
-    return sums[1] == sums[2] ? sums[1] : 0;
+    return winding_by_lines(query, p,
+                            [&](std::uint32_t facet)
+                            {
+                                const std::uint32_t shell = mesh.shells[facet];
+                                return shell != own && is_closed[shell] != 0;
+                            })
+        .value_or(0);
 }
 
 } // namespace

@@ -3,12 +3,19 @@
 #include "meshes/mesh_query.h"
 #include "meshes/winding_tree.h"
 
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace fppg
 {
+
+/// How many times the facets that count wind around p, where two of three lines along the axes
+/// agree; nothing where no two do. See InsideTest::winding().
+std::optional<int> winding_by_lines(const MeshQuery& query, const Vec3& p,
+                                    const std::function<bool(std::uint32_t)>& counts = {});
 
 /// The inside test for single points (leak, Booleans, exclusion bands, cuts); lattice columns use
 /// inside_spans(). Rays are Embree's, crossings are computed in double, and a ray that meets an

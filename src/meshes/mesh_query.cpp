@@ -106,6 +106,7 @@ struct MeshQuery::Scene
         int axis = 0;
         std::vector<Crossing>* found = nullptr; ///< all crossings of the half line, or
         LineSums* sums = nullptr;               ///< only the sums of the whole line
+        const std::function<bool(std::uint32_t)>* counts = nullptr; ///< for the sums; may be null
     };
 
     /// Notes the crossing and reports no hit, so that the ray goes on to the end.
@@ -121,6 +122,7 @@ struct MeshQuery::Scene
         const bool is_before = side_of_plane(facet, at.x, at.y, at.z) > 0;
         if (context.sums != nullptr)
         {
+            if (context.counts != nullptr && !(*context.counts)(arguments->primID)) return;
             (is_before ? context.sums->before : context.sums->behind) -= facet.facing;
             return;
         }
@@ -224,13 +226,15 @@ std::vector<Crossing> MeshQuery::crossings(const Vec3& origin, int axis) const
     return found;
 }
 
-LineSums MeshQuery::line_sums(const Vec3& point, int axis) const
+LineSums MeshQuery::line_sums(const Vec3& point, int axis,
+                              const std::function<bool(std::uint32_t)>& counts) const
 {
     LineSums sums;
     Scene::RayContext context;
     context.origin = point;
     context.axis = axis;
     context.sums = &sums;
+    if (counts) context.counts = &counts;
     scene_->cast(context);
     return sums;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -63,7 +64,10 @@ public:
     std::vector<Crossing> crossings(const Vec3& origin, int axis) const;
 
     /// The steps of the line through `point` along `axis`, by the rules of crossings(); faster.
-    LineSums line_sums(const Vec3& point, int axis) const;
+    ///
+    /// counts  whether a facet counts; empty: all do
+    LineSums line_sums(const Vec3& point, int axis,
+                       const std::function<bool(std::uint32_t)>& counts = {}) const;
 
     const TriangleSoup& soup() const;
 
