@@ -300,6 +300,11 @@ void unite_touching_shells(SurfaceMesh& mesh, MeshReport& report, double dp, int
     MeshReport after;
     mesh = repair_mesh(soup, {.dp = dp}, threads, after);
     after.facets_read = report.facets_read;
+    // What judge_edges() said last of the mesh before is said anew of the mesh now.
+    const std::size_t outdated = (report.open_edges > 0 ? 1U : 0U) +
+                                 (report.non_manifold_edges > 0 ? 1U : 0U) +
+                                 (report.clashing_edges > 0 ? 1U : 0U);
+    report.warnings.resize(report.warnings.size() - outdated);
     report.warnings.push_back(
         fmt::format("{} touch face to face; the walls between them, {:.3g} m2, are left out.",
                     counted(static_cast<std::size_t>(std::count(touches.begin(), touches.end(), 1)),
