@@ -88,6 +88,21 @@ struct RelaxSettings
     bool operator==(const RelaxSettings&) const = default;
 };
 
+/// The boundary condition that the particles of a wall are placed for.
+enum class WallBoundary : std::uint8_t
+{
+    Dbc,  ///< dynamic: on the surface, and under it where layers are asked for
+    Mdbc, ///< modified dynamic: half a step behind the surface, and deeper
+};
+
+/// On which side of an open sheet its layers stand.
+enum class LayerSide : std::uint8_t
+{
+    Behind, ///< where its facets do not look
+    Front,
+    Both,
+};
+
 /// How the particles of a boundary mk are placed on its true surface: `<fppg><bodyfitted>`, or
 /// -fit.
 struct FitSettings
@@ -100,6 +115,14 @@ struct FitSettings
     /// half a dp down two sheets are one of twice the density to SPH.
     double one_sheet_dp = 0.5;
     RelaxSettings relax;
+    std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
+    /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for Mdbc
+    /// as many as fill the kernel of fluid at the wall, for Dbc none but the surface.
+    std::optional<int> layers;
+    std::optional<LayerSide> side; ///< of sheets; empty: behind
+    /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
+    /// surface has particles.
+    std::vector<double> depths_dp;
     bool operator==(const FitSettings&) const = default;
 };
 

@@ -17,6 +17,8 @@ namespace fppg
 /// The exact surface behind the triangles of a round body, on which its particles are put
 /// (meshes/round_surface.h).
 struct RoundSurface;
+/// How deep points are behind a surface (offset/wall_depth.h).
+class WallDepth;
 
 /// A shape of the case as triangles, in the coordinates of the case.
 struct ShapeMesh
@@ -66,6 +68,14 @@ struct FittedBody
     /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
     FitMeasures measures;
+
+    /// Of a layer of a wall: the index of the body whose surface it lies behind; else no_index.
+    std::uint32_t owner = no_index;
+    int layer = 0;    ///< 0, 1, ... from the surface on
+    double depth = 0; ///< metres behind the surface; its mesh is so deep but for its facets' chords
+    /// The surface that the depth is measured from; null where the body is no layer.
+    std::shared_ptr<const WallDepth> wall;
+    bool is_layer() const { return owner != no_index; }
 
     /// Settles the share by the measures.
     ///
@@ -167,6 +177,18 @@ struct FittedWalls
 
     /// Nodes of the fluid of point files are covered.
     bool has_point_water = false;
+
+    /// The body to which a body or a layer belongs.
+    const FittedBody& owner_of(std::size_t body) const
+    {
+        const FittedBody& b = bodies[body];
+        return b.is_layer() ? bodies[b.owner] : b;
+    }
+    FittedBody& owner_of(std::size_t body)
+    {
+        FittedBody& b = bodies[body];
+        return b.is_layer() ? bodies[b.owner] : b;
+    }
 
     /// Whether nodes may be covered.
     bool has_zones() const

@@ -78,7 +78,7 @@ private:
         const FittedBody& body = walls_.bodies[b];
         const FitMeasures& measures = body.measures;
         const double expected = measures.area / (dp_ * dp_);
-        if (!(expected > 0)) return {};
+        if (!(expected > 0) || has_layers(b)) return {};
         const double share = measures.wall_particles / expected - 1;
         if (is_off(share))
             counts_[why_count(b, expected, share)].add(
@@ -92,10 +92,17 @@ private:
                            percent(share));
     }
 
+    /// Its layers follow it.
+    bool has_layers(std::size_t b) const
+    {
+        return b + 1 < walls_.bodies.size() && walls_.bodies[b + 1].owner == b;
+    }
+
     std::string volume_of(std::size_t b)
     {
         const FittedBody& body = walls_.bodies[b];
         const FitMeasures& measures = body.measures;
+        if (body.is_layer()) return {};
         if (!(measures.volume > 0)) return " no volume";
         if (!body.is_solid || measures.filled < nearly_all)
             return fmt::format(" {:.4g} {}, not filled by its draw", measures.volume / depth_,

@@ -1,6 +1,7 @@
 #include "casedef/fit_block.h"
 
 #include "casedef/block_reader.h"
+#include "casedef/wall_boundary.h"
 #include "shapes/shape.h"
 
 #include <fmt/format.h>
@@ -114,7 +115,10 @@ private:
 
     void read_body_fitted(const Element& e) const
     {
-        require_known(e, {"mkbound", "featureangle", "density", "clearance", "plates"}, {"relax"});
+        require_known(e,
+                      {"mkbound", "featureangle", "density", "clearance", "plates", "boundary",
+                       "layers", "side"},
+                      {"relax"});
         FitSettings s;
         s.line = e.line;
         s.feature_angle_deg = number_or(
@@ -132,6 +136,7 @@ private:
             read_.fail(e,
                        fmt::format("attribute plates=\"{}\" is invalid, expected auto, both or one",
                                    plates));
+        read_layers(e, s);
         bool has_relax = false;
         for (const Element& c : e.children)
         {
@@ -149,6 +154,30 @@ private:
         // What is for every mk comes after those before it, and so wins over them.
         def_.fit.of_mk.clear();
         def_.fit.all = s;
+    }
+
+    /// The place of the layers; `boundary` is left empty where the case's parameters decide.
+    void read_layers(const Element& e, FitSettings& s) const
+    {
+        if (e.find_attribute("boundary") != nullptr && !is_word(e, "boundary", "auto"))
+            s.boundary = is_first_of(e, "boundary", "mdbc", "dbc") ? WallBoundary::Mdbc
+                                                                   : WallBoundary::Dbc;
+        if (e.find_attribute("layers") != nullptr && !is_word(e, "layers", "auto"))
+            s.layers = static_cast<int>(number_or(
+                e, "layers", 0, [](double v) { return v >= 1 && v <= 16 && v == std::floor(v); },
+                "auto or a whole number from 1 to 16"));
+        const std::string* side = e.find_attribute("side");
+        if (side == nullptr) return;
+        if (*side == "behind")
+            s.side = LayerSide::Behind;
+        else if (*side == "front")
+            s.side = LayerSide::Front;
+        else if (*side == "both")
+            s.side = LayerSide::Both;
+        else
+            read_.fail(e, fmt::format("attribute side=\"{}\" is invalid, expected behind, front or "
+                                      "both",
+                                      *side));
     }
 
     RelaxSettings relax_of(const Element& e) const
@@ -468,6 +497,7 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     if ((choice == FitChoice::On || choice == FitChoice::Raw) && !def.fit.all)
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
+    settle_boundaries(def);
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

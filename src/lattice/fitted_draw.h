@@ -22,9 +22,11 @@ struct NodeShare
 struct FittedDraw
 {
     FittedBody body;
-    WallParticles particles;       ///< of this body only; `bodies` is 0
-    std::vector<Vec3> cut;         ///< places of particles that were left out
-    SurfaceParticles second_sheet; ///< taken out of a thin plate
+    std::vector<FittedBody> layers; ///< behind its surface; `owner` is 0
+    WallParticles particles; ///< of this body and its layers; `bodies` 0 is the body, 1 the first layer
+    std::vector<Vec3> cut;   ///< places of particles that were left out
+    std::vector<std::uint32_t> cut_bodies;
+    WallParticles second_sheet; ///< taken out of a thin plate, or where layers of two sides meet
     std::vector<Spans> volume;     ///< one entry per slab of the lattice
     std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
     std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners

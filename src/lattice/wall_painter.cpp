@@ -70,29 +70,30 @@ void WallPainter::add(FittedDraw&& draw)
             }
         });
     walls.bodies.push_back(std::move(draw.body));
+    for (FittedBody& layer : draw.layers)
+    {
+        layer.owner = body;
+        layer.line = walls.bodies[body].line;
+        layer.name += " of " + walls.bodies[body].name;
+        layer.mk = mk;
+        walls.bodies.push_back(std::move(layer));
+    }
     const std::size_t first = walls.particles.size();
-    std::fill(draw.particles.bodies.begin(), draw.particles.bodies.end(), body);
-    std::fill(draw.particles.mk.begin(), draw.particles.mk.end(), mk);
-    const std::vector<std::uint16_t>& facet_mk = walls.bodies.back().facet_mk;
-    if (!facet_mk.empty())
-        for (std::size_t i = 0; i < draw.particles.size(); ++i)
-            draw.particles.mk[i] = facet_mk[draw.particles.facets[i]];
+    for (WallParticles* particles : {&draw.particles, &draw.second_sheet})
+        for (std::size_t i = 0; i < particles->size(); ++i)
+        {
+            particles->bodies[i] += body;
+            const std::vector<std::uint16_t>& facet_mk =
+                walls.bodies[particles->bodies[i]].facet_mk;
+            particles->mk[i] = facet_mk.empty() ? mk : facet_mk[particles->facets[i]];
+        }
     if (first == 0)
         walls.particles = std::move(draw.particles);
     else
         walls.particles.append(draw.particles);
     walls.cut.insert(walls.cut.end(), draw.cut.begin(), draw.cut.end());
-    walls.cut_bodies.resize(walls.cut.size(), body);
-    const SurfaceParticles& second = draw.second_sheet;
-    for (std::size_t i = 0; i < second.positions.size(); ++i)
-    {
-        walls.second_sheets.positions.push_back(second.positions[i]);
-        walls.second_sheets.kinds.push_back(second.kinds[i]);
-        walls.second_sheets.bodies.push_back(body);
-        walls.second_sheets.facets.push_back(second.facets[i]);
-        walls.second_sheets.mk.push_back(mk);
-        walls.second_sheets.held.push_back(0);
-    }
+    for (const std::uint32_t of_draw : draw.cut_bodies) walls.cut_bodies.push_back(body + of_draw);
+    walls.second_sheets.append(draw.second_sheet);
     is_cut_.resize(walls.particles.size(), 0);
     if (!draw.hollow.empty()) hollows_.push_back({body, std::move(draw.hollow)});
     anchor(first, draw.zone);
@@ -221,7 +222,9 @@ void WallPainter::hand_over_shares()
     std::vector<Counts> counts(field_->walls.bodies.size());
     for (std::size_t i = 0; i < is_cut_.size(); ++i)
     {
-        Counts& of_body = counts[field_->walls.particles.bodies[i]];
+        const std::uint32_t b = field_->walls.particles.bodies[i];
+        const FittedBody& drawn = field_->walls.bodies[b];
+        Counts& of_body = counts[drawn.is_layer() ? drawn.owner : b];
         if (is_cut_[i] == 0) ++of_body.kept;
         if (is_cut_[i] == touched) ++of_body.touched;
     }

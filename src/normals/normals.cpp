@@ -27,6 +27,9 @@ using Float3 = std::array<float, 3>;
 /// solver takes zero for none, and mirrors the particle in the surface to where it stands.
 constexpr double on_surface_dp = 0.01;
 
+/// Nearer to its surface than this a particle counts as on it, dp.
+constexpr double least_depth_dp = 0.1;
+
 Float3 as_float(const Vec3& v)
 {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -241,6 +244,11 @@ private:
                 GeometryQuery::Answer answer = query.at(p);
                 candidates[r] += answer.candidates;
                 const Vec3 own = own_normal(r, normal);
+                if (const double depth = own_depth(r, normal); depth > 0)
+                {
+                    normal = as_float(depth * own);
+                    return;
+                }
                 if (const int side = own == Vec3{} ? 0 : query.side_at(p, own, 0.5 * def_.grid.dp);
                     side != 0)
                     answer.normal = side * on_surface_dp * def_.grid.dp * own;
@@ -266,8 +274,20 @@ private:
                             all_resized, normals_.size(), geometry.max_size_h, limit));
     }
 
-    /// The unit normal of the true surface at a particle that a fit put on it, else zero. `normal`
-    /// is the entry of the particle in normals_.
+    /// How deep a particle of a layer stands behind the true surface, metres; zero for all others.
+    double own_depth(std::size_t r, const Float3& normal) const
+    {
+        const RunPlace& place = places_[r];
+        if (!place.run->is_off_lattice) return 0;
+        const OffLatticeParticles& all = particles_.off_lattice;
+        const auto k = static_cast<std::uint64_t>(&normal - &normals_[place.id]);
+        const std::uint64_t at = place.run->off_lattice_begin() + k;
+        const double depth = -all.distances[at];
+        return all.kinds[at] != FitKind::Volume && depth > least_depth_dp * def_.grid.dp ? depth : 0;
+    }
+
+    /// The unit normal of the true surface at a particle that a fit put on it or behind it, else
+    /// zero. `normal` is the entry of the particle in normals_.
     Vec3 own_normal(std::size_t r, const Float3& normal) const
     {
         const RunPlace& place = places_[r];
@@ -289,7 +309,8 @@ private:
             {
                 if (norm({normal[0], normal[1], normal[2]}) >= 0.99 * length) return;
                 const Vec3 own = own_normal(r, normal);
-                if (!(own == Vec3{})) normal = as_float(length * own);
+                if (!(own == Vec3{}))
+                    normal = as_float(std::max(length, own_depth(r, normal)) * own);
             });
     }
 

@@ -142,7 +142,7 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
                     out.normals[at] = place.normal;
                     out.distances[at] = place.distance;
                     out.shares[at] =
-                        static_cast<float>(walls.bodies[walls.particles.bodies[source]].share);
+                        static_cast<float>(walls.owner_of(walls.particles.bodies[source]).share);
                 }
                 else
                 {

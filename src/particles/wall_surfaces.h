@@ -2,8 +2,11 @@
 
 #include "fppg/fitted_walls.h"
 
+#include "meshes/pseudo_normals.h"
+
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace fppg
@@ -33,17 +36,8 @@ public:
     SurfacePlace at(std::size_t particle) const;
 
 private:
-    /// Facets around the vertices of a mesh: those of v are [begin[v], begin[v + 1]).
-    struct VertexFacets
-    {
-        std::vector<std::uint64_t> begin;
-        std::vector<std::uint32_t> facets;
-    };
-
     const FittedWalls& walls_;
-    std::vector<VertexFacets> around_; ///< per body; empty for a body without corners
-
-    Vec3 mean_at_corner(std::size_t body, std::uint32_t facet, const Vec3& p) const;
+    std::vector<std::unique_ptr<PseudoNormals>> normals_; ///< per body with corners or edges
 };
 
 } // namespace fppg

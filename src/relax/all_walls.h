@@ -33,6 +33,7 @@ public:
         for (const FittedBody& body : bodies)
         {
             first_.push_back(normals_.size());
+            if (body.is_layer()) continue;
             WallSection section;
             if (grid.is_2d) section = wall_section(body.mesh, grid.origin.y);
             const TriangleSoup of_body = grid.is_2d ? section.soup : soup_of(body.mesh);

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 #include "meshes/round_surface.h"
+#include "offset/offset_surface.h"
 #include "relax/all_walls.h"
 #include "relax/near_blocks.h"
 #include "relax/regions.h"
@@ -174,8 +175,12 @@ private:
             particles.size(), threads_,
             [&](std::size_t i)
             {
-                project_to_round(walls.bodies[particles.bodies[i]], particles.positions[i],
-                                 particles.facets[i]);
+                const FittedBody& body = walls.bodies[particles.bodies[i]];
+                if (!body.is_layer())
+                    project_to_round(body, particles.positions[i], particles.facets[i]);
+                else if (particles.kinds[i] == FitKind::Surface)
+                    particles.positions[i] =
+                        project_to_depth(*body.wall, particles.positions[i], body.depth);
             },
             1024);
         take_new_counts(before, count_by_body(particles));
@@ -206,11 +211,13 @@ private:
         {
             if (before[b] == 0) continue;
             FittedBody& body = field_.walls.bodies[b];
-            FitMeasures& measures = body.measures;
-            const double more = measures.wall_particles * (after[b] / before[b] - 1);
-            measures.wall_particles += more;
-            measures.wall_volume += 0.5 * more * std::pow(field_.grid.dp, 3);
-            body.settle_share(field_.grid.dp);
+            FittedBody& owner = field_.walls.owner_of(b);
+            const double more = body.measures.wall_particles * (after[b] / before[b] - 1);
+            body.measures.wall_particles += more;
+            if (body.is_layer()) owner.measures.wall_particles += more;
+            owner.measures.wall_volume +=
+                (body.is_layer() ? 1 : 0.5) * more * std::pow(field_.grid.dp, 3);
+            owner.settle_share(field_.grid.dp);
         }
     }
 
@@ -232,7 +239,11 @@ private:
             Region region;
             region.what = fmt::format("volume mk {}", fmt::join(mks, ","));
             region.band.assign(65536, 0);
-            for (const std::uint16_t mk : mks) region.band[mk] = settings->relax.band_dp;
+            // Under layers the inside begins that much deeper.
+            const double layers =
+                settings->depths_dp.empty() ? 0 : settings->depths_dp.back() + 0.5;
+            for (const std::uint16_t mk : mks)
+                region.band[mk] = settings->relax.band_dp + layers;
             region.beside.assign(65536, 0);
             region.is_solid = true;
             if (settings->relax.iterations)

@@ -9,6 +9,7 @@
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
 #include "walls/touching_shells.h"
+#include "walls/wall_layers.h"
 
 #include <algorithm>
 #include <utility>
@@ -28,31 +29,6 @@ bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
                            const double length = norm(clip.normal);
                            return dot(p - clip.point, clip.normal) <= 1e-9 * dp * length;
                        });
-}
-
-SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid, int threads)
-{
-    FitOptions options;
-    options.dp = grid.dp;
-    options.lattice_origin = grid.origin;
-    options.density = settings.density;
-    return fit_surface(
-        body.mesh, body.features,
-        place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
-        threads);
-}
-
-/// In 2D the wall is where the surface meets the plane of the particles.
-SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid)
-{
-    SectionOptions options;
-    options.y = grid.origin.y;
-    options.dp = grid.dp;
-    options.feature_angle_deg = settings.feature_angle_deg;
-    SectionParticles section = section_particles(body.mesh, options);
-    return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
 }
 
 /// Of open edges, metres; in 2D of those that meet the plane of the particles, dp each.
@@ -110,7 +86,7 @@ void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_
             "the shape has no inside that could be filled: only its surface has particles");
     body.clearance_inside = zone.clearance_inside_dp * grid.dp;
     body.clearance_outside = zone.clearance_outside_dp * grid.dp;
-    take_measures(zone, options, out.second_sheet.positions.size(), grid, body);
+    take_measures(zone, options, out.second_sheet.size(), grid, body);
     if (zone.has_inside && body.measures.filled == 0)
         out.hollow = by_slab(SpanSet{zone.volume}, grid);
     out.zone = by_slab(std::move(zone.zone), grid);
@@ -118,39 +94,60 @@ void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_
 }
 
 /// Keeps the particles in the domain and within the clips; the places of the others are cut.
-void keep_particles(const SurfaceParticles& surface, const LatticeGrid& grid,
-                    const std::vector<ClipPlane>& clips, int threads, FittedDraw& out)
+void keep_particles(const LatticeGrid& grid, const std::vector<ClipPlane>& clips, int threads,
+                    FittedDraw& out)
 {
-    const std::size_t n = surface.positions.size();
-    std::vector<char> is_kept(n);
+    WallParticles& particles = out.particles;
+    const std::size_t n = particles.size();
+    std::vector<char> is_out(n);
     parallel_for(
         n, threads,
         [&](std::size_t i)
         {
-            const Vec3& p = surface.positions[i];
-            is_kept[i] = is_in_domain(p, grid) && is_kept_by(clips, p, grid.dp);
+            const Vec3& p = particles.positions[i];
+            is_out[i] = !is_in_domain(p, grid) || !is_kept_by(clips, p, grid.dp);
         },
         particles_per_chunk);
-    WallParticles& particles = out.particles;
-    const auto kept = static_cast<std::size_t>(
-        std::count_if(is_kept.begin(), is_kept.end(), [](char k) { return k != 0; }));
-    particles.positions.reserve(kept);
-    particles.kinds.reserve(kept);
-    particles.facets.reserve(kept);
     for (std::size_t i = 0; i < n; ++i)
     {
-        if (!is_kept[i])
-        {
-            out.cut.push_back(surface.positions[i]);
-            continue;
-        }
-        particles.positions.push_back(surface.positions[i]);
-        particles.kinds.push_back(surface.kinds[i]);
-        particles.facets.push_back(surface.facets[i]);
+        if (!is_out[i]) continue;
+        out.cut.push_back(particles.positions[i]);
+        out.cut_bodies.push_back(particles.bodies[i]);
     }
-    particles.bodies.assign(kept, 0);
-    particles.mk.assign(kept, 0);
-    particles.held.assign(kept, 0);
+    if (!out.cut.empty()) particles.erase(is_out);
+}
+
+/// As particles of the body itself; mks come when it is painted.
+WallParticles of_body(SurfaceParticles&& surface)
+{
+    WallParticles out;
+    const std::size_t n = surface.positions.size();
+    out.positions = std::move(surface.positions);
+    out.kinds = std::move(surface.kinds);
+    out.facets = std::move(surface.facets);
+    out.bodies.assign(n, 0);
+    out.mk.assign(n, 0);
+    out.held.assign(n, 0);
+    return out;
+}
+
+/// On the surface, but for walls all of whose layers are behind it.
+void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out)
+{
+    const FittedBody& body = out.body;
+    if (!settings.depths_dp.empty() && settings.depths_dp[0] > 0) return;
+    SurfaceParticles surface =
+        grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
+    if (settings.one_sheet_dp > 0)
+        out.second_sheet = of_body(keep_one_sheet(
+            body.mesh, body.features, {grid.dp, settings.one_sheet_dp}, surface, threads));
+    if (body.round != nullptr)
+        parallel_for(
+            surface.positions.size(), threads,
+            [&](std::size_t i)
+            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
+            particles_per_chunk);
+    out.particles = of_body(std::move(surface));
 }
 
 /// A blob smaller than a cell, or a clip, can leave a particle without a node of the zone.
@@ -186,6 +183,31 @@ void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDr
 
 } // namespace
 
+SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid, int threads)
+{
+    FitOptions options;
+    options.dp = grid.dp;
+    options.lattice_origin = grid.origin;
+    options.density = settings.density;
+    return fit_surface(
+        body.mesh, body.features,
+        place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
+        threads);
+}
+
+/// In 2D the wall is where the surface meets the plane of the particles.
+SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid)
+{
+    SectionOptions options;
+    options.y = grid.origin.y;
+    options.dp = grid.dp;
+    options.feature_angle_deg = settings.feature_angle_deg;
+    SectionParticles section = section_particles(body.mesh, options);
+    return {std::move(section.positions), std::move(section.kinds), std::move(section.facets)};
+}
+
 FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid)
 {
     FeatureOptions options;
@@ -212,20 +234,10 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
 {
     FittedDraw out;
     out.body = std::move(given);
-    const FittedBody& body = out.body;
-    out.warnings = body.report.warnings;
-    SurfaceParticles surface =
-        grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
-    if (settings.one_sheet_dp > 0)
-        out.second_sheet = keep_one_sheet(body.mesh, body.features,
-                                          {grid.dp, settings.one_sheet_dp}, surface, threads);
-    if (body.round != nullptr)
-        parallel_for(
-            surface.positions.size(), threads,
-            [&](std::size_t i)
-            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
-            particles_per_chunk);
-    find_nodes(settings, grid, surface.positions.size(), threads, out);
+    out.warnings = out.body.report.warnings;
+    add_surface(settings, grid, threads, out);
+    find_nodes(settings, grid, out.particles.size(), threads, out);
+    if (!settings.depths_dp.empty()) add_layers(settings, grid, threads, out);
     for (const ClipPlane& clip : clips)
         parallel_for(grid.n[0], threads,
                      [&](std::size_t x)
@@ -233,7 +245,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
                          apply_clip(out.zone[x], static_cast<std::uint32_t>(x), clip, grid);
                          apply_clip(out.volume[x], static_cast<std::uint32_t>(x), clip, grid);
                      });
-    keep_particles(surface, grid, clips, threads, out);
+    keep_particles(grid, clips, threads, out);
     give_nodes_to_lone_particles(grid, threads, out);
     return out;
 }

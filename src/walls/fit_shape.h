@@ -12,6 +12,12 @@ namespace fppg
 /// Feature edges and particles as the settings of a wall ask for them.
 FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid);
 
+/// Particles on the surface of a body; in 2D where it meets the plane of the particles.
+SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid, int threads);
+SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
+                            const LatticeGrid& grid);
+
 /// Puts particles on the true surface of a shape and finds the nodes inside and around it.
 ///
 /// shape    in the coordinates of the case

@@ -13,12 +13,14 @@ set(report_may_see core)
 set(nodes_may_see core)
 # Mesh files, read, mended and asked.
 set(meshes_may_see nodes core)
+# Depths behind surfaces, and the surfaces at a depth.
+set(offset_may_see meshes nodes core)
 # What can be drawn: what bounds it, its surface, its polygons.
 set(shapes_may_see meshes nodes core)
 set(casedef_may_see shapes meshes core)
 # What a case draws, as all stages below see it.
 set(scene_may_see casedef shapes meshes nodes core)
-set(particles_may_see meshes nodes core)
+set(particles_may_see offset meshes nodes core)
 foreach(folder fit normals files)
   set(${folder}_may_see casedef shapes meshes particles nodes core)
 endforeach()
@@ -26,9 +28,9 @@ set(lattice_may_see scene casedef shapes meshes particles nodes core)
 # Parts have an inside where walls have one.
 set(boolean_may_see fit meshes particles nodes core)
 # Relaxation fills the holes that open as fitting does.
-set(relax_may_see fit casedef shapes meshes particles nodes core)
+set(relax_may_see fit offset casedef shapes meshes particles nodes core)
 # Body-fitted shapes and combinations of a scene; what they leave of it is painted on the lattice.
-set(walls_may_see boolean fit lattice scene casedef shapes meshes particles nodes core)
+set(walls_may_see boolean fit offset lattice scene casedef shapes meshes particles nodes core)
 set(render_may_see files particles shapes meshes core)
 # What differs in Case.xml is found in its tree, which casedef reads.
 set(compare_may_see report files casedef particles shapes meshes core)

@@ -1,0 +1,376 @@
+#include "offset/creases.h"
+
+#include "core/parallel.h"
+#include "meshes/connect_mesh.h"
+#include "offset/quadric.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace fppg
+{
+namespace
+{
+
+/// Cosine of the turn of facets below which an edge is not looked at, 8 degrees.
+constexpr double looked_at = 0.990;
+/// A crease is looked for this far to both sides of an edge, dp.
+constexpr double beside_edge = 0.08;
+/// Vertices are moved onto a crease by so much at most, in cells.
+constexpr double longest_move = 0.7;
+/// Edges of a gap that is closed.
+constexpr int gap_edges = 3;
+/// Cosine of the turn of a crease in a gap, 75 degrees.
+constexpr double gap_turn = 0.26;
+
+/// Edges and width of a lens, in cells.
+constexpr std::size_t lens_edges = 6;
+constexpr double lens_width = 0.25;
+/// Loops of so few edges lie along one crease, be it curved or not.
+constexpr std::size_t tiny_loop = 4;
+
+class CreaseFinder
+{
+public:
+    CreaseFinder(const WallDepth& wall, const OffsetOptions& options, int threads,
+                 OffsetSurface& offset)
+        : wall_(wall),
+          options_(options),
+          threads_(threads),
+          mesh_(offset.mesh),
+          turn_(std::cos(options.feature_angle_deg * std::numbers::pi / 180))
+    {
+        begin_.assign(mesh_.vertices.size() + 2, 0);
+        for (const auto& edge : mesh_.edges)
+            for (const std::uint32_t v : edge) ++begin_[v + 2];
+        for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+        around_.resize(2 * mesh_.edges.size());
+        for (std::uint32_t e = 0; e < mesh_.edges.size(); ++e)
+            for (const std::uint32_t v : mesh_.edges[e]) around_[begin_[v + 1]++] = e;
+    }
+
+    std::vector<std::uint32_t> run()
+    {
+        is_crease_.assign(mesh_.edges.size(), 0);
+        find(true);
+        for (int round = 0; round < 2; ++round)
+        {
+            move_onto_creases();
+            find(false);
+        }
+        drop_doubles();
+        close_gaps();
+        drop_doubles();
+        std::vector<std::uint32_t> out;
+        for (std::uint32_t e = 0; e < is_crease_.size(); ++e)
+            if (is_crease_[e] != 0) out.push_back(e);
+        return out;
+    }
+
+private:
+    Vec3 normal_of(std::uint32_t facet) const
+    {
+        const auto& f = mesh_.facets[facet];
+        const Vec3& a = mesh_.vertices[f[0]];
+        const Vec3 n = cross(mesh_.vertices[f[1]] - a, mesh_.vertices[f[2]] - a);
+        const double size = norm(n);
+        return size > 0 ? n / size : Vec3{};
+    }
+
+    Vec3 middle_of(std::uint32_t facet) const
+    {
+        const auto& f = mesh_.facets[facet];
+        return (mesh_.vertices[f[0]] + mesh_.vertices[f[1]] + mesh_.vertices[f[2]]) / 3;
+    }
+
+    /// From the middle of an edge into one of its facets, unit.
+    Vec3 into_facet(std::uint32_t edge, std::uint32_t facet) const
+    {
+        const Vec3& a = mesh_.vertices[mesh_.edges[edge][0]];
+        const Vec3 along = mesh_.vertices[mesh_.edges[edge][1]] - a;
+        Vec3 way;
+        for (const std::uint32_t v : mesh_.facets[facet])
+            if (v != mesh_.edges[edge][0] && v != mesh_.edges[edge][1])
+                way = mesh_.vertices[v] - a;
+        const double length = dot(along, along);
+        if (!(length > 0)) return {};
+        way = way - (dot(way, along) / length) * along;
+        const double size = norm(way);
+        return size > 0 ? way / size : Vec3{};
+    }
+
+    /// Whether the direction of the depth turns across an edge by more than the feature angle.
+    bool turns(std::uint32_t e) const
+    {
+        const auto& facets = mesh_.edge_facets[e];
+        if (facets[1] == no_index || mesh_.is_manifold[e] == 0) return false;
+        if (dot(normal_of(facets[0]), normal_of(facets[1])) > looked_at) return false;
+        const Vec3 middle =
+            0.5 * (mesh_.vertices[mesh_.edges[e][0]] + mesh_.vertices[mesh_.edges[e][1]]);
+        std::array<Vec3, 2> directions;
+        for (std::size_t s = 0; s < 2; ++s)
+            directions[s] =
+                wall_.at(middle + (beside_edge * options_.dp) * into_facet(e, facets[s])).direction;
+        return dot(directions[0], directions[1]) < turn_;
+    }
+
+    bool has_crease(std::uint32_t v) const
+    {
+        return std::any_of(edges_of(v), edges_end(v),
+                           [&](std::uint32_t e) { return is_crease_[e] != 0; });
+    }
+    const std::uint32_t* edges_of(std::uint32_t v) const { return around_.data() + begin_[v]; }
+    const std::uint32_t* edges_end(std::uint32_t v) const { return around_.data() + begin_[v + 1]; }
+    std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const
+    {
+        return mesh_.edges[e][0] == v ? mesh_.edges[e][1] : mesh_.edges[e][0];
+    }
+
+    /// everywhere  else only at edges one of whose ends is on a crease
+    void find(bool everywhere)
+    {
+        std::vector<char> found(mesh_.edges.size(), 0);
+        parallel_for(
+            mesh_.edges.size(), threads_,
+            [&](std::size_t i)
+            {
+                const auto e = static_cast<std::uint32_t>(i);
+                if (everywhere || has_crease(mesh_.edges[e][0]) || has_crease(mesh_.edges[e][1]))
+                    found[e] = turns(e) ? 1 : 0;
+            },
+            256);
+        is_crease_ = std::move(found);
+    }
+
+    /// The place on a crease, or at its corner, nearest to a vertex.
+    std::optional<Vec3> crease_place(std::uint32_t v) const
+    {
+        std::vector<Vec3> faces;
+        for (const std::uint32_t* e = edges_of(v); e != edges_end(v); ++e)
+            for (const std::uint32_t f : mesh_.edge_facets[*e])
+                if (f != no_index) faces.push_back(middle_of(f));
+        const Vec3& from = mesh_.vertices[v];
+        Quadric quadric;
+        for (const Vec3& p : faces)
+        {
+            const DepthPlace place = wall_.at(p);
+            const double at_vertex = place.depth + dot(place.direction, from - p);
+            quadric.add_plane(place.direction, options_.depth - at_vertex);
+        }
+        const Vec3 start = from + quadric.least_point();
+        if (!(norm(start - from) < longest_move * options_.cell)) return std::nullopt;
+        const Vec3 out = project_to_crease(wall_, start, options_.depth, options_.dp, faces);
+        return norm(out - from) < longest_move * options_.cell ? std::optional(out) : std::nullopt;
+    }
+
+    void move_onto_creases()
+    {
+        std::vector<std::uint32_t> vertices;
+        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
+            if (has_crease(v)) vertices.push_back(v);
+        std::vector<std::optional<Vec3>> places(vertices.size());
+        parallel_for(
+            vertices.size(), threads_, [&](std::size_t i) { places[i] = crease_place(vertices[i]); },
+            64);
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            if (places[i]) mesh_.vertices[vertices[i]] = *places[i];
+    }
+
+    /// Where slivers lie along a crease both of their sides are found: of two ways from one end of
+    /// such a lens to the other one goes.
+    void drop_doubles()
+    {
+        for (std::uint32_t e = 0; e < is_crease_.size(); ++e)
+        {
+            if (is_crease_[e] == 0) continue;
+            std::vector<std::uint32_t> loop{e};
+            if (find_loop(mesh_.edges[e][1], mesh_.edges[e][0], loop)) drop_one_way(loop);
+        }
+    }
+
+    /// Completes a loop of creases that is a line seen from any side.
+    ///
+    /// at, goal  the loop's open end, and its start
+    bool find_loop(std::uint32_t at, std::uint32_t goal, std::vector<std::uint32_t>& loop) const
+    {
+        if (at == goal) return is_flat(loop);
+        if (loop.size() == lens_edges) return false;
+        for (const std::uint32_t* e = edges_of(at); e != edges_end(at); ++e)
+        {
+            if (is_crease_[*e] == 0 || std::find(loop.begin(), loop.end(), *e) != loop.end())
+                continue;
+            loop.push_back(*e);
+            if (find_loop(other_end(*e, at), goal, loop)) return true;
+            loop.pop_back();
+        }
+        return false;
+    }
+
+    /// The two vertices of a loop that are farthest from one another.
+    std::array<std::uint32_t, 2> far_ends(const std::vector<std::uint32_t>& loop) const
+    {
+        std::array<std::uint32_t, 2> ends = mesh_.edges[loop[0]];
+        double most = 0;
+        for (const std::uint32_t e : loop)
+            for (const std::uint32_t f : loop)
+                for (const std::uint32_t a : mesh_.edges[e])
+                    for (const std::uint32_t b : mesh_.edges[f])
+                    {
+                        const double d = norm(mesh_.vertices[a] - mesh_.vertices[b]);
+                        if (d <= most) continue;
+                        most = d;
+                        ends = {a, b};
+                    }
+        return ends;
+    }
+
+    bool is_flat(const std::vector<std::uint32_t>& loop) const
+    {
+        if (loop.size() <= tiny_loop) return true;
+        const auto [a, b] = far_ends(loop);
+        const Vec3& from = mesh_.vertices[a];
+        const Vec3 along = mesh_.vertices[b] - from;
+        const double length = norm(along);
+        for (const std::uint32_t e : loop)
+            for (const std::uint32_t v : mesh_.edges[e])
+                if (norm(cross(mesh_.vertices[v] - from, along)) >
+                    lens_width * options_.cell * length)
+                    return false;
+        return true;
+    }
+
+    void drop_one_way(const std::vector<std::uint32_t>& loop)
+    {
+        const auto [a, b] = far_ends(loop);
+        std::array<std::vector<std::uint32_t>, 2> ways;
+        std::vector<char> is_used(loop.size(), 0);
+        for (auto& way : ways)
+            for (std::uint32_t at = a; at != b;)
+            {
+                std::size_t next = loop.size();
+                for (std::size_t i = 0; i < loop.size(); ++i)
+                    if (is_used[i] == 0 &&
+                        (mesh_.edges[loop[i]][0] == at || mesh_.edges[loop[i]][1] == at))
+                        next = std::min(next, i);
+                if (next == loop.size()) return;
+                is_used[next] = 1;
+                way.push_back(loop[next]);
+                at = other_end(loop[next], at);
+            }
+        // The one that other creases leave stays, else that with more vertices.
+        const auto weight = [&](const std::vector<std::uint32_t>& way)
+        {
+            int out = static_cast<int>(way.size());
+            for (const std::uint32_t e : way)
+                for (const std::uint32_t v : mesh_.edges[e])
+                    if (v != a && v != b && creases_at(v) > 2) out += 100;
+            return out;
+        };
+        for (const std::uint32_t e : ways[weight(ways[0]) < weight(ways[1]) ? 0 : 1])
+            is_crease_[e] = 0;
+    }
+
+    int creases_at(std::uint32_t v) const
+    {
+        return static_cast<int>(std::count_if(edges_of(v), edges_end(v), [&](std::uint32_t e)
+                                              { return is_crease_[e] != 0; }));
+    }
+
+    /// From each end of a crease on, over vertices that can be moved onto it, to another crease.
+    void close_gaps()
+    {
+        std::vector<std::uint32_t> ends;
+        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
+            if (creases_at(v) == 1) ends.push_back(v);
+        for (const std::uint32_t v : ends)
+            if (creases_at(v) == 1) close_gap(v);
+    }
+
+    void close_gap(std::uint32_t end)
+    {
+        struct Step
+        {
+            std::uint32_t edge;
+            std::uint32_t vertex;
+            Vec3 old;
+        };
+        std::vector<Step> path;
+        std::uint32_t at = end;
+        const std::uint32_t last = *std::find_if(edges_of(end), edges_end(end), [&](std::uint32_t e)
+                                                 { return is_crease_[e] != 0; });
+        Vec3 way = mesh_.vertices[end] - mesh_.vertices[other_end(last, end)];
+        bool is_closed = false;
+        while (static_cast<int>(path.size()) < gap_edges && !is_closed)
+        {
+            std::uint32_t best = no_index;
+            Vec3 best_place;
+            double best_turn = gap_turn;
+            for (const std::uint32_t* e = edges_of(at); e != edges_end(at); ++e)
+            {
+                if (is_crease_[*e] != 0) continue;
+                const std::uint32_t w = other_end(*e, at);
+                const bool is_on = creases_at(w) > 0;
+                const Vec3 rough = mesh_.vertices[w] - mesh_.vertices[at];
+                if (dot(rough, way) < 0.1 * norm(rough) * norm(way)) continue;
+                const std::optional<Vec3> place =
+                    is_on ? std::optional(mesh_.vertices[w]) : crease_place(w);
+                if (!place) continue;
+                const Vec3 step = *place - mesh_.vertices[at];
+                const double turn = dot(step, way) / (norm(step) * norm(way));
+                if (!(norm(step) > 0.05 * options_.cell) || !(turn > best_turn)) continue;
+                best_turn = turn;
+                best = *e;
+                best_place = *place;
+            }
+            if (best == no_index) break;
+            const std::uint32_t w = other_end(best, at);
+            is_closed = creases_at(w) > 0;
+            path.push_back({best, w, mesh_.vertices[w]});
+            way = best_place - mesh_.vertices[at];
+            mesh_.vertices[w] = best_place;
+            at = w;
+        }
+        for (const Step& step : path)
+        {
+            if (is_closed)
+                is_crease_[step.edge] = 1;
+            else
+                mesh_.vertices[step.vertex] = step.old;
+        }
+    }
+
+    const WallDepth& wall_;
+    const OffsetOptions& options_;
+    int threads_;
+    SurfaceMesh& mesh_;
+    double turn_;
+    std::vector<std::uint64_t> begin_; ///< edges of vertex v: around_[begin_[v]] to begin_[v + 1]
+    std::vector<std::uint32_t> around_;
+    std::vector<char> is_crease_;
+};
+
+} // namespace
+
+void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
+                     OffsetSurface& offset)
+{
+    offset.creases = CreaseFinder(wall, options, threads, offset).run();
+    if (offset.creases.empty()) return;
+    const std::size_t facets = offset.report.facets_read;
+    offset.report = {};
+    offset.report.facets_read = facets;
+    connect_mesh(offset.mesh, threads, offset.report);
+}
+
+Features offset_features(const OffsetSurface& offset, const FeatureOptions& options)
+{
+    FeatureOptions of_creases = options;
+    of_creases.angle_deg = 179.999; // never: slivers on a crease may be folded
+    return find_features(offset.mesh, of_creases, offset.creases);
+}
+
+} // namespace fppg

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "offset/offset_surface.h"
+
+namespace fppg
+{
+
+/// Finds the creases of an offset surface, puts their vertices onto them and closes small gaps
+/// between them. Facets stay; their normals are made anew.
+void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
+                     OffsetSurface& offset);
+
+} // namespace fppg

@@ -1,0 +1,180 @@
+#include "offset/offset_surface.h"
+
+#include "core/parallel.h"
+#include "meshes/connect_mesh.h"
+#include "offset/creases.h"
+#include "offset/dual_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// Joins the vertices of neighbouring cells to facets.
+class FacetMaker
+{
+public:
+    FacetMaker(const std::vector<DepthBrick>& bricks, const std::vector<DualBrick>& duals)
+        : bricks_(bricks), duals_(duals)
+    {
+        for (std::size_t b = 0; b < bricks.size(); ++b)
+        {
+            first_.push_back(vertices_);
+            vertices_ += duals[b].vertices.size();
+        }
+    }
+
+    std::size_t vertices() const { return vertices_; }
+
+    std::vector<std::array<std::uint32_t, 3>> facets_of(std::size_t b) const
+    {
+        std::vector<std::array<std::uint32_t, 3>> out;
+        for (int i = 0; i < brick_cells; ++i)
+            for (int j = 0; j < brick_cells; ++j)
+                for (int k = 0; k < brick_cells; ++k)
+                    for (int axis = 0; axis < 3; ++axis) add_quad(b, {i, j, k}, axis, out);
+        return out;
+    }
+
+private:
+    struct Corner
+    {
+        std::uint32_t vertex = no_index;
+        const DualVertex* dual = nullptr;
+    };
+
+    /// The vertex of the sheet that crosses an edge, of one of the four cells around that.
+    Corner corner_at(std::size_t b, std::array<int, 3> cell, int edge) const
+    {
+        std::array<std::int64_t, 3> first = bricks_[b].first;
+        bool is_here = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            if (cell[axis] >= 0) continue;
+            first[axis] -= brick_cells;
+            cell[axis] += brick_cells;
+            is_here = false;
+        }
+        if (!is_here)
+        {
+            const auto found = brick_at(first);
+            if (found == bricks_.size()) return {};
+            b = found;
+        }
+        const DualBrick& dual = duals_[b];
+        const std::int16_t at = dual.index[static_cast<std::size_t>(
+            (cell[0] * brick_cells + cell[1]) * brick_cells + cell[2])];
+        if (at < 0) return {};
+        const DualCell& of_cell = dual.cells[static_cast<std::size_t>(at)];
+        const int sheet = of_cell.vertex[static_cast<std::size_t>(edge)];
+        if (sheet < 0) return {};
+        const std::size_t vertex = of_cell.first + static_cast<std::size_t>(sheet);
+        return {static_cast<std::uint32_t>(first_[b] + vertex), &dual.vertices[vertex]};
+    }
+
+    std::size_t brick_at(const std::array<std::int64_t, 3>& first) const
+    {
+        const auto found = std::lower_bound(bricks_.begin(), bricks_.end(), first,
+                                            [](const DepthBrick& brick, const auto& value)
+                                            { return brick.first < value; });
+        return found != bricks_.end() && found->first == first
+                   ? static_cast<std::size_t>(found - bricks_.begin())
+                   : bricks_.size();
+    }
+
+    void add_quad(std::size_t b, const std::array<int, 3>& at, int axis,
+                  std::vector<std::array<std::uint32_t, 3>>& out) const
+    {
+        std::array<int, 3> end = at;
+        ++end[static_cast<std::size_t>(axis)];
+        const NodeSide low = duals_[b].side(at);
+        const NodeSide high = duals_[b].side(end);
+        if (low == NodeSide::Unknown || high == NodeSide::Unknown || low == high) return;
+        constexpr std::array<std::array<int, 2>, 4> round{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+        std::array<Corner, 4> corners;
+        for (std::size_t c = 0; c < 4; ++c)
+        {
+            std::array<int, 3> cell = at;
+            cell[static_cast<std::size_t>((axis + 1) % 3)] -= round[c][0];
+            cell[static_cast<std::size_t>((axis + 2) % 3)] -= round[c][1];
+            corners[c] = corner_at(b, cell, 4 * axis + 2 * round[c][0] + round[c][1]);
+            if (corners[c].dual == nullptr) return;
+        }
+        if (low != NodeSide::Deep) std::swap(corners[1], corners[3]);
+        split(corners, out);
+    }
+
+    /// Along the crease where the quad has one, else so that its halves turn least.
+    static void split(const std::array<Corner, 4>& q,
+                      std::vector<std::array<std::uint32_t, 3>>& out)
+    {
+        const auto crease = [&](std::size_t c) { return q[c].dual->is_on_crease; };
+        bool by_first = false;
+        const bool is_first = crease(0) && crease(2);
+        const bool is_second = crease(1) && crease(3);
+        if (is_first != is_second)
+            by_first = is_first;
+        else
+            by_first = turn(q, 0) >= turn(q, 1);
+        const std::size_t a = by_first ? 0 : 1;
+        const auto id = [&](std::size_t c) { return q[(a + c) % 4].vertex; };
+        out.push_back({id(0), id(1), id(2)});
+        out.push_back({id(0), id(2), id(3)});
+    }
+
+    /// The cosine of the turn between the halves of a quad that is cut from corner a on.
+    static double turn(const std::array<Corner, 4>& q, std::size_t a)
+    {
+        const auto at = [&](std::size_t c) { return q[(a + c) % 4].dual->position; };
+        const Vec3 diagonal = at(2) - at(0);
+        const Vec3 one = cross(at(1) - at(0), diagonal);
+        const Vec3 two = cross(diagonal, at(3) - at(0));
+        const double size = norm(one) * norm(two);
+        return size > 0 ? dot(one, two) / size : -1;
+    }
+
+    const std::vector<DepthBrick>& bricks_;
+    const std::vector<DualBrick>& duals_;
+    std::vector<std::size_t> first_; ///< vertex of each brick
+    std::size_t vertices_ = 0;
+};
+
+} // namespace
+
+OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options, int threads)
+{
+    const DepthGrid grid = depth_grid(wall, options);
+    std::vector<DepthBrick> bricks = find_bricks(wall, grid, options, threads);
+    std::sort(bricks.begin(), bricks.end(),
+              [](const DepthBrick& a, const DepthBrick& b) { return a.first < b.first; });
+    std::vector<DualBrick> duals(bricks.size());
+    parallel_for(bricks.size(), threads,
+                 [&](std::size_t b)
+                 {
+                     fill_brick(wall, grid, options.depth, bricks[b]);
+                     duals[b] = make_dual_brick({wall, grid}, bricks[b], options.depth);
+                     bricks[b].nodes = {};
+                 });
+    const FacetMaker maker(bricks, duals);
+    std::vector<std::vector<std::array<std::uint32_t, 3>>> facets(bricks.size());
+    parallel_for(bricks.size(), threads,
+                 [&](std::size_t b) { facets[b] = maker.facets_of(b); });
+    OffsetSurface out;
+    SurfaceMesh& mesh = out.mesh;
+    mesh.vertices.reserve(maker.vertices());
+    for (const DualBrick& dual : duals)
+        for (const DualVertex& v : dual.vertices) mesh.vertices.push_back(v.position);
+    for (const auto& of_brick : facets)
+        mesh.facets.insert(mesh.facets.end(), of_brick.begin(), of_brick.end());
+    out.report.facets_read = mesh.facets.size();
+    if (mesh.facets.empty()) return out;
+    connect_mesh(mesh, threads, out.report);
+    sharpen_creases(wall, options, threads, out);
+    return out;
+}
+
+} // namespace fppg

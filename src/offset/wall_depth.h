@@ -1,0 +1,66 @@
+#pragma once
+
+#include "fppg/surface_mesh.h"
+
+#include "meshes/inside_test.h"
+#include "meshes/pseudo_normals.h"
+
+#include <cstdint>
+#include <limits>
+
+namespace fppg
+{
+
+/// Which side of a surface counts as behind it.
+enum class WallSide : std::uint8_t
+{
+    Behind, ///< against the normals of the facets; of closed solids the inside
+    Front,
+};
+
+/// A point seen from a wall.
+struct DepthPlace
+{
+    Vec3 foot;               ///< nearest point of the surface
+    Vec3 direction;          ///< unit, the way in which the depth grows fastest
+    double depth = 0;        ///< metres behind the surface; negative before it
+    std::uint32_t facet = 0; ///< of the mesh, at the foot
+    bool is_beyond_rim = false; ///< the foot is on an open edge, and the point not over a facet there
+};
+
+/// How deep points are behind a surface: the distance to it, with the sign of the side.
+///
+/// The side is that of the angle-weighted pseudonormal at the foot (Baerentzen and Aanaes, 2005),
+/// which is exact for surfaces without clashing edges; for closed bodies with faults the inside test
+/// (meshes/inside_test.h) is asked.
+class WallDepth
+{
+public:
+    /// mesh  connected; it is copied
+    WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_solid, WallSide side,
+              int threads);
+
+    /// within  metres; a point of the surface is known to be so near
+    DepthPlace at(const Vec3& p,
+                  double within = std::numeric_limits<double>::infinity()) const;
+    /// The distance only, metres.
+    double distance(const Vec3& p,
+                    double within = std::numeric_limits<double>::infinity()) const
+    {
+        return query().closest_point(p, within).distance;
+    }
+    const SurfaceMesh& mesh() const { return mesh_; }
+
+private:
+    const MeshQuery& query() const { return test_.query(); }
+    bool is_behind(const Vec3& p, const ClosestPoint& foot, bool& is_on_rim) const;
+
+    SurfaceMesh mesh_;
+    PseudoNormals normals_;
+    InsideTest test_;
+    double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
+    bool asks_inside_ = false;
+    double sign_ = 1;
+};
+
+} // namespace fppg
