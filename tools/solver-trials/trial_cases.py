@@ -114,7 +114,7 @@ def tank(dp=0.01, time=0.2):
                  depth, "still_water", facts={"water_depth": level})
 
 
-def wedge(dp=0.006, time=0.3, angle=20.0):
+def wedge(dp=0.0075, time=0.2, angle=20.0):
     """Still water over a wedge on the floor of a tank, its tip up; tank and wedge are one body."""
     length, width, height, level, wall, tip = 0.2, 0.06, 0.15, 0.12, 4 * dp, 0.08
     half = math.radians(angle / 2)
@@ -142,7 +142,7 @@ def turned_about_y(angle):
 ABOUT_Z = np.array(((math.cos(0.01), -math.sin(0.01), 0), (math.sin(0.01), math.cos(0.01), 0), (0, 0, 1)))
 
 
-def cup(dp=0.006, time=0.3, angle=25.0):
+def cup(dp=0.0075, time=0.2, angle=25.0):
     """Still water in a round cup of 0.06 m radius whose axis is tilted."""
     radius, height, level, wall = 0.06, 0.2, 0.1, 4 * dp
     turn = np.array(turned_about_y(angle))
