@@ -92,16 +92,20 @@ def normal(a, b, c):
     return [k / length for k in n] if length > 0 else [0.0, 0.0, 0.0]
 
 
-def write_stl(mesh, path, name):
-    """Writes binary STL: 80 bytes of name, the number of facets, 50 bytes a facet."""
-    mesh.check(name)
+def stl_bytes(mesh, name):
+    """Binary STL: 80 bytes of name, the number of facets, 50 bytes a facet. Open meshes are taken as they are."""
     data = bytearray(f"fppg {name}".encode().ljust(80)[:80])
     data += struct.pack("<I", len(mesh.facets))
     for facet in mesh.facets:
         corners = [mesh.vertices[i] for i in facet]
         data += struct.pack("<12fH", *normal(*corners), *corners[0], *corners[1], *corners[2], 0)
+    return bytes(data)
+
+
+def write_stl(mesh, path, name):
+    mesh.check(name)
     with open(path, "wb") as file:
-        file.write(data)
+        file.write(stl_bytes(mesh, name))
     print(f"{path}: {len(mesh.facets)} facets, volume {mesh.volume():.6g}")
 
 
@@ -763,16 +767,14 @@ def impeller(radius=0.06, hub_radius=0.014, height=0.03, thickness=0.006, blades
     return loft([loop(level) for level in range(levels + 1)])
 
 
-def basin(length=0.5, width=0.1, height=0.24, bottom=0.06, swing=0.04, wall=0.04, sides=48):
-    """An open tank along x whose floor rises and falls once, extruded along z; up is y.
+def trough(floor, length, width, height, wall):
+    """An open tank along x, extruded along z; up is y, its underside at y = -wall.
 
-    bottom, swing  the floor is at bottom + swing * sin(2 pi x / length)
-    height         of the rim, over y = 0
-    wall           of the four sides; the underside is at y = -wall
+    floor   (x, y) of the floor's corners, from x = 0 to x = length
+    height  of the rim, over y = 0
+    wall    thickness of the four sides
     """
-    inner = [(0, height)] + [(length * i / sides,
-                              bottom + swing * math.sin(2 * math.pi * i / sides))
-                             for i in range(sides + 1)] + [(length, height)]
+    inner = [(0, height)] + floor + [(length, height)]
     outer = [(-wall, height), (-wall, -wall), (length + wall, -wall), (length + wall, height)]
     levels = [-width / 2 - wall, -width / 2, width / 2, width / 2 + wall]
     mesh = Mesh()
@@ -785,6 +787,18 @@ def basin(length=0.5, width=0.1, height=0.24, bottom=0.06, swing=0.04, wall=0.04
         walls_along(mesh, whole, low, high)
     walls_along(mesh, outer + inner[::-1], levels[1], levels[2])
     return mesh
+
+
+def basin(length=0.5, width=0.1, height=0.24, bottom=0.06, swing=0.04, wall=0.04, sides=48):
+    """An open tank along x whose floor rises and falls once, extruded along z; up is y.
+
+    bottom, swing  the floor is at bottom + swing * sin(2 pi x / length)
+    height         of the rim, over y = 0
+    wall           of the four sides; the underside is at y = -wall
+    """
+    floor = [(length * i / sides, bottom + swing * math.sin(2 * math.pi * i / sides))
+             for i in range(sides + 1)]
+    return trough(floor, length, width, height, wall)
 
 
 def hull(length=0.6, beam=0.24, depth=0.14, deadrise=0.03, bow=0.6, rake=0.08, sections=24):

@@ -86,13 +86,14 @@ class _Jbd:
 
 
 def read_bi4(path):
-    """Values and arrays of a case file: constants, Idp, Posd, Vel, Rhop as numpy arrays."""
+    """Values and arrays of a case file, or of the solver's Part_NNNN.bi4: constants, Idp, Pos or Posd, Vel, Rhop."""
     with open(path, "rb") as file:
         data = file.read()
     if not data.startswith(b"#FileJBD JPartDataBi4"):
         raise ValueError(f"{path}: not a particle file of a case")
     _, values, _, items = _Jbd(data).item()
-    part_values, arrays, _ = items["PART_0000"]
+    part, = (item for key, item in items.items() if key.startswith("PART_"))
+    part_values, arrays, _ = part
     return {**values, **part_values}, arrays
 
 
