@@ -85,6 +85,7 @@ struct NormalsDef
 
 struct CaseDef;
 struct CaseParticles;
+struct RunField;
 struct ShapePolygons;
 
 /// What the stage says besides the normals.
@@ -103,8 +104,13 @@ struct NormalsReport
 /// of norgeometry look that pass within 0.5 dp of it; where there are none, what norgeometry finds,
 /// and outwards where no entry gives it a direction.
 ///
+/// Particles of layers behind a fitted surface, and the nodes under them within 2 h, get the exact
+/// vector to the nearest place that fluid can touch (normals/wet_surface.h), whatever norgeometry
+/// says; the other entries count as for all.
+///
 /// def        its `normals` are active
 /// particles  at their places after `<initials>`
+/// field      that they were made of; its walls and the nodes of its fluid are looked at
 /// geometry   the polygons of def.normals.geometry's file; not used without
 /// threads    number of threads; the result does not depend on it
 /// returns    one vector per boundary particle, in id order, metres
@@ -115,6 +121,7 @@ struct NormalsReport
 ///            src/normals/geometry_normals.h and at each function of src/normals/normals.cpp
 std::vector<std::array<float, 3>> compute_normals(const CaseDef& def,
                                                   const CaseParticles& particles,
+                                                  const RunField& field,
                                                   const std::vector<ShapePolygons>& geometry,
                                                   int threads, NormalsReport& report);
 

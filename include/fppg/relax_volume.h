@@ -69,6 +69,9 @@ struct RelaxVolumeOptions
     int iterations = 30; ///< 0: until the coefficient of variation settles, at most 100
     bool is_2d = false;  ///< particles keep their y, the kernel is the plane one
     double min_wall_distance_dp = 0.4; ///< no particle comes nearer to a wall
+    /// So far behind the walls the continuum begins: half a dp behind particles on their surface, 0
+    /// where it stands for all of the wall and surroundings.walls is empty. At least 0.
+    double behind_wall_dp = 0.5;
     double clearance_dp = 1.0; ///< nodes nearer to a wall than this may be missing because of it
     /// Particles are removed where they are too many for the space that the walls leave, and
     /// inserted where they are too few.
@@ -145,6 +148,7 @@ struct ShepardOptions
     double dp = 0;     ///< metres, above 0
     double h_dp = 1.3; ///< smoothing length in dp
     bool is_2d = false;
+    double behind_wall_dp = 0.5; ///< as in RelaxVolumeOptions
 };
 
 /// The Shepard sum at every particle: that of W dp^3 (W dp^2 in 2D) over the particles themselves,

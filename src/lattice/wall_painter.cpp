@@ -4,9 +4,9 @@
 #include "meshes/inside_test.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
+#include "offset/wall_depth.h"
 
 #include <algorithm>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -137,19 +137,32 @@ void WallPainter::cut_by(const FittedDraw& draw)
     Box3 bounds;
     for (const auto& f : draw.body.mesh.facets)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
-    const auto is_near = [&](const Vec3& p) { return is_within(p, bounds, reach); };
-    std::optional<InsideTest> test;
+    double deepest = 0;
+    for (const FittedBody& layer : draw.layers) deepest = std::max(deepest, layer.depth);
+    const auto is_near = [&](const Vec3& p) { return is_within(p, bounds, deepest + reach); };
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     if (std::none_of(positions.begin(), positions.end(), is_near)) return;
-    test.emplace(soup_of(draw.body.mesh), threads_);
+    const InsideTest test(soup_of(draw.body.mesh), threads_);
+    // Layers take the place of what stood there, as the nodes between them are taken.
+    const auto is_among_layers = [&](const Vec3& p)
+    {
+        return std::any_of(draw.layers.begin(), draw.layers.end(),
+                           [&](const FittedBody& layer)
+                           {
+                               const DepthPlace place = layer.wall->at(p);
+                               return !place.is_beyond_rim && place.depth > 0 &&
+                                      place.depth < layer.depth + reach;
+                           });
+    };
     parallel_for(
         positions.size(), threads_,
         [&](std::size_t i)
         {
             const Vec3& p = positions[i];
             if (is_cut_[i] || !is_near(p)) return;
-            const double distance = test->query().closest_point(p).distance;
-            const bool is_inside = draw.body.is_solid && test->is_inside(p);
+            const double distance = test.query().closest_point(p).distance;
+            const bool is_inside =
+                (draw.body.is_solid && test.is_inside(p)) || is_among_layers(p);
             if (distance < reach || is_inside)
                 is_cut_[i] = is_inside && distance > touching_dp * field_->grid.dp ? 1 : touched;
         },

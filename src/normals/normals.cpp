@@ -3,11 +3,13 @@
 #include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "fppg/lattice.h"
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
 #include "normals/geometry_normals.h"
 #include "normals/part_normals.h"
+#include "normals/wet_surface.h"
 #include "particles/initials.h"
 #include "particles/run_positions.h"
 
@@ -133,9 +135,9 @@ std::vector<ShapePolygons> picture(const std::vector<NormalFacet>& facets)
 class NormalsMaker
 {
 public:
-    NormalsMaker(const CaseDef& def, const CaseParticles& particles, int threads,
-                 NormalsReport& report)
-        : def_(def), particles_(particles), threads_(threads), report_(report)
+    NormalsMaker(const CaseDef& def, const CaseParticles& particles, const RunField& field,
+                 int threads, NormalsReport& report)
+        : def_(def), particles_(particles), field_(field), threads_(threads), report_(report)
     {
         normals_.resize(particles.np - particles.n_fluid, Float3{});
         for (const ParticleBlock& block : particles.blocks)
@@ -159,6 +161,7 @@ public:
             return {};
         }
         if (def_.normals.geometry) from_geometry(*def_.normals.geometry, geometry);
+        from_layers();
         for (const NormalOp& op : def_.normals.ops) execute(op);
         if (particles_.off_lattice.size() > 0) fill_on_surfaces();
         summarise();
@@ -244,11 +247,6 @@ private:
                 GeometryQuery::Answer answer = query.at(p);
                 candidates[r] += answer.candidates;
                 const Vec3 own = own_normal(r, normal);
-                if (const double depth = own_depth(r, normal); depth > 0)
-                {
-                    normal = as_float(depth * own);
-                    return;
-                }
                 if (const int side = own == Vec3{} ? 0 : query.side_at(p, own, 0.5 * def_.grid.dp);
                     side != 0)
                     answer.normal = side * on_surface_dp * def_.grid.dp * own;
@@ -272,6 +270,49 @@ private:
             report_.log.push_back(
                 fmt::format("  Resizes {}/{} huge normals with maximum size ({:g}x H = {:g}).",
                             all_resized, normals_.size(), geometry.max_size_h, limit));
+    }
+
+    /// Layers and what is under them look to the nearest place that fluid can touch.
+    void from_layers()
+    {
+        std::vector<char> is_layered(65536, 0);
+        bool has_layers = false;
+        for (const FittedBody& body : field_.walls.bodies)
+        {
+            if (!body.is_layer()) continue;
+            has_layers = true;
+            is_layered[body.mk] = 1;
+            for (const std::uint16_t mk : body.facet_mk) is_layered[mk] = 1;
+        }
+        if (!has_layers) return;
+        const double reach = 2 * def_.h;
+        const WetSurface wet(field_, def_.mk_bound_first, reach, threads_);
+        if (wet.is_empty()) return;
+        const auto visit = [&](std::size_t r)
+        {
+            const RunPlace& place = places_[r];
+            if (is_layered[place.block->mk] == 0) return;
+            Transform turn = motion_of(*place.block);
+            turn.offset = {};
+            for (std::uint32_t k = 0; k < place.run->count; ++k)
+            {
+                Float3& normal = normals_[place.id + k];
+                const double depth = own_depth(r, normal);
+                if (depth > 0 && !wet.has_dry_sides())
+                    normal = as_float(depth * own_normal(r, normal));
+                else
+                    normal = as_float(turn(wet.vector_from(
+                        place_in_run(particles_, *place.block, *place.run, k))));
+            }
+        };
+        parallel_for(places_.size(), threads_, visit, 64);
+        for (const WetSurface::ThinWall& wall : wet.thin_walls())
+            report_.warnings.push_back(fmt::format(
+                "{}: mkbound {} has walls of {:.3g} m with fluid on both sides, over {:.3g} m^2: "
+                "thinner than 2h - dp/2, they cannot serve both, as a particle has one normal; "
+                "they need a dp of {:.3g} m at most.",
+                def_.file, wall.mk - def_.mk_bound_first, wall.thickness, wall.area,
+                wall.thickness / (reach / def_.grid.dp - 0.5)));
     }
 
     /// How deep a particle of a layer stands behind the true surface, metres; zero for all others.
@@ -417,6 +458,7 @@ private:
 
     const CaseDef& def_;
     const CaseParticles& particles_;
+    const RunField& field_;
     int threads_;
     NormalsReport& report_;
     std::vector<RunPlace> places_; ///< all runs of boundary particles
@@ -426,10 +468,11 @@ private:
 } // namespace
 
 std::vector<Float3> compute_normals(const CaseDef& def, const CaseParticles& particles,
+                                    const RunField& field,
                                     const std::vector<ShapePolygons>& geometry, int threads,
                                     NormalsReport& report)
 {
-    return NormalsMaker(def, particles, threads, report).run(geometry);
+    return NormalsMaker(def, particles, field, threads, report).run(geometry);
 }
 
 } // namespace fppg

@@ -50,6 +50,8 @@ public:
         return query().closest_point(p, within).distance;
     }
     const SurfaceMesh& mesh() const { return mesh_; }
+    /// 1 where the layers are behind the facets, -1 where they are in front.
+    double sign() const { return sign_; }
 
 private:
     const MeshQuery& query() const { return test_.query(); }

@@ -142,7 +142,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
 {
     constexpr double wider = 1.3;
     const double h = wider * options.h_dp;
-    const VolumeForces wide(h, options.is_2d);
+    const VolumeForces wide(h, options.behind_wall_dp, options.is_2d);
     const double alpha = options.is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     const double cut_off = share_beyond(list_radius(options.h_dp), h, options.is_2d);
     const double even = lattice_sum(h, alpha, options.is_2d);

@@ -254,9 +254,9 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     build_list(list, band, options.h_dp, threads);
     report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
 
-    const VolumeForces forces(options.h_dp, options.is_2d);
+    const VolumeForces forces(options.h_dp, options.behind_wall_dp, options.is_2d);
     const WallGuard guard(surroundings.closest, options);
-    const double wall_reach = 2 * options.h_dp - behind_wall;
+    const double wall_reach = 2 * options.h_dp - options.behind_wall_dp;
     const auto step_length = static_cast<float>(1 / stiffness(options.h_dp, options.is_2d));
     const int last = options.iterations > 0 ? options.iterations : most_iterations;
     std::vector<double> variations;

@@ -429,6 +429,14 @@ private:
         return held;
     }
 
+    /// Whether all fitted walls are layers behind their surfaces.
+    bool are_layered() const
+    {
+        const FittedWalls& walls = field_.walls;
+        return std::all_of(walls.particles.bodies.begin(), walls.particles.bodies.end(),
+                           [&](std::uint32_t b) { return walls.bodies[b].is_layer(); });
+    }
+
     /// Wall particles within the reach of forces on those that move.
     std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers) const
     {
@@ -460,7 +468,11 @@ private:
         const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1));
         if (movers.empty()) return;
         const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
-        const std::vector<Vec3> near_walls = find_walls(region, movers);
+        // Before walls all of whose particles stand behind their surface, a continuum from there on
+        // stands for them: it is as smooth as the boundary condition.
+        const bool is_before_layers = !region.is_solid && are_layered();
+        const std::vector<Vec3> near_walls =
+            is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers);
 
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
@@ -476,6 +488,7 @@ private:
         options.iterations = region.iterations.value_or(volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = true;
+        if (is_before_layers) options.behind_wall_dp = 0;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations, movers.size(),

@@ -47,10 +47,10 @@ std::vector<double> shepard_sums(std::span<const Vec3> particles,
                                            double{points.z[i]} - double{points.z[j]}) /
                                 h);
             sum *= alpha;
-            const double reach = (2 * h - 0.5) * options.dp;
+            const double reach = (2 * h - options.behind_wall_dp) * options.dp;
             for (const WallPlane& plane :
                  find_wall_planes(particles[i], reach, surroundings.closest))
-                sum += beyond.share(plane.distance / options.dp + 0.5);
+                sum += beyond.share(plane.distance / options.dp + options.behind_wall_dp);
             sums[i] = sum;
         },
         NeighbourList::rows_per_chunk);

@@ -17,7 +17,6 @@ namespace fppg
 
 // All lengths below are in dp, unless they are of Vec3.
 
-inline constexpr double behind_wall = 0.5; ///< where the continuum begins
 inline constexpr std::uint32_t no_meeting = 0xFFFFFFFF;
 
 /// Lists hold the neighbours within 2 h + 0.1 and are made anew when a particle has moved by 0.3,

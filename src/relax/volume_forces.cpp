@@ -52,9 +52,10 @@ FPPG_AVX2 PairSums sum_pairs_avx2(const PointArrays& points, std::uint32_t i,
 
 } // namespace
 
-VolumeForces::VolumeForces(double h, bool is_2d)
+VolumeForces::VolumeForces(double h, double behind_wall, bool is_2d)
     : beyond_(h, is_2d),
       alpha_(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h)),
+      behind_wall_(behind_wall),
       factors_{static_cast<float>(0.5 / h), static_cast<float>(5 * alpha_ / (h * h)),
                static_cast<float>(double{push_strength} * alpha_)},
       sum_pairs_(is_avx2_there() ? sum_pairs_avx2 : sum_pairs_plain)
@@ -69,7 +70,7 @@ VolumeForces::Result VolumeForces::on(const Band& band, std::uint32_t i,
     for_each_wall(band, i,
                   [&](const BandPlane& plane, float distance)
                   {
-                      const double way = double{distance} + behind_wall;
+                      const double way = double{distance} + behind_wall_;
                       if (way >= beyond_.reach()) return;
                       const auto size = static_cast<float>(beyond_.force(way));
                       result.x -= size * plane.x;

@@ -23,7 +23,8 @@ public:
         double shepard;
     };
 
-    VolumeForces(double h, bool is_2d);
+    /// behind_wall  dp, where the continuum begins
+    VolumeForces(double h, double behind_wall, bool is_2d);
 
     /// The force on particle i and its Shepard sum; near: its neighbours.
     Result on(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near) const;
@@ -44,6 +45,7 @@ private:
 
     HalfSpace beyond_;
     double alpha_;
+    double behind_wall_;
     PairFactors factors_;
     SumPairs sum_pairs_;
 };

@@ -79,6 +79,7 @@ void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_
     options.clearance_dp = settings.clearance_dp;
     options.wall_particles = wall_particles;
     options.is_solid = body.is_solid;
+    options.is_before_layers = !settings.depths_dp.empty() && settings.depths_dp[0] > 0;
     ExclusionBand zone = exclusion_band(body.mesh, body.report, grid, options, threads);
     out.warnings.insert(out.warnings.end(), zone.warnings.begin(), zone.warnings.end());
     if (body.is_solid && !zone.has_inside && zone.warnings.empty())

@@ -68,7 +68,7 @@ Made make(const CaseText& text, const std::vector<ShapePolygons>& geometry = {},
     CaseConstants constants;
     std::vector<std::string> warnings;
     made.particles = make_particles(made.def, field, threads, constants, warnings);
-    made.normals = compute_normals(made.def, made.particles, geometry, threads, made.report);
+    made.normals = compute_normals(made.def, made.particles, field, geometry, threads, made.report);
     return made;
 }
 

@@ -22,9 +22,9 @@ set(casedef_may_see shapes meshes core)
 set(scene_may_see casedef shapes meshes nodes core)
 set(particles_may_see offset meshes nodes core)
 foreach(folder fit normals files)
-  set(${folder}_may_see casedef shapes meshes particles nodes core)
+  set(${folder}_may_see casedef shapes offset meshes particles nodes core)
 endforeach()
-set(lattice_may_see scene casedef shapes meshes particles nodes core)
+set(lattice_may_see offset scene casedef shapes meshes particles nodes core)
 # Parts have an inside where walls have one.
 set(boolean_may_see fit meshes particles nodes core)
 # Relaxation fills the holes that open as fitting does.
