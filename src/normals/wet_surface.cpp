@@ -1,0 +1,235 @@
+#include "normals/wet_surface.h"
+
+#include "core/parallel.h"
+#include "offset/wall_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr std::uint16_t never = 0xFFFF;
+constexpr std::uint16_t blocked = 0xFFFE;
+constexpr std::int64_t most_cells = std::int64_t{1} << 25;
+/// Fluid is looked for so far off a surface, dp.
+constexpr double off_surface_dp = 1.2;
+/// A side is dry when the way to it is so much longer, dp.
+constexpr double longer_way_dp = 10;
+/// Facets are judged in pieces of at most this length, dp.
+constexpr double longest_piece_dp = 3;
+constexpr double opposing = -0.5;
+
+constexpr char is_wet = 0;
+constexpr char is_dry = 1;
+constexpr char is_thin = 2; ///< wet, and so is the other side
+
+} // namespace
+
+FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound) : grid_(field.grid)
+{
+    const auto cells = [&](int axis)
+    { return (std::int64_t{grid_.n[static_cast<std::size_t>(axis)]} + side_ - 1) / side_; };
+    while (cells(0) * cells(1) * cells(2) > most_cells) ++side_;
+    n_ = {cells(0), cells(1), cells(2)};
+    steps_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), never);
+    std::vector<std::array<std::int32_t, 3>> front;
+    for (std::int64_t x = 0; x < std::int64_t{grid_.n[0]}; ++x)
+        for (const Run& run : field.slabs[static_cast<std::size_t>(x)])
+            for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
+            {
+                std::uint16_t& cell = steps_[index(x / side_, run.y / side_, z)];
+                if (run.mk >= first_bound)
+                    cell = blocked;
+                else if (cell == never)
+                    cell = 0;
+            }
+    for (std::int64_t x = 0; x < n_[0]; ++x)
+        for (std::int64_t y = 0; y < n_[1]; ++y)
+            for (std::int64_t z = 0; z < n_[2]; ++z)
+                if (steps_[index(x, y, z)] == 0)
+                    front.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                     static_cast<std::int32_t>(z)});
+    has_fluid_ = !front.empty();
+    for (std::uint16_t step = 1; !front.empty() && step < blocked; ++step)
+    {
+        std::vector<std::array<std::int32_t, 3>> next;
+        for (const auto& at : front)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                for (const int way : {-1, 1})
+                {
+                    std::array<std::int32_t, 3> to = at;
+                    to[axis] += way;
+                    if (to[axis] < 0 || to[axis] >= n_[axis]) continue;
+                    std::uint16_t& cell = steps_[index(to[0], to[1], to[2])];
+                    if (cell != never) continue;
+                    cell = step;
+                    next.push_back(to);
+                }
+        front = std::move(next);
+    }
+}
+
+double FluidWay::to(const Vec3& p) const
+{
+    if (!has_fluid_) return 0;
+    std::array<std::int64_t, 3> at{};
+    for (int axis = 0; axis < 3; ++axis)
+        at[static_cast<std::size_t>(axis)] = std::llround(
+            std::clamp((p[axis] - grid_.origin[axis]) / grid_.dp, -1e9, 1e9) / side_ -
+            0.5 * (1 - 1.0 / side_));
+    std::uint16_t least = never;
+    for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
+        for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
+            for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z)
+            {
+                if (x < 0 || y < 0 || z < 0 || x >= n_[0] || y >= n_[1] || z >= n_[2]) continue;
+                const std::uint16_t steps = steps_[index(x, y, z)];
+                if (steps < blocked) least = std::min(least, steps);
+            }
+    return least == never ? std::numeric_limits<double>::infinity() : static_cast<double>(side_) * least;
+}
+
+WetSurface::WetSurface(const RunField& field, std::uint16_t first_bound, double reach, int threads)
+    : reach_(reach)
+{
+    cut_pieces(field);
+    if (pieces_.empty()) return;
+    if (std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.is_closed; }))
+        judge(field, FluidWay(field, first_bound), threads);
+    TriangleSoup wet;
+    for (const Piece& piece : pieces_)
+        if (piece.state != is_dry)
+            wet.vertices.insert(wet.vertices.end(), piece.corners.begin(), piece.corners.end());
+        else
+            has_dry_sides_ = true;
+    note_thin_walls(field);
+    pieces_.clear();
+    if (!wet.vertices.empty()) query_ = std::make_unique<MeshQuery>(std::move(wet), threads);
+}
+
+void WetSurface::cut_pieces(const RunField& field)
+{
+    const double longest = longest_piece_dp * field.grid.dp;
+    const std::vector<FittedBody>& bodies = field.walls.bodies;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    {
+        // The first layer on each side names the surface and the way to the fluid.
+        if (!bodies[b].is_layer() || bodies[b].wall == nullptr) continue;
+        if (b > 0 && bodies[b - 1].wall == bodies[b].wall) continue;
+        const FittedBody& owner = bodies[bodies[b].owner];
+        const SurfaceMesh& mesh = bodies[b].wall->mesh();
+        std::vector<Piece> todo;
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        {
+            Piece piece;
+            for (std::size_t c = 0; c < 3; ++c)
+                piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
+            piece.normal = bodies[b].wall->sign() * mesh.normals[f];
+            piece.body = bodies[b].owner;
+            piece.is_closed = owner.measures.volume > 0;
+            todo.push_back(piece);
+            while (!todo.empty())
+            {
+                const Piece now = todo.back();
+                todo.pop_back();
+                std::size_t side = 0;
+                double length = 0;
+                for (std::size_t s = 0; s < 3; ++s)
+                {
+                    const double l = norm(now.corners[(s + 1) % 3] - now.corners[s]);
+                    if (l > length)
+                    {
+                        length = l;
+                        side = s;
+                    }
+                }
+                if (length <= longest || !piece.is_closed)
+                {
+                    pieces_.push_back(now);
+                    continue;
+                }
+                const Vec3 middle = 0.5 * (now.corners[side] + now.corners[(side + 1) % 3]);
+                for (const std::size_t kept : {side, (side + 1) % 3})
+                {
+                    Piece half = now;
+                    half.corners[kept] = middle;
+                    todo.push_back(half);
+                }
+            }
+        }
+    }
+}
+
+void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
+{
+    const double dp = field.grid.dp;
+    std::vector<const WallDepth*> wall_of(field.walls.bodies.size(), nullptr);
+    for (const FittedBody& body : field.walls.bodies)
+        if (body.is_layer() && body.wall != nullptr) wall_of[body.owner] = body.wall.get();
+    parallel_for(
+        pieces_.size(), threads,
+        [&](std::size_t i)
+        {
+            Piece& piece = pieces_[i];
+            if (!piece.is_closed) return;
+            const WallDepth& wall = *wall_of[piece.body];
+            const Vec3 middle =
+                (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
+            for (std::size_t b = 0; b < wall_of.size(); ++b)
+                if (b != piece.body && wall_of[b] != nullptr &&
+                    field.walls.bodies[b].measures.volume > 0 &&
+                    wall_of[b]->at(middle + (0.3 * dp) * piece.normal).depth > 0)
+                    piece.state = is_dry;
+            if (piece.state == is_dry) return;
+            DepthPlace other;
+            Vec3 other_normal = piece.normal;
+            for (const double share : {0.5, 1.0})
+            {
+                if (dot(other_normal, piece.normal) <= opposing) continue;
+                other = wall.at(middle - (share * reach_) * piece.normal);
+                other_normal = wall.sign() * wall.mesh().normals[other.facet];
+            }
+            if (dot(other_normal, piece.normal) > opposing) return;
+            piece.thickness = dot(middle - other.foot, piece.normal);
+            // Particles nearer to one side are within reach of the other.
+            if (!(piece.thickness < 2 * reach_)) return;
+            const double here = way.to(middle + (off_surface_dp * dp) * piece.normal);
+            const double there = way.to(other.foot + (off_surface_dp * dp) * other_normal);
+            if (!std::isfinite(here) && !std::isfinite(there)) return;
+            if (here > there + longer_way_dp)
+                piece.state = is_dry;
+            else if (!(there > here + longer_way_dp))
+                piece.state = is_thin;
+        },
+        64);
+}
+
+void WetSurface::note_thin_walls(const RunField& field)
+{
+    const double enough = reach_ - 0.5 * field.grid.dp;
+    for (const Piece& piece : pieces_)
+    {
+        if (piece.state != is_thin || !(piece.thickness < enough)) continue;
+        const std::uint16_t mk = field.walls.bodies[piece.body].mk;
+        auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
+                                  [&](const ThinWall& wall) { return wall.mk == mk; });
+        if (found == thin_walls_.end())
+            found = thin_walls_.insert(found, {mk, piece.thickness, 0});
+        found->thickness = std::min(found->thickness, piece.thickness);
+        found->area += 0.5 * norm(cross(piece.corners[1] - piece.corners[0],
+                                        piece.corners[2] - piece.corners[0]));
+    }
+}
+
+Vec3 WetSurface::vector_from(const Vec3& p) const
+{
+    if (query_ == nullptr) return {};
+    const ClosestPoint near = query_->closest_point(p);
+    return near.distance <= reach_ ? near.point - p : Vec3{};
+}
+
+} // namespace fppg
