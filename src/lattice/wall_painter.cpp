@@ -21,6 +21,8 @@ constexpr double cut_distance_dp = 0.5;
 constexpr char touched = 2;
 /// Deeper in a later body than this a place is inside it, dp.
 constexpr double touching_dp = 1e-6;
+/// A cut particle of a layer has another in its place so near, dp.
+constexpr double replaced_dp = 0.9;
 /// Particles this near to a cut one are held in place, dp.
 constexpr double held_distance_dp = 2;
 
@@ -262,14 +264,22 @@ void WallPainter::finish()
     FittedWalls& walls = field_->walls;
     WallParticles& all = walls.particles;
     hand_over_shares();
+    // Where a later layer has taken the place of another nothing is missing.
+    const double replaced = replaced_dp * field_->grid.dp;
+    PointGrid kept(replaced, 0);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (!is_cut_[i] && walls.bodies[all.bodies[i]].is_layer()) kept.add(all.positions[i]);
     for (std::size_t i = 0; i < all.size(); ++i)
     {
         if (!is_cut_[i]) continue;
+        if (walls.bodies[all.bodies[i]].is_layer() && kept.has_nearer(all.positions[i], replaced))
+            continue;
         walls.cut.push_back(all.positions[i]);
         walls.cut_bodies.push_back(all.bodies[i]);
     }
     anchors_.clear();
-    if (!walls.cut.empty()) all.erase(is_cut_);
+    if (std::any_of(is_cut_.begin(), is_cut_.end(), [](char c) { return c != 0; }))
+        all.erase(is_cut_);
     is_cut_.clear();
     hold_beside_second_sheets();
     if (walls.cut.empty()) return;

@@ -26,7 +26,7 @@ bool may_hold(const WallDepth& wall, const DepthGrid& grid, const Cube& cube, do
     const Vec3 middle = grid.node(cube.first[0], cube.first[1], cube.first[2]) +
                         (half * grid.cell) * Vec3{1, 1, 1};
     const double reach = 2 * half * half_diagonal * grid.cell;
-    return std::fabs(wall.distance(middle) - depth) <= reach;
+    return std::fabs(std::fabs(wall.at(middle).depth) - depth) <= reach;
 }
 
 } // namespace

@@ -177,7 +177,7 @@ std::optional<Vec3> crease_point(const std::vector<EdgeCrossing>& tangents, cons
         if (point[axis] < low[axis] - outside_cell * cell ||
             point[axis] > low[axis] + (1 + outside_cell) * cell)
             return std::nullopt;
-    const double off = from.wall.distance(point) - depth;
+    const double off = from.wall.at(point).depth - depth;
     return std::fabs(off) < crease_error * cell ? std::optional(point) : std::nullopt;
 }
 

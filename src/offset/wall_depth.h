@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace fppg
 {
@@ -21,14 +22,18 @@ enum class WallSide : std::uint8_t
 /// A point seen from a wall.
 struct DepthPlace
 {
-    Vec3 foot;               ///< nearest point of the surface
+    Vec3 nearest;            ///< point of the surface
+    Vec3 foot;               ///< the point from which the depth is measured, along the direction
     Vec3 direction;          ///< unit, the way in which the depth grows fastest
     double depth = 0;        ///< metres behind the surface; negative before it
     std::uint32_t facet = 0; ///< of the mesh, at the foot
     bool is_beyond_rim = false; ///< the foot is on an open edge, and the point not over a facet there
 };
 
-/// How deep points are behind a surface: the distance to it, with the sign of the side.
+/// How deep points are behind a surface: the distance to it, with the sign of the side. Behind a
+/// sharp edge that runs into the wall, where the nearest place is the edge itself, it is the largest
+/// distance to the planes of the faces that meet there, so that surfaces of one depth keep the edge
+/// (a mitre); but no less than the distance over 1.8. Behind smooth surfaces it is the distance.
 ///
 /// The side is that of the angle-weighted pseudonormal at the foot (Baerentzen and Aanaes, 2005),
 /// which is exact for surfaces without clashing edges; for closed bodies with faults the inside test
@@ -36,26 +41,22 @@ struct DepthPlace
 class WallDepth
 {
 public:
-    /// mesh  connected; it is copied
+    /// mesh              connected; it is copied
+    /// sharp_angle_deg   edges whose facets' normals differ by more are sharp
     WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_solid, WallSide side,
-              int threads);
+              double sharp_angle_deg, int threads);
 
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p,
                   double within = std::numeric_limits<double>::infinity()) const;
-    /// The distance only, metres.
-    double distance(const Vec3& p,
-                    double within = std::numeric_limits<double>::infinity()) const
-    {
-        return query().closest_point(p, within).distance;
-    }
     const SurfaceMesh& mesh() const { return mesh_; }
     /// 1 where the layers are behind the facets, -1 where they are in front.
     double sign() const { return sign_; }
 
 private:
     const MeshQuery& query() const { return test_.query(); }
-    bool is_behind(const Vec3& p, const ClosestPoint& foot, bool& is_on_rim) const;
+    bool is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const;
+    void mitre(const Vec3& p, std::uint32_t facet, const FacetPlace& place, DepthPlace& out) const;
 
     SurfaceMesh mesh_;
     PseudoNormals normals_;
@@ -63,6 +64,7 @@ private:
     double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
     bool asks_inside_ = false;
     double sign_ = 1;
+    std::vector<char> is_sharp_; ///< per edge
 };
 
 } // namespace fppg

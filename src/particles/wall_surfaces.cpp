@@ -38,7 +38,10 @@ SurfacePlace WallSurfaces::at(std::size_t particle) const
     if (walls_.bodies[b].is_layer())
     {
         const DepthPlace place = walls_.bodies[b].wall->at(p);
-        return {as_floats(-place.direction), static_cast<float>(-place.depth)};
+        const Vec3 way = place.nearest - p;
+        const double distance = norm(way);
+        return {as_floats(distance > 0 ? way / distance : -place.direction),
+                static_cast<float>(-distance)};
     }
     Vec3 normal = exact_normal(walls_.bodies[b], p, facet);
     const FitKind kind = particles.kinds[particle];

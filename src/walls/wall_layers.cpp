@@ -111,12 +111,14 @@ private:
     {
         const FittedBody& body = out_.body;
         if (!grid_.is_2d)
-            return std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side, threads_);
+            return std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
+                                               settings_.feature_angle_deg, threads_);
         MeshReport report;
         const double half_width = (settings_.depths_dp.back() + 4) * grid_.dp;
         SurfaceMesh mesh = drawn_out(body.mesh, grid_.origin.y, half_width, threads_, report);
         if (mesh.facets.empty()) return nullptr;
-        return std::make_shared<WallDepth>(mesh, report, false, side, threads_);
+        return std::make_shared<WallDepth>(mesh, report, false, side,
+                                           settings_.feature_angle_deg, threads_);
     }
 
     /// Of a combination: each facet belongs to the part that is nearest to it.

@@ -1,0 +1,197 @@
+#include "walls/merged_sheet.h"
+
+#include "core/parallel.h"
+#include "meshes/point_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr double sample_dp = 0.3;
+constexpr double opposing = -0.5;
+/// From sharp edges, dp.
+constexpr double off_edges_dp = 0.45;
+/// Between candidates that are taken at first, and from one that is put into a hole, dp.
+constexpr double first_spacing_dp = 0.88;
+constexpr double hole_dp = 0.80;
+/// Reach of the forces that even the sheet out, dp, and their step.
+constexpr double reach_dp = 1.6;
+constexpr double step_dp = 0.25;
+constexpr int rounds = 4;
+constexpr int steps_a_round = 12;
+
+struct MiddlePoint
+{
+    Vec3 position;
+    std::uint32_t facet = 0;
+};
+
+class Middle
+{
+public:
+    Middle(const WallDepth& wall, const Features& features, const MergedSheetOptions& options)
+        : wall_(wall), options_(options), edges_(off_edges_dp * options.dp, 1024)
+    {
+        const SurfaceMesh& mesh = wall.mesh();
+        for (const std::uint32_t e : features.edges)
+        {
+            const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+            const Vec3 along = mesh.vertices[mesh.edges[e][1]] - a;
+            const int parts = 1 + static_cast<int>(norm(along) / (0.2 * options.dp));
+            for (int i = 0; i <= parts; ++i)
+                edges_.add(a + (static_cast<double>(i) / parts) * along);
+        }
+    }
+
+    /// The middle under a point of the surface, if the part is thin there. `down` is the way into
+    /// the wall, unit.
+    std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& down, std::uint32_t facet) const
+    {
+        double radius = options_.least_depth_dp * options_.dp;
+        Vec3 centre = foot + radius * down;
+        Vec3 other = foot;
+        bool is_thin = false;
+        for (int step = 0; step < 30; ++step)
+        {
+            const DepthPlace place = wall_.at(centre);
+            const double distance = norm(place.nearest - centre);
+            if (!(distance < radius * (1 - 1e-7))) break;
+            const Vec3 way = place.nearest - foot;
+            const double height = dot(way, down);
+            if (!(height > 1e-9 * options_.dp)) return std::nullopt;
+            other = place.nearest;
+            is_thin = true;
+            radius = std::min(radius, dot(way, way) / (2 * height));
+            centre = foot + radius * down;
+        }
+        if (!is_thin) return std::nullopt;
+        const Vec3 up = centre - other;
+        const double size = norm(up);
+        if (!(size > 0) || !(dot(up, down) < opposing * size)) return std::nullopt;
+        if (edges_.has_nearer(centre, off_edges_dp * options_.dp)) return std::nullopt;
+        return MiddlePoint{centre, facet};
+    }
+
+    /// A point back on the middle.
+    std::optional<MiddlePoint> back(const Vec3& p) const
+    {
+        const DepthPlace place = wall_.at(p);
+        return under(place.nearest, -wall_.sign() * wall_.mesh().normals[place.facet], place.facet);
+    }
+
+private:
+    const WallDepth& wall_;
+    const MergedSheetOptions& options_;
+    PointGrid edges_;
+};
+
+std::vector<MiddlePoint> find_candidates(const WallDepth& wall, const Middle& middle,
+                                         const MergedSheetOptions& options, int threads)
+{
+    const SurfaceMesh& mesh = wall.mesh();
+    std::vector<std::vector<MiddlePoint>> of_facet(mesh.facets.size());
+    parallel_for(
+        mesh.facets.size(), threads,
+        [&](std::size_t f)
+        {
+            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
+            const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
+            const double longest = std::max({norm(u), norm(v), norm(u - v)});
+            const int n = std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
+            const Vec3 down = -wall.sign() * mesh.normals[f];
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n - i; ++j)
+                {
+                    const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
+                    if (const auto at = middle.under(p, down, static_cast<std::uint32_t>(f)))
+                        of_facet[f].push_back(*at);
+                }
+        },
+        16);
+    std::vector<MiddlePoint> out;
+    for (const auto& points : of_facet) out.insert(out.end(), points.begin(), points.end());
+    return out;
+}
+
+/// Takes candidates that are at least `spacing` from all that is taken.
+void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
+          double spacing, std::vector<MiddlePoint>& sheet)
+{
+    PointGrid grid(spacing, taken.size() + sheet.size());
+    for (const Vec3& p : taken) grid.add(p);
+    for (const MiddlePoint& p : sheet) grid.add(p.position);
+    for (const MiddlePoint& p : candidates)
+    {
+        if (grid.has_nearer(p.position, spacing)) continue;
+        grid.add(p.position);
+        sheet.push_back(p);
+    }
+}
+
+/// One step away from the neighbours, back onto the middle.
+void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, int threads,
+              std::vector<MiddlePoint>& sheet)
+{
+    const double reach = reach_dp * dp;
+    PointGrid grid(reach, taken.size() + sheet.size());
+    for (const MiddlePoint& p : sheet) grid.add(p.position);
+    for (const Vec3& p : taken) grid.add(p);
+    std::vector<MiddlePoint> moved = sheet;
+    parallel_for(
+        sheet.size(), threads,
+        [&](std::size_t i)
+        {
+            Vec3 force;
+            grid.for_each_near(sheet[i].position, reach,
+                               [&](std::uint32_t j, double squared)
+                               {
+                                   if (j == i || !(squared > 0)) return;
+                                   const double r = std::sqrt(squared);
+                                   const double s = 1 - r / reach;
+                                   force = force + (s * s * s / r) *
+                                                       (sheet[i].position - grid.points()[j]);
+                               });
+            const double size = norm(force);
+            const double most = 0.1;
+            const Vec3 step = (size > most ? most / size : 1) * step_dp * 4 * dp * force;
+            if (const auto at = middle.back(sheet[i].position + step)) moved[i] = *at;
+        },
+        64);
+    sheet = std::move(moved);
+}
+
+} // namespace
+
+SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
+                              const std::vector<Vec3>& taken, const MergedSheetOptions& options,
+                              int threads)
+{
+    const Middle middle(wall, features, options);
+    const std::vector<MiddlePoint> candidates = find_candidates(wall, middle, options, threads);
+    SurfaceParticles out;
+    if (candidates.empty()) return out;
+    std::vector<MiddlePoint> sheet;
+    take(candidates, taken, first_spacing_dp * options.dp, sheet);
+    for (int round = 0; round < rounds; ++round)
+    {
+        for (int step = 0; step < steps_a_round; ++step)
+            even_out(middle, taken, options.dp, threads, sheet);
+        take(candidates, taken, hole_dp * options.dp, sheet);
+    }
+    for (const MiddlePoint& p : sheet)
+    {
+        out.positions.push_back(p.position);
+        out.kinds.push_back(FitKind::Surface);
+        out.facets.push_back(p.facet);
+    }
+    return out;
+}
+
+} // namespace fppg
