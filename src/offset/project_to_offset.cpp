@@ -45,7 +45,7 @@ Vec3 project_to_crease(const WallDepth& wall, const Vec3& p, double depth, doubl
             const double depth_at = place.depth + dot(place.direction, at - beside);
             quadric.add_plane(place.direction, depth - depth_at);
         }
-        const Vec3 move = quadric.least_point(1e-3);
+        const Vec3 move = quadric.least_point();
         if (!(norm(move) < 0.5 * dp)) return project_to_depth(wall, p, depth);
         at = at + move;
         if (norm(move) < 1e-9 * dp) break;

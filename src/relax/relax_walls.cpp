@@ -101,8 +101,11 @@ private:
         {
             if (report_.is_stopped || !kinds[kind].is_active) continue;
             std::vector<char> is_meant;
-            for (const std::size_t k : kind_of_body) is_meant.push_back(k == kind);
-            if (kinds.size() == 1)
+            // A layer that two sides share is even as it was made.
+            for (std::size_t b = 0; b < kind_of_body.size(); ++b)
+                is_meant.push_back(kind_of_body[b] == kind &&
+                                   !field_.walls.bodies[b].mesh.facets.empty());
+            if (std::all_of(is_meant.begin(), is_meant.end(), [](char m) { return m != 0; }))
                 relax_surface_of(field_.walls.particles, {}, kinds[kind]);
             else
             {

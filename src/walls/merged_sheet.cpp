@@ -18,19 +18,13 @@ constexpr double opposing = -0.5;
 /// From sharp edges, dp.
 constexpr double off_edges_dp = 0.45;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
-constexpr double first_spacing_dp = 0.88;
-constexpr double hole_dp = 0.80;
+constexpr double first_spacing_dp = 0.92;
+constexpr double hole_dp = 0.83;
 /// Reach of the forces that even the sheet out, dp, and their step.
 constexpr double reach_dp = 1.6;
 constexpr double step_dp = 0.25;
 constexpr int rounds = 4;
 constexpr int steps_a_round = 12;
-
-struct MiddlePoint
-{
-    Vec3 position;
-    std::uint32_t facet = 0;
-};
 
 class Middle
 {
@@ -41,6 +35,8 @@ public:
         const SurfaceMesh& mesh = wall.mesh();
         for (const std::uint32_t e : features.edges)
         {
+            // Far rims of what is drawn out along y.
+            if (options.plane_y && mesh.edge_facets[e][1] == no_index) continue;
             const Vec3& a = mesh.vertices[mesh.edges[e][0]];
             const Vec3 along = mesh.vertices[mesh.edges[e][1]] - a;
             const int parts = 1 + static_cast<int>(norm(along) / (0.2 * options.dp));
@@ -49,10 +45,13 @@ public:
         }
     }
 
-    /// The middle under a point of the surface, if the part is thin there. `down` is the way into
-    /// the wall, unit.
-    std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& down, std::uint32_t facet) const
+    /// The middle under a point of the surface, if the part is thin there.
+    ///
+    /// normal  of the facet, unit
+    std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& normal,
+                                     std::uint32_t facet) const
     {
+        const Vec3 down = -wall_.sign() * normal;
         double radius = options_.least_depth_dp * options_.dp;
         Vec3 centre = foot + radius * down;
         Vec3 other = foot;
@@ -82,7 +81,7 @@ public:
     std::optional<MiddlePoint> back(const Vec3& p) const
     {
         const DepthPlace place = wall_.at(p);
-        return under(place.nearest, -wall_.sign() * wall_.mesh().normals[place.facet], place.facet);
+        return under(place.nearest, wall_.mesh().normals[place.facet], place.facet);
     }
 
 private:
@@ -91,33 +90,22 @@ private:
     PointGrid edges_;
 };
 
-std::vector<MiddlePoint> find_candidates(const WallDepth& wall, const Middle& middle,
-                                         const MergedSheetOptions& options, int threads)
+/// Along a line of the section of a 2D case, which two facets were drawn out of: the first is asked.
+void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mesh,
+                 const MergedSheetOptions& options, std::vector<MiddlePoint>& out)
 {
-    const SurfaceMesh& mesh = wall.mesh();
-    std::vector<std::vector<MiddlePoint>> of_facet(mesh.facets.size());
-    parallel_for(
-        mesh.facets.size(), threads,
-        [&](std::size_t f)
-        {
-            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
-            const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
-            const double longest = std::max({norm(u), norm(v), norm(u - v)});
-            const int n = std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
-            const Vec3 down = -wall.sign() * mesh.normals[f];
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n - i; ++j)
-                {
-                    const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
-                    if (const auto at = middle.under(p, down, static_cast<std::uint32_t>(f)))
-                        of_facet[f].push_back(*at);
-                }
-        },
-        16);
-    std::vector<MiddlePoint> out;
-    for (const auto& points : of_facet) out.insert(out.end(), points.begin(), points.end());
-    return out;
+    if (facet % 2 != 0) return;
+    Vec3 p = mesh.vertices[mesh.facets[facet][0]];
+    Vec3 q = p;
+    for (const std::uint32_t v : mesh.facets[facet])
+        if (mesh.vertices[v].x != p.x || mesh.vertices[v].z != p.z) q = mesh.vertices[v];
+    p.y = *options.plane_y;
+    q.y = *options.plane_y;
+    const int n = std::max(1, static_cast<int>(std::ceil(norm(q - p) / (sample_dp * options.dp))));
+    for (int i = 0; i < n; ++i)
+        if (const auto at = middle.under(p + ((i + 0.5) / n) * (q - p), mesh.normals[facet],
+                                         static_cast<std::uint32_t>(facet)))
+            out.push_back(*at);
 }
 
 /// Takes candidates that are at least `spacing` from all that is taken.
@@ -169,22 +157,55 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
 
 } // namespace
 
+std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& features,
+                                     const MergedSheetOptions& options, int threads)
+{
+    const Middle middle(wall, features, options);
+    const SurfaceMesh& mesh = wall.mesh();
+    std::vector<std::vector<MiddlePoint>> of_facet(mesh.facets.size());
+    parallel_for(
+        mesh.facets.size(), threads,
+        [&](std::size_t f)
+        {
+            if (options.plane_y)
+            {
+                sample_line(f, middle, mesh, options, of_facet[f]);
+                return;
+            }
+            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
+            const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
+            const double longest = std::max({norm(u), norm(v), norm(u - v)});
+            const int n = std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n - i; ++j)
+                {
+                    const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
+                    if (const auto at = middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
+                        of_facet[f].push_back(*at);
+                }
+        },
+        16);
+    std::vector<MiddlePoint> out;
+    for (const auto& points : of_facet) out.insert(out.end(), points.begin(), points.end());
+    return out;
+}
+
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
+                              const std::vector<MiddlePoint>& points,
                               const std::vector<Vec3>& taken, const MergedSheetOptions& options,
                               int threads)
 {
     const Middle middle(wall, features, options);
-    const std::vector<MiddlePoint> candidates = find_candidates(wall, middle, options, threads);
-    SurfaceParticles out;
-    if (candidates.empty()) return out;
     std::vector<MiddlePoint> sheet;
-    take(candidates, taken, first_spacing_dp * options.dp, sheet);
+    take(points, taken, first_spacing_dp * options.dp, sheet);
     for (int round = 0; round < rounds; ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);
-        take(candidates, taken, hole_dp * options.dp, sheet);
+        take(points, taken, hole_dp * options.dp, sheet);
     }
+    SurfaceParticles out;
     for (const MiddlePoint& p : sheet)
     {
         out.positions.push_back(p.position);

@@ -4,6 +4,7 @@
 
 #include "offset/wall_depth.h"
 
+#include <optional>
 #include <vector>
 
 namespace fppg
@@ -14,22 +15,37 @@ struct MergedSheetOptions
     double dp = 0;
     /// Where the middle is nearer to the surface than this, the layers of both sides are one, dp.
     double least_depth_dp = 0.8;
-    bool is_2d = false;
+    std::optional<double> plane_y; ///< of 2D cases: the wall is drawn out along y
 };
+
+/// A point on the middle of a thin part.
+struct MiddlePoint
+{
+    Vec3 position;
+    std::uint32_t facet = 0; ///< of the wall, at its foot
+};
+
+/// Points on the middle (the medial axis) of the thin parts of a body, from both sides.
+///
+/// Points of the surface, 0.3 dp apart, are sunk to the centre of the largest ball that touches the
+/// surface there and holds no other point of it (Ma, Bae and Choi, 2012, "shrinking ball"). Those less
+/// deep than least_depth whose other side faces away by more than 120 degrees are taken, half a dp off
+/// sharp edges; none of a body that is thick everywhere.
+///
+/// cost  about 15 distances per dp^2 of surface
+std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& features,
+                                     const MergedSheetOptions& options, int threads);
 
 /// The particles that both sides of a thin part share: on its middle (the medial axis), one per dp^2
 /// and evenly spaced.
 ///
-/// Points of the surface, 0.3 dp apart, are sunk to the centre of the largest ball that touches the
-/// surface there and holds no other point of it (Ma, Bae and Choi, 2012, "shrinking ball"). Those less
-/// deep than least_depth whose other side faces away by more than 120 degrees are candidates, half a
-/// dp off sharp edges. From them the sheet is filled at 0.9 dp, relaxed on the middle, and filled where
-/// it is 0.8 dp from all.
+/// From points on the middle the sheet is filled at 0.92 dp, relaxed on the middle, and filled where it
+/// is 0.83 dp from all.
 ///
 /// taken    particles of layers already there, which keep their place
-/// returns  positions; the facet under each; nothing for a body that is thick everywhere
-/// cost     about 15 distances per dp^2 of surface
+/// returns  positions, and the facet under each
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
+                              const std::vector<MiddlePoint>& points,
                               const std::vector<Vec3>& taken, const MergedSheetOptions& options,
                               int threads);
 

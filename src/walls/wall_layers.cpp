@@ -6,10 +6,12 @@
 #include "core/parallel.h"
 #include "fit/wall_section.h"
 #include "meshes/connect_mesh.h"
+#include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
 #include "offset/layer_place.h"
 #include "offset/offset_surface.h"
 #include "walls/fit_shape.h"
+#include "walls/merged_sheet.h"
 
 #include <fmt/format.h>
 
@@ -30,6 +32,14 @@ constexpr double offset_cell_dp = 0.5;
 constexpr double merge_dp = 0.6;
 /// Sides whose normals turn by more than 120 degrees face away from each other.
 constexpr double opposing = -0.5;
+/// No particle of a layer is so near to the middle of a thin part, which has its own, dp.
+constexpr double off_middle_dp = 0.35;
+/// Between particles of edges and corners, as place_feature_particles() leaves them, dp.
+constexpr double least_on_lines_dp = 0.45;
+/// A node in a thin part stays where no particle of a layer is nearer than this, and it is so deep,
+/// dp.
+constexpr double gap_dp = 0.85;
+constexpr double gap_depth_dp = 0.45;
 
 /// The lines in which a surface meets the plane of a 2D case, drawn out along y, so that distances
 /// near the plane are those in it.
@@ -77,6 +87,8 @@ public:
     {
         std::shared_ptr<const WallDepth> wall = wall_of(side, is_closed);
         if (wall == nullptr) return;
+        const bool may_merge = is_closed && settings_.depths_dp[0] > 0;
+        if (may_merge) find_thin_parts(*wall);
         const std::string of_side =
             side == WallSide::Front ? " before the surface" : std::string();
         for (std::size_t k = 0; k < settings_.depths_dp.size(); ++k)
@@ -104,6 +116,7 @@ public:
             name_owners(*wall, body);
             add_particles(std::move(body));
         }
+        if (!middle_.empty()) merge_sides(std::move(wall));
     }
 
 private:
@@ -148,6 +161,78 @@ private:
         return there.depth < reach * (1 - 1e-9) && dot(here.direction, there.direction) < opposing;
     }
 
+    MergedSheetOptions sheet_options() const
+    {
+        MergedSheetOptions options;
+        options.dp = grid_.dp;
+        options.least_depth_dp = settings_.depths_dp[0] + 0.5 * merge_dp;
+        if (grid_.is_2d) options.plane_y = grid_.origin.y;
+        return options;
+    }
+
+    /// Where a part is too thin for a layer of each side.
+    void find_thin_parts(const WallDepth& wall)
+    {
+        sharp_ = find_features(wall.mesh(), feature_options(settings_, grid_));
+        middle_ = find_middle(wall, sharp_, sheet_options(), threads_);
+        near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, middle_.size());
+        for (const MiddlePoint& p : middle_) near_middle_->add(p.position);
+    }
+
+    /// A layer in the middle of thin parts serves both sides.
+    void merge_sides(std::shared_ptr<const WallDepth> wall)
+    {
+        SurfaceParticles sheet = merged_sheet(*wall, sharp_, middle_, out_.particles.positions,
+                                              sheet_options(), threads_);
+        FittedBody body;
+        body.name = "shared layer";
+        body.is_solid = out_.body.is_solid;
+        body.owner = 0;
+        body.wall = std::move(wall);
+        if (!grid_.is_2d) body.facet_mk = out_.body.facet_mk;
+        const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
+        for (std::size_t i = 0; i < sheet.positions.size(); ++i)
+        {
+            body.depth = std::max(body.depth, body.wall->at(sheet.positions[i]).depth);
+            out_.particles.positions.push_back(sheet.positions[i]);
+            out_.particles.kinds.push_back(FitKind::Surface);
+            out_.particles.bodies.push_back(index);
+            out_.particles.facets.push_back(sheet.facets[i]);
+            out_.particles.mk.push_back(0);
+            out_.particles.held.push_back(1);
+        }
+        out_.layers.push_back(std::move(body));
+    }
+
+    /// Creases that meet in a small angle may have particles that came together on them.
+    void drop_crowded_features(SurfaceParticles& particles, std::vector<char>& is_out) const
+    {
+        const double least = least_on_lines_dp * grid_.dp;
+        PointGrid taken(least, particles.positions.size() / 8);
+        std::vector<char> is_dropped(particles.positions.size(), 0);
+        bool has_dropped = false;
+        for (std::size_t i = 0; i < particles.positions.size(); ++i)
+        {
+            const FitKind kind = particles.kinds[i];
+            if (kind != FitKind::Corner && kind != FitKind::Edge) continue;
+            is_dropped[i] = taken.has_nearer(particles.positions[i], least) ? 1 : 0;
+            if (is_dropped[i] == 0) taken.add(particles.positions[i]);
+            has_dropped = has_dropped || is_dropped[i] != 0;
+        }
+        if (!has_dropped) return;
+        const auto compact = [&](auto& values)
+        {
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < is_dropped.size(); ++i)
+                if (is_dropped[i] == 0) values[count++] = values[i];
+            values.resize(count);
+        };
+        compact(particles.positions);
+        compact(particles.kinds);
+        compact(particles.facets);
+        compact(is_out);
+    }
+
     void add_particles(FittedBody&& layer)
     {
         const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
@@ -163,9 +248,11 @@ private:
                 Vec3& p = particles.positions[i];
                 p = places.place(p, particles.kinds[i], particles.facets[i]);
                 if (grid_.is_2d) p.y = grid_.origin.y;
-                is_out[i] = meets_other_side(layer, p) ? 1 : 0;
+                is_out[i] = meets_other_side(layer, p) ||
+                            (near_middle_ && near_middle_->has_nearer(p, off_middle_dp * grid_.dp));
             },
             256);
+        drop_crowded_features(particles, is_out);
         for (std::size_t i = 0; i < is_out.size(); ++i)
         {
             WallParticles& to = is_out[i] != 0 ? out_.second_sheet : out_.particles;
@@ -184,6 +271,9 @@ private:
     const LatticeGrid& grid_;
     int threads_;
     FittedDraw& out_;
+    Features sharp_;
+    std::vector<MiddlePoint> middle_; ///< of thin parts
+    std::unique_ptr<PointGrid> near_middle_;
 };
 
 /// Adds spans to each slab.
@@ -192,33 +282,79 @@ void unite_with(std::vector<Spans>& slabs, const std::vector<Spans>& more, int t
     parallel_for(slabs.size(), threads, [&](std::size_t x) { slabs[x] = unite(slabs[x], more[x]); });
 }
 
-/// Of the nodes inside, those under the innermost layer stay.
+PointGrid grid_of(const std::vector<Vec3>& points, double cell)
+{
+    PointGrid grid(cell, points.size());
+    for (const Vec3& p : points) grid.add(p);
+    return grid;
+}
+
+/// The nodes in parts too thin for all layers that have no particle near: between layers of both
+/// sides that are the innermost there.
+Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const LatticeGrid& grid,
+                const FittedDraw& out)
+{
+    Spans found;
+    if (out.layers.empty()) return found;
+    const WallDepth& wall = *out.layers.front().wall;
+    double deepest = 0;
+    for (const FittedBody& layer : out.layers) deepest = std::max(deepest, layer.depth);
+    const double enough = deepest + grid.dp;
+    for (const Span& span : nodes)
+        for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+        {
+            const Vec3 p = grid.origin + grid.dp * Vec3{static_cast<double>(x),
+                                                        static_cast<double>(span.y),
+                                                        static_cast<double>(z)};
+            if (taken.has_nearer(p, gap_dp * grid.dp)) continue;
+            const DepthPlace here = wall.at(p);
+            if (here.depth < gap_depth_dp * grid.dp) continue;
+            // Thick enough for all layers and nodes under them: they are the ones to fill it.
+            if (wall.at(here.foot + enough * here.direction).depth > enough * (1 - 1e-6)) continue;
+            if (!found.empty() && found.back().y == span.y && found.back().z_end == z)
+                ++found.back().z_end;
+            else
+                found.push_back({span.y, z, z + 1});
+        }
+    return found;
+}
+
+/// Of the nodes inside, those under the innermost layer stay, and those in gaps between layers.
 void take_nodes_between(const LatticeGrid& grid, int threads, FittedDraw& out)
 {
     const bool is_hollow = !out.body.is_solid;
     std::vector<Spans>& inside = is_hollow ? out.hollow : out.volume;
     std::vector<Spans> deep(grid.n[0]);
     std::uint64_t nodes = 0;
-    if (!out.layers.empty())
+    std::size_t last = out.layers.size();
+    while (last > 0 && out.layers[last - 1].mesh.facets.empty()) --last;
+    if (last > 0)
     {
-        const FittedBody& innermost = out.layers.back();
+        const FittedBody& innermost = out.layers[last - 1];
         ExclusionBandOptions options;
         options.is_solid = true;
         for (const std::uint32_t b : out.particles.bodies)
-            options.wall_particles += b == out.layers.size() ? 1 : 0;
+            options.wall_particles += b == last ? 1 : 0;
         ExclusionBand band =
             exclusion_band(innermost.mesh, innermost.report, grid, options, threads);
         nodes = band.nodes;
         deep = by_slab(std::move(band.volume), grid);
     }
     if (inside.empty()) return;
+    const PointGrid taken = grid_of(out.particles.positions, gap_dp * grid.dp);
+    std::vector<std::uint64_t> added(grid.n[0], 0);
     parallel_for(grid.n[0], threads,
                  [&](std::size_t x)
                  {
                      deep[x] = intersect(deep[x], inside[x]);
+                     const Spans gaps =
+                         find_gaps(subtract(inside[x], deep[x]), x, taken, grid, out);
+                     for (const Span& s : gaps) added[x] += s.z_end - s.z_begin;
+                     deep[x] = unite(deep[x], gaps);
                      out.zone[x] = unite(out.zone[x], subtract(inside[x], deep[x]));
                  });
     inside = std::move(deep);
+    for (const std::uint64_t n : added) nodes += n;
     out.body.measures.node_volume = static_cast<double>(nodes) * grid.dp * grid.dp * grid.dp;
 }
 
@@ -239,6 +375,7 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
         for (const double a : out.layers[k].mesh.areas) area += a;
         // In 2D the strip is two halves of a cell wide.
         if (grid.is_2d) area *= 1 / offset_cell_dp;
+        if (out.layers[k].mesh.facets.empty()) area = counts[k + 1] * grid.dp * grid.dp;
         measures.area = all > 0 ? area * counts[k + 1] / all : 0;
         measures.second_sheet = area - measures.area;
         measures.wall_particles = counts[k + 1];
@@ -262,6 +399,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
     else
     {
         for (const FittedBody& layer : out.layers)
+            if (!layer.mesh.facets.empty())
             unite_with(out.zone,
                        by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone,
                                grid),
