@@ -1,0 +1,329 @@
+#include "check/cavity.h"
+
+#include "core/parallel.h"
+
+#include <atomic>
+#include <map>
+
+namespace fppg
+{
+
+namespace
+{
+
+constexpr std::size_t marks_per_chunk = 4096;
+constexpr double most_columns = 1U << 28U;
+
+/// Spans of nodes by columns, which may overlap.
+struct NodeSpans
+{
+    std::vector<std::uint64_t> begins;
+    std::vector<Cavity::NodeRun> spans; ///< in a column by their begin
+};
+
+/// mark(i, emit) calls emit(column, first z, last z) for what particle i marks, twice the same.
+template <typename Mark>
+NodeSpans collect_spans(std::size_t columns, std::size_t count, int threads, const Mark& mark)
+{
+    std::vector<std::uint32_t> counts(columns, 0);
+    parallel_for(
+        count, threads,
+        [&](std::size_t i)
+        {
+            mark(i,
+                 [&](std::size_t column, std::int64_t z0, std::int64_t z1)
+                 {
+                     if (z0 <= z1)
+                         std::atomic_ref(counts[column]).fetch_add(1, std::memory_order_relaxed);
+                 });
+        },
+        marks_per_chunk);
+    NodeSpans out;
+    out.begins.assign(columns + 1, 0);
+    for (std::size_t c = 0; c < columns; ++c) out.begins[c + 1] = out.begins[c] + counts[c];
+    out.spans.resize(out.begins[columns]);
+    parallel_for(
+        count, threads,
+        [&](std::size_t i)
+        {
+            mark(i,
+                 [&](std::size_t column, std::int64_t z0, std::int64_t z1)
+                 {
+                     if (z0 > z1) return;
+                     const std::uint32_t left =
+                         std::atomic_ref(counts[column]).fetch_sub(1, std::memory_order_relaxed);
+                     out.spans[out.begins[column] + left - 1] = {static_cast<std::uint32_t>(z0),
+                                                                 static_cast<std::uint32_t>(z1 + 1)};
+                 });
+        },
+        marks_per_chunk);
+    // What is marked does not depend on the order; the order is made one all the same.
+    parallel_for(
+        columns, threads,
+        [&](std::size_t c)
+        {
+            std::sort(out.spans.begin() + static_cast<std::ptrdiff_t>(out.begins[c]),
+                      out.spans.begin() + static_cast<std::ptrdiff_t>(out.begins[c + 1]),
+                      [](const Cavity::NodeRun& a, const Cavity::NodeRun& b)
+                      { return a.begin != b.begin ? a.begin < b.begin : a.end < b.end; });
+        },
+        marks_per_chunk);
+    return out;
+}
+
+/// Calls keep(run) for what the spans leave of the runs of a column.
+template <typename Keep>
+void for_each_left(const Cavity& cavity, const NodeSpans& spans, std::size_t column,
+                   const Keep& keep)
+{
+    std::uint64_t s = spans.begins[column];
+    for (std::uint64_t r = cavity.begins[column]; r < cavity.begins[column + 1]; ++r)
+    {
+        std::uint32_t begin = cavity.runs[r].begin;
+        const std::uint32_t end = cavity.runs[r].end;
+        for (; s < spans.begins[column + 1] && spans.spans[s].begin < end; ++s)
+        {
+            if (spans.spans[s].begin > begin)
+                keep(Cavity::NodeRun{begin, spans.spans[s].begin});
+            begin = std::max(begin, spans.spans[s].end);
+            if (begin >= end) break; // the span may reach into the next run
+        }
+        if (begin < end) keep(Cavity::NodeRun{begin, end});
+    }
+}
+
+void take_away(Cavity& cavity, const NodeSpans& spans, int threads)
+{
+    const std::size_t columns = cavity.begins.size() - 1;
+    std::vector<std::uint64_t> begins(columns + 1, 0);
+    const auto for_columns = [&](const auto& body)
+    { parallel_for(columns, threads, body, marks_per_chunk); };
+    for_columns(
+        [&](std::size_t c)
+        {
+            for_each_left(cavity, spans, c,
+                          [&](const Cavity::NodeRun&) { ++begins[c + 1]; });
+        });
+    for (std::size_t c = 0; c < columns; ++c) begins[c + 1] += begins[c];
+    std::vector<Cavity::NodeRun> runs(begins[columns]);
+    for_columns(
+        [&](std::size_t c)
+        {
+            std::uint64_t at = begins[c];
+            for_each_left(cavity, spans, c,
+                          [&](const Cavity::NodeRun& run) { runs[at++] = run; });
+        });
+    cavity.begins = std::move(begins);
+    cavity.runs = std::move(runs);
+}
+
+/// Nodes within `radius` of p, as spans.
+template <typename Emit>
+void emit_ball(const Cavity& cavity, const Vec3& p, double radius, const Emit& emit)
+{
+    const std::int64_t x1 = cavity.last(p.x + radius, 0), y1 = cavity.last(p.y + radius, 1);
+    for (std::int64_t x = cavity.first(p.x - radius, 0); x <= x1; ++x)
+        for (std::int64_t y = cavity.first(p.y - radius, 1); y <= y1; ++y)
+        {
+            const double dx = cavity.origin.x + static_cast<double>(x) * cavity.dp - p.x;
+            const double dy = cavity.origin.y + static_cast<double>(y) * cavity.dp - p.y;
+            const double left = radius * radius - dx * dx - dy * dy;
+            if (left < 0) continue;
+            emit(static_cast<std::size_t>(x * cavity.n[1] + y),
+                 cavity.first(p.z - std::sqrt(left), 2), cavity.last(p.z + std::sqrt(left), 2));
+        }
+}
+
+/// Nodes in the cylinder around a normal, up to 0.5 dp beyond the surface.
+template <typename Emit>
+void emit_cylinder(const Cavity& cavity, const Vec3& p, const Vec3& normal, const Emit& emit)
+{
+    const double radius = 0.7 * cavity.dp;
+    const double length = norm(normal);
+    const Vec3 axis = normal / length;
+    const double top = length + 0.499 * cavity.dp;
+    std::array<std::int64_t, 3> begin, end;
+    for (int a = 0; a < 3; ++a)
+    {
+        const double reach = top * axis[a];
+        begin[static_cast<std::size_t>(a)] = cavity.first(p[a] + std::min(0.0, reach) - radius, a);
+        end[static_cast<std::size_t>(a)] = cavity.last(p[a] + std::max(0.0, reach) + radius, a);
+    }
+    // Nested because nodes have three indices.
+    for (std::int64_t x = begin[0]; x <= end[0]; ++x)
+        for (std::int64_t y = begin[1]; y <= end[1]; ++y)
+            for (std::int64_t z = begin[2]; z <= end[2]; ++z)
+            {
+                const Vec3 way = cavity.origin +
+                                 Vec3{static_cast<double>(x), static_cast<double>(y),
+                                      static_cast<double>(z)} *
+                                     cavity.dp -
+                                 p;
+                const double along = dot(way, axis);
+                const double across = dot(way, way) - along * along;
+                if (along >= 0 && along < top && across <= radius * radius)
+                    emit(static_cast<std::size_t>(x * cavity.n[1] + y), z, z);
+            }
+}
+
+/// How far most of some of the particles are from nodes at multiples of dp, along one axis.
+double usual_phase(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& of,
+                   int axis, double dp)
+{
+    std::map<long, std::pair<std::size_t, double>> votes;
+    const std::size_t step = std::max<std::size_t>(1, of.size() / 2000);
+    for (std::size_t k = 0; k < of.size(); k += step)
+    {
+        const double at = positions[of[k]][axis] / dp;
+        const double phase = at - std::floor(at);
+        auto& vote = votes[std::lround(100 * phase) % 100];
+        if (vote.first++ == 0) vote.second = phase;
+    }
+    std::size_t most = 0;
+    double phase = 0;
+    for (const auto& [ignored, vote] : votes)
+        if (vote.first > most)
+        {
+            most = vote.first;
+            phase = vote.second;
+        }
+    return phase * dp;
+}
+
+/// A lattice over the box of all particles, all of its nodes in it.
+Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
+                 const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid)
+{
+    Cavity cavity;
+    cavity.dp = setup.dp;
+    Box3 box;
+    for (const std::vector<std::uint32_t>* of : {&walls, &fluid})
+        for (const std::uint32_t i : *of) box.add(particles.positions[i]);
+    if (box.is_empty()) return cavity;
+    double columns = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double phase =
+            usual_phase(particles.positions, fluid.empty() ? walls : fluid, axis, setup.dp);
+        const double begin = std::ceil((box.min[axis] - phase) / setup.dp - 1e-6);
+        const double end = std::floor((box.max[axis] - phase) / setup.dp + 1e-6);
+        cavity.origin[axis] = phase + begin * setup.dp;
+        const double count = setup.is_2d && axis == 1 ? 1 : std::max(0.0, end - begin + 1);
+        if (axis == 2 ? count > UINT32_MAX - 2.0 : (columns *= count) > most_columns) return cavity;
+        cavity.n[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(count);
+    }
+    if (setup.is_2d) cavity.origin.y = box.min.y;
+    const auto all = static_cast<std::size_t>(cavity.n[0] * cavity.n[1]);
+    if (cavity.n[2] == 0) return cavity;
+    cavity.begins.resize(all + 1);
+    for (std::size_t c = 0; c <= all; ++c) cavity.begins[c] = c;
+    cavity.runs.assign(all, {0, static_cast<std::uint32_t>(cavity.n[2])});
+    return cavity;
+}
+
+/// Which runs the fluid touches.
+std::vector<std::uint8_t> wet_by_fluid(const Cavity& cavity, const std::vector<Vec3>& positions,
+                                       const std::vector<std::uint32_t>& fluid, double radius,
+                                       int threads)
+{
+    std::vector<std::uint8_t> wet(cavity.runs.size(), 0);
+    parallel_for(
+        fluid.size(), threads,
+        [&](std::size_t k)
+        {
+            emit_ball(cavity, positions[fluid[k]], radius,
+                      [&](std::size_t column, std::int64_t z0, std::int64_t z1)
+                      {
+                          for (std::uint64_t r = cavity.run_from(column, z0);
+                               z0 <= z1 && r < cavity.begins[column + 1] &&
+                               cavity.runs[r].begin <= z1;
+                               ++r)
+                              std::atomic_ref(wet[r]).store(1, std::memory_order_relaxed);
+                      });
+        },
+        marks_per_chunk);
+    return wet;
+}
+
+/// Spreads what is wet to runs that touch it and leaves out the dry ones.
+void keep_what_fluid_reaches(Cavity& cavity, std::vector<std::uint8_t> wet)
+{
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> open; // run, column
+    const std::size_t columns = cavity.begins.size() - 1;
+    for (std::size_t c = 0; c < columns; ++c)
+        for (std::uint64_t r = cavity.begins[c]; r < cavity.begins[c + 1]; ++r)
+            if (wet[r]) open.emplace_back(r, c);
+    while (!open.empty())
+    {
+        const auto [run, column] = open.back();
+        open.pop_back();
+        const auto x = static_cast<std::int64_t>(column) / cavity.n[1];
+        const auto y = static_cast<std::int64_t>(column) % cavity.n[1];
+        const Cavity::NodeRun of = cavity.runs[run];
+        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+        {
+            if (x + dx < 0 || x + dx >= cavity.n[0] || y + dy < 0 || y + dy >= cavity.n[1])
+                continue;
+            const auto beside = static_cast<std::size_t>((x + dx) * cavity.n[1] + y + dy);
+            for (std::uint64_t r = cavity.run_from(beside, of.begin);
+                 r < cavity.begins[beside + 1] && cavity.runs[r].begin < of.end; ++r)
+                if (!wet[r])
+                {
+                    wet[r] = 1;
+                    open.emplace_back(r, beside);
+                }
+        }
+    }
+    std::uint64_t kept = 0;
+    std::uint64_t r = 0;
+    for (std::size_t c = 0; c < columns; ++c)
+    {
+        const std::uint64_t end = cavity.begins[c + 1];
+        cavity.begins[c] = kept;
+        for (; r < end; ++r)
+            if (wet[r]) cavity.runs[kept++] = cavity.runs[r];
+    }
+    cavity.begins[columns] = kept;
+    cavity.runs.resize(kept);
+}
+
+} // namespace
+
+Cavity fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
+                   const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid,
+                   int threads)
+{
+    Cavity cavity = whole_box(particles, setup, walls, fluid);
+    if (cavity.runs.empty()) return cavity;
+    const std::size_t columns = cavity.begins.size() - 1;
+    const std::vector<Vec3>& positions = particles.positions;
+    const double seal = (setup.is_2d ? 0.75 : 0.87) * setup.dp;
+    const double longest = 2 * setup.h;
+    take_away(cavity,
+              collect_spans(columns, walls.size(), threads,
+                            [&](std::size_t k, const auto& emit)
+                            {
+                                const std::uint32_t i = walls[k];
+                                emit_ball(cavity, positions[i], seal * (1 - 1e-6), emit);
+                                if (i >= particles.normals.size()) return;
+                                const auto& n = particles.normals[i];
+                                const Vec3 normal{n[0], n[1], n[2]};
+                                const double length = norm(normal);
+                                if (length > 0 && length <= longest)
+                                    emit_cylinder(cavity, positions[i], normal, emit);
+                            }),
+              threads);
+    if (fluid.empty()) return cavity;
+    keep_what_fluid_reaches(
+        cavity, wet_by_fluid(cavity, positions, fluid, 0.87 * setup.dp, threads));
+    if (!cavity.runs.empty())
+        take_away(cavity,
+                  collect_spans(columns, fluid.size(), threads,
+                                [&](std::size_t k, const auto& emit) {
+                                    emit_ball(cavity, positions[fluid[k]], 0.75 * setup.dp, emit);
+                                }),
+                  threads);
+    return cavity;
+}
+
+} // namespace fppg
