@@ -18,10 +18,10 @@ namespace fppg
 enum class Fault : std::uint8_t
 {
     NoNormal,       ///< fluid can come within 2h, and it has no normal: it stays plain DBC
-    GhostOutside,   ///< its ghost node lies outside the domain
+    GhostOutside,   ///< no fluid can come within 2h of its ghost node, which is outside the domain
     GhostInWall,    ///< its ghost node lies in another wall, or in its own
     ThroughWall,    ///< a wall stands between it and its ghost node
-    LooksAway,      ///< no fluid can come within 2h of the ghost node: the particle is switched off
+    LooksAway,      ///< the same, in the domain: the solver switches the particle off
     WeakKernel,     ///< the kernel sum at the ghost node is below 0.1
     IllConditioned, ///< condition number above 50, or determinant below 0.001: Shepard's sum
     BothSides,      ///< the wall is wet on both sides and thinner than 2h - dp/2
@@ -130,7 +130,8 @@ struct CheckReport
 /// or more from all boundary particles and not in the cylinder around a normal (radius 0.7 dp, up to
 /// 0.5 dp beyond the surface), and that a way from node to node joins with the fluid of the case;
 /// all such nodes where the case has no fluid. Those nearer than 0.75 dp to fluid of the case give
-/// way to it.
+/// way to it. Where fluid comes to a side of the box, as over an open tank, it is taken to go on 4 h
+/// beyond the whole of that side, so that rims are judged as if under water.
 ///
 /// threads  the result does not depend on it
 /// cost     a few microseconds a boundary particle that fluid can reach, less for others; about 100

@@ -166,6 +166,47 @@ void emit_cylinder(const Cavity& cavity, const Vec3& p, const Vec3& normal, cons
             }
 }
 
+std::pair<std::int64_t, std::int64_t> xy_of(const Cavity& cavity, std::size_t column)
+{
+    const auto c = static_cast<std::int64_t>(column);
+    return {c / cavity.n[1], c % cavity.n[1]};
+}
+
+/// Beyond which side of the box a run lies: 0 to 5 for x, y and z, before and behind; -1 in the box.
+int side_of(const Cavity& cavity, std::size_t column, const Cavity::NodeRun& run)
+{
+    const auto [x, y] = xy_of(cavity, column);
+    const std::int64_t at[3] = {x, y, run.begin};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto a = static_cast<std::size_t>(axis);
+        if (at[a] < cavity.beyond[a]) return 2 * axis;
+        if (at[a] >= cavity.n[a] - cavity.beyond[a]) return 2 * axis + 1;
+    }
+    return -1;
+}
+
+/// All nodes of a new lattice, those in the box and those beyond each side as runs of their own.
+void add_all_runs(Cavity& cavity)
+{
+    const auto begin = static_cast<std::uint32_t>(cavity.beyond[2]);
+    const auto end = static_cast<std::uint32_t>(cavity.n[2] - cavity.beyond[2]);
+    if (begin == end) return;
+    const auto columns = static_cast<std::size_t>(cavity.n[0] * cavity.n[1]);
+    cavity.begins.assign(columns + 1, 0);
+    for (std::size_t c = 0; c < columns; ++c)
+    {
+        const auto [x, y] = xy_of(cavity, c);
+        const bool is_beyond_x = x < cavity.beyond[0] || x >= cavity.n[0] - cavity.beyond[0];
+        const bool is_beyond_y = y < cavity.beyond[1] || y >= cavity.n[1] - cavity.beyond[1];
+        if (!is_beyond_x && !is_beyond_y && begin > 0) cavity.runs.push_back({0, begin});
+        if (!(is_beyond_x && is_beyond_y)) cavity.runs.push_back({begin, end});
+        if (!is_beyond_x && !is_beyond_y && begin > 0)
+            cavity.runs.push_back({end, end + begin});
+        cavity.begins[c + 1] = cavity.runs.size();
+    }
+}
+
 /// How far most of some of the particles are from nodes at multiples of dp, along one axis.
 double usual_phase(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& of,
                    int axis, double dp)
@@ -190,7 +231,8 @@ double usual_phase(const std::vector<Vec3>& positions, const std::vector<std::ui
     return phase * dp;
 }
 
-/// A lattice over the box of all particles, all of its nodes in it.
+/// A lattice over the box of all particles, and slabs beyond its sides. Runs do not cross the sides;
+/// edges and corners between slabs have none.
 Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
                  const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid)
 {
@@ -208,17 +250,55 @@ Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
         const double begin = std::ceil((box.min[axis] - phase) / setup.dp - 1e-6);
         const double end = std::floor((box.max[axis] - phase) / setup.dp + 1e-6);
         cavity.origin[axis] = phase + begin * setup.dp;
-        const double count = setup.is_2d && axis == 1 ? 1 : std::max(0.0, end - begin + 1);
-        if (axis == 2 ? count > UINT32_MAX - 2.0 : (columns *= count) > most_columns) return cavity;
-        cavity.n[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(count);
+        const bool is_flat = setup.is_2d && axis == 1;
+        const auto a = static_cast<std::size_t>(axis);
+        if (!is_flat && !setup.is_periodic[a])
+            cavity.beyond[a] = static_cast<std::int64_t>(std::ceil(4 * setup.h / setup.dp));
+        cavity.origin[axis] -= static_cast<double>(cavity.beyond[a]) * setup.dp;
+        const double count = (is_flat ? 1 : std::max(0.0, end - begin + 1)) +
+                             2 * static_cast<double>(cavity.beyond[a]);
+        if (axis == 2 ? count > UINT32_MAX - 2.0 : (columns *= count) > most_columns)
+        {
+            cavity.n = {};
+            return cavity;
+        }
+        cavity.n[a] = static_cast<std::int64_t>(count);
     }
     if (setup.is_2d) cavity.origin.y = box.min.y;
-    const auto all = static_cast<std::size_t>(cavity.n[0] * cavity.n[1]);
-    if (cavity.n[2] == 0) return cavity;
-    cavity.begins.resize(all + 1);
-    for (std::size_t c = 0; c <= all; ++c) cavity.begins[c] = c;
-    cavity.runs.assign(all, {0, static_cast<std::uint32_t>(cavity.n[2])});
+    add_all_runs(cavity);
     return cavity;
+}
+
+/// Marks all runs beyond the open sides, where the fluid touches a side of the box.
+void wet_beyond_open_sides(const Cavity& cavity, std::vector<std::uint8_t>& wet)
+{
+    std::array<bool, 6> is_open{};
+    const auto for_each_run = [&](const auto& body)
+    {
+        for (std::size_t c = 0; c + 1 < cavity.begins.size(); ++c)
+            for (std::uint64_t r = cavity.begins[c]; r < cavity.begins[c + 1]; ++r) body(c, r);
+    };
+    for_each_run(
+        [&](std::size_t c, std::uint64_t r)
+        {
+            if (!wet[r] || side_of(cavity, c, cavity.runs[r]) >= 0) return;
+            const auto [x, y] = xy_of(cavity, c);
+            const Cavity::NodeRun run = cavity.runs[r];
+            const std::int64_t at[6] = {x, x + 1, y, y + 1, run.begin, run.end};
+            for (std::size_t side = 0; side < 6; ++side)
+            {
+                const std::size_t axis = side / 2;
+                const std::int64_t limit =
+                    side % 2 == 0 ? cavity.beyond[axis] : cavity.n[axis] - cavity.beyond[axis];
+                if (at[side] == limit) is_open[side] = true;
+            }
+        });
+    for_each_run(
+        [&](std::size_t c, std::uint64_t r)
+        {
+            const int side = side_of(cavity, c, cavity.runs[r]);
+            if (side >= 0) wet[r] = is_open[static_cast<std::size_t>(side)] ? 1 : 0;
+        });
 }
 
 /// Which runs the fluid touches.
@@ -257,9 +337,9 @@ void keep_what_fluid_reaches(Cavity& cavity, std::vector<std::uint8_t> wet)
     {
         const auto [run, column] = open.back();
         open.pop_back();
-        const auto x = static_cast<std::int64_t>(column) / cavity.n[1];
-        const auto y = static_cast<std::int64_t>(column) % cavity.n[1];
+        const auto [x, y] = xy_of(cavity, column);
         const Cavity::NodeRun of = cavity.runs[run];
+        if (side_of(cavity, column, of) >= 0) continue;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
         {
             if (x + dx < 0 || x + dx >= cavity.n[0] || y + dy < 0 || y + dy >= cavity.n[1])
@@ -274,6 +354,7 @@ void keep_what_fluid_reaches(Cavity& cavity, std::vector<std::uint8_t> wet)
                 }
         }
     }
+    wet_beyond_open_sides(cavity, wet);
     std::uint64_t kept = 0;
     std::uint64_t r = 0;
     for (std::size_t c = 0; c < columns; ++c)
@@ -313,9 +394,10 @@ Cavity fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
                                     emit_cylinder(cavity, positions[i], normal, emit);
                             }),
               threads);
-    if (fluid.empty()) return cavity;
     keep_what_fluid_reaches(
-        cavity, wet_by_fluid(cavity, positions, fluid, 0.87 * setup.dp, threads));
+        cavity, fluid.empty()
+                    ? std::vector<std::uint8_t>(cavity.runs.size(), 1)
+                    : wet_by_fluid(cavity, positions, fluid, 0.87 * setup.dp, threads));
     if (!cavity.runs.empty())
         take_away(cavity,
                   collect_spans(columns, fluid.size(), threads,

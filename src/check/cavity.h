@@ -23,7 +23,8 @@ public:
 
     Vec3 origin;
     double dp = 1;
-    std::array<std::int64_t, 3> n{};
+    std::array<std::int64_t, 3> n{};      ///< the slabs beyond open sides included
+    std::array<std::int64_t, 3> beyond{}; ///< nodes of these slabs, before and behind, of each axis
     std::vector<std::uint64_t> begins; ///< of the runs of each column (x * n[1] + y), and the end
     std::vector<NodeRun> runs;
 

@@ -18,7 +18,17 @@ struct FluidAround
     const ParticleColumns& fluid;
     const Cavity& fill;
     std::vector<Vec3> ways; ///< periodic_ways()
-    Box3 box;               ///< of all of it
+    Box3 box;               ///< of all particles
+
+    /// Whether a place is in the box, not beyond an open side of it.
+    bool is_in_box(const Vec3& p) const
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!is_open_ended(axis) && (p[axis] < box.min[axis] - 1e-6 * fill.dp ||
+                                         p[axis] > box.max[axis] + 1e-6 * fill.dp))
+                return false;
+        return true;
+    }
 
     /// Calls stop(way from p, squared distance) for all fluid within `radius` until it returns true.
     template <typename Stop>
@@ -40,9 +50,18 @@ private:
     bool is_far(const Vec3& q, double radius) const
     {
         for (int axis = 0; axis < 3; ++axis)
-            if (q[axis] < box.min[axis] - radius || q[axis] > box.max[axis] + radius) return true;
+            if (q[axis] < box.min[axis] - beyond(axis) - radius ||
+                q[axis] > box.max[axis] + beyond(axis) + radius)
+                return true;
         return false;
     }
+    /// How far the fill goes beyond open sides, metres.
+    double beyond(int axis) const
+    {
+        return static_cast<double>(fill.beyond[static_cast<std::size_t>(axis)]) * fill.dp;
+    }
+    /// Over a periodic limit there is no outside.
+    bool is_open_ended(int axis) const { return fill.beyond[static_cast<std::size_t>(axis)] == 0; }
 };
 
 /// What the solver sums up at a ghost node.

@@ -1,15 +1,16 @@
 // How a boundary particle p with the normal n (to the surface s = p + n) and the ghost node
 // g = p + 2n is judged; all lengths in dp, w are other boundary particles:
 // - It counts where fluid can come within 2h of p.
-// - Outside: g is outside the domain, over periodic limits put back into it.
 // - In a wall, where |n| >= 0.25: no fluid can come within 0.99 of g, and it is behind the surface of
-//   a w within 0.75; or it lies within 0.5 of a w that has no normal.
+//   a w within 0.75; or it lies within 0.45 of a w that has no normal.
 // - Through a wall: the segment from s + 0.5 n/|n| to g passes from one side of a w to the other
-//   within 0.71 of it (half the diagonal of its square), or within 0.5 of a w without normal.
-// - Looks away: no fluid can come within 2h of g; or, where |n| < 0.25, so that g is at the particle
+//   within 0.71 of it (half the diagonal of its square), or within 0.45 of a w without normal.
+// - Outside: no fluid can come within 2h of g, and it is outside the domain (over periodic limits it
+//   is put back first).
+// - Looks away: no fluid can come within 2h of g, in the domain; or, where |n| < 0.25, so that g is at the particle
 //   itself, less than a fifth of the fluid within 2h of p is in front of it.
 // - Weak kernel and ill-conditioned as in fit_at_ghost(), with the limits of the solver.
-// - Both sides: fluid can come to the back, t behind p in a cylinder of radius 0.75 around -n, and
+// - Both sides, where n leads to fluid: fluid can come to the back too, t behind p in a cylinder of radius 0.75 around -n, and
 //   the wall is thinner (|n| + t - 0.5) than 2h - 0.5.
 
 #include "check/judge_walls.h"
@@ -28,7 +29,7 @@ constexpr double most_condition = 50;
 /// Fluid within 2h of a particle.
 struct Surroundings
 {
-    double nearest = std::numeric_limits<double>::infinity(); ///< metres
+    double nearest = std::numeric_limits<double>::infinity(); ///< in the box of all, metres
     double behind = std::numeric_limits<double>::infinity();  ///< along -n, metres
     std::uint64_t count = 0;
     std::uint64_t in_front = 0;
@@ -42,7 +43,8 @@ Surroundings look_around(const WallScene& scene, const Vec3& p, const Vec3& dire
     scene.fluid.find_near(p, 2 * scene.setup.h,
                           [&](const Vec3& to, double squared)
                           {
-                              squared_least = std::min(squared_least, squared);
+                              if (squared < squared_least && scene.fluid.is_in_box(p + to))
+                                  squared_least = squared;
                               ++found.count;
                               const double along = dot(to, direction);
                               if (along > 0) ++found.in_front;
@@ -92,10 +94,10 @@ bool is_in_wall(const WallScene& scene, std::uint32_t i, const Vec3& ghost)
 {
     const double dp = scene.setup.dp;
     const auto is_bare = [&](const Vec3& n, const Vec3& from)
-    { return n == Vec3{} && dot(from, from) < 0.25 * dp * dp * (1 - 1e-6); };
+    { return n == Vec3{} && dot(from, from) < 0.45 * 0.45 * dp * dp; };
     const auto is_behind = [&](const Vec3& n, const Vec3& from)
     { return n != Vec3{} && dot(from - n, n) < -0.05 * dp * norm(n); };
-    if (find_walls(scene, i, ghost, 0.5 * dp, is_bare)) return true;
+    if (find_walls(scene, i, ghost, 0.45 * dp, is_bare)) return true;
     return !scene.fluid.find_near(ghost, 0.99 * dp, [](const Vec3&, double) { return true; }) &&
            find_walls(scene, i, ghost, 0.75 * dp, is_behind);
 }
@@ -121,7 +123,7 @@ bool passes_wall(const WallScene& scene, std::uint32_t i, const Vec3& p, const V
     {
         const Vec3 a = from - way * 0.5;
         const Vec3 b = from + way * 0.5;
-        if (normal == Vec3{}) return squared_distance_to(a, b) < 0.25 * dp * dp * (1 - 1e-6);
+        if (normal == Vec3{}) return squared_distance_to(a, b) < 0.45 * 0.45 * dp * dp;
         const double before = dot(a, normal);
         const double after = dot(b, normal);
         if ((before < 0) == (after < 0)) return false;
@@ -138,12 +140,12 @@ std::uint16_t judge_normal(const WallScene& scene, std::uint32_t i, const Vec3& 
     const CheckSetup& setup = scene.setup;
     const bool is_short = norm(n) < 0.25 * setup.dp;
     const Vec3 ghost = back_into_domain(setup, p + n * 2);
-    if (is_outside(setup, ghost)) return bit_of(Fault::GhostOutside);
     if (!is_short && is_in_wall(scene, i, ghost)) return bit_of(Fault::GhostInWall);
     if (passes_wall(scene, i, p, n)) return bit_of(Fault::ThroughWall);
     if (is_short && 5 * around.in_front < around.count) return bit_of(Fault::LooksAway);
     const GhostFit fit = fit_at_ghost(scene.fluid, ghost, setup);
-    if (fit.kernel_sum <= 0) return bit_of(Fault::LooksAway);
+    if (fit.kernel_sum <= 0)
+        return bit_of(is_outside(setup, ghost) ? Fault::GhostOutside : Fault::LooksAway);
     if (fit.kernel_sum < least_kernel_sum) return bit_of(Fault::WeakKernel);
     if (!(fit.condition <= most_condition)) return bit_of(Fault::IllConditioned);
     return 0;
@@ -175,6 +177,12 @@ WallJudgement judge_wall(const WallScene& scene, std::uint32_t i)
         return out;
     }
     out.faults = judge_normal(scene, i, p, n, around);
+    constexpr auto wrong_way = static_cast<std::uint16_t>(
+        1U << static_cast<unsigned>(Fault::GhostOutside) |
+        1U << static_cast<unsigned>(Fault::GhostInWall) |
+        1U << static_cast<unsigned>(Fault::ThroughWall) |
+        1U << static_cast<unsigned>(Fault::LooksAway));
+    if ((out.faults & wrong_way) != 0) return out;
     const double thickness = length + around.behind - 0.5 * setup.dp;
     if (thickness < 2 * setup.h - 0.501 * setup.dp)
     {
