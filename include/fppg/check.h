@@ -126,12 +126,12 @@ struct CheckReport
 /// Judges particles as DualSPHysics v5.4 would with mDBC, with the cavity full of fluid.
 ///
 /// Where fluid can come: nodes of a lattice (spacing dp, through the fluid of the case) in the box of
-/// all particles that are 0.87 dp (2D: 0.75 dp, so that no way leads through a sheet of particles)
+/// all boundary particles that are 0.87 dp (2D: 0.75 dp, so that no way leads through a sheet of particles)
 /// or more from all boundary particles and not in the cylinder around a normal (radius 0.7 dp, up to
 /// 0.5 dp beyond the surface), and that a way from node to node joins with the fluid of the case;
 /// all such nodes where the case has no fluid. Those nearer than 0.75 dp to fluid of the case give
 /// way to it. Where fluid comes to a side of the box, as over an open tank, it is taken to go on 4 h
-/// beyond the whole of that side, so that rims are judged as if under water.
+/// beyond that side, and 2 h along it, so that rims are judged as if under water.
 ///
 /// threads  the result does not depend on it
 /// cost     a few microseconds a boundary particle that fluid can reach, less for others; about 100

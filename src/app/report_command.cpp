@@ -10,6 +10,7 @@
 #include "compare/report_words.h"
 #include "files/particle_source.h"
 #include "files/thinned_cloud.h"
+#include "fppg/check.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "fppg/render.h"
@@ -51,8 +52,8 @@ bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
 {
     SubcommandLine app(
         "Makes a page of results in one file: pictures side by side, counts, histograms of "
-        "spacing and of the distance to the surface, times, warnings, and particles in space that "
-        "can be turned. A result is named without extension (Case.bi4 and Case.xml, or "
+        "spacing and of the distance to the surface, what fppg check finds, times, warnings, and "
+        "particles in space that can be turned. A result is named without extension (Case.bi4 and Case.xml, or "
         "Case_All.vtk), or as one file .bi4 or .vtk.",
         "fppg report");
     app.add_option("RESULT", call.results, "one or more").required().expected(1, 1000);
@@ -165,6 +166,7 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
                         look.name));
     }
     look.details = table_of(result) + histograms_of(result);
+    if (source.is_bi4()) look.details += to_html(check_case(name, call.threads));
     if (const auto facts = facts_of_result(result.path)) look.details += run_facts_html(*facts);
     return look;
 }

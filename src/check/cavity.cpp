@@ -231,7 +231,7 @@ double usual_phase(const std::vector<Vec3>& positions, const std::vector<std::ui
     return phase * dp;
 }
 
-/// A lattice over the box of all particles, and slabs beyond its sides. Runs do not cross the sides;
+/// A lattice over the box of all boundary particles, and slabs beyond its sides. Runs do not cross the sides;
 /// edges and corners between slabs have none.
 Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
                  const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid)
@@ -239,8 +239,7 @@ Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
     Cavity cavity;
     cavity.dp = setup.dp;
     Box3 box;
-    for (const std::vector<std::uint32_t>* of : {&walls, &fluid})
-        for (const std::uint32_t i : *of) box.add(particles.positions[i]);
+    for (const std::uint32_t i : walls) box.add(particles.positions[i]);
     if (box.is_empty()) return cavity;
     double columns = 1;
     for (int axis = 0; axis < 3; ++axis)
@@ -269,36 +268,102 @@ Cavity whole_box(const CheckParticles& particles, const CheckSetup& setup,
     return cavity;
 }
 
-/// Marks all runs beyond the open sides, where the fluid touches a side of the box.
-void wet_beyond_open_sides(const Cavity& cavity, std::vector<std::uint8_t>& wet)
+/// Where fluid comes to a side of the box, a row of nodes along the side each: wet nodes and those
+/// `spread` or fewer from them. Rows of the sides across x stand at y, those across y at x; those
+/// across z are columns of the box, with a span of one node.
+struct OpenSide
 {
-    std::array<bool, 6> is_open{};
-    const auto for_each_run = [&](const auto& body)
+    std::vector<std::vector<Cavity::NodeRun>> rows;
+
+    void add(std::int64_t row, std::int64_t spread, const Cavity::NodeRun& run)
     {
-        for (std::size_t c = 0; c + 1 < cavity.begins.size(); ++c)
-            for (std::uint64_t r = cavity.begins[c]; r < cavity.begins[c + 1]; ++r) body(c, r);
-    };
-    for_each_run(
-        [&](std::size_t c, std::uint64_t r)
+        const auto last = static_cast<std::int64_t>(rows.size()) - 1;
+        const auto by = static_cast<std::uint32_t>(spread);
+        for (std::int64_t r = std::max<std::int64_t>(0, row - spread);
+             r <= std::min(last, row + spread); ++r)
+            rows[static_cast<std::size_t>(r)].push_back(
+                {run.begin > by ? run.begin - by : 0, run.end + by});
+    }
+};
+
+/// The six sides in the order of side_of(). Rows of the sides across z stand at x, their spans are
+/// along y.
+std::array<OpenSide, 6> open_sides(const Cavity& cavity, const std::vector<std::uint8_t>& wet,
+                                   std::int64_t spread)
+{
+    std::array<OpenSide, 6> sides;
+    for (std::size_t side = 0; side < 6; ++side)
+        sides[side].rows.resize(static_cast<std::size_t>(cavity.n[side < 2 ? 1 : 0]));
+    for (std::size_t c = 0; c + 1 < cavity.begins.size(); ++c)
+        for (std::uint64_t r = cavity.begins[c]; r < cavity.begins[c + 1]; ++r)
         {
-            if (!wet[r] || side_of(cavity, c, cavity.runs[r]) >= 0) return;
-            const auto [x, y] = xy_of(cavity, c);
             const Cavity::NodeRun run = cavity.runs[r];
+            if (!wet[r] || side_of(cavity, c, run) >= 0) continue;
+            const auto [x, y] = xy_of(cavity, c);
             const std::int64_t at[6] = {x, x + 1, y, y + 1, run.begin, run.end};
+            const auto along_y = static_cast<std::uint32_t>(y);
             for (std::size_t side = 0; side < 6; ++side)
             {
                 const std::size_t axis = side / 2;
                 const std::int64_t limit =
                     side % 2 == 0 ? cavity.beyond[axis] : cavity.n[axis] - cavity.beyond[axis];
-                if (at[side] == limit) is_open[side] = true;
+                if (cavity.beyond[axis] > 0 && at[side] == limit)
+                    sides[side].add(side < 2 ? y : x, spread,
+                                    side < 4 ? run : Cavity::NodeRun{along_y, along_y + 1});
             }
-        });
-    for_each_run(
-        [&](std::size_t c, std::uint64_t r)
+        }
+    for (OpenSide& side : sides)
+        for (std::vector<Cavity::NodeRun>& row : side.rows)
+            std::sort(row.begin(), row.end(),
+                      [](const Cavity::NodeRun& a, const Cavity::NodeRun& b)
+                      { return a.begin != b.begin ? a.begin < b.begin : a.end < b.end; });
+    return sides;
+}
+
+/// Calls keep(run) for the parts of a run beyond a side that the fluid goes on to.
+template <typename Keep>
+void for_each_beyond(const Cavity& cavity, const OpenSide& side, int number, std::size_t column,
+                     const Cavity::NodeRun& run, const Keep& keep)
+{
+    const auto [x, y] = xy_of(cavity, column);
+    const auto& row = side.rows[static_cast<std::size_t>(number < 2 ? y : x)];
+    if (number >= 4)
+    {
+        for (const Cavity::NodeRun& open : row)
+            if (open.begin <= y && y < open.end) return keep(run);
+        return;
+    }
+    std::uint32_t from = run.begin;
+    for (const Cavity::NodeRun& open : row)
+    {
+        const std::uint32_t begin = std::max(from, open.begin);
+        const std::uint32_t end = std::min(run.end, open.end);
+        if (begin < end) keep(Cavity::NodeRun{begin, end});
+        from = std::max(from, end);
+    }
+}
+
+/// Leaves out what is dry, and what of the runs beyond the sides the fluid does not go on to.
+void keep_wet(Cavity& cavity, const std::vector<std::uint8_t>& wet, std::int64_t spread)
+{
+    const std::array<OpenSide, 6> sides = open_sides(cavity, wet, spread);
+    std::vector<std::uint64_t> begins(cavity.begins.size(), 0);
+    std::vector<Cavity::NodeRun> runs;
+    for (std::size_t c = 0; c + 1 < cavity.begins.size(); ++c)
+    {
+        for (std::uint64_t r = cavity.begins[c]; r < cavity.begins[c + 1]; ++r)
         {
-            const int side = side_of(cavity, c, cavity.runs[r]);
-            if (side >= 0) wet[r] = is_open[static_cast<std::size_t>(side)] ? 1 : 0;
-        });
+            const Cavity::NodeRun run = cavity.runs[r];
+            const int side = side_of(cavity, c, run);
+            const auto keep = [&](const Cavity::NodeRun& part) { runs.push_back(part); };
+            if (side < 0 ? wet[r] != 0 : false) keep(run);
+            if (side >= 0)
+                for_each_beyond(cavity, sides[static_cast<std::size_t>(side)], side, c, run, keep);
+        }
+        begins[c + 1] = runs.size();
+    }
+    cavity.begins = std::move(begins);
+    cavity.runs = std::move(runs);
 }
 
 /// Which runs the fluid touches.
@@ -325,8 +390,8 @@ std::vector<std::uint8_t> wet_by_fluid(const Cavity& cavity, const std::vector<V
     return wet;
 }
 
-/// Spreads what is wet to runs that touch it and leaves out the dry ones.
-void keep_what_fluid_reaches(Cavity& cavity, std::vector<std::uint8_t> wet)
+/// Spreads what is wet to runs in the box that touch it.
+void spread_fluid(const Cavity& cavity, std::vector<std::uint8_t>& wet)
 {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> open; // run, column
     const std::size_t columns = cavity.begins.size() - 1;
@@ -354,18 +419,6 @@ void keep_what_fluid_reaches(Cavity& cavity, std::vector<std::uint8_t> wet)
                 }
         }
     }
-    wet_beyond_open_sides(cavity, wet);
-    std::uint64_t kept = 0;
-    std::uint64_t r = 0;
-    for (std::size_t c = 0; c < columns; ++c)
-    {
-        const std::uint64_t end = cavity.begins[c + 1];
-        cavity.begins[c] = kept;
-        for (; r < end; ++r)
-            if (wet[r]) cavity.runs[kept++] = cavity.runs[r];
-    }
-    cavity.begins[columns] = kept;
-    cavity.runs.resize(kept);
 }
 
 } // namespace
@@ -394,10 +447,11 @@ Cavity fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
                                     emit_cylinder(cavity, positions[i], normal, emit);
                             }),
               threads);
-    keep_what_fluid_reaches(
-        cavity, fluid.empty()
-                    ? std::vector<std::uint8_t>(cavity.runs.size(), 1)
-                    : wet_by_fluid(cavity, positions, fluid, 0.87 * setup.dp, threads));
+    std::vector<std::uint8_t> wet =
+        fluid.empty() ? std::vector<std::uint8_t>(cavity.runs.size(), 1)
+                      : wet_by_fluid(cavity, positions, fluid, 0.87 * setup.dp, threads);
+    spread_fluid(cavity, wet);
+    keep_wet(cavity, wet, static_cast<std::int64_t>(std::ceil(longest / setup.dp)));
     if (!cavity.runs.empty())
         take_away(cavity,
                   collect_spans(columns, fluid.size(), threads,

@@ -96,7 +96,7 @@ private:
 /// The cavity of check_particles().
 ///
 /// walls, fluid  indices of the particles, which have finite places
-/// returns       no nodes where the box of all particles has too many columns
+/// returns       no nodes where the box of all boundary particles has too many columns
 Cavity fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
                    const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid,
                    int threads);

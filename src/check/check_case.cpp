@@ -176,6 +176,13 @@ Box3 box_of(const std::vector<Vec3>& positions)
     return box;
 }
 
+Box3 box_of(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& chosen)
+{
+    Box3 box;
+    for (const std::uint32_t i : chosen) box.add(positions[i]);
+    return box;
+}
+
 } // namespace
 
 CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, int threads)
@@ -206,13 +213,16 @@ CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, i
         const Cavity cavity = fill_cavity(particles, report.setup, walls, fluid, threads);
         report.fill = cavity.size();
         if (cavity.n[2] == 0 && !walls.empty())
-            report.setup.notes.push_back("The box of all particles is too large to be filled: walls "
+            report.setup.notes.push_back("The box of all walls is too large to be filled: walls "
                                          "were judged with the fluid of the case alone.");
+        else if (report.fluid + report.fill == 0)
+            report.setup.notes.push_back("There is no fluid, and walls leave no room for it: no normal "
+                                         "was judged.");
         const WallScene scene{particles,
                               report.setup,
                               wall_columns,
                               {fluid_columns, cavity, periodic_ways(report.setup),
-                               box_of(particles.positions)}};
+                               box_of(particles.positions, walls)}};
         WallSums sums{report, mks, masks, {}};
         judge_walls(particles, scene, walls, sums, threads);
         sums.finish();

@@ -7,11 +7,11 @@
 //   within 0.71 of it (half the diagonal of its square), or within 0.45 of a w without normal.
 // - Outside: no fluid can come within 2h of g, and it is outside the domain (over periodic limits it
 //   is put back first).
-// - Looks away: no fluid can come within 2h of g, in the domain; or, where |n| < 0.25, so that g is at the particle
-//   itself, less than a fifth of the fluid within 2h of p is in front of it.
+// - Looks away: no fluid can come within 2h of g, in the domain; or less than a fifth of the fluid
+//   within 2h of p is in front of it.
 // - Weak kernel and ill-conditioned as in fit_at_ghost(), with the limits of the solver.
-// - Both sides, where n leads to fluid: fluid can come to the back too, t behind p in a cylinder of radius 0.75 around -n, and
-//   the wall is thinner (|n| + t - 0.5) than 2h - 0.5.
+// - Both sides, where n leads to fluid: fluid can come to the back too, t behind p in a cylinder of
+//   radius 0.75 around -n, and the wall is thinner (|n| + t - 0.5) than 2h - 0.5.
 
 #include "check/judge_walls.h"
 
@@ -30,7 +30,7 @@ constexpr double most_condition = 50;
 struct Surroundings
 {
     double nearest = std::numeric_limits<double>::infinity(); ///< in the box of all, metres
-    double behind = std::numeric_limits<double>::infinity();  ///< along -n, metres
+    double behind = std::numeric_limits<double>::infinity();  ///< along -n, in the box, metres
     std::uint64_t count = 0;
     std::uint64_t in_front = 0;
 };
@@ -43,11 +43,11 @@ Surroundings look_around(const WallScene& scene, const Vec3& p, const Vec3& dire
     scene.fluid.find_near(p, 2 * scene.setup.h,
                           [&](const Vec3& to, double squared)
                           {
-                              if (squared < squared_least && scene.fluid.is_in_box(p + to))
-                                  squared_least = squared;
                               ++found.count;
                               const double along = dot(to, direction);
                               if (along > 0) ++found.in_front;
+                              if (!scene.fluid.is_in_box(p + to)) return false;
+                              squared_least = std::min(squared_least, squared);
                               if (along < 0 && squared - along * along <= across * across)
                                   found.behind = std::min(found.behind, -along);
                               return false;
@@ -142,10 +142,10 @@ std::uint16_t judge_normal(const WallScene& scene, std::uint32_t i, const Vec3& 
     const Vec3 ghost = back_into_domain(setup, p + n * 2);
     if (!is_short && is_in_wall(scene, i, ghost)) return bit_of(Fault::GhostInWall);
     if (passes_wall(scene, i, p, n)) return bit_of(Fault::ThroughWall);
-    if (is_short && 5 * around.in_front < around.count) return bit_of(Fault::LooksAway);
     const GhostFit fit = fit_at_ghost(scene.fluid, ghost, setup);
     if (fit.kernel_sum <= 0)
         return bit_of(is_outside(setup, ghost) ? Fault::GhostOutside : Fault::LooksAway);
+    if (5 * around.in_front < around.count) return bit_of(Fault::LooksAway);
     if (fit.kernel_sum < least_kernel_sum) return bit_of(Fault::WeakKernel);
     if (!(fit.condition <= most_condition)) return bit_of(Fault::IllConditioned);
     return 0;

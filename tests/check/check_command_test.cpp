@@ -1,0 +1,169 @@
+// The cases of these tests are made by the program itself, FPPG_PROGRAM; FPPG_RECORDED_FIELDS holds
+// definitions whose particles and normals were compared with GenCase's.
+
+#include "core/json.h"
+#include "fppg/check.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace
+{
+
+using namespace fppg;
+using namespace fppg::test;
+
+/// A tank whose floor and sides are three layers on the lattice, half a dp behind the surface, with
+/// the normals of <norgeometry>, and water in it.
+CaseText layered_tank()
+{
+    const std::string sides =
+        R"(<boxfill>bottom|left|right|front|back</boxfill><point x="0" y="0" z="0"/><size x="1" y="0.6" z="0.6"/>)";
+    CaseText out;
+    out.dp = "0.05";
+    out.pointmin =
+        R"(<pointref x="0.025" y="0.025" z="0.025" /><pointmin x="-0.5" y="-0.5" z="-0.5" />)";
+    out.mainlist =
+        R"(<setshapemode>actual | bound</setshapemode><setmkbound mk="0"/><setdrawmode mode="face"/><setnormalinvert invert="true"/><setactive drawpoints="false" drawshapes="true" /><drawbox>)" +
+        sides +
+        R"(</drawbox><shapeout file="hdp"/><setactive drawpoints="true" drawshapes="false" /><drawbox>)" + sides +
+        R"(<layers vdp="0.5,1.5,2.5"/></drawbox><setdrawmode mode="full"/><setmkfluid mk="0"/>)" +
+        box_command(R"(x="0.025" y="0.025" z="0.025")", R"(x="0.95" y="0.55" z="0.35")");
+    out.after_geometry =
+        R"(<normals><norgeometry><geometryfile file="[CaseName]_hdp_Actual.vtk" /><distanceh v="2" /></norgeometry></normals>)";
+    out.execution =
+        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /></parameters>)";
+    return out;
+}
+
+class CheckCommand : public testing::Test
+{
+protected:
+    TemporaryFolder folder_;
+
+    void generate(const CaseText& text)
+    {
+        write_text(folder_ / "Case_Def.xml", text.text());
+        const RunResult made = run(folder_, {"Case_Def", "Case"});
+        ASSERT_EQ(made.code, 0) << made.output;
+    }
+};
+
+void replace(std::string& text, const std::string& what, const std::string& by)
+{
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), by);
+}
+
+} // namespace
+
+TEST_F(CheckCommand, FindsNothingInALatticeTankOfLayers)
+{
+    generate(layered_tank());
+    const RunResult result = run(folder_, {"check", "Case", "--strict"});
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "mDBC, SlipMode 2, NoPenetration")) << result.output;
+    EXPECT_TRUE(contains(result.output, "Nothing was found.")) << result.output;
+    EXPECT_TRUE(contains(result.output, "100 %")) << result.output;
+}
+
+TEST_F(CheckCommand, MakesFindingsErrorsWhereItIsAskedTo)
+{
+    CaseText text = layered_tank();
+    // Water on the surface of the floor.
+    text.mainlist += R"(<setmkfluid mk="1"/><setfrdrawmode auto="true" /><drawbox><boxfill>solid</boxfill><point x="0.225" y="0.225" z="-0.01" /><size x="0.05" y="0.05" z="0.05" /></drawbox>)";
+    generate(text);
+    const RunResult plain = run(folder_, {"check", "Case", "--json", "c.json", "--vtk", "c.vtk"});
+    EXPECT_EQ(plain.code, 0) << plain.output;
+    EXPECT_TRUE(contains(plain.output, "fluid particles are nearer than 0.5 dp")) << plain.output;
+    for (const char* option : {"--strict", "-strict"})
+        EXPECT_EQ(run(folder_, {"check", "Case", option}).code, 3);
+
+    const Json json = Json::parse(read_text(folder_ / "c.json"));
+    EXPECT_FALSE(json.at("is_clean").get<bool>());
+    std::uint64_t near_wall = 0;
+    for (const Json& mk : json.at("mks").items())
+        near_wall += mk.at("faults").at("fluid_near_wall").get<std::uint64_t>();
+    EXPECT_GT(near_wall, 0U);
+    const std::string vtk = read_text(folder_ / "c.vtk");
+    EXPECT_TRUE(contains(vtk, "SCALARS Fault int"));
+    const std::size_t faulty = check_case(folder_ / "Case", 1).faulty.size();
+    EXPECT_TRUE(contains(vtk, "POINTS " + std::to_string(faulty) + " float")) << faulty;
+}
+
+TEST_F(CheckCommand, KnowsTheDomainOfTheSolver)
+{
+    CaseText text = layered_tank();
+    replace(text.execution, "</parameters>",
+            R"(<simulationdomain><posmin x="default" y="default - 10%" z="-0.06" /><posmax x="1" y="default" z="default + 1" /></simulationdomain></parameters>)");
+    generate(text);
+    const CheckReport report = check_case(folder_ / "Case", 1);
+    const CheckSetup& setup = report.setup;
+    const double border = 0.05 * setup.h;
+    EXPECT_NEAR(setup.domain.min.x, -0.125 - border, 1e-9);
+    EXPECT_NEAR(setup.domain.min.y, -0.125 - border - 0.1 * (0.85 + 2 * border), 1e-6);
+    EXPECT_NEAR(setup.domain.min.z, -0.06, 1e-12);
+    EXPECT_NEAR(setup.domain.max.x, 1, 1e-12);
+    EXPECT_NEAR(setup.domain.max.z, 0.6 + 0.025 + border + 1, 0.06);
+    // Layers two and three of the floor, and all three at x = 1.
+    EXPECT_GT(report.total(Fault::OutsideDomain), 1000U);
+    EXPECT_FALSE(report.is_clean());
+}
+
+TEST_F(CheckCommand, RefusesWhatIsNoCase)
+{
+    EXPECT_EQ(run(folder_, {"check", "nothing"}).code, 4);
+    EXPECT_EQ(run(folder_, {"check"}).code, 2);
+    generate(layered_tank());
+    std::string xml = read_text(folder_ / "Case.xml");
+    replace(xml, "<h value", "<hh value");
+    write_text(folder_ / "Case.xml", xml);
+    const RunResult result = run(folder_, {"check", "Case"});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_TRUE(contains(result.output, "<constants><h>")) << result.output;
+}
+
+TEST_F(CheckCommand, IsASectionOfTheReport)
+{
+    generate(layered_tank());
+    const RunResult result = run(folder_, {"report", "Case", "-o", "page.html"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string page = read_text(folder_ / "page.html");
+    EXPECT_TRUE(contains(page, "Check"));
+    EXPECT_TRUE(contains(page, "Nothing was found."));
+}
+
+TEST_F(CheckCommand, FindsTheParticlesOfALatticeSphereThatStandBeforeItsSurface)
+{
+    const std::string name = "nor_sphere";
+    std::filesystem::copy(FPPG_RECORDED_FIELDS "/" + name, folder_.path(),
+                          std::filesystem::copy_options::recursive);
+    ASSERT_EQ(run(folder_, {name + "_Def", name}).code, 0);
+    const CheckReport report = check_case(folder_ / name, 2);
+    ASSERT_TRUE(report.judges_normals);
+    // Their normals lead back into the sphere (centre 0.5, radius 0.3), half filled with particles.
+    const auto radius_of = [](const Vec3& p) { return norm(p - Vec3{0.5, 0.5, 0.5}); };
+    std::uint64_t wrong = 0;
+    for (const FaultyParticle& p : report.faulty)
+    {
+        EXPECT_GT(radius_of(p.position), 0.3) << p.id << ' ' << p.faults;
+        ++wrong;
+    }
+    EXPECT_GT(wrong, 100U) << to_text(report);
+}
+
+TEST_F(CheckCommand, SaysWhatStopsTheSolverInBufferZones)
+{
+    std::filesystem::copy(FPPG_TEMPLATES "/VRes_Def.xml", folder_.path());
+    ASSERT_EQ(run(folder_, {"VRes_Def", "VRes"}).code, 0);
+    for (const char* zone : {"VRes_vres00", "VRes_vres01", "VRes_vres02"})
+    {
+        const CheckReport report = check_case(folder_ / zone, 1);
+        EXPECT_FALSE(report.setup.buffers.empty()) << zone;
+        EXPECT_EQ(report.total(Fault::InBufferZone), 0U) << to_text(report);
+    }
+}
