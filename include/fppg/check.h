@@ -67,8 +67,8 @@ struct CheckParticles
     std::vector<std::uint32_t> ids;
     std::vector<std::uint16_t> mk; ///< absolute
     std::vector<ParticleType> type;
-    /// From a boundary particle to the boundary's surface; zero: none. Particles beyond the end have
-    /// none; empty: the file has no normals.
+    /// From a boundary particle to the boundary's surface; zero: none. Particles beyond the end
+    /// have none; empty: the file has no normals.
     std::vector<std::array<float, 3>> normals;
 };
 
@@ -86,8 +86,8 @@ struct CheckedMk
     std::uint64_t front = 0;
     std::uint64_t front_no_penetration = 0;
     double mean_window = 0; ///< of those: 1.5 |n| / dp, within which NoPenetration acts
-    /// Of walls wet on both sides that are too thin: metres, the thinnest and the median, and the dp
-    /// at which the median has room for both sides; 0 without any.
+    /// Of walls wet on both sides that are too thin: metres, the thinnest and the median, and the
+    /// dp at which the median has room for both sides; 0 without any.
     double thinnest = 0;
     double median_thickness = 0;
     double dp_needed = 0;
@@ -108,30 +108,31 @@ struct CheckReport
 {
     CheckSetup setup;
     std::uint64_t np = 0;
-    bool judges_normals = false;      ///< the case has normals or mDBC
-    std::uint64_t fluid = 0;          ///< particles
-    std::uint64_t fill = 0;           ///< nodes that fluid can reach besides them
-    std::uint64_t close_pairs = 0;    ///< nearer than 0.3 dp
-    std::vector<CheckedMk> mks;       ///< by mk
+    bool judges_normals = false;        ///< the case has normals or mDBC
+    std::uint64_t fluid = 0;            ///< particles
+    std::uint64_t fill = 0;             ///< nodes that fluid can reach besides them
+    std::uint64_t close_pairs = 0;      ///< nearer than 0.3 dp
+    std::vector<CheckedMk> mks;         ///< by mk
     std::vector<FaultyParticle> faulty; ///< by their order in the file
 
     std::uint64_t total(Fault fault) const;
-    /// A fault counts as a finding where a single one is harmful; the solver has an answer of its own
-    /// to weak kernels and ill-conditioned ghost nodes: they count where they are more than 1 % of
-    /// the particles of an mk that fluid can reach.
+    /// A fault counts as a finding where a single one is harmful; the solver has an answer of its
+    /// own to weak kernels and ill-conditioned ghost nodes: they count where they are more than 1 %
+    /// of the particles of an mk that fluid can reach.
     bool is_finding(const CheckedMk& mk, Fault fault) const;
     bool is_clean() const;
 };
 
 /// Judges particles as DualSPHysics v5.4 would with mDBC, with the cavity full of fluid.
 ///
-/// Where fluid can come: nodes of a lattice (spacing dp, through the fluid of the case) in the box of
-/// all boundary particles that are 0.87 dp (2D: 0.75 dp, so that no way leads through a sheet of particles)
-/// or more from all boundary particles and not in the cylinder around a normal (radius 0.7 dp, up to
-/// 0.5 dp beyond the surface), and that a way from node to node joins with the fluid of the case;
-/// all such nodes where the case has no fluid. Those nearer than 0.75 dp to fluid of the case give
-/// way to it. Where fluid comes to a side of the box, as over an open tank, it is taken to go on 4 h
-/// beyond that side, and 2 h along it, so that rims are judged as if under water.
+/// Where fluid can come: nodes of a lattice (spacing dp, through the fluid of the case) in the box
+/// of all boundary particles that are 0.87 dp (2D: 0.75 dp, so that no way leads through a sheet of
+/// particles) or more from all boundary particles and not in the cylinder around a normal (radius
+/// 0.7 dp, up to 0.5 dp beyond the surface), and that a way from node to node joins with the fluid
+/// of the case; all such nodes where the case has no fluid. Those nearer than 0.75 dp to fluid of
+/// the case give way to it. Where fluid comes to a side of the box, as over an open tank, it is
+/// taken to go on 4 h beyond that side, and 2 h along it, so that rims are judged as if under
+/// water.
 ///
 /// threads  the result does not depend on it
 /// cost     a few microseconds a boundary particle that fluid can reach, less for others; about 100

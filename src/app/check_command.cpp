@@ -29,7 +29,8 @@ struct CheckCall
 bool read_arguments(std::vector<std::string> arguments, CheckCall& call)
 {
     SubcommandLine app(
-        "Judges a written case, ours or GenCase's, as the solver v5.4 would: normals and ghost nodes "
+        "Judges a written case, ours or GenCase's, as the solver v5.4 would: normals and ghost "
+        "nodes "
         "for mDBC with the cavity full of fluid, walls that are too thin, fluid and particles that "
         "stand too close, particles outside the domain. Exit code: 0, or 3 with --strict where "
         "there are findings.",
@@ -42,8 +43,7 @@ bool read_arguments(std::vector<std::string> arguments, CheckCall& call)
                    "the faulty particles; their array Fault says which fault, in the order of the "
                    "table from 0 on");
     app.add_flag("--strict", call.strict, "findings are errors");
-    app.add_option("--threads", call.threads,
-                   "default 0: what the machine or its scheduler allows")
+    app.add_option("--threads", call.threads, "default 0: what the machine or its scheduler allows")
         .range(0, 4096);
     for (std::string& argument : arguments)
         if (argument == "-strict") argument = "--strict";
@@ -76,7 +76,8 @@ int run_check(const std::vector<std::string>& arguments)
     }
     fmt::print("{}", to_text(report));
     if (call.strict && !report.is_clean())
-        throw CaseError(fmt::format("--strict: '{}' has findings, which are errors", call.case_name));
+        throw CaseError(
+            fmt::format("--strict: '{}' has findings, which are errors", call.case_name));
     return 0;
 }
 

@@ -53,7 +53,8 @@ bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
     SubcommandLine app(
         "Makes a page of results in one file: pictures side by side, counts, histograms of "
         "spacing and of the distance to the surface, what fppg check finds, times, warnings, and "
-        "particles in space that can be turned. A result is named without extension (Case.bi4 and Case.xml, or "
+        "particles in space that can be turned. A result is named without extension (Case.bi4 and "
+        "Case.xml, or "
         "Case_All.vtk), or as one file .bi4 or .vtk.",
         "fppg report");
     app.add_option("RESULT", call.results, "one or more").required().expected(1, 1000);

@@ -36,12 +36,13 @@ struct WallSums
     std::vector<std::uint16_t>& masks;
     std::map<std::uint16_t, std::vector<float>> thicknesses;
 
-    void add(const CheckParticles& particles, std::uint32_t i, const WallJudgement& of)
+    void add(const CheckParticles& particles, std::uint32_t i, const FluidNearWall& around,
+             const WallJudgement& of)
     {
         CheckedMk& mk = mks.at(particles.mk[i]);
         masks[i] |= of.faults;
-        if (of.is_near_fluid) ++mk.near_fluid;
-        if (of.is_front)
+        ++mk.near_fluid;
+        if (around.nearest < 1.9 * report.setup.dp)
         {
             ++mk.front;
             const double length = norm(normal_of(particles, i)) / report.setup.dp;
@@ -101,17 +102,32 @@ bool is_judged(const CheckedMk& mk)
     return mk.type != ParticleType::Floating || mk.has_normals;
 }
 
-void judge_walls(const CheckParticles& particles, const WallScene& scene,
+void judge_walls(const CheckParticles& particles, WallScene& scene,
                  const std::vector<std::uint32_t>& walls, WallSums& sums, int threads)
 {
     std::vector<std::uint32_t> judged;
     for (const std::uint32_t i : walls)
         if (is_judged(sums.mks.at(particles.mk[i]))) judged.push_back(i);
+    std::vector<FluidNearWall> around(judged.size());
+    scene.looks_away.assign(particles.positions.size(), 0);
+    parallel_for(
+        judged.size(), threads,
+        [&](std::size_t k)
+        {
+            around[k] = look_around(scene, judged[k]);
+            scene.looks_away[judged[k]] = around[k].looks_away ? 1 : 0;
+        },
+        walls_per_chunk);
     std::vector<WallJudgement> judgements(judged.size());
     parallel_for(
         judged.size(), threads,
-        [&](std::size_t k) { judgements[k] = judge_wall(scene, judged[k]); }, walls_per_chunk);
-    for (std::size_t k = 0; k < judged.size(); ++k) sums.add(particles, judged[k], judgements[k]);
+        [&](std::size_t k)
+        {
+            if (around[k].is_near) judgements[k] = judge_wall(scene, judged[k], around[k]);
+        },
+        walls_per_chunk);
+    for (std::size_t k = 0; k < judged.size(); ++k)
+        if (around[k].is_near) sums.add(particles, judged[k], around[k], judgements[k]);
 }
 
 /// Of every mk its type, count and whether it has normals.
@@ -157,11 +173,13 @@ void note_what_is_odd(const std::map<std::uint16_t, CheckedMk>& mks, CheckReport
                 "The floating mk {} has no normals: the solver keeps it plain DBC.", number));
     }
     if (is_mdbc && !has_any && !mks.empty())
-        notes.push_back("The case asks for mDBC and no particle has a normal: the solver stops with "
-                        "\"No valid normal vectors for using mDBC\".");
+        notes.push_back(
+            "The case asks for mDBC and no particle has a normal: the solver stops with "
+            "\"No valid normal vectors for using mDBC\".");
     if (!is_mdbc && has_any)
-        notes.push_back("The case has normals, but its parameter Boundary asks for DBC: the solver "
-                        "does not use them.");
+        notes.push_back(
+            "The case has normals, but its parameter Boundary asks for DBC: the solver "
+            "does not use them.");
     if (is_mdbc && report.setup.slip_mode == 1)
         notes.push_back("SlipMode is 1: the solver knows no NoPenetration with it.");
     else if (is_mdbc && !report.setup.no_penetration)
@@ -210,19 +228,22 @@ CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, i
             masks[i] |= bit_of(Fault::InBufferZone);
     if (report.judges_normals)
     {
-        const Cavity cavity = fill_cavity(particles, report.setup, walls, fluid, threads);
-        report.fill = cavity.size();
-        if (cavity.n[2] == 0 && !walls.empty())
-            report.setup.notes.push_back("The box of all walls is too large to be filled: walls "
-                                         "were judged with the fluid of the case alone.");
+        const FillNodes nodes = fill_cavity(particles, report.setup, walls, fluid, threads);
+        report.fill = nodes.size();
+        if (nodes.n[2] == 0 && !walls.empty())
+            report.setup.notes.push_back(
+                "The box of all walls is too large to be filled: walls "
+                "were judged with the fluid of the case alone.");
         else if (report.fluid + report.fill == 0)
-            report.setup.notes.push_back("There is no fluid, and walls leave no room for it: no normal "
-                                         "was judged.");
-        const WallScene scene{particles,
-                              report.setup,
-                              wall_columns,
-                              {fluid_columns, cavity, periodic_ways(report.setup),
-                               box_of(particles.positions, walls)}};
+            report.setup.notes.push_back(
+                "There is no fluid, and walls leave no room for it: no normal "
+                "was judged.");
+        WallScene scene{
+            particles,
+            report.setup,
+            wall_columns,
+            {fluid_columns, nodes, periodic_ways(report.setup), box_of(particles.positions, walls)},
+            {}};
         WallSums sums{report, mks, masks, {}};
         judge_walls(particles, scene, walls, sums, threads);
         sums.finish();
@@ -258,8 +279,7 @@ CheckReport check_case(const std::string& case_name, int threads)
         },
         65536);
     source.release();
-    CheckSetup setup =
-        read_setup(*source.xml(), source.xml_path(), box_of(particles.positions));
+    CheckSetup setup = read_setup(*source.xml(), source.xml_path(), box_of(particles.positions));
     setup.case_name = case_name;
     return check_particles(particles, std::move(setup), threads);
 }

@@ -46,8 +46,9 @@ constexpr FaultWords words[fault_count] = {
     {"ill_conditioned", "cond. > 50", "ghost nodes are ill-conditioned",
      "The solver takes Shepard's sum there, without a gradient. Put the first layer half a dp "
      "behind the surface, so that its ghost nodes lie in the fluid."},
-    {"wet_on_both_sides", "both sides", "particles belong to walls that are wet on both sides and "
-                                        "too thin",
+    {"wet_on_both_sides", "both sides",
+     "particles belong to walls that are wet on both sides and "
+     "too thin",
      "One normal a particle cannot serve both sides: take a smaller dp, draw the wall thicker, or "
      "give each side a wall of its own."},
     {"in_buffer_zone", "in a buffer", "boundary particles in buffer zones of vres stop the solver",
@@ -129,9 +130,9 @@ std::vector<std::string> finding_lines(const CheckReport& report)
         for (const CheckedMk& mk : report.mks)
         {
             if (mk[fault] == 0) continue;
-            std::string line = fmt::format("mk {}: {} {}; {}", mk.mk, mk[fault],
-                                           words_of(fault).what,
-                                           first_example(report, fault, mk.mk));
+            std::string line =
+                fmt::format("mk {}: {} {}; {}", mk.mk, mk[fault], words_of(fault).what,
+                            first_example(report, fault, mk.mk));
             if (fault == Fault::BothSides)
                 line += fmt::format("; thinnest {:.4g} m, median {:.4g} m, which needs dp {:.4g} m",
                                     mk.thinnest, mk.median_thickness, mk.dp_needed);
@@ -144,19 +145,20 @@ std::vector<std::string> finding_lines(const CheckReport& report)
     for (const CheckedMk& mk : report.mks)
         if (report.setup.no_penetration && is_wall(mk) && mk.front > 0 &&
             (2 * mk.front_no_penetration < mk.front || mk.mean_window < 0.1))
-            lines.push_back(fmt::format(
-                "mk {}: NoPenetration acts on {} of {} particles next to fluid, nearer than {:.2f} dp; "
-                "a first layer half a dp behind the surface makes it 0.75 dp",
-                mk.mk, mk.front_no_penetration, mk.front, mk.mean_window));
+            lines.push_back(
+                fmt::format("mk {}: NoPenetration acts on {} of {} particles next to fluid, nearer "
+                            "than {:.2f} dp; "
+                            "a first layer half a dp behind the surface makes it 0.75 dp",
+                            mk.mk, mk.front_no_penetration, mk.front, mk.mean_window));
     return lines;
 }
 
 std::string headline(const CheckReport& report)
 {
     const CheckSetup& setup = report.setup;
-    std::string text = fmt::format("{}: {}, dp {:g} m, h {:.4g} m, {} particles, {} of fluid, ",
-                                   setup.case_name, setup.is_2d ? "2D" : "3D", setup.dp, setup.h,
-                                   report.np, report.fluid);
+    std::string text =
+        fmt::format("{}: {}, dp {:g} m, h {:.4g} m, {} particles, {} of fluid, ", setup.case_name,
+                    setup.is_2d ? "2D" : "3D", setup.dp, setup.h, report.np, report.fluid);
     if (setup.boundary != 2) return text + "DBC";
     return text + fmt::format("mDBC, SlipMode {}{}", setup.slip_mode,
                               setup.no_penetration ? ", NoPenetration" : "");
@@ -237,7 +239,8 @@ std::string to_html(const CheckReport& report)
         html += "</table></div>\n";
     }
     html += "<ul>";
-    for (const std::string& line : finding_lines(report)) html += "<li>" + escaped(line) + "</li>\n";
+    for (const std::string& line : finding_lines(report))
+        html += "<li>" + escaped(line) + "</li>\n";
     for (const std::string& note : report.setup.notes) html += "<li>" + escaped(note) + "</li>\n";
     return html + "</ul>\n<p>" + verdict(report) + "</p>\n";
 }
@@ -336,7 +339,8 @@ std::string to_vtk(const CheckReport& report)
     };
     scalars("Idp", "unsigned_int", [](const FaultyParticle& p) { return p.id; });
     scalars("Mk", "unsigned_short", [](const FaultyParticle& p) { return p.mk; });
-    scalars("Fault", "int", [](const FaultyParticle& p)
+    scalars("Fault", "int",
+            [](const FaultyParticle& p)
             { return static_cast<std::uint32_t>(std::countr_zero(p.faults)); });
     scalars("Faults", "unsigned_short", [](const FaultyParticle& p) { return p.faults; });
     out += "VECTORS Normal float\n";

@@ -88,8 +88,8 @@ GhostFit fit_at_ghost(const FluidAround& fluid, const Vec3& ghost, const CheckSe
 {
     const double h = setup.h;
     // Wendland (1995), quintic: 7/(4 pi h^2) in 2D, 21/(16 pi h^3) in 3D.
-    const double scale = setup.is_2d ? 7 / (4 * std::numbers::pi * h * h)
-                                     : 21 / (16 * std::numbers::pi * h * h * h);
+    const double scale =
+        setup.is_2d ? 7 / (4 * std::numbers::pi * h * h) : 21 / (16 * std::numbers::pi * h * h * h);
     const std::size_t n = setup.is_2d ? 3 : 4;
     MomentMatrix a{};
     fluid.find_near(ghost, 2 * h,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "check/cavity.h"
+#include "check/fill_nodes.h"
 #include "check/particle_columns.h"
 #include "fppg/check.h"
 
@@ -16,7 +16,7 @@ std::vector<Vec3> periodic_ways(const CheckSetup& setup);
 struct FluidAround
 {
     const ParticleColumns& fluid;
-    const Cavity& fill;
+    const FillNodes& fill;
     std::vector<Vec3> ways; ///< periodic_ways()
     Box3 box;               ///< of all particles
 
@@ -30,7 +30,8 @@ struct FluidAround
         return true;
     }
 
-    /// Calls stop(way from p, squared distance) for all fluid within `radius` until it returns true.
+    /// Calls stop(way from p, squared distance) for all fluid within `radius` until it returns
+    /// true.
     template <typename Stop>
     bool find_near(const Vec3& p, double radius, const Stop& stop) const
     {
@@ -38,7 +39,8 @@ struct FluidAround
         {
             const Vec3 q = p + way;
             if (is_far(q, radius)) continue;
-            if (fluid.find_near(q, radius, [&](std::uint32_t, const Vec3& to, double squared)
+            if (fluid.find_near(q, radius,
+                                [&](std::uint32_t, const Vec3& to, double squared)
                                 { return stop(to, squared); }) ||
                 fill.find_near(q, radius, stop))
                 return true;

@@ -1,21 +1,24 @@
 // How a boundary particle p with the normal n (to the surface s = p + n) and the ghost node
 // g = p + 2n is judged; all lengths in dp, w are other boundary particles:
 // - It counts where fluid can come within 2h of p.
-// - In a wall, where |n| >= 0.25: no fluid can come within 0.99 of g, and it is behind the surface of
+// - In a wall, where |n| >= 0.25: no fluid can come within 0.99 of g, and it is behind the surface
+// of
 //   a w within 0.75; or it lies within 0.45 of a w that has no normal.
 // - Through a wall: the segment from s + 0.5 n/|n| to g passes from one side of a w to the other
 //   within 0.71 of it (half the diagonal of its square), or within 0.45 of a w without normal.
-// - Outside: no fluid can come within 2h of g, and it is outside the domain (over periodic limits it
+// - Outside: no fluid can come within 2h of g, and it is outside the domain (over periodic limits
+// it
 //   is put back first).
-// - Looks away: no fluid can come within 2h of g, in the domain; or less than a fifth of the fluid
-//   within 2h of p is in front of it.
+// - Looks away: no fluid can come within 2h of g, in the domain; or the fluid within 2h of p is
+// behind
+//   it: the mean of the cosines between n and the ways to it is below -0.2 (before a flat wall 0.5,
+//   before a sheet that is wet on both sides 0).
+//   Such a w counts as one without a normal in the rules above.
 // - Weak kernel and ill-conditioned as in fit_at_ghost(), with the limits of the solver.
 // - Both sides, where n leads to fluid: fluid can come to the back too, t behind p in a cylinder of
 //   radius 0.75 around -n, and the wall is thinner (|n| + t - 0.5) than 2h - 0.5.
 
 #include "check/judge_walls.h"
-
-#include <limits>
 
 namespace fppg
 {
@@ -25,36 +28,6 @@ namespace
 
 constexpr double least_kernel_sum = 0.1;
 constexpr double most_condition = 50;
-
-/// Fluid within 2h of a particle.
-struct Surroundings
-{
-    double nearest = std::numeric_limits<double>::infinity(); ///< in the box of all, metres
-    double behind = std::numeric_limits<double>::infinity();  ///< along -n, in the box, metres
-    std::uint64_t count = 0;
-    std::uint64_t in_front = 0;
-};
-
-Surroundings look_around(const WallScene& scene, const Vec3& p, const Vec3& direction)
-{
-    const double across = 0.75 * scene.setup.dp;
-    Surroundings found;
-    double squared_least = std::numeric_limits<double>::infinity();
-    scene.fluid.find_near(p, 2 * scene.setup.h,
-                          [&](const Vec3& to, double squared)
-                          {
-                              ++found.count;
-                              const double along = dot(to, direction);
-                              if (along > 0) ++found.in_front;
-                              if (!scene.fluid.is_in_box(p + to)) return false;
-                              squared_least = std::min(squared_least, squared);
-                              if (along < 0 && squared - along * along <= across * across)
-                                  found.behind = std::min(found.behind, -along);
-                              return false;
-                          });
-    found.nearest = std::sqrt(squared_least);
-    return found;
-}
 
 /// A place put back over periodic limits.
 Vec3 back_into_domain(const CheckSetup& setup, Vec3 p)
@@ -84,8 +57,14 @@ bool find_walls(const WallScene& scene, std::uint32_t own, const Vec3& p, double
                 const Stop& stop)
 {
     for (const Vec3& way : scene.fluid.ways)
-        if (scene.walls.find_near(p + way, radius, [&](std::uint32_t w, const Vec3& to, double)
-                                  { return w != own && stop(normal_of(scene.particles, w), -to); }))
+        if (scene.walls.find_near(p + way, radius,
+                                  [&](std::uint32_t w, const Vec3& to, double)
+                                  {
+                                      const Vec3 n = scene.looks_away[w] != 0
+                                                         ? Vec3{}
+                                                         : normal_of(scene.particles, w);
+                                      return w != own && stop(n, -to);
+                                  }))
             return true;
     return false;
 }
@@ -135,7 +114,7 @@ bool passes_wall(const WallScene& scene, std::uint32_t i, const Vec3& p, const V
 
 /// The first of the faults of a normal that holds, as bits.
 std::uint16_t judge_normal(const WallScene& scene, std::uint32_t i, const Vec3& p, const Vec3& n,
-                           const Surroundings& around)
+                           const FluidNearWall& around)
 {
     const CheckSetup& setup = scene.setup;
     const bool is_short = norm(n) < 0.25 * setup.dp;
@@ -145,7 +124,7 @@ std::uint16_t judge_normal(const WallScene& scene, std::uint32_t i, const Vec3& 
     const GhostFit fit = fit_at_ghost(scene.fluid, ghost, setup);
     if (fit.kernel_sum <= 0)
         return bit_of(is_outside(setup, ghost) ? Fault::GhostOutside : Fault::LooksAway);
-    if (5 * around.in_front < around.count) return bit_of(Fault::LooksAway);
+    if (around.looks_away) return bit_of(Fault::LooksAway);
     if (fit.kernel_sum < least_kernel_sum) return bit_of(Fault::WeakKernel);
     if (!(fit.condition <= most_condition)) return bit_of(Fault::IllConditioned);
     return 0;
@@ -160,30 +139,45 @@ Vec3 normal_of(const CheckParticles& particles, std::size_t i)
     return {n[0], n[1], n[2]};
 }
 
-WallJudgement judge_wall(const WallScene& scene, std::uint32_t i)
+FluidNearWall look_around(const WallScene& scene, std::uint32_t i)
 {
-    const CheckSetup& setup = scene.setup;
     const Vec3& p = scene.particles.positions[i];
     const Vec3 n = normal_of(scene.particles, i);
-    const double length = norm(n);
-    const Surroundings around = look_around(scene, p, length > 0 ? n / length : Vec3{});
+    const Vec3 direction = n == Vec3{} ? n : n / norm(n);
+    const double across = 0.75 * scene.setup.dp;
+    double nearest = std::numeric_limits<double>::infinity(), behind = nearest;
+    std::uint64_t count = 0;
+    double cosines = 0;
+    scene.fluid.find_near(p, 2 * scene.setup.h,
+                          [&](const Vec3& to, double squared)
+                          {
+                              ++count;
+                              const double along = dot(to, direction);
+                              if (squared > 0) cosines += along / std::sqrt(squared);
+                              if (!scene.fluid.is_in_box(p + to)) return false;
+                              nearest = std::min(nearest, squared);
+                              if (along < 0 && squared - along * along <= across * across)
+                                  behind = std::min(behind, -along);
+                              return false;
+                          });
+    return {static_cast<float>(std::sqrt(nearest)), static_cast<float>(behind), count > 0,
+            cosines < -0.2 * static_cast<double>(count)};
+}
+
+WallJudgement judge_wall(const WallScene& scene, std::uint32_t i, const FluidNearWall& around)
+{
+    constexpr auto wrong_way =
+        static_cast<std::uint16_t>(1U << static_cast<unsigned>(Fault::GhostOutside) |
+                                   1U << static_cast<unsigned>(Fault::GhostInWall) |
+                                   1U << static_cast<unsigned>(Fault::ThroughWall) |
+                                   1U << static_cast<unsigned>(Fault::LooksAway));
+    const CheckSetup& setup = scene.setup;
+    const Vec3 n = normal_of(scene.particles, i);
+    if (n == Vec3{}) return {bit_of(Fault::NoNormal), 0};
     WallJudgement out;
-    if (around.count == 0) return out;
-    out.is_near_fluid = true;
-    out.is_front = around.nearest < 1.9 * setup.dp;
-    if (!(length > 0))
-    {
-        out.faults = bit_of(Fault::NoNormal);
-        return out;
-    }
-    out.faults = judge_normal(scene, i, p, n, around);
-    constexpr auto wrong_way = static_cast<std::uint16_t>(
-        1U << static_cast<unsigned>(Fault::GhostOutside) |
-        1U << static_cast<unsigned>(Fault::GhostInWall) |
-        1U << static_cast<unsigned>(Fault::ThroughWall) |
-        1U << static_cast<unsigned>(Fault::LooksAway));
+    out.faults = judge_normal(scene, i, scene.particles.positions[i], n, around);
     if ((out.faults & wrong_way) != 0) return out;
-    const double thickness = length + around.behind - 0.5 * setup.dp;
+    const double thickness = norm(n) + double{around.behind} - 0.5 * setup.dp;
     if (thickness < 2 * setup.h - 0.501 * setup.dp)
     {
         out.faults |= bit_of(Fault::BothSides);

@@ -41,7 +41,8 @@ public:
                     const Vec3 way = *it - p;
                     const double squared = dot(way, way);
                     if (squared <= radius * radius &&
-                        stop(indices_[static_cast<std::size_t>(it - points_.begin())], way, squared))
+                        stop(indices_[static_cast<std::size_t>(it - points_.begin())], way,
+                             squared))
                         return true;
                 }
             }
@@ -53,8 +54,7 @@ private:
     std::int64_t column(double place, int axis) const
     {
         const double at = std::floor((place - least_[axis]) / width_);
-        return static_cast<std::int64_t>(
-            std::clamp(at, 0.0, static_cast<double>(n_[axis] - 1)));
+        return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(n_[axis] - 1)));
     }
 
     double width_ = 1;

@@ -51,9 +51,9 @@ struct SetupReader
     {
         const double value = constant(name);
         if (!(value > 0))
-            throw CaseError(path, 0,
-                            fmt::format("<constants><{}> is {:g}, expected a value above 0", name,
-                                        value));
+            throw CaseError(
+                path, 0,
+                fmt::format("<constants><{}> is {:g}, expected a value above 0", name, value));
         return value;
     }
     /// The last <parameter> of that key counts.
@@ -222,11 +222,11 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
     setup.volume = reader.positive("massfluid") / reader.positive("rhop0");
     setup.boundary = static_cast<int>(reader.parameter_or("Boundary", 1));
     setup.slip_mode = static_cast<int>(reader.parameter_or("SlipMode", 1));
-    setup.no_penetration =
-        setup.slip_mode >= 2 && reader.parameter_or("NoPenetration", 0) != 0;
+    setup.no_penetration = setup.slip_mode >= 2 && reader.parameter_or("NoPenetration", 0) != 0;
     if (reader.parameter_or("Kernel", 2) == 1)
-        setup.notes.push_back("Ghost nodes were judged with the Wendland kernel; the case asks for "
-                              "the cubic spline.");
+        setup.notes.push_back(
+            "Ghost nodes were judged with the Wendland kernel; the case asks for "
+            "the cubic spline.");
     read_periodic(reader, setup, particles);
     read_domain(reader, setup, particles);
     const Element* vres = reader.find({"execution", "vres"});

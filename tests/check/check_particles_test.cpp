@@ -134,14 +134,14 @@ TEST_P(CheckedTank, FindsANormalThroughAPlate)
         for (int j = 0; j < ny; ++j)
             tank_.add_wall({0.65 + 0.1 * i, GetParam() ? 0 : 0.35 + 0.1 * j, 0.35}, {0, 0, 0.05},
                            11);
-    tank_.drain([](const Vec3& p)
-                {
-                    return p.x > 0.6 && p.x < 1.4 && p.z > 0.3 && p.z < 0.4 &&
-                           (GetParam() || (p.y > 0.3 && p.y < 0.7));
-                });
+    tank_.drain(
+        [](const Vec3& p)
+        {
+            return p.x > 0.6 && p.x < 1.4 && p.z > 0.3 && p.z < 0.4 &&
+                   (GetParam() || (p.y > 0.3 && p.y < 0.7));
+        });
     const CheckReport report = tank_.check();
-    EXPECT_EQ(found(report),
-              (Faults{{"wet_on_both_sides", static_cast<std::uint64_t>(8 * ny)}}))
+    EXPECT_EQ(found(report), (Faults{{"wet_on_both_sides", static_cast<std::uint64_t>(8 * ny)}}))
         << to_text(report);
     const CheckedMk& plate = mk_of(report, 11);
     // 0.05 m to the surface above, and water 0.1 m below less half a dp.
@@ -149,9 +149,9 @@ TEST_P(CheckedTank, FindsANormalThroughAPlate)
     EXPECT_NEAR(plate.dp_needed, 0.1 / (2 * std::sqrt(GetParam() ? 2 : 3) - 0.5), 1e-6);
 
     tank_.normal_at({1.05, y_, -0.05}) = {0, 0, 0.3F};
-    EXPECT_EQ(found(tank_.check()),
-              (Faults{{"through_wall", 1},
-                      {"wet_on_both_sides", static_cast<std::uint64_t>(8 * ny)}}));
+    EXPECT_EQ(
+        found(tank_.check()),
+        (Faults{{"through_wall", 1}, {"wet_on_both_sides", static_cast<std::uint64_t>(8 * ny)}}));
 }
 
 TEST_P(CheckedTank, FindsFluidInAWallAndPairs)

@@ -12,8 +12,8 @@ namespace fppg::test
 
 /// A case in memory: an open tank whose floor and sides are three layers half a dp behind their
 /// surfaces, each particle with the vector to the nearest point of the surface, and water in its
-/// lower half. dp is 0.1 m, the tank is 2 m wide and 1.2 m high, surfaces stand at x = 0 and 2, z = 0
-/// (3D: y = 0 and 1 too).
+/// lower half. dp is 0.1 m, the tank is 2 m wide and 1.2 m high, surfaces stand at x = 0 and 2, z =
+/// 0 (3D: y = 0 and 1 too).
 class LayeredTank
 {
 public:
@@ -60,8 +60,8 @@ public:
         particles.mk.insert(particles.mk.begin() + at, mk);
         particles.type.insert(particles.type.begin() + at, ParticleType::Fixed);
         particles.ids.push_back(static_cast<std::uint32_t>(particles.ids.size()));
-        particles.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y),
-                                     static_cast<float>(n.z)});
+        particles.normals.push_back(
+            {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
         return static_cast<std::uint32_t>(at);
     }
 

@@ -12,7 +12,7 @@ namespace fppg
 {
 
 /// Where fluid can come besides the fluid of the case: nodes of a lattice, as runs along z.
-class Cavity
+class FillNodes
 {
 public:
     struct NodeRun
@@ -80,7 +80,8 @@ public:
     std::int64_t first(double place, int axis) const
     {
         const double at = std::ceil((place - origin[axis]) / dp - 1e-9);
-        return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(n[at_axis(axis)])));
+        return static_cast<std::int64_t>(
+            std::clamp(at, 0.0, static_cast<double>(n[at_axis(axis)])));
     }
     std::int64_t last(double place, int axis) const
     {
@@ -93,12 +94,12 @@ private:
     static std::size_t at_axis(int axis) { return static_cast<std::size_t>(axis); }
 };
 
-/// The cavity of check_particles().
+/// Where fluid can come, by the rules of check_particles().
 ///
 /// walls, fluid  indices of the particles, which have finite places
 /// returns       no nodes where the box of all boundary particles has too many columns
-Cavity fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
-                   const std::vector<std::uint32_t>& walls, const std::vector<std::uint32_t>& fluid,
-                   int threads);
+FillNodes fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
+                      const std::vector<std::uint32_t>& walls,
+                      const std::vector<std::uint32_t>& fluid, int threads);
 
 } // namespace fppg
