@@ -32,6 +32,8 @@ namespace
 {
 
 constexpr std::uint64_t particles_at_once = 4000000;
+/// They are checked in memory, about 100 bytes each.
+constexpr std::uint64_t most_checked = 50000000;
 
 struct ReportCall
 {
@@ -143,6 +145,23 @@ std::string histograms_of(const MeasuredResult& result)
            "</div>\n";
 }
 
+/// What fppg check finds; nothing of a picture file.
+std::string checked_html(const std::string& name, const ParticleSource& source, int threads)
+{
+    if (!source.is_bi4()) return "";
+    if (source.size() > most_checked)
+        return fmt::format("<p>Not checked, with more than {} particles: fppg check does.</p>\n",
+                           grouped_digits(most_checked));
+    try
+    {
+        return to_html(check_case(name, threads));
+    }
+    catch (const CaseError& error)
+    {
+        return fmt::format("<p>Not checked: {}</p>\n", escaped_html(error.what()));
+    }
+}
+
 ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const ReportCall& call)
 {
     const MeasuredResult result = measure_result(name, geometry, particles_at_once, call.threads);
@@ -167,7 +186,7 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
                         look.name));
     }
     look.details = table_of(result) + histograms_of(result);
-    if (source.is_bi4()) look.details += to_html(check_case(name, call.threads));
+    look.details += checked_html(name, source, call.threads);
     if (const auto facts = facts_of_result(result.path)) look.details += run_facts_html(*facts);
     return look;
 }

@@ -2,6 +2,7 @@
 #include "core/json.h"
 #include "core/text_table.h"
 #include "fppg/check.h"
+#include "report/html.h"
 
 #include "files/vtk.h"
 
@@ -169,14 +170,6 @@ std::string verdict(const CheckReport& report)
     return report.is_clean() ? "Nothing was found." : "There are findings.";
 }
 
-std::string escaped(const std::string& text)
-{
-    std::string out;
-    for (const char c : text)
-        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-    return out;
-}
-
 } // namespace
 
 const char* fault_name(Fault fault)
@@ -223,7 +216,7 @@ std::string to_text(const CheckReport& report)
 
 std::string to_html(const CheckReport& report)
 {
-    std::string html = "<h3>Check</h3>\n<p>" + escaped(headline(report)) + "</p>\n";
+    std::string html = "<h3>Check</h3>\n<p>" + escaped_html(headline(report)) + "</p>\n";
     if (report.judges_normals)
     {
         html += "<div class=\"scroll\"><table>";
@@ -232,7 +225,7 @@ std::string to_html(const CheckReport& report)
         {
             html += "<tr>";
             for (const std::string& text : row)
-                html += fmt::format("<{0}>{1}</{0}>", cell, escaped(text));
+                html += fmt::format("<{0}>{1}</{0}>", cell, escaped_html(text));
             html += "</tr>\n";
             cell = "td";
         }
@@ -240,8 +233,9 @@ std::string to_html(const CheckReport& report)
     }
     html += "<ul>";
     for (const std::string& line : finding_lines(report))
-        html += "<li>" + escaped(line) + "</li>\n";
-    for (const std::string& note : report.setup.notes) html += "<li>" + escaped(note) + "</li>\n";
+        html += "<li>" + escaped_html(line) + "</li>\n";
+    for (const std::string& note : report.setup.notes)
+        html += "<li>" + escaped_html(note) + "</li>\n";
     return html + "</ul>\n<p>" + verdict(report) + "</p>\n";
 }
 

@@ -13,9 +13,9 @@ std::uint64_t judge_places(const CheckParticles& particles, const CheckSetup& se
                            const ParticleColumns& walls, const ParticleColumns& fluid,
                            std::vector<std::uint16_t>& masks, int threads)
 {
-    // Distances of exactly that are none: dp is no round number in binary.
-    const double near_wall = 0.5 * setup.dp * (1 - 1e-6);
-    const double close = 0.3 * setup.dp * (1 - 1e-6);
+    // Distances of exactly that are none, also where files hold places in single precision.
+    const double near_wall = 0.499 * setup.dp;
+    const double close = 0.299 * setup.dp;
     const std::vector<Vec3> ways = periodic_ways(setup);
     std::atomic<std::uint64_t> pairs{0};
     parallel_for(

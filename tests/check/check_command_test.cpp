@@ -171,6 +171,31 @@ TEST_F(CheckCommand, FindsTheParticlesOfALatticeSphereThatStandBeforeItsSurface)
     EXPECT_LT(faulty.size(), 4 * turned);
 }
 
+TEST_F(CheckCommand, TakesAPeriodicChannelAsEndless)
+{
+    CaseText text = layered_tank();
+    for (int k = 0; k < 2; ++k)
+        replace(text.mainlist, "bottom|left|right|front|back", "bottom|front|back");
+    replace(text.execution, "</parameters>",
+            R"(<parameter key="XPeriodicIncZ" value="0" /></parameters>)");
+    generate(text);
+    const CheckReport report = check_case(folder_ / "Case", 2);
+    EXPECT_TRUE(report.setup.is_periodic[0]);
+    EXPECT_NEAR(norm(report.setup.periodic[0] - Vec3{1, 0, 0}), 0, 1e-9);
+    EXPECT_TRUE(report.is_clean()) << to_text(report);
+    EXPECT_EQ(report.total(Fault::IllConditioned), 0U);
+}
+
+TEST_F(CheckCommand, GoesOnWithTheReportOfACaseThatItCannotJudge)
+{
+    generate(layered_tank());
+    std::string xml = read_text(folder_ / "Case.xml");
+    replace(xml, "<massfluid value", "<massfluids value");
+    write_text(folder_ / "Case.xml", xml);
+    ASSERT_EQ(run(folder_, {"report", "Case", "-o", "page.html"}).code, 0);
+    EXPECT_TRUE(contains(read_text(folder_ / "page.html"), "Not checked: "));
+}
+
 TEST_F(CheckCommand, SaysWhatStopsTheSolverInBufferZones)
 {
     std::filesystem::copy(FPPG_TEMPLATES "/VRes_Def.xml", folder_.path());

@@ -37,7 +37,7 @@ set(batch_may_see report walls lattice scene files casedef shapes meshes particl
 # What the solver made of a case, against the true shapes of its draws.
 set(leak_may_see walls lattice scene files casedef shapes meshes particles nodes core)
 # A written case, judged as the solver would.
-set(check_may_see files casedef particles shapes meshes core)
+set(check_may_see report files casedef particles shapes meshes core)
 # The text of a definition, in newer forms.
 set(upgrade_may_see core)
 set(app_may_see upgrade check leak batch report compare render walls lattice fit boolean relax normals files scene casedef shapes meshes
