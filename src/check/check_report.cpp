@@ -30,29 +30,30 @@ constexpr FaultWords words[fault_count] = {
     {"no_normal", "no normal", "boundary particles within 2h of fluid have no normal",
      "The solver keeps them plain DBC. Give <norgeometry> a surface that covers them, or a larger "
      "distanceh."},
-    {"ghost_outside", "ghost outside", "ghost nodes lie outside the domain",
-     "Normals point out of the case: turn the surface of <norgeometry> round (setnormalinvert), or "
-     "enlarge <simulationdomain>."},
-    {"ghost_in_wall", "in a wall", "ghost nodes lie in a wall",
+    {"ghost_outside", "outside", "ghost nodes lie outside the domain",
+     "Normals lead out of the case, to the dry side of a wall or the wrong one: give <norgeometry> "
+     "the wet side only (setnormalinvert turns a surface round), or draw the wall thicker."},
+    {"ghost_in_wall", "in wall", "ghost nodes lie in a wall",
      "Normals point into a wall, or the gap before the wall is narrower than its layers are deep: "
      "check the side of the surface, or take a smaller dp."},
-    {"through_wall", "through a wall", "normals pass through a wall",
+    {"through_wall", "through", "normals pass through a wall",
      "They point to a surface behind another wall: give each wall its own surface, or a smaller "
      "distanceh."},
-    {"looks_away", "looks away", "normals look away from the fluid",
-     "No fluid can come near the ghost node, and the solver switches the particle off: draw the "
-     "surface on the side of the fluid."},
-    {"weak_kernel", "kernel < 0.1", "ghost nodes have a kernel sum below 0.1",
+    {"looks_away", "away", "normals look away from the fluid",
+     "The solver switches particles off whose ghost node no fluid comes near: give <norgeometry> "
+     "the "
+     "wet side of the wall only, or draw the wall thicker."},
+    {"weak_kernel", "sum < 0.1", "ghost nodes have a kernel sum below 0.1",
      "The solver takes rho0 or more there. Normals are longer than the gap, or end at a rim."},
     {"ill_conditioned", "cond. > 50", "ghost nodes are ill-conditioned",
      "The solver takes Shepard's sum there, without a gradient. Put the first layer half a dp "
      "behind the surface, so that its ghost nodes lie in the fluid."},
-    {"wet_on_both_sides", "both sides",
+    {"wet_on_both_sides", "2 sides",
      "particles belong to walls that are wet on both sides and "
      "too thin",
      "One normal a particle cannot serve both sides: take a smaller dp, draw the wall thicker, or "
      "give each side a wall of its own."},
-    {"in_buffer_zone", "in a buffer", "boundary particles in buffer zones of vres stop the solver",
+    {"in_buffer_zone", "buffer", "boundary particles in buffer zones of vres stop the solver",
      "It takes none there with DBC, and with mDBC none without a normal: move the zone, or give "
      "them normals and Boundary 2."},
     {"fluid_near_wall", nullptr, "fluid particles are nearer than 0.5 dp to a wall particle",
@@ -97,7 +98,7 @@ std::vector<std::vector<std::string>> wall_rows(const CheckReport& report)
     std::vector<std::vector<std::string>> rows{{"mk", "type", "particles", "near fluid"}};
     for (const FaultWords& of : words)
         if (of.column != nullptr) rows[0].push_back(of.column);
-    rows[0].push_back("NoPenetration");
+    rows[0].push_back("NoPen.");
     for (const CheckedMk& mk : report.mks)
     {
         if (!is_wall(mk)) continue;

@@ -93,7 +93,7 @@ GhostFit fit_at_ghost(const FluidAround& fluid, const Vec3& ghost, const CheckSe
     const std::size_t n = setup.is_2d ? 3 : 4;
     MomentMatrix a{};
     fluid.find_near(ghost, 2 * h,
-                    [&](const Vec3& to, double squared)
+                    [&](const Vec3& to, double squared, bool)
                     {
                         const double q = std::sqrt(squared) / h;
                         const double u = std::max(0.0, 1 - q / 2);

@@ -18,20 +18,10 @@ struct FluidAround
     const ParticleColumns& fluid;
     const FillNodes& fill;
     std::vector<Vec3> ways; ///< periodic_ways()
-    Box3 box;               ///< of all particles
+    Box3 box;               ///< of all boundary particles
 
-    /// Whether a place is in the box, not beyond an open side of it.
-    bool is_in_box(const Vec3& p) const
-    {
-        for (int axis = 0; axis < 3; ++axis)
-            if (!is_open_ended(axis) && (p[axis] < box.min[axis] - 1e-6 * fill.dp ||
-                                         p[axis] > box.max[axis] + 1e-6 * fill.dp))
-                return false;
-        return true;
-    }
-
-    /// Calls stop(way from p, squared distance) for all fluid within `radius` until it returns
-    /// true.
+    /// Calls stop(way from p, squared distance, is beyond an open side) for all fluid within
+    /// `radius` until it returns true; fluid of the case is beyond none.
     template <typename Stop>
     bool find_near(const Vec3& p, double radius, const Stop& stop) const
     {
@@ -41,14 +31,24 @@ struct FluidAround
             if (is_far(q, radius)) continue;
             if (fluid.find_near(q, radius,
                                 [&](std::uint32_t, const Vec3& to, double squared)
-                                { return stop(to, squared); }) ||
-                fill.find_near(q, radius, stop))
+                                { return stop(to, squared, false); }) ||
+                fill.find_near(q, radius,
+                               [&](const Vec3& to, double squared)
+                               { return stop(to, squared, !is_in_box(q + to)); }))
                 return true;
         }
         return false;
     }
 
 private:
+    bool is_in_box(const Vec3& p) const
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!is_open_ended(axis) && (p[axis] < box.min[axis] - 1e-6 * fill.dp ||
+                                         p[axis] > box.max[axis] + 1e-6 * fill.dp))
+                return false;
+        return true;
+    }
     bool is_far(const Vec3& q, double radius) const
     {
         for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,6 @@
 // How a boundary particle p with the normal n (to the surface s = p + n) and the ghost node
 // g = p + 2n is judged; all lengths in dp, w are other boundary particles:
-// - It counts where fluid can come within 2h of p.
+// - It counts where fluid can come within 2h of p, not counting what is beyond open sides.
 // - In a wall, where |n| >= 0.25: no fluid can come within 0.99 of g, and it is behind the surface
 // of
 //   a w within 0.75; or it lies within 0.45 of a w that has no normal.
@@ -77,7 +77,8 @@ bool is_in_wall(const WallScene& scene, std::uint32_t i, const Vec3& ghost)
     const auto is_behind = [&](const Vec3& n, const Vec3& from)
     { return n != Vec3{} && dot(from - n, n) < -0.05 * dp * norm(n); };
     if (find_walls(scene, i, ghost, 0.45 * dp, is_bare)) return true;
-    return !scene.fluid.find_near(ghost, 0.99 * dp, [](const Vec3&, double) { return true; }) &&
+    return !scene.fluid.find_near(ghost, 0.99 * dp,
+                                  [](const Vec3&, double, bool) { return true; }) &&
            find_walls(scene, i, ghost, 0.75 * dp, is_behind);
 }
 
@@ -149,19 +150,19 @@ FluidNearWall look_around(const WallScene& scene, std::uint32_t i)
     std::uint64_t count = 0;
     double cosines = 0;
     scene.fluid.find_near(p, 2 * scene.setup.h,
-                          [&](const Vec3& to, double squared)
+                          [&](const Vec3& to, double squared, bool is_beyond)
                           {
                               ++count;
                               const double along = dot(to, direction);
                               if (squared > 0) cosines += along / std::sqrt(squared);
-                              if (!scene.fluid.is_in_box(p + to)) return false;
+                              if (is_beyond) return false;
                               nearest = std::min(nearest, squared);
                               if (along < 0 && squared - along * along <= across * across)
                                   behind = std::min(behind, -along);
                               return false;
                           });
-    return {static_cast<float>(std::sqrt(nearest)), static_cast<float>(behind), count > 0,
-            cosines < -0.2 * static_cast<double>(count)};
+    return {static_cast<float>(std::sqrt(nearest)), static_cast<float>(behind),
+            std::isfinite(nearest), cosines < -0.2 * static_cast<double>(count)};
 }
 
 WallJudgement judge_wall(const WallScene& scene, std::uint32_t i, const FluidNearWall& around)
