@@ -40,17 +40,16 @@ constexpr FaultWords words[fault_count] = {
      "They point to a surface behind another wall: give each wall its own surface, or a smaller "
      "distanceh."},
     {"looks_away", "away", "normals look away from the fluid",
-     "The solver switches particles off whose ghost node no fluid comes near: give <norgeometry> "
-     "the "
-     "wet side of the wall only, or draw the wall thicker."},
+     "The solver switches such a particle off: give <norgeometry> the wet side of the wall only, "
+     "or "
+     "draw the wall thicker."},
     {"weak_kernel", "sum < 0.1", "ghost nodes have a kernel sum below 0.1",
      "The solver takes rho0 or more there. Normals are longer than the gap, or end at a rim."},
     {"ill_conditioned", "cond. > 50", "ghost nodes are ill-conditioned",
      "The solver takes Shepard's sum there, without a gradient. Put the first layer half a dp "
      "behind the surface, so that its ghost nodes lie in the fluid."},
     {"wet_on_both_sides", "2 sides",
-     "particles belong to walls that are wet on both sides and "
-     "too thin",
+     "particles belong to walls that are wet on both sides and too thin",
      "One normal a particle cannot serve both sides: take a smaller dp, draw the wall thicker, or "
      "give each side a wall of its own."},
     {"in_buffer_zone", "buffer", "boundary particles in buffer zones of vres stop the solver",
