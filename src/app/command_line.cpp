@@ -291,6 +291,8 @@ std::string help_text()
         "  fppg report RESULT...                a page with pictures, histograms and a 3-D view\n"
         "  fppg inspect MESH [--dp VALUE]   what a mesh holds and what is wrong with it; fppg "
         "inspect --help\n"
+        "  fppg check CASE                      normals, ghost nodes and places, judged as by the "
+        "solver\n"
         "  fppg leak CASE PART_FILES            fluid inside solids or outside a housing, in the "
         "solver's output\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case, before it is "

@@ -10,6 +10,7 @@
 #include "compare/report_words.h"
 #include "files/particle_source.h"
 #include "files/thinned_cloud.h"
+#include "fppg/check.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "fppg/render.h"
@@ -31,6 +32,8 @@ namespace
 {
 
 constexpr std::uint64_t particles_at_once = 4000000;
+/// They are checked in memory, about 100 bytes each.
+constexpr std::uint64_t most_checked = 50000000;
 
 struct ReportCall
 {
@@ -51,8 +54,9 @@ bool read_arguments(std::vector<std::string> arguments, ReportCall& call)
 {
     SubcommandLine app(
         "Makes a page of results in one file: pictures side by side, counts, histograms of "
-        "spacing and of the distance to the surface, times, warnings, and particles in space that "
-        "can be turned. A result is named without extension (Case.bi4 and Case.xml, or "
+        "spacing and of the distance to the surface, what fppg check finds, times, warnings, and "
+        "particles in space that can be turned. A result is named without extension (Case.bi4 and "
+        "Case.xml, or "
         "Case_All.vtk), or as one file .bi4 or .vtk.",
         "fppg report");
     app.add_option("RESULT", call.results, "one or more").required().expected(1, 1000);
@@ -141,6 +145,23 @@ std::string histograms_of(const MeasuredResult& result)
            "</div>\n";
 }
 
+/// What fppg check finds; nothing of a picture file.
+std::string checked_html(const std::string& name, const ParticleSource& source, int threads)
+{
+    if (!source.is_bi4()) return "";
+    if (source.size() > most_checked)
+        return fmt::format("<p>Not checked, with more than {} particles: fppg check does.</p>\n",
+                           grouped_digits(most_checked));
+    try
+    {
+        return to_html(check_case(name, threads));
+    }
+    catch (const CaseError& error)
+    {
+        return fmt::format("<p>Not checked: {}</p>\n", escaped_html(error.what()));
+    }
+}
+
 ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const ReportCall& call)
 {
     const MeasuredResult result = measure_result(name, geometry, particles_at_once, call.threads);
@@ -165,6 +186,7 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
                         look.name));
     }
     look.details = table_of(result) + histograms_of(result);
+    look.details += checked_html(name, source, call.threads);
     if (const auto facts = facts_of_result(result.path)) look.details += run_facts_html(*facts);
     return look;
 }

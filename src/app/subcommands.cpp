@@ -1,6 +1,7 @@
 #include "app/subcommands.h"
 
 #include "app/batch_command.h"
+#include "app/check_command.h"
 #include "app/compare_command.h"
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
@@ -32,9 +33,10 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command}, {"compare", run_compare},     {"estimate", run_estimate},
-    {"inspect", run_inspect},     {"leak", run_leak},           {"render", run_render},
-    {"report", run_report},       {"templates", run_templates}, {"upgrade", run_upgrade},
+    {"batch", run_batch_command}, {"check", run_check},     {"compare", run_compare},
+    {"estimate", run_estimate},   {"inspect", run_inspect}, {"leak", run_leak},
+    {"render", run_render},       {"report", run_report},   {"templates", run_templates},
+    {"upgrade", run_upgrade},
 };
 
 } // namespace

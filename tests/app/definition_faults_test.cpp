@@ -278,8 +278,8 @@ TEST(DidYouMean, NamesTheDefinitionAndTheSubcommand)
 TEST(Subcommands, HaveHelpInWords)
 {
     const TemporaryFolder folder;
-    for (const char* name :
-         {"batch", "compare", "inspect", "leak", "render", "report", "templates", "upgrade"})
+    for (const char* name : {"batch", "check", "compare", "inspect", "leak", "render", "report",
+                             "templates", "upgrade"})
     {
         const std::string help =
             Process(FPPG_PROGRAM, {name, "--help"}, folder.path().string()).wait().output;

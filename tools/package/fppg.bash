@@ -9,6 +9,7 @@ _fppg()
         *:batch)
             options="--out --set --jobs --threads --memory --resume --no-pictures --quiet --log-json --slurm --submit
                 --plan --task --summary --dry-run --help" ;;
+        *:check) options="--json --vtk --strict --threads --help" ;;
         *:compare)
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
@@ -26,7 +27,7 @@ _fppg()
     esac
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then
-        COMPREPLY=($(compgen -W "batch compare estimate inspect leak render report templates upgrade" -- "$word"))
+        COMPREPLY=($(compgen -W "batch check compare estimate inspect leak render report templates upgrade" -- "$word"))
     elif [[ $COMP_CWORD -eq 1 ]]; then
         COMPREPLY=($(compgen -W "-h --help -ver --version -info -templates" -- "$word"))
     elif [[ $word == -* ]]; then

@@ -1,0 +1,238 @@
+// The domain that the solver makes of a case (DualSPHysics v5.4, JSph.cpp ResizeMapLimits): the box
+// of all particles and 0.05 h around it, dp/2 where it is periodic; a limit that is no periodic one
+// may be moved or replaced by <simulationdomain>.
+
+#include "check/read_setup.h"
+
+#include "core/finite_number.h"
+#include "fppg/error.h"
+
+#include <fmt/format.h>
+
+namespace fppg
+{
+
+namespace
+{
+
+struct SetupReader
+{
+    const Element& root;
+    const std::string& path;
+
+    const Element* find(std::initializer_list<const char*> names) const
+    {
+        const Element* at = &root;
+        for (const char* name : names)
+            if (at != nullptr) at = at->find_child(name);
+        return at;
+    }
+    double number_of(const Element& element, const char* attribute) const
+    {
+        const std::string* text = element.find_attribute(attribute);
+        const auto value = text != nullptr ? finite_signed_number(*text) : std::nullopt;
+        if (!value)
+            throw CaseError(path, element.line,
+                            fmt::format("<{} {}=\"{}\">: expected a number", element.name,
+                                        attribute, text != nullptr ? *text : ""));
+        return *value;
+    }
+    double constant(const char* name) const
+    {
+        const Element* element = find({"execution", "constants", name});
+        if (element == nullptr)
+            throw CaseError(path, 0,
+                            fmt::format("there is no <execution><constants><{}>, which the solver "
+                                        "needs; expected a case that is made",
+                                        name));
+        return number_of(*element, "value");
+    }
+    double positive(const char* name) const
+    {
+        const double value = constant(name);
+        if (!(value > 0))
+            throw CaseError(
+                path, 0,
+                fmt::format("<constants><{}> is {:g}, expected a value above 0", name, value));
+        return value;
+    }
+    /// The last <parameter> of that key counts.
+    const Element* parameter(std::string_view key) const
+    {
+        const Element* parameters = find({"execution", "parameters"});
+        const Element* found = nullptr;
+        if (parameters != nullptr)
+            for (const Element& e : parameters->children)
+                if (const std::string* of = e.find_attribute("key");
+                    e.kind == Element::Kind::Tag && of != nullptr && *of == key)
+                    found = &e;
+        return found;
+    }
+    double parameter_or(std::string_view key, double otherwise) const
+    {
+        const Element* element = parameter(key);
+        return element != nullptr ? number_of(*element, "value") : otherwise;
+    }
+};
+
+bool is_true(const SetupReader& reader, const char* name)
+{
+    const Element* element = reader.find({"execution", "constants", name});
+    const std::string* text = element != nullptr ? element->find_attribute("value") : nullptr;
+    return text != nullptr && (*text == "true" || *text == "1");
+}
+
+void read_periodic(const SetupReader& reader, CheckSetup& setup, const Box3& particles)
+{
+    static constexpr const char* increments[3][2] = {{"XPeriodicIncY", "XPeriodicIncZ"},
+                                                     {"YPeriodicIncX", "YPeriodicIncZ"},
+                                                     {"ZPeriodicIncX", "ZPeriodicIncY"}};
+    static constexpr int across[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t k = 0; k < 2; ++k)
+            if (reader.parameter(increments[axis][k]) != nullptr)
+            {
+                setup.is_periodic[axis] = true;
+                setup.periodic[axis][across[axis][k]] =
+                    -reader.parameter_or(increments[axis][k], 0);
+            }
+    static constexpr const char* pairs[] = {"YZPeriodic", "XZPeriodic", "XYPeriodic"};
+    for (std::size_t without = 0; without < 3; ++without)
+        if (reader.parameter(pairs[without]) != nullptr)
+        {
+            setup.is_periodic = {true, true, true};
+            setup.is_periodic[without] = false;
+            setup.periodic = {};
+        }
+    for (int axis = 0; axis < 3; ++axis)
+        if (setup.is_periodic[static_cast<std::size_t>(axis)])
+            setup.periodic[static_cast<std::size_t>(axis)][axis] =
+                particles.max[axis] - particles.min[axis] + setup.dp;
+}
+
+/// "default", "default - 10%", "default + 0.1" or a number.
+double domain_limit(const SetupReader& reader, const Element& element, const char* attribute,
+                    double limit, double size, double outwards)
+{
+    const std::string* given = element.find_attribute(attribute);
+    std::string text;
+    if (given != nullptr)
+        for (const char c : *given)
+            if (c != ' ' && c != '\t') text += static_cast<char>(std::tolower(c));
+    if (text.empty() || text == "default") return limit;
+    const bool is_relative = text.starts_with("default") && text.size() > 8;
+    std::string_view number = text;
+    if (is_relative) number.remove_prefix(8);
+    const bool is_percent = is_relative && number.ends_with('%');
+    if (is_percent) number.remove_suffix(1);
+    const auto value = finite_signed_number(number);
+    if (!value)
+        throw CaseError(reader.path, element.line,
+                        fmt::format("<{} {}=\"{}\">: expected default, default {} 10%, default {} "
+                                    "0.5 or a number",
+                                    element.name, attribute, *given, outwards < 0 ? '-' : '+',
+                                    outwards < 0 ? '-' : '+'));
+    if (!is_relative) return *value;
+    return limit + outwards * (is_percent ? size * *value / 100 : *value);
+}
+
+void read_domain(const SetupReader& reader, CheckSetup& setup, const Box3& particles)
+{
+    setup.domain = particles;
+    if (particles.is_empty()) return;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double border =
+            setup.is_periodic[static_cast<std::size_t>(axis)] ? setup.dp / 2 : 0.05 * setup.h;
+        setup.domain.min[axis] -= border;
+        setup.domain.max[axis] += border;
+    }
+    const Element* domain = reader.find({"execution", "parameters", "simulationdomain"});
+    if (domain == nullptr) return;
+    const Box3 all = setup.domain;
+    for (const bool is_least : {true, false})
+    {
+        const Element* limit = domain->find_child(is_least ? "posmin" : "posmax");
+        if (limit == nullptr) continue;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (setup.is_periodic[static_cast<std::size_t>(axis)] || (setup.is_2d && axis == 1))
+                continue;
+            const char name[] = {"xyz"[axis], '\0'};
+            double& value = is_least ? setup.domain.min[axis] : setup.domain.max[axis];
+            value = domain_limit(reader, *limit, name, value, all.max[axis] - all.min[axis],
+                                 is_least ? -1 : 1);
+        }
+    }
+}
+
+/// A box of <vres>; empty where it is not along the axes.
+Box3 read_box(const SetupReader& reader, const Element& zone, const char* name)
+{
+    const Element* box = zone.find_child(name);
+    const Element* least = box != nullptr ? box->find_child("pointmin") : nullptr;
+    const Element* greatest = box != nullptr ? box->find_child("pointmax") : nullptr;
+    if (least == nullptr || greatest == nullptr) return {};
+    Box3 out;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const char attribute[] = {"xyz"[axis], '\0'};
+        out.min[axis] = reader.number_of(*least, attribute);
+        out.max[axis] = reader.number_of(*greatest, attribute);
+    }
+    return out;
+}
+
+/// Buffer zones of zone `id`: its own, and those around the zones in it (DualSPHysics v5.4,
+/// JSphVRes::CreateZones).
+void read_buffers(const SetupReader& reader, const Element& zone, const std::string& id,
+                  CheckSetup& setup)
+{
+    const auto add = [&](const Element& of, const char* outer, const char* inner)
+    {
+        const BufferZone buffer{read_box(reader, of, outer), read_box(reader, of, inner)};
+        if (!buffer.outer.is_empty() && !buffer.inner.is_empty())
+            setup.buffers.push_back(buffer);
+        else
+            setup.notes.push_back(fmt::format(
+                "A buffer zone that is turned ({}, line {}) was not judged.", outer, of.line));
+    };
+    for (const Element& child : zone.children)
+    {
+        if (child.kind != Element::Kind::Tag || child.name != "bufferbox") continue;
+        const std::string* child_id = child.find_attribute("id");
+        const std::string* parent = child.find_attribute("parentid");
+        if (child_id != nullptr && *child_id == id && parent != nullptr)
+            add(child, "bufferdomain", "innerdomain");
+        if (parent != nullptr && *parent == id)
+            add(child, "parentbufferinilimits", "parentbufferendlimits");
+        read_buffers(reader, child, id, setup);
+    }
+}
+
+} // namespace
+
+CheckSetup read_setup(const Element& root, const std::string& path, const Box3& particles)
+{
+    const SetupReader reader{root, path};
+    CheckSetup setup;
+    setup.is_2d = is_true(reader, "data2d");
+    setup.dp = reader.positive("dp");
+    setup.h = reader.positive("h");
+    setup.volume = reader.positive("massfluid") / reader.positive("rhop0");
+    setup.boundary = static_cast<int>(reader.parameter_or("Boundary", 1));
+    setup.slip_mode = static_cast<int>(reader.parameter_or("SlipMode", 1));
+    setup.no_penetration = setup.slip_mode >= 2 && reader.parameter_or("NoPenetration", 0) != 0;
+    if (reader.parameter_or("Kernel", 2) == 1)
+        setup.notes.push_back(
+            "Ghost nodes were judged with the Wendland kernel; the case asks for "
+            "the cubic spline.");
+    read_periodic(reader, setup, particles);
+    read_domain(reader, setup, particles);
+    const Element* vres = reader.find({"execution", "vres"});
+    const std::string* id = vres != nullptr ? vres->find_attribute("selid") : nullptr;
+    if (id != nullptr) read_buffers(reader, *vres, *id, setup);
+    return setup;
+}
+
+} // namespace fppg
