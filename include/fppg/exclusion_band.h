@@ -20,7 +20,8 @@ struct ExclusionBandOptions
     /// The nodes of `volume` will be drawn: they stop fills themselves, and may stay from 0.4 dp on
     /// where the volume asks for them.
     bool is_solid = false;
-    /// No particle stands on the surface, but half a dp behind it: nodes half a dp before it stay.
+    /// No particle stands on the surface, but half a dp behind it: nodes from 0.1 dp before it on
+    /// may stay.
     bool is_before_layers = false;
 };
 

@@ -175,8 +175,9 @@ double measure_overlap(const TriangleSoup& body, int threads)
 /// No node of a solid is nearer to its surface than this, 0.4 dp.
 constexpr std::uint32_t least_node_distance = distance_units / 5 * 2;
 
-/// Nodes that stand half a dp before a wall by their definition may be nearer by this.
-constexpr std::uint32_t half_dp_rounding = distance_units / 1000000;
+/// Before layers, whose first particle is half a dp behind the surface, nodes stay from here on, so
+/// that fluid has the volume that the wall leaves it: 0.1 dp.
+constexpr std::uint32_t least_before_layers = distance_units / 10;
 
 /// A number for each node such that those below any bound are spread evenly over any plane of the
 /// lattice: the Kronecker sequence of the root of x^4 = x + 1, 2^32 a turn.
@@ -346,7 +347,7 @@ public:
           threads_(threads),
           // The nodes of a solid stop a fill themselves.
           within_(options.is_solid ? least_node_distance : half_dp),
-          beyond_(options.is_before_layers ? half_dp - half_dp_rounding : half_dp + 1)
+          beyond_(options.is_before_layers ? least_before_layers : half_dp + 1)
     {
     }
 

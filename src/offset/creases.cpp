@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "meshes/connect_mesh.h"
 #include "offset/quadric.h"
+#include "offset/slivers.h"
 
 #include <algorithm>
 #include <array>
@@ -53,7 +54,8 @@ public:
             for (const std::uint32_t v : mesh_.edges[e]) around_[begin_[v + 1]++] = e;
     }
 
-    std::vector<std::uint32_t> run()
+    /// Puts the vertices at creases onto them; returns whether there are any.
+    bool place_vertices()
     {
         is_crease_.assign(mesh_.edges.size(), 0);
         find(true);
@@ -62,6 +64,12 @@ public:
             move_onto_creases();
             find(false);
         }
+        return std::any_of(is_crease_.begin(), is_crease_.end(), [](char c) { return c != 0; });
+    }
+
+    std::vector<std::uint32_t> run()
+    {
+        if (!place_vertices()) return {};
         drop_doubles();
         close_gaps();
         drop_doubles();
@@ -358,8 +366,9 @@ private:
 void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
                      OffsetSurface& offset)
 {
+    if (!CreaseFinder(wall, options, threads, offset).place_vertices()) return;
+    remove_slivers(offset.mesh, options.cell, threads, offset.report);
     offset.creases = CreaseFinder(wall, options, threads, offset).run();
-    if (offset.creases.empty()) return;
     const std::size_t facets = offset.report.facets_read;
     offset.report = {};
     offset.report.facets_read = facets;
