@@ -319,7 +319,7 @@ void WallPainter::hold_beside_second_sheets()
         [&](std::size_t i)
         {
             const SurfaceMesh& mesh = walls.bodies[all.bodies[i]].mesh;
-            if (mesh.facets.empty()) return;
+            if (walls.bodies[all.bodies[i]].is_layer()) return;
             const Vec3& normal = mesh.normals[all.facets[i]];
             grid.for_each_near(all.positions[i], reach,
                                [&](std::uint32_t c, double)

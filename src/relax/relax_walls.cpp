@@ -28,6 +28,8 @@ namespace
 constexpr double reach_of_cuts_dp = 3;
 /// A sheet with nodes of a region this near on both sides stays as it is, dp.
 constexpr double reach_of_sides_dp = 1.5;
+/// Value of WallParticles::held of those that are there for a relaxation only.
+constexpr char of_border = 2;
 constexpr int surface_iterations = 100;
 constexpr int volume_iterations = 30;
 constexpr std::size_t runs_per_chunk = 256;
@@ -168,12 +170,21 @@ private:
                     });
                 return is_free;
             };
-        std::vector<char> held = std::move(particles.held);
         const std::vector<double> before = count_by_body(particles);
+        // Layers go on as far as they were laid, so that they stay even where another side takes over.
+        const bool has_border = add_borders(particles);
+        std::vector<char> held = std::move(particles.held);
         const RelaxSurfaceReport done =
             relax_surface(walls.bodies, particles, held, options, threads_);
         particles.held = std::move(held);
         particles.held.resize(particles.size(), 0);
+        if (has_border)
+        {
+            std::vector<char> is_border(particles.size());
+            for (std::size_t i = 0; i < is_border.size(); ++i)
+                is_border[i] = particles.held[i] == of_border ? 1 : 0;
+            particles.erase(is_border);
+        }
         parallel_for(
             particles.size(), threads_,
             [&](std::size_t i)
@@ -198,6 +209,25 @@ private:
         part.mean = done.after.spacing_mean;
         part.variation = done.after.spacing_variation;
         report_.parts.push_back(part);
+    }
+
+    /// Puts the particles of layers that were left out for another side back, held.
+    bool add_borders(WallParticles& particles) const
+    {
+        const FittedWalls& walls = field_.walls;
+        const WallParticles& second = walls.second_sheets;
+        std::vector<char> is_there(walls.bodies.size(), 0);
+        for (const std::uint32_t b : particles.bodies) is_there[b] = 1;
+        bool found = false;
+        for (std::size_t i = 0; i < second.size(); ++i)
+        {
+            if (!walls.bodies[second.bodies[i]].is_layer() || is_there[second.bodies[i]] == 0)
+                continue;
+            particles.append(second, i);
+            particles.held.back() = of_border;
+            found = true;
+        }
+        return found;
     }
 
     std::vector<double> count_by_body(const WallParticles& particles) const
