@@ -160,8 +160,8 @@ private:
     void read_layers(const Element& e, FitSettings& s) const
     {
         if (e.find_attribute("boundary") != nullptr && !is_word(e, "boundary", "auto"))
-            s.boundary = is_first_of(e, "boundary", "mdbc", "dbc") ? WallBoundary::Mdbc
-                                                                   : WallBoundary::Dbc;
+            s.boundary =
+                is_first_of(e, "boundary", "mdbc", "dbc") ? WallBoundary::Mdbc : WallBoundary::Dbc;
         if (e.find_attribute("layers") != nullptr && !is_word(e, "layers", "auto"))
             s.layers = static_cast<int>(number_or(
                 e, "layers", 0, [](double v) { return v >= 1 && v <= 16 && v == std::floor(v); },

@@ -56,8 +56,7 @@ void settle_boundaries(CaseDef& def)
             def.warnings.push_back(fmt::format(
                 "{}:{}: <bodyfitted boundary=\"{}\">: the parameter Boundary of the case is {}, "
                 "with which the solver expects walls for {}.",
-                def.file, s.line, is_mdbc ? "dbc" : "mdbc", *parameter,
-                is_mdbc ? "mDBC" : "DBC"));
+                def.file, s.line, is_mdbc ? "dbc" : "mdbc", *parameter, is_mdbc ? "mDBC" : "DBC"));
         s.depths_dp = layer_depths(s, 2 * def.h / def.grid.dp);
         // The places themselves give the normals.
         if (s.boundary == WallBoundary::Mdbc) def.normals.is_active = true;

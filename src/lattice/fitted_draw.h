@@ -23,13 +23,14 @@ struct FittedDraw
 {
     FittedBody body;
     std::vector<FittedBody> layers; ///< behind its surface; `owner` is 0
-    WallParticles particles; ///< of this body and its layers; `bodies` 0 is the body, 1 the first layer
-    std::vector<Vec3> cut;   ///< places of particles that were left out
+    WallParticles
+        particles; ///< of this body and its layers; `bodies` 0 is the body, 1 the first layer
+    std::vector<Vec3> cut; ///< places of particles that were left out
     std::vector<std::uint32_t> cut_bodies;
     WallParticles second_sheet; ///< taken out of a thin plate, or where layers of two sides meet
-    std::vector<Spans> volume;     ///< one entry per slab of the lattice
-    std::vector<Spans> hollow; ///< likewise; nodes inside that the draw leaves empty, or nothing
-    std::vector<Spans> zone;   ///< likewise; every particle has a node of it at its cell's corners
+    std::vector<Spans> volume;  ///< one entry per slab of the lattice
+    std::vector<Spans> hollow;  ///< likewise; nodes inside that the draw leaves empty, or nothing
+    std::vector<Spans> zone;    ///< likewise; every particle has a node of it at its cell's corners
     /// Nodes of `volume` and `zone` with another mk than the body's.
     std::vector<NodeShare> shares;
     std::vector<std::string> warnings;

@@ -163,8 +163,7 @@ void WallPainter::cut_by(const FittedDraw& draw)
             const Vec3& p = positions[i];
             if (is_cut_[i] || !is_near(p)) return;
             const double distance = test.query().closest_point(p).distance;
-            const bool is_inside =
-                (draw.body.is_solid && test.is_inside(p)) || is_among_layers(p);
+            const bool is_inside = (draw.body.is_solid && test.is_inside(p)) || is_among_layers(p);
             if (distance < reach || is_inside)
                 is_cut_[i] = is_inside && distance > touching_dp * field_->grid.dp ? 1 : touched;
         },

@@ -117,8 +117,8 @@ int PseudoNormals::nearest_side(std::uint32_t facet, const Vec3& p) const
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t s = 0; s < 3; ++s)
     {
-        const double d = squared_to_segment(mesh_.vertices[corners[s]],
-                                            mesh_.vertices[corners[(s + 1) % 3]], p);
+        const double d =
+            squared_to_segment(mesh_.vertices[corners[s]], mesh_.vertices[corners[(s + 1) % 3]], p);
         if (d >= least) continue;
         least = d;
         nearest = static_cast<int>(s);

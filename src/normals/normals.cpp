@@ -301,8 +301,8 @@ private:
                 if (depth > 0 && !wet.has_dry_sides())
                     normal = as_float(depth * own_normal(r, normal));
                 else
-                    normal = as_float(turn(wet.vector_from(
-                        place_in_run(particles_, *place.block, *place.run, k))));
+                    normal = as_float(turn(
+                        wet.vector_from(place_in_run(particles_, *place.block, *place.run, k))));
             }
         };
         parallel_for(places_.size(), threads_, visit, 64);
@@ -324,7 +324,8 @@ private:
         const auto k = static_cast<std::uint64_t>(&normal - &normals_[place.id]);
         const std::uint64_t at = place.run->off_lattice_begin() + k;
         const double depth = -all.distances[at];
-        return all.kinds[at] != FitKind::Volume && depth > least_depth_dp * def_.grid.dp ? depth : 0;
+        return all.kinds[at] != FitKind::Volume && depth > least_depth_dp * def_.grid.dp ? depth
+                                                                                         : 0;
     }
 
     /// The unit normal of the true surface at a particle that a fit put on it or behind it, else

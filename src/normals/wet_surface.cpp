@@ -36,41 +36,51 @@ FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound) : grid_(fie
     while (cells(0) * cells(1) * cells(2) > most_cells) ++side_;
     n_ = {cells(0), cells(1), cells(2)};
     steps_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), never);
-    std::vector<std::array<std::int32_t, 3>> front;
     for (std::int64_t x = 0; x < std::int64_t{grid_.n[0]}; ++x)
         for (const Run& run : field.slabs[static_cast<std::size_t>(x)])
-            for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
-            {
-                std::uint16_t& cell = steps_[index(x / side_, run.y / side_, z)];
-                if (run.mk >= first_bound)
-                    cell = blocked;
-                else if (cell == never)
-                    cell = 0;
-            }
-    for (std::int64_t x = 0; x < n_[0]; ++x)
-        for (std::int64_t y = 0; y < n_[1]; ++y)
-            for (std::int64_t z = 0; z < n_[2]; ++z)
-                if (steps_[index(x, y, z)] == 0)
-                    front.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                                     static_cast<std::int32_t>(z)});
+            mark(x / side_, run, run.mk >= first_bound);
+    std::vector<std::size_t> front;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+        if (steps_[i] == 0) front.push_back(i);
     has_fluid_ = !front.empty();
-    for (std::uint16_t step = 1; !front.empty() && step < blocked; ++step)
+    for (std::uint16_t step = 1; !front.empty() && step < blocked; ++step) front = go(front, step);
+}
+
+void FluidWay::mark(std::int64_t x, const Run& run, bool is_bound)
+{
+    for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
     {
-        std::vector<std::array<std::int32_t, 3>> next;
-        for (const auto& at : front)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                for (const int way : {-1, 1})
-                {
-                    std::array<std::int32_t, 3> to = at;
-                    to[axis] += way;
-                    if (to[axis] < 0 || to[axis] >= n_[axis]) continue;
-                    std::uint16_t& cell = steps_[index(to[0], to[1], to[2])];
-                    if (cell != never) continue;
-                    cell = step;
-                    next.push_back(to);
-                }
-        front = std::move(next);
+        std::uint16_t& cell = steps_[index(x, run.y / side_, z)];
+        if (is_bound)
+            cell = blocked;
+        else if (cell == never)
+            cell = 0;
     }
+}
+
+std::vector<std::size_t> FluidWay::go(const std::vector<std::size_t>& front, std::uint16_t step)
+{
+    std::vector<std::size_t> next;
+    const auto enter = [&](std::size_t cell)
+    {
+        if (steps_[cell] != never) return;
+        steps_[cell] = step;
+        next.push_back(cell);
+    };
+    const auto ny = static_cast<std::size_t>(n_[1]);
+    const auto nz = static_cast<std::size_t>(n_[2]);
+    for (const std::size_t at : front)
+    {
+        const std::size_t z = at % nz;
+        const std::size_t y = at / nz % ny;
+        if (z > 0) enter(at - 1);
+        if (z + 1 < nz) enter(at + 1);
+        if (y > 0) enter(at - nz);
+        if (y + 1 < ny) enter(at + nz);
+        if (at >= ny * nz) enter(at - ny * nz);
+        if (at + ny * nz < steps_.size()) enter(at + ny * nz);
+    }
+    return next;
 }
 
 double FluidWay::to(const Vec3& p) const
@@ -78,9 +88,9 @@ double FluidWay::to(const Vec3& p) const
     if (!has_fluid_) return 0;
     std::array<std::int64_t, 3> at{};
     for (int axis = 0; axis < 3; ++axis)
-        at[static_cast<std::size_t>(axis)] = std::llround(
-            std::clamp((p[axis] - grid_.origin[axis]) / grid_.dp, -1e9, 1e9) / side_ -
-            0.5 * (1 - 1.0 / side_));
+        at[static_cast<std::size_t>(axis)] =
+            std::llround(std::clamp((p[axis] - grid_.origin[axis]) / grid_.dp, -1e9, 1e9) / side_ -
+                         0.5 * (1 - 1.0 / side_));
     std::uint16_t least = never;
     for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
         for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
@@ -90,7 +100,8 @@ double FluidWay::to(const Vec3& p) const
                 const std::uint16_t steps = steps_[index(x, y, z)];
                 if (steps < blocked) least = std::min(least, steps);
             }
-    return least == never ? std::numeric_limits<double>::infinity() : static_cast<double>(side_) * least;
+    return least == never ? std::numeric_limits<double>::infinity()
+                          : static_cast<double>(side_) * least;
 }
 
 WetSurface::WetSurface(const RunField& field, std::uint16_t first_bound, double reach, int threads)
@@ -118,48 +129,47 @@ void WetSurface::cut_pieces(const RunField& field)
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
         // The first layer on each side names the surface and the way to the fluid.
-        if (!bodies[b].is_layer() || bodies[b].wall == nullptr) continue;
-        if (b > 0 && bodies[b - 1].wall == bodies[b].wall) continue;
-        const FittedBody& owner = bodies[bodies[b].owner];
+        if (!bodies[b].is_layer() || bodies[b - 1].wall == bodies[b].wall) continue;
         const SurfaceMesh& mesh = bodies[b].wall->mesh();
-        std::vector<Piece> todo;
+        Piece piece;
+        piece.body = bodies[b].owner;
+        piece.is_closed = bodies[piece.body].measures.volume > 0;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
-            Piece piece;
-            for (std::size_t c = 0; c < 3; ++c)
-                piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
+            for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
             piece.normal = bodies[b].wall->sign() * mesh.normals[f];
-            piece.body = bodies[b].owner;
-            piece.is_closed = owner.measures.volume > 0;
-            todo.push_back(piece);
-            while (!todo.empty())
-            {
-                const Piece now = todo.back();
-                todo.pop_back();
-                std::size_t side = 0;
-                double length = 0;
-                for (std::size_t s = 0; s < 3; ++s)
-                {
-                    const double l = norm(now.corners[(s + 1) % 3] - now.corners[s]);
-                    if (l > length)
-                    {
-                        length = l;
-                        side = s;
-                    }
-                }
-                if (length <= longest || !piece.is_closed)
-                {
-                    pieces_.push_back(now);
-                    continue;
-                }
-                const Vec3 middle = 0.5 * (now.corners[side] + now.corners[(side + 1) % 3]);
-                for (const std::size_t kept : {side, (side + 1) % 3})
-                {
-                    Piece half = now;
-                    half.corners[kept] = middle;
-                    todo.push_back(half);
-                }
-            }
+            add_pieces(piece, piece.is_closed ? longest : std::numeric_limits<double>::infinity());
+        }
+    }
+}
+
+void WetSurface::add_pieces(const Piece& whole, double longest)
+{
+    std::vector<Piece> todo{whole};
+    while (!todo.empty())
+    {
+        const Piece now = todo.back();
+        todo.pop_back();
+        std::size_t side = 0;
+        double length = 0;
+        for (std::size_t s = 0; s < 3; ++s)
+        {
+            const double l = norm(now.corners[(s + 1) % 3] - now.corners[s]);
+            if (l <= length) continue;
+            length = l;
+            side = s;
+        }
+        if (length <= longest)
+        {
+            pieces_.push_back(now);
+            continue;
+        }
+        const Vec3 middle = 0.5 * (now.corners[side] + now.corners[(side + 1) % 3]);
+        for (const std::size_t kept : {side, (side + 1) % 3})
+        {
+            Piece half = now;
+            half.corners[kept] = middle;
+            todo.push_back(half);
         }
     }
 }
@@ -177,8 +187,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
             Piece& piece = pieces_[i];
             if (!piece.is_closed) return;
             const WallDepth& wall = *wall_of[piece.body];
-            const Vec3 middle =
-                (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
+            const Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
             for (std::size_t b = 0; b < wall_of.size(); ++b)
                 if (b != piece.body && wall_of[b] != nullptr &&
                     field.walls.bodies[b].measures.volume > 0 &&
@@ -217,8 +226,7 @@ void WetSurface::note_thin_walls(const RunField& field)
         const std::uint16_t mk = field.walls.bodies[piece.body].mk;
         auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
                                   [&](const ThinWall& wall) { return wall.mk == mk; });
-        if (found == thin_walls_.end())
-            found = thin_walls_.insert(found, {mk, piece.thickness, 0});
+        if (found == thin_walls_.end()) found = thin_walls_.insert(found, {mk, piece.thickness, 0});
         found->thickness = std::min(found->thickness, piece.thickness);
         found->area += 0.5 * norm(cross(piece.corners[1] - piece.corners[0],
                                         piece.corners[2] - piece.corners[0]));

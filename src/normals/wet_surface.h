@@ -20,8 +20,8 @@ public:
     /// first_bound  mks below it are fluid
     FluidWay(const RunField& field, std::uint16_t first_bound);
 
-    /// In dp, to the free cell nearest to a point (within about a cell); infinite where fluid cannot
-    /// come. Without fluid it is 0 everywhere.
+    /// In dp, to the free cell nearest to a point (within about a cell); infinite where fluid
+    /// cannot come. Without fluid it is 0 everywhere.
     double to(const Vec3& p) const;
 
 private:
@@ -29,6 +29,9 @@ private:
     {
         return static_cast<std::size_t>((x * n_[1] + y) * n_[2] + z);
     }
+
+    void mark(std::int64_t x, const Run& run, bool is_bound);
+    std::vector<std::size_t> go(const std::vector<std::size_t>& front, std::uint16_t step);
 
     LatticeGrid grid_;
     std::uint32_t side_ = 1; ///< nodes along the side of a cell
@@ -75,6 +78,7 @@ private:
         double thickness = 0;
     };
     void cut_pieces(const RunField& field);
+    void add_pieces(const Piece& whole, double longest);
     void judge(const RunField& field, const FluidWay& way, int threads);
     void note_thin_walls(const RunField& field);
 

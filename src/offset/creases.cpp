@@ -102,8 +102,7 @@ private:
         const Vec3 along = mesh_.vertices[mesh_.edges[edge][1]] - a;
         Vec3 way;
         for (const std::uint32_t v : mesh_.facets[facet])
-            if (v != mesh_.edges[edge][0] && v != mesh_.edges[edge][1])
-                way = mesh_.vertices[v] - a;
+            if (v != mesh_.edges[edge][0] && v != mesh_.edges[edge][1]) way = mesh_.vertices[v] - a;
         const double length = dot(along, along);
         if (!(length > 0)) return {};
         way = way - (dot(way, along) / length) * along;
@@ -182,8 +181,8 @@ private:
             if (has_crease(v)) vertices.push_back(v);
         std::vector<std::optional<Vec3>> places(vertices.size());
         parallel_for(
-            vertices.size(), threads_, [&](std::size_t i) { places[i] = crease_place(vertices[i]); },
-            64);
+            vertices.size(), threads_,
+            [&](std::size_t i) { places[i] = crease_place(vertices[i]); }, 64);
         for (std::size_t i = 0; i < vertices.size(); ++i)
             if (places[i]) mesh_.vertices[vertices[i]] = *places[i];
     }
@@ -221,18 +220,19 @@ private:
     /// The two vertices of a loop that are farthest from one another.
     std::array<std::uint32_t, 2> far_ends(const std::vector<std::uint32_t>& loop) const
     {
+        std::vector<std::uint32_t> vertices;
+        for (const std::uint32_t e : loop)
+            vertices.insert(vertices.end(), mesh_.edges[e].begin(), mesh_.edges[e].end());
         std::array<std::uint32_t, 2> ends = mesh_.edges[loop[0]];
         double most = 0;
-        for (const std::uint32_t e : loop)
-            for (const std::uint32_t f : loop)
-                for (const std::uint32_t a : mesh_.edges[e])
-                    for (const std::uint32_t b : mesh_.edges[f])
-                    {
-                        const double d = norm(mesh_.vertices[a] - mesh_.vertices[b]);
-                        if (d <= most) continue;
-                        most = d;
-                        ends = {a, b};
-                    }
+        for (const std::uint32_t a : vertices)
+            for (const std::uint32_t b : vertices)
+            {
+                const double d = norm(mesh_.vertices[a] - mesh_.vertices[b]);
+                if (d <= most) continue;
+                most = d;
+                ends = {a, b};
+            }
         return ends;
     }
 
@@ -284,8 +284,8 @@ private:
 
     int creases_at(std::uint32_t v) const
     {
-        return static_cast<int>(std::count_if(edges_of(v), edges_end(v), [&](std::uint32_t e)
-                                              { return is_crease_[e] != 0; }));
+        return static_cast<int>(std::count_if(edges_of(v), edges_end(v),
+                                              [&](std::uint32_t e) { return is_crease_[e] != 0; }));
     }
 
     /// From each end of a crease on, over vertices that can be moved onto it, to another crease.
@@ -308,8 +308,8 @@ private:
         };
         std::vector<Step> path;
         std::uint32_t at = end;
-        const std::uint32_t last = *std::find_if(edges_of(end), edges_end(end), [&](std::uint32_t e)
-                                                 { return is_crease_[e] != 0; });
+        const std::uint32_t last = *std::find_if(
+            edges_of(end), edges_end(end), [&](std::uint32_t e) { return is_crease_[e] != 0; });
         Vec3 way = mesh_.vertices[end] - mesh_.vertices[other_end(last, end)];
         bool is_closed = false;
         while (static_cast<int>(path.size()) < gap_edges && !is_closed)

@@ -23,8 +23,8 @@ struct Cube
 bool may_hold(const WallDepth& wall, const DepthGrid& grid, const Cube& cube, double depth)
 {
     const double half = 0.5 * static_cast<double>(cube.size);
-    const Vec3 middle = grid.node(cube.first[0], cube.first[1], cube.first[2]) +
-                        (half * grid.cell) * Vec3{1, 1, 1};
+    const Vec3 middle =
+        grid.node(cube.first[0], cube.first[1], cube.first[2]) + (half * grid.cell) * Vec3{1, 1, 1};
     const double reach = 2 * half * half_diagonal * grid.cell;
     return std::fabs(std::fabs(wall.at(middle).depth) - depth) <= reach;
 }
@@ -113,9 +113,9 @@ public:
 
     void descend(const std::array<int, 3>& first, int size)
     {
-        const Cube cube{{brick_.first[0] + first[0], brick_.first[1] + first[1],
-                         brick_.first[2] + first[2]},
-                        size};
+        const Cube cube{
+            {brick_.first[0] + first[0], brick_.first[1] + first[1], brick_.first[2] + first[2]},
+            size};
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (cube.first[axis] >= grid_.cells[axis]) return;
         if (size < brick_cells && !may_hold(wall_, grid_, cube, depth_)) return;
@@ -136,8 +136,7 @@ public:
 private:
     void look(const std::array<int, 3>& n)
     {
-        const auto at =
-            static_cast<std::size_t>((n[0] * brick_nodes + n[1]) * brick_nodes + n[2]);
+        const auto at = static_cast<std::size_t>((n[0] * brick_nodes + n[1]) * brick_nodes + n[2]);
         if (is_seen_[at] != 0) return;
         is_seen_[at] = 1;
         const Vec3 p =

@@ -22,8 +22,8 @@ struct DepthGrid
 
     Vec3 node(std::int64_t i, std::int64_t j, std::int64_t k) const
     {
-        return origin + cell * Vec3{static_cast<double>(i), static_cast<double>(j),
-                                    static_cast<double>(k)};
+        return origin +
+               cell * Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
     }
 };
 

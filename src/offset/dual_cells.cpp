@@ -108,7 +108,10 @@ public:
 private:
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
     static int corner(const std::array<int, 3>& at) { return 4 * at[0] + 2 * at[1] + at[2]; }
-    bool is_deep(int edge, int end) const { return is_deep_[index(corner(corner_of_edge(edge, end)))]; }
+    bool is_deep(int edge, int end) const
+    {
+        return is_deep_[index(corner(corner_of_edge(edge, end)))];
+    }
     bool crosses(int edge) const { return is_deep(edge, 0) != is_deep(edge, 1); }
 
     int root(int e) const
@@ -123,8 +126,8 @@ private:
         group_[index(std::max(one, other))] = std::min(one, other);
     }
 
-    /// Of four crossings on a face, those at the same deep corner belong together: both cells of the
-    /// face see them alike.
+    /// Of four crossings on a face, those at the same deep corner belong together: both cells of
+    /// the face see them alike.
     void join_on_face(int axis, int side)
     {
         std::array<int, 4> found{};
@@ -189,8 +192,9 @@ void add_corners(const std::array<const DepthNode*, 8>& corners, const Vec3& low
     {
         const DepthNode& node = *corners[c];
         if (std::fabs(node.depth - depth) > cell) continue;
-        const Vec3 at = low + cell * Vec3{static_cast<double>(c >> 2), static_cast<double>(c >> 1 & 1),
-                                          static_cast<double>(c & 1)};
+        const Vec3 at =
+            low + cell * Vec3{static_cast<double>(c >> 2), static_cast<double>(c >> 1 & 1),
+                              static_cast<double>(c & 1)};
         tangents.push_back(
             {at + (depth - node.depth) * node.direction, -node.direction, node.foot});
     }

@@ -161,8 +161,7 @@ OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options
                  });
     const FacetMaker maker(bricks, duals);
     std::vector<std::vector<std::array<std::uint32_t, 3>>> facets(bricks.size());
-    parallel_for(bricks.size(), threads,
-                 [&](std::size_t b) { facets[b] = maker.facets_of(b); });
+    parallel_for(bricks.size(), threads, [&](std::size_t b) { facets[b] = maker.facets_of(b); });
     OffsetSurface out;
     SurfaceMesh& mesh = out.mesh;
     mesh.vertices.reserve(maker.vertices());

@@ -45,7 +45,8 @@ void turn_away(std::array<Vec3, 3>& a, std::array<Vec3, 3>& vectors, int p, int 
 void Quadric::add_plane(const Vec3& normal, double offset)
 {
     for (int i = 0; i < 3; ++i)
-        matrix_[static_cast<std::size_t>(i)] = matrix_[static_cast<std::size_t>(i)] + normal[i] * normal;
+        matrix_[static_cast<std::size_t>(i)] =
+            matrix_[static_cast<std::size_t>(i)] + normal[i] * normal;
     right_ = right_ + offset * normal;
 }
 

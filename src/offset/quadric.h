@@ -13,8 +13,8 @@ class Quadric
 public:
     /// The plane normal . x = offset, of unit normal.
     void add_plane(const Vec3& normal, double offset);
-    /// The point of least sum, and of all of these the one nearest to the origin. Directions in which
-    /// the planes turn by less than about 18 degrees count as flat.
+    /// The point of least sum, and of all of these the one nearest to the origin. Directions in
+    /// which the planes turn by less than about 18 degrees count as flat.
     ///
     /// least_share  eigenvalues below this share of the largest are taken for zero
     Vec3 least_point(double least_share = 0.025) const;

@@ -92,8 +92,8 @@ bool turn_sides(SurfaceMesh& mesh, double cell)
         double longest = 0;
         for (std::size_t s = 0; s < 3; ++s)
         {
-            const double l = norm(mesh.vertices[mesh.facets[f][(s + 1) % 3]] -
-                                  mesh.vertices[mesh.facets[f][s]]);
+            const double l =
+                norm(mesh.vertices[mesh.facets[f][(s + 1) % 3]] - mesh.vertices[mesh.facets[f][s]]);
             if (l <= longest) continue;
             longest = l;
             side = s;

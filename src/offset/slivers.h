@@ -6,9 +6,9 @@ namespace fppg
 {
 
 /// Takes thin facets out of a mesh that was cut from a grid and whose vertices were then put onto
-/// creases: vertices nearer than 0.2 cells become one, and where a facet is lower than 0.1 cells its
-/// longest side is turned to the other diagonal. Features and charts would take folded slivers for
-/// sheets of their own.
+/// creases: vertices nearer than 0.2 cells become one, and where a facet is lower than 0.1 cells
+/// its longest side is turned to the other diagonal. Features and charts would take folded slivers
+/// for sheets of their own.
 ///
 /// mesh    connected before and after
 /// cell    metres

@@ -12,8 +12,8 @@ namespace fppg
 namespace
 {
 
-/// A mitre is cut off where it is so much farther from its edge than deep: that of a corner of a box
-/// is not, 1.73.
+/// A mitre is cut off where it is so much farther from its edge than deep: that of a corner of a
+/// box is not, 1.73.
 constexpr double longest_mitre = 1.8;
 
 } // namespace

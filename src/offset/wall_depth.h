@@ -27,17 +27,19 @@ struct DepthPlace
     Vec3 direction;          ///< unit, the way in which the depth grows fastest
     double depth = 0;        ///< metres behind the surface; negative before it
     std::uint32_t facet = 0; ///< of the mesh, at the foot
-    bool is_beyond_rim = false; ///< the foot is on an open edge, and the point not over a facet there
+    bool is_beyond_rim =
+        false; ///< the foot is on an open edge, and the point not over a facet there
 };
 
 /// How deep points are behind a surface: the distance to it, with the sign of the side. Behind a
-/// sharp edge that runs into the wall, where the nearest place is the edge itself, it is the largest
-/// distance to the planes of the faces that meet there, so that surfaces of one depth keep the edge
-/// (a mitre); but no less than the distance over 1.8. Behind smooth surfaces it is the distance.
+/// sharp edge that runs into the wall, where the nearest place is the edge itself, it is the
+/// largest distance to the planes of the faces that meet there, so that surfaces of one depth keep
+/// the edge (a mitre); but no less than the distance over 1.8. Behind smooth surfaces it is the
+/// distance.
 ///
 /// The side is that of the angle-weighted pseudonormal at the foot (Baerentzen and Aanaes, 2005),
-/// which is exact for surfaces without clashing edges; for closed bodies with faults the inside test
-/// (meshes/inside_test.h) is asked.
+/// which is exact for surfaces without clashing edges; for closed bodies with faults the inside
+/// test (meshes/inside_test.h) is asked.
 class WallDepth
 {
 public:
@@ -47,8 +49,7 @@ public:
               double sharp_angle_deg, int threads);
 
     /// within  metres; a point of the surface is known to be so near
-    DepthPlace at(const Vec3& p,
-                  double within = std::numeric_limits<double>::infinity()) const;
+    DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
     const SurfaceMesh& mesh() const { return mesh_; }
     /// 1 where the layers are behind the facets, -1 where they are in front.
     double sign() const { return sign_; }

@@ -3,7 +3,6 @@
 #include "meshes/round_surface.h"
 #include "offset/wall_depth.h"
 
-
 namespace fppg
 {
 namespace
@@ -48,10 +47,9 @@ SurfacePlace WallSurfaces::at(std::size_t particle) const
     if (kind == FitKind::Corner || kind == FitKind::Edge)
     {
         const PseudoNormals& normals = *normals_[b];
-        const Vec3 mean =
-            kind == FitKind::Corner
-                ? normals.at(facet, {normals.nearest_corner(facet, p), -1})
-                : normals.at(facet, {-1, normals.nearest_side(facet, p)});
+        const Vec3 mean = kind == FitKind::Corner
+                              ? normals.at(facet, {normals.nearest_corner(facet, p), -1})
+                              : normals.at(facet, {-1, normals.nearest_side(facet, p)});
         // Below this length the direction is that of rounding errors.
         if (norm(mean) > 1e-6) normal = mean / norm(mean);
     }

@@ -90,7 +90,8 @@ private:
     PointGrid edges_;
 };
 
-/// Along a line of the section of a 2D case, which two facets were drawn out of: the first is asked.
+/// Along a line of the section of a 2D case, which two facets were drawn out of: the first is
+/// asked.
 void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mesh,
                  const MergedSheetOptions& options, std::vector<MiddlePoint>& out)
 {
@@ -143,8 +144,8 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
                                    if (j == i || !(squared > 0)) return;
                                    const double r = std::sqrt(squared);
                                    const double s = 1 - r / reach;
-                                   force = force + (s * s * s / r) *
-                                                       (sheet[i].position - grid.points()[j]);
+                                   force = force +
+                                           (s * s * s / r) * (sheet[i].position - grid.points()[j]);
                                });
             const double size = norm(force);
             const double most = 0.1;
@@ -176,12 +177,14 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
             const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
             const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
             const double longest = std::max({norm(u), norm(v), norm(u - v)});
-            const int n = std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
+            const int n =
+                std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n - i; ++j)
                 {
                     const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
-                    if (const auto at = middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
+                    if (const auto at =
+                            middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
                         of_facet[f].push_back(*at);
                 }
         },

@@ -28,19 +28,19 @@ struct MiddlePoint
 /// Points on the middle (the medial axis) of the thin parts of a body, from both sides.
 ///
 /// Points of the surface, 0.3 dp apart, are sunk to the centre of the largest ball that touches the
-/// surface there and holds no other point of it (Ma, Bae and Choi, 2012, "shrinking ball"). Those less
-/// deep than least_depth whose other side faces away by more than 120 degrees are taken, half a dp off
-/// sharp edges; none of a body that is thick everywhere.
+/// surface there and holds no other point of it (Ma, Bae and Choi, 2012, "shrinking ball"). Those
+/// less deep than least_depth whose other side faces away by more than 120 degrees are taken, half
+/// a dp off sharp edges; none of a body that is thick everywhere.
 ///
 /// cost  about 15 distances per dp^2 of surface
 std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& features,
                                      const MergedSheetOptions& options, int threads);
 
-/// The particles that both sides of a thin part share: on its middle (the medial axis), one per dp^2
-/// and evenly spaced.
+/// The particles that both sides of a thin part share: on its middle (the medial axis), one per
+/// dp^2 and evenly spaced.
 ///
-/// From points on the middle the sheet is filled at 0.92 dp, relaxed on the middle, and filled where it
-/// is 0.83 dp from all.
+/// From points on the middle the sheet is filled at 0.92 dp, relaxed on the middle, and filled
+/// where it is 0.83 dp from all.
 ///
 /// taken    particles of layers already there, which keep their place
 /// returns  positions, and the facet under each

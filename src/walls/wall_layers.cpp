@@ -52,8 +52,8 @@ SurfaceMesh drawn_out(const SurfaceMesh& mesh, double plane_y, double half_width
     const auto vertex = [&](Vec3 p, double y)
     {
         p.y = y;
-        const auto [at, is_new] = known.try_emplace(
-            {p.x, p.y, p.z}, static_cast<std::uint32_t>(out.vertices.size()));
+        const auto [at, is_new] =
+            known.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(out.vertices.size()));
         if (is_new) out.vertices.push_back(p);
         return at->second;
     };
@@ -89,8 +89,7 @@ public:
         if (wall == nullptr) return;
         const bool may_merge = is_closed && settings_.depths_dp[0] > 0;
         if (may_merge) find_thin_parts(*wall);
-        const std::string of_side =
-            side == WallSide::Front ? " before the surface" : std::string();
+        const std::string of_side = side == WallSide::Front ? " before the surface" : std::string();
         for (std::size_t k = 0; k < settings_.depths_dp.size(); ++k)
         {
             const double depth = settings_.depths_dp[k] * grid_.dp;
@@ -130,8 +129,8 @@ private:
         const double half_width = (settings_.depths_dp.back() + 4) * grid_.dp;
         SurfaceMesh mesh = drawn_out(body.mesh, grid_.origin.y, half_width, threads_, report);
         if (mesh.facets.empty()) return nullptr;
-        return std::make_shared<WallDepth>(mesh, report, false, side,
-                                           settings_.feature_angle_deg, threads_);
+        return std::make_shared<WallDepth>(mesh, report, false, side, settings_.feature_angle_deg,
+                                           threads_);
     }
 
     /// Of a combination: each facet belongs to the part that is nearest to it.
@@ -236,9 +235,8 @@ private:
     void add_particles(FittedBody&& layer)
     {
         const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
-        SurfaceParticles particles =
-            grid_.is_2d ? section_of(layer, settings_, grid_)
-                        : surface_of(layer, settings_, grid_, threads_);
+        SurfaceParticles particles = grid_.is_2d ? section_of(layer, settings_, grid_)
+                                                 : surface_of(layer, settings_, grid_, threads_);
         const LayerPlaces places(layer, grid_.dp);
         std::vector<char> is_out(particles.positions.size());
         parallel_for(
@@ -279,7 +277,8 @@ private:
 /// Adds spans to each slab.
 void unite_with(std::vector<Spans>& slabs, const std::vector<Spans>& more, int threads)
 {
-    parallel_for(slabs.size(), threads, [&](std::size_t x) { slabs[x] = unite(slabs[x], more[x]); });
+    parallel_for(slabs.size(), threads,
+                 [&](std::size_t x) { slabs[x] = unite(slabs[x], more[x]); });
 }
 
 PointGrid grid_of(const std::vector<Vec3>& points, double cell)
@@ -303,9 +302,9 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
     for (const Span& span : nodes)
         for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
         {
-            const Vec3 p = grid.origin + grid.dp * Vec3{static_cast<double>(x),
-                                                        static_cast<double>(span.y),
-                                                        static_cast<double>(z)};
+            const Vec3 p =
+                grid.origin + grid.dp * Vec3{static_cast<double>(x), static_cast<double>(span.y),
+                                             static_cast<double>(z)};
             if (taken.has_nearer(p, gap_dp * grid.dp)) continue;
             const DepthPlace here = wall.at(p);
             if (here.depth < gap_depth_dp * grid.dp) continue;
@@ -391,7 +390,8 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
 {
     const bool is_closed = out.body.measures.volume > 0;
     LayerBuilder builder(settings, grid, threads, out);
-    const LayerSide side = is_closed ? LayerSide::Behind : settings.side.value_or(LayerSide::Behind);
+    const LayerSide side =
+        is_closed ? LayerSide::Behind : settings.side.value_or(LayerSide::Behind);
     if (side != LayerSide::Front) builder.build(WallSide::Behind, is_closed);
     if (side != LayerSide::Behind) builder.build(WallSide::Front, is_closed);
     if (is_closed)
@@ -400,13 +400,14 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
     {
         for (const FittedBody& layer : out.layers)
             if (!layer.mesh.facets.empty())
-            unite_with(out.zone,
-                       by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone,
-                               grid),
-                       threads);
+                unite_with(
+                    out.zone,
+                    by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
+                    threads);
         if (!settings.side)
             out.warnings.push_back(
-                "layers of this sheet stand behind it, where its facets do not look: side=\"front\" "
+                "layers of this sheet stand behind it, where its facets do not look: "
+                "side=\"front\" "
                 "or \"both\" of <bodyfitted> changes that, side=\"behind\" says that it is meant.");
     }
     measure_layers(grid, out);
