@@ -1,0 +1,243 @@
+#include "relax/all_surfaces.h"
+
+#include "core/parallel.h"
+#include "meshes/point_grid.h"
+#include "meshes/round_surface.h"
+#include "offset/offset_surface.h"
+#include "relax/regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+/// A place of a particle that was taken out is looked for this near, dp.
+constexpr double reach_of_cuts_dp = 3;
+/// None is put so near to it again, dp.
+constexpr double reach_of_insertion_dp = 1.5;
+constexpr int surface_iterations = 100;
+/// Value of WallParticles::held of those that are there for a relaxation only.
+constexpr char of_border = 2;
+
+class AllSurfaces
+{
+public:
+    AllSurfaces(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
+                RelaxReport& report, const RelaxSnapshot& snapshot)
+        : def_(def),
+          field_(field),
+          threads_(threads),
+          observe_(observe),
+          report_(report),
+          snapshot_(snapshot)
+    {
+    }
+
+    /// All bodies whose mks are relaxed alike are one call.
+    void relax_surfaces()
+    {
+        std::vector<RelaxSettings> kinds;
+        std::vector<std::size_t> kind_of_body;
+        for (const FittedBody& body : field_.walls.bodies)
+        {
+            const FitSettings* settings = settings_of(body.mk);
+            const RelaxSettings relax = settings != nullptr ? settings->relax : RelaxSettings{};
+            const auto known = std::find(kinds.begin(), kinds.end(), relax);
+            kind_of_body.push_back(static_cast<std::size_t>(known - kinds.begin()));
+            if (known == kinds.end()) kinds.push_back(relax);
+        }
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        {
+            if (report_.is_stopped || !kinds[kind].is_active) continue;
+            std::vector<char> is_meant;
+            // A layer that two sides share is even as it was made.
+            for (std::size_t b = 0; b < kind_of_body.size(); ++b)
+                is_meant.push_back(kind_of_body[b] == kind &&
+                                   !field_.walls.bodies[b].mesh.facets.empty());
+            if (std::all_of(is_meant.begin(), is_meant.end(), [](char m) { return m != 0; }))
+                relax_surface_of(field_.walls.particles, {}, kinds[kind]);
+            else
+            {
+                WallParticles meant = take(is_meant, true);
+                const WallParticles others = take(is_meant, false);
+                relax_surface_of(meant, others, kinds[kind]);
+                field_.walls.particles = join(meant, others);
+            }
+        }
+    }
+
+private:
+    WallParticles take(const std::vector<char>& is_meant, bool meant) const
+    {
+        const WallParticles& all = field_.walls.particles;
+        WallParticles out;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if ((is_meant[all.bodies[i]] != 0) == meant) out.append(all, i);
+        return out;
+    }
+
+    void relax_surface_of(WallParticles& particles, const WallParticles& others,
+                          const RelaxSettings& settings)
+    {
+        const double dp = field_.grid.dp;
+        const FittedWalls& walls = field_.walls;
+        RelaxSurfaceOptions options;
+        options.dp = dp;
+        options.h = settings.surface_h_dp;
+        options.iterations = settings.iterations.value_or(0);
+        options.max_iterations = surface_iterations;
+        options.tolerance = settings.tolerance;
+        options.on_progress = [&](const RelaxProgress& p)
+        {
+            return observe({"surface", p.iteration,
+                            settings.iterations.value_or(surface_iterations), p.particles,
+                            p.spacing_mean, p.spacing_variation, p.largest_displacement});
+        };
+        options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
+        options.on_snapshot = [&](int iteration, const WallParticles& now)
+        { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
+        PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
+        for (const Vec3& p : walls.cut) cut.add(p);
+        const WallParticles& second = walls.second_sheets;
+        PointGrid second_sheets(reach_of_cuts_dp * dp, second.size());
+        for (const Vec3& p : second.positions) second_sheets.add(p);
+        if (!walls.cut.empty() || second.size() > 0)
+            options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
+            { return is_free(cut, second_sheets, body, p, normal); };
+        const std::vector<double> before = count_by_body(particles);
+        // Layers go on as far as they were laid, so that they stay even where another side takes
+        // over.
+        const bool has_border = add_borders(particles);
+        std::vector<char> held = std::move(particles.held);
+        const RelaxSurfaceReport done =
+            relax_surface(walls.bodies, particles, held, options, threads_);
+        particles.held = std::move(held);
+        particles.held.resize(particles.size(), 0);
+        if (has_border)
+        {
+            std::vector<char> is_border(particles.size());
+            for (std::size_t i = 0; i < is_border.size(); ++i)
+                is_border[i] = particles.held[i] == of_border ? 1 : 0;
+            particles.erase(is_border);
+        }
+        parallel_for(
+            particles.size(), threads_,
+            [&](std::size_t i)
+            {
+                const FittedBody& body = walls.bodies[particles.bodies[i]];
+                if (!body.is_layer())
+                    project_to_round(body, particles.positions[i], particles.facets[i]);
+                else if (particles.kinds[i] == FitKind::Surface)
+                    particles.positions[i] =
+                        project_to_depth(*body.wall, particles.positions[i], body.depth);
+            },
+            1024);
+        take_new_counts(before, count_by_body(particles));
+        surface_iterations_done_ += done.after.iteration;
+        RelaxedPart part;
+        part.what = "surface";
+        part.iterations = done.after.iteration;
+        part.particles = particles.size();
+        part.inserted = done.inserted;
+        part.removed = done.removed;
+        part.variation_before = done.before.spacing_variation;
+        part.mean = done.after.spacing_mean;
+        part.variation = done.after.spacing_variation;
+        report_.parts.push_back(part);
+    }
+
+    /// Puts the particles of layers that were left out for another side back, held.
+    bool add_borders(WallParticles& particles) const
+    {
+        const FittedWalls& walls = field_.walls;
+        const WallParticles& second = walls.second_sheets;
+        std::vector<char> is_there(walls.bodies.size(), 0);
+        for (const std::uint32_t b : particles.bodies) is_there[b] = 1;
+        bool found = false;
+        for (std::size_t i = 0; i < second.size(); ++i)
+        {
+            if (!walls.bodies[second.bodies[i]].is_layer() || is_there[second.bodies[i]] == 0)
+                continue;
+            particles.append(second, i);
+            particles.held.back() = of_border;
+            found = true;
+        }
+        return found;
+    }
+
+    /// Whether no particle of a body was taken out near a place on it.
+    bool is_free(const PointGrid& cut, const PointGrid& second_sheets, std::size_t body,
+                 const Vec3& p, const Vec3& normal) const
+    {
+        const FittedWalls& walls = field_.walls;
+        const WallParticles& second = walls.second_sheets;
+        const double reach = reach_of_insertion_dp * field_.grid.dp;
+        bool out = true;
+        cut.for_each_near(
+            p, reach, [&](std::uint32_t c, double) { out = out && walls.cut_bodies[c] != body; });
+        second_sheets.for_each_near(
+            p, reach,
+            [&](std::uint32_t c, double)
+            {
+                const SurfaceMesh& mesh = walls.bodies[second.bodies[c]].mesh;
+                out = out && (second.bodies[c] != body ||
+                              dot(mesh.normals[second.facets[c]], normal) <= 0);
+            });
+        return out;
+    }
+
+    std::vector<double> count_by_body(const WallParticles& particles) const
+    {
+        std::vector<double> counts(field_.walls.bodies.size(), 0);
+        for (const std::uint32_t body : particles.bodies) ++counts[body];
+        return counts;
+    }
+
+    /// What a cut left of a body is taken for all of it.
+    void take_new_counts(const std::vector<double>& before, const std::vector<double>& after)
+    {
+        for (std::size_t b = 0; b < before.size(); ++b)
+        {
+            if (before[b] == 0) continue;
+            FittedBody& body = field_.walls.bodies[b];
+            FittedBody& owner = field_.walls.owner_of(b);
+            const double more = body.measures.wall_particles * (after[b] / before[b] - 1);
+            body.measures.wall_particles += more;
+            if (body.is_layer()) owner.measures.wall_particles += more;
+            owner.measures.wall_volume +=
+                (body.is_layer() ? 1 : 0.5) * more * std::pow(field_.grid.dp, 3);
+            owner.settle_share(field_.grid.dp);
+        }
+    }
+
+    const FitSettings* settings_of(std::uint16_t mk) const { return fit_settings(def_.fit, mk); }
+
+    bool observe(const RelaxStep& step)
+    {
+        if (observe_ && !observe_(step)) report_.is_stopped = true;
+        return !report_.is_stopped;
+    }
+
+    const CaseDef& def_;
+    RunField& field_;
+    int threads_;
+    const RelaxObserver& observe_;
+    RelaxReport& report_;
+    const RelaxSnapshot& snapshot_;
+    int surface_iterations_done_ = 0;
+};
+
+} // namespace
+
+void relax_all_surfaces(const CaseDef& def, RunField& field, int threads,
+                        const RelaxObserver& observe, RelaxReport& report,
+                        const RelaxSnapshot& snapshot)
+{
+    AllSurfaces(def, field, threads, observe, report, snapshot).relax_surfaces();
+}
+
+} // namespace fppg
