@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -318,6 +319,46 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
     return found;
 }
 
+/// In 2D, of the nodes inside those half a step and more under the innermost layer, but for the
+/// shallowest, up to a step, that the area of the body has no room for.
+std::vector<Spans> deep_nodes_2d(const std::vector<Spans>& inside, const FittedBody& innermost,
+                                 const LatticeGrid& grid, const FittedDraw& out,
+                                 std::uint64_t& nodes)
+{
+    struct DeepNode
+    {
+        double depth;
+        std::uint32_t x;
+        Span span;
+    };
+    std::vector<DeepNode> found;
+    for (std::uint32_t x = 0; x < inside.size(); ++x)
+        for (const Span& span : inside[x])
+            for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+            {
+                const Vec3 p =
+                    grid.origin + grid.dp * Vec3{static_cast<double>(x), 0, static_cast<double>(z)};
+                const double depth = innermost.wall->at(p).depth;
+                if (depth >= innermost.depth + (0.5 - 1e-9) * grid.dp)
+                    found.push_back({depth, x, {span.y, z, z + 1}});
+            }
+    std::sort(found.begin(), found.end(),
+              [](const DeepNode& a, const DeepNode& b) {
+                  return std::tuple(b.depth, a.x, a.span.z_begin) <
+                         std::tuple(a.depth, b.x, b.span.z_begin);
+              });
+    const double wanted =
+        out.body.measures.volume / std::pow(grid.dp, 3) - static_cast<double>(out.particles.size());
+    while (static_cast<double>(found.size()) > wanted + 0.5 &&
+           found.back().depth < innermost.depth + grid.dp)
+        found.pop_back();
+    nodes = found.size();
+    std::vector<Spans> deep(grid.n[0]);
+    for (const DeepNode& node : found) deep[node.x].push_back(node.span);
+    for (Spans& spans : deep) sort_and_join(spans);
+    return deep;
+}
+
 /// Of the nodes inside, those under the innermost layer stay, and those in gaps between layers.
 void take_nodes_between(const LatticeGrid& grid, int threads, FittedDraw& out)
 {
@@ -327,7 +368,9 @@ void take_nodes_between(const LatticeGrid& grid, int threads, FittedDraw& out)
     std::uint64_t nodes = 0;
     std::size_t last = out.layers.size();
     while (last > 0 && out.layers[last - 1].mesh.facets.empty()) --last;
-    if (last > 0)
+    if (last > 0 && grid.is_2d && !inside.empty())
+        deep = deep_nodes_2d(inside, out.layers[last - 1], grid, out, nodes);
+    else if (last > 0)
     {
         const FittedBody& innermost = out.layers[last - 1];
         ExclusionBandOptions options;
