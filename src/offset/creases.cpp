@@ -1,7 +1,6 @@
 #include "offset/creases.h"
 
 #include "core/parallel.h"
-#include "meshes/connect_mesh.h"
 #include "offset/quadric.h"
 #include "offset/slivers.h"
 
@@ -23,6 +22,10 @@ constexpr double looked_at = 0.990;
 constexpr double beside_edge = 0.08;
 /// Vertices are moved onto a crease by so much at most, in cells.
 constexpr double longest_move = 0.7;
+/// The same where the surface was cut off.
+constexpr double longest_pull = 1.5;
+/// As in dual_cells.cpp.
+constexpr double jump_of_feet = 2.5;
 /// Edges of a gap that is closed.
 constexpr int gap_edges = 3;
 /// Cosine of the turn of a crease in a gap, 75 degrees.
@@ -58,6 +61,7 @@ public:
     bool place_vertices()
     {
         is_crease_.assign(mesh_.edges.size(), 0);
+        pull_cut_creases();
         find(true);
         for (int round = 0; round < 2; ++round)
         {
@@ -154,7 +158,7 @@ private:
     }
 
     /// The place on a crease, or at its corner, nearest to a vertex.
-    std::optional<Vec3> crease_place(std::uint32_t v) const
+    std::optional<Vec3> crease_place(std::uint32_t v, double longest = longest_move) const
     {
         std::vector<Vec3> faces;
         for (const std::uint32_t* e = edges_of(v); e != edges_end(v); ++e)
@@ -169,9 +173,58 @@ private:
             quadric.add_plane(place.direction, options_.depth - at_vertex);
         }
         const Vec3 start = from + quadric.least_point();
-        if (!(norm(start - from) < longest_move * options_.cell)) return std::nullopt;
+        if (!(norm(start - from) < longest * options_.cell)) return std::nullopt;
         const Vec3 out = project_to_crease(wall_, start, options_.depth, options_.dp, faces);
-        return norm(out - from) < longest_move * options_.cell ? std::optional(out) : std::nullopt;
+        return norm(out - from) < longest * options_.cell ? std::optional(out) : std::nullopt;
+    }
+
+    /// Whether the depths at two vertices are measured from two faces that meet between them.
+    bool has_crease_between(const DepthPlace& a, const DepthPlace& b, const Vec3& from,
+                            const Vec3& to) const
+    {
+        return dot(a.direction, b.direction) < turn_ &&
+               norm(a.foot - b.foot) > jump_of_feet * norm(to - from);
+    }
+
+    /// Where a crease sticks out into a cell none of whose edges it meets, the facets cut it off:
+    /// of each of their sides that cross it one end is pulled onto it.
+    void pull_cut_creases()
+    {
+        std::vector<std::optional<DepthPlace>> places(mesh_.vertices.size());
+        std::vector<std::uint32_t> near;
+        for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
+        {
+            const auto& facets = mesh_.edge_facets[e];
+            if (facets[1] == no_index ||
+                dot(mesh_.normals[facets[0]], mesh_.normals[facets[1]]) > looked_at)
+                continue;
+            for (const std::uint32_t f : facets)
+                for (const std::uint32_t v : mesh_.facets[f])
+                    if (!places[v])
+                    {
+                        places[v] = DepthPlace{};
+                        near.push_back(v);
+                    }
+        }
+        parallel_for(
+            near.size(), threads_,
+            [&](std::size_t i) { places[near[i]] = wall_.at(mesh_.vertices[near[i]]); }, 64);
+        std::vector<char> is_pulled(mesh_.vertices.size(), 0);
+        for (const auto& edge : mesh_.edges)
+        {
+            const auto [a, b] = edge;
+            if (!places[a] || !places[b] || is_pulled[a] != 0 || is_pulled[b] != 0) continue;
+            if (!has_crease_between(*places[a], *places[b], mesh_.vertices[a], mesh_.vertices[b]))
+                continue;
+            const std::optional<Vec3> of_a = crease_place(a, longest_pull);
+            const std::optional<Vec3> of_b = crease_place(b, longest_pull);
+            if (!of_a && !of_b) continue;
+            const bool takes_a = of_a && (!of_b || norm(*of_a - mesh_.vertices[a]) <=
+                                                       norm(*of_b - mesh_.vertices[b]));
+            const std::uint32_t v = takes_a ? a : b;
+            mesh_.vertices[v] = takes_a ? *of_a : *of_b;
+            is_pulled[v] = 1;
+        }
     }
 
     void move_onto_creases()
@@ -369,10 +422,7 @@ void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int th
     if (!CreaseFinder(wall, options, threads, offset).place_vertices()) return;
     remove_slivers(offset.mesh, options.cell, threads, offset.report);
     offset.creases = CreaseFinder(wall, options, threads, offset).run();
-    const std::size_t facets = offset.report.facets_read;
-    offset.report = {};
-    offset.report.facets_read = facets;
-    connect_mesh(offset.mesh, threads, offset.report);
+    reconnect(offset.mesh, threads, offset.report);
 }
 
 Features offset_features(const OffsetSurface& offset, const FeatureOptions& options)

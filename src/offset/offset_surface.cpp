@@ -4,6 +4,7 @@
 #include "meshes/connect_mesh.h"
 #include "offset/creases.h"
 #include "offset/dual_cells.h"
+#include "offset/slivers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,9 @@ namespace fppg
 {
 namespace
 {
+
+/// A layer of a sheet ends so near to where the sheet ends, in cells.
+constexpr double rim_reach = 2.5;
 
 /// Joins the vertices of neighbouring cells to facets.
 class FacetMaker
@@ -143,6 +147,40 @@ private:
     std::size_t vertices_ = 0;
 };
 
+/// The rims of a sheet's layer, which end in the last whole cells, go to where the sheet ends.
+///
+/// returns  whether the sheet has any
+bool move_to_rims(const WallDepth& wall, const OffsetOptions& options, int threads,
+                  SurfaceMesh& mesh)
+{
+    const SurfaceMesh& sheet = wall.mesh();
+    TriangleSoup rims;
+    for (std::size_t e = 0; e < sheet.edges.size(); ++e)
+    {
+        if (sheet.edge_facets[e][1] != no_index) continue;
+        const Vec3& end = sheet.vertices[sheet.edges[e][1]];
+        rims.vertices.insert(rims.vertices.end(), {sheet.vertices[sheet.edges[e][0]], end, end});
+    }
+    if (rims.vertices.empty()) return false;
+    const MeshQuery query(std::move(rims), threads);
+    std::vector<char> is_at_rim(mesh.vertices.size(), 0);
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+        if (mesh.edge_facets[e][1] == no_index)
+            for (const std::uint32_t v : mesh.edges[e]) is_at_rim[v] = 1;
+    const double reach = rim_reach * options.cell;
+    parallel_for(
+        mesh.vertices.size(), threads,
+        [&](std::size_t v)
+        {
+            if (is_at_rim[v] == 0) return;
+            const Vec3 nearest = wall.at(mesh.vertices[v]).nearest;
+            const ClosestPoint rim = query.closest_point(nearest);
+            if (rim.distance < reach) mesh.vertices[v] = mesh.vertices[v] + (rim.point - nearest);
+        },
+        64);
+    return true;
+}
+
 } // namespace
 
 OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options, int threads)
@@ -172,6 +210,7 @@ OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options
     out.report.facets_read = mesh.facets.size();
     if (mesh.facets.empty()) return out;
     connect_mesh(mesh, threads, out.report);
+    if (move_to_rims(wall, options, threads, mesh)) reconnect(mesh, threads, out.report);
     sharpen_creases(wall, options, threads, out);
     return out;
 }

@@ -40,7 +40,9 @@ Vec3 project_to_crease(const WallDepth& wall, const Vec3& p, double depth, doubl
             const Vec3 way = t - at;
             const double size = norm(way);
             if (!(size > 0)) continue;
-            const Vec3 beside = at + (std::min(beside_crease * dp, size) / size) * way;
+            // At first on the faces themselves: the start may be beside the crease.
+            const double share = step == 0 ? 1 : std::min(beside_crease * dp, size) / size;
+            const Vec3 beside = at + share * way;
             const DepthPlace place = wall.at(beside);
             const double depth_at = place.depth + dot(place.direction, at - beside);
             quadric.add_plane(place.direction, depth - depth_at);

@@ -131,24 +131,22 @@ bool turn_sides(SurfaceMesh& mesh, double cell)
 
 void remove_slivers(SurfaceMesh& mesh, double cell, int threads, MeshReport& report)
 {
-    const std::size_t facets_read = report.facets_read;
     for (int round = 0; round < rounds; ++round)
     {
         const bool joined = join_near_vertices(mesh, cell);
-        if (joined)
-        {
-            report = {};
-            connect_mesh(mesh, threads, report);
-        }
+        if (joined) reconnect(mesh, threads, report);
         const bool turned = turn_sides(mesh, cell);
-        if (turned)
-        {
-            report = {};
-            connect_mesh(mesh, threads, report);
-        }
+        if (turned) reconnect(mesh, threads, report);
         if (!joined && !turned) break;
     }
+}
+
+void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
+    const std::size_t facets_read = report.facets_read;
+    report = {};
     report.facets_read = facets_read;
+    connect_mesh(mesh, threads, report);
 }
 
 } // namespace fppg

@@ -14,4 +14,7 @@ namespace fppg
 /// cell    metres
 void remove_slivers(SurfaceMesh& mesh, double cell, int threads, MeshReport& report);
 
+/// connect_mesh() once more, after vertices have moved; report.facets_read stays.
+void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report);
+
 } // namespace fppg

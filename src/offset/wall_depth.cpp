@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 namespace fppg
@@ -29,7 +28,6 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
     for (const Vec3& v : mesh_.vertices) size_ = std::max(size_, largest_coordinate(v));
     const double turn = std::cos(sharp_angle_deg * std::numbers::pi / 180);
     is_sharp_.resize(mesh_.edges.size(), 0);
-    if (std::getenv("FPPG_ROUND") != nullptr) return;
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
     {
         const auto& facets = mesh_.edge_facets[e];

@@ -1,0 +1,156 @@
+#include "offset/offset_surface.h"
+
+#include "meshes/test_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr double dp = 0.1;
+
+struct Wall
+{
+    SurfaceMesh mesh;
+    MeshReport report;
+
+    explicit Wall(const TriangleSoup& soup) { mesh = repair_mesh(soup, {}, 1, report); }
+    WallDepth depth(bool is_solid, WallSide side = WallSide::Behind) const
+    {
+        return WallDepth(mesh, report, is_solid, side, 30, 1);
+    }
+};
+
+OffsetSurface at_depth(const WallDepth& wall, double depth, int threads = 1)
+{
+    OffsetOptions options;
+    options.depth = depth;
+    options.dp = dp;
+    options.cell = 0.5 * dp;
+    return offset_surface(wall, options, threads);
+}
+
+double crease_length(const OffsetSurface& surface)
+{
+    double length = 0;
+    for (const FeatureLine& line : offset_features(surface, {.dp = dp}).lines)
+        length += line.length;
+    return length;
+}
+
+TriangleSoup cube(double half)
+{
+    return test::box({-half, -half, -half}, {half, half, half});
+}
+
+TEST(OffsetSurface, OfABoxIsASmallerBoxWithItsEdgesAndCorners)
+{
+    const Wall wall(cube(1));
+    const WallDepth depth = wall.depth(true);
+    for (const double d : {0.05, 0.15, 0.25})
+    {
+        const OffsetSurface surface = at_depth(depth, d);
+        const double side = 2 - 2 * d;
+        EXPECT_NEAR(surface.report.area, 6 * side * side, 1e-9);
+        EXPECT_NEAR(surface.report.volume, side * side * side, 1e-9);
+        EXPECT_EQ(surface.report.open_edges, 0);
+        const Features features = offset_features(surface, {.dp = dp});
+        EXPECT_EQ(features.lines.size(), 12);
+        EXPECT_EQ(features.singular.size(), 8);
+        EXPECT_NEAR(crease_length(surface), 12 * side, 1e-9);
+    }
+}
+
+/// Behind an edge that runs into the wall the surfaces of one depth keep it.
+TEST(OffsetSurface, OfACavityIsALargerBoxWithItsEdgesAndCorners)
+{
+    const Wall wall(test::joined(cube(2), test::inverted(cube(1))));
+    const OffsetSurface surface = at_depth(wall.depth(true), 0.25);
+    const double outer = 3.5;
+    const double inner = 2.5;
+    // A corner that no edge of the grid meets may be cut off by a step or two of it.
+    EXPECT_NEAR(surface.report.area / (6 * (outer * outer + inner * inner)), 1, 1e-3);
+    EXPECT_NEAR(crease_length(surface) / (12 * (outer + inner)), 1, 0.01);
+}
+
+TEST(OffsetSurface, OfASphereIsASmoothSphere)
+{
+    const Wall wall(test::sphere(5));
+    const WallDepth depth = wall.depth(true);
+    const OffsetSurface surface = at_depth(depth, 0.15);
+    const double radius = 0.85;
+    EXPECT_NEAR(surface.report.area / (4 * std::numbers::pi * radius * radius), 1, 0.01);
+    EXPECT_TRUE(surface.creases.empty());
+    for (const Vec3& v : surface.mesh.vertices)
+    {
+        EXPECT_NEAR(depth.at(v).depth, 0.15, 0.02 * dp);
+        EXPECT_NEAR(depth.at(project_to_depth(depth, v, 0.15)).depth, 0.15, 1e-9);
+    }
+}
+
+TEST(OffsetSurface, EndsWhereABodyIsNoDeeper)
+{
+    const Wall wall(test::box({0, 0, 0}, {2, 2, 0.3}));
+    const WallDepth depth = wall.depth(true);
+    EXPECT_FALSE(at_depth(depth, 0.05).mesh.facets.empty());
+    EXPECT_TRUE(at_depth(depth, 0.16).mesh.facets.empty());
+}
+
+TEST(OffsetSurface, OfASheetStandsOnTheSideAskedForAndEndsWithIt)
+{
+    TriangleSoup soup;
+    test::add_quad(soup, {0, 0, 0}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0});
+    const Wall wall(soup);
+    const Vec3 up = wall.mesh.normals[0];
+    const double area = std::hypot(1, 0.5);
+    for (const WallSide side : {WallSide::Behind, WallSide::Front})
+    {
+        const WallDepth depth = wall.depth(false, side);
+        const OffsetSurface surface = at_depth(depth, 0.15);
+        const double way = side == WallSide::Behind ? -0.15 : 0.15;
+        for (const Vec3& v : surface.mesh.vertices) EXPECT_NEAR(dot(v, up), way, 1e-6);
+        EXPECT_NEAR(surface.report.area, area, 0.02 * area);
+    }
+}
+
+TEST(OffsetSurface, HasTheSameBytesWithAnyNumberOfThreads)
+{
+    const Wall wall(cube(1));
+    const WallDepth depth = wall.depth(true);
+    const OffsetSurface one = at_depth(depth, 0.05, 1);
+    const OffsetSurface four = at_depth(depth, 0.05, 4);
+    EXPECT_EQ(one.mesh.vertices, four.mesh.vertices);
+    EXPECT_EQ(one.mesh.facets, four.mesh.facets);
+    EXPECT_EQ(one.creases, four.creases);
+}
+
+TEST(WallDepth, IsTheLargestDistanceToThePlanesAtAnEdgeThatRunsIntoTheWall)
+{
+    const Wall wall(test::joined(cube(2), test::inverted(cube(1))));
+    const WallDepth depth = wall.depth(true);
+    const DepthPlace at_edge = depth.at({1.1, 1.2, 0});
+    EXPECT_NEAR(at_edge.depth, 0.2, 1e-12);
+    EXPECT_EQ(at_edge.nearest, (Vec3{1, 1, 0}));
+    EXPECT_NEAR(depth.at({1.1, 1.2, 1.3}).depth, 0.3, 1e-12);
+    EXPECT_NEAR(depth.at({0.9, 0, 0}).depth, -0.1, 1e-12);
+}
+
+TEST(ProjectToCrease, FindsTheLineUnderTwoFaces)
+{
+    const Wall wall(cube(1));
+    const WallDepth depth = wall.depth(true);
+    const Vec3 on =
+        project_to_crease(depth, {0.86, 0.83, 0.1}, 0.15, dp, {{0.85, 0.7, 0.1}, {0.7, 0.85, 0.1}});
+    EXPECT_NEAR(on.x, 0.85, 1e-9);
+    EXPECT_NEAR(on.y, 0.85, 1e-9);
+    EXPECT_NEAR(on.z, 0.1, 1e-9);
+}
+
+} // namespace
+} // namespace fppg
