@@ -1,6 +1,7 @@
 #include "normals/wet_surface.h"
 
 #include "core/parallel.h"
+#include "meshes/point_grid.h"
 #include "offset/wall_depth.h"
 
 #include <algorithm>
@@ -177,44 +178,91 @@ void WetSurface::add_pieces(const Piece& whole, double longest)
 void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
 {
     const double dp = field.grid.dp;
-    std::vector<const WallDepth*> wall_of(field.walls.bodies.size(), nullptr);
+    std::vector<BodyWall> walls(field.walls.bodies.size());
     for (const FittedBody& body : field.walls.bodies)
-        if (body.is_layer() && body.wall != nullptr) wall_of[body.owner] = body.wall.get();
+    {
+        if (!body.is_layer()) continue;
+        BodyWall& wall = walls[body.owner];
+        wall.depth = body.wall.get();
+        wall.is_closed = field.walls.bodies[body.owner].measures.volume > 0;
+        if (wall.box.is_empty())
+            for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
+    }
     parallel_for(
         pieces_.size(), threads,
         [&](std::size_t i)
         {
             Piece& piece = pieces_[i];
             if (!piece.is_closed) return;
-            const WallDepth& wall = *wall_of[piece.body];
-            const Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3;
-            for (std::size_t b = 0; b < wall_of.size(); ++b)
-                if (b != piece.body && wall_of[b] != nullptr &&
-                    field.walls.bodies[b].measures.volume > 0 &&
-                    wall_of[b]->at(middle + (0.3 * dp) * piece.normal).depth > 0)
-                    piece.state = is_dry;
-            if (piece.state == is_dry) return;
-            DepthPlace other;
-            Vec3 other_normal = piece.normal;
-            for (const double share : {0.5, 1.0})
-            {
-                if (dot(other_normal, piece.normal) <= opposing) continue;
-                other = wall.at(middle - (share * reach_) * piece.normal);
-                other_normal = wall.sign() * wall.mesh().normals[other.facet];
-            }
-            if (dot(other_normal, piece.normal) > opposing) return;
-            piece.thickness = dot(middle - other.foot, piece.normal);
-            // Particles nearer to one side are within reach of the other.
-            if (!(piece.thickness < 2 * reach_)) return;
-            const double here = way.to(middle + (off_surface_dp * dp) * piece.normal);
-            const double there = way.to(other.foot + (off_surface_dp * dp) * other_normal);
-            if (!std::isfinite(here) && !std::isfinite(there)) return;
-            if (here > there + longer_way_dp)
+            piece.way = way.to(piece.middle() + (off_surface_dp * dp) * piece.normal);
+            if (is_covered(piece, walls, dp))
                 piece.state = is_dry;
-            else if (!(there > here + longer_way_dp))
-                piece.state = is_thin;
+            else
+                compare_sides(piece, *walls[piece.body].depth, way, dp);
         },
         64);
+    const auto is_reached = [](const Piece& p)
+    { return p.state != is_dry && std::isfinite(p.way); };
+    if (std::any_of(pieces_.begin(), pieces_.end(), is_reached))
+        for (Piece& piece : pieces_)
+            if (!std::isfinite(piece.way)) piece.state = is_dry;
+    dry_along_edges();
+}
+
+/// Whether another closed wall begins right before a piece.
+bool WetSurface::is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp)
+{
+    const Vec3 before = piece.middle() + (0.3 * dp) * piece.normal;
+    for (std::size_t b = 0; b < walls.size(); ++b)
+    {
+        const BodyWall& wall = walls[b];
+        if (b == piece.body || wall.depth == nullptr || !wall.is_closed) continue;
+        bool is_in_box = true;
+        for (int axis = 0; axis < 3; ++axis)
+            is_in_box =
+                is_in_box && before[axis] > wall.box.min[axis] && before[axis] < wall.box.max[axis];
+        if (is_in_box && wall.depth->at(before).depth > 0) return true;
+    }
+    return false;
+}
+
+/// The other side of a thin wall is looked for half a reach and a reach under a piece.
+void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way,
+                               double dp) const
+{
+    const Vec3 middle = piece.middle();
+    DepthPlace other;
+    Vec3 other_normal = piece.normal;
+    for (const double share : {0.5, 1.0})
+    {
+        if (dot(other_normal, piece.normal) <= opposing) continue;
+        other = wall.at(middle - (share * reach_) * piece.normal);
+        other_normal = wall.sign() * wall.mesh().normals[other.facet];
+    }
+    if (dot(other_normal, piece.normal) > opposing) return;
+    piece.thickness = dot(middle - other.nearest, piece.normal);
+    // Particles nearer to one side are within reach of the other.
+    if (!(piece.thickness < 2 * reach_)) return;
+    const double there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
+    if (!std::isfinite(piece.way) && !std::isfinite(there)) return;
+    if (piece.way > there + longer_way_dp)
+        piece.state = is_dry;
+    else if (!(there > piece.way + longer_way_dp))
+        piece.state = is_thin;
+}
+
+/// Along the edges of a dry side no place lies right behind another: what is far from the fluid and
+/// near to a dry piece is dry too.
+void WetSurface::dry_along_edges()
+{
+    PointGrid dry(2 * reach_, pieces_.size() / 4);
+    for (const Piece& piece : pieces_)
+        if (piece.state == is_dry) dry.add(piece.middle());
+    if (dry.points().empty()) return;
+    for (Piece& piece : pieces_)
+        if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
+            piece.way > longer_way_dp && dry.has_nearer(piece.middle(), 2 * reach_))
+            piece.state = is_dry;
 }
 
 void WetSurface::note_thin_walls(const RunField& field)

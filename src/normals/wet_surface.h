@@ -75,11 +75,24 @@ private:
         std::uint32_t body = 0;
         bool is_closed = false;
         char state = 0;
-        double thickness = 0;
+        double thickness = 0; ///< metres; 0: no other side was found
+        double way = 0;       ///< of fluid to it, dp
+
+        Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
+    };
+    /// The wall of a body with layers.
+    struct BodyWall
+    {
+        const WallDepth* depth = nullptr;
+        bool is_closed = false;
+        Box3 box;
     };
     void cut_pieces(const RunField& field);
     void add_pieces(const Piece& whole, double longest);
     void judge(const RunField& field, const FluidWay& way, int threads);
+    static bool is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp);
+    void compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way, double dp) const;
+    void dry_along_edges();
     void note_thin_walls(const RunField& field);
 
     double reach_;

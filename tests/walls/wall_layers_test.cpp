@@ -1,0 +1,235 @@
+#include "fppg/normals.h"
+#include "fppg/particles.h"
+#include "fppg/read_shapes.h"
+#include "fppg/relax_walls.h"
+#include "fppg/shapes.h"
+
+#include "helpers/drawing.h"
+#include "meshes/point_grid.h"
+#include "offset/wall_depth.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace fppg
+{
+namespace
+{
+
+using test::Drawing;
+
+constexpr double dp = Drawing::dp;
+const double kernel = 2 * std::sqrt(3.0) * dp;
+
+/// A drawing whose walls are for mDBC, with three layers.
+Drawing layered(bool is_2d = false)
+{
+    Drawing drawing(is_2d);
+    drawing.def.h = kernel / 2;
+    drawing.def.normals.is_active = true;
+    drawing.def.fit.all->boundary = WallBoundary::Mdbc;
+    drawing.def.fit.all->depths_dp = {0.5, 1.5, 2.5};
+    if (is_2d) drawing.def.fit.all->depths_dp = {0.5, 1.5};
+    return drawing;
+}
+
+RunField relaxed(const Drawing& drawing, int threads = 1)
+{
+    RunField field = drawing.run(threads);
+    RelaxReport report;
+    relax_walls(drawing.def, field, threads, {}, report);
+    return field;
+}
+
+struct Normals
+{
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    NormalsReport report;
+};
+
+/// Of the boundary particles.
+Normals normals_of(const Drawing& drawing, const RunField& field)
+{
+    CaseDef def = drawing.def;
+    def.constants.rhop0 = 1000;
+    def.constants.gamma = 7;
+    def.constants.coef_sound = 20;
+    def.constants.coef_h = 1;
+    CaseConstants constants;
+    std::vector<std::string> warnings;
+    const CaseParticles particles = make_particles(def, field, 1, constants, warnings);
+    Normals out;
+    for (const auto& n : compute_normals(def, particles, field, {}, 1, out.report))
+        out.normals.push_back({n[0], n[1], n[2]});
+    for (const ParticleBlock& block : particles.blocks)
+    {
+        if (block.type == ParticleType::Fluid) continue;
+        for (const ParticleRun& run : block.runs)
+            for (std::uint32_t k = 0; k < run.count; ++k)
+                out.positions.push_back(
+                    run.is_off_lattice
+                        ? particles.off_lattice.positions[run.off_lattice_begin() + k]
+                        : field.grid.origin + dp * Vec3{static_cast<double>(run.x),
+                                                        static_cast<double>(run.y),
+                                                        static_cast<double>(run.z + k)});
+    }
+    return out;
+}
+
+/// Of a box, positive inside.
+double depth_in_box(const Vec3& p, const Vec3& low, const Vec3& size)
+{
+    double depth = 1e9;
+    for (int axis = 0; axis < 3; ++axis)
+        depth = std::min({depth, p[axis] - low[axis], low[axis] + size[axis] - p[axis]});
+    return depth;
+}
+
+TEST(WallLayers, StandAtTheirDepthsAndNoneOnTheSurface)
+{
+    Drawing drawing = layered();
+    const Vec3 low{-0.93, -0.77, -0.85};
+    const Vec3 size{1.8, 1.5, 1.6};
+    drawing.box(low, size);
+    const RunField field = relaxed(drawing);
+    std::map<int, int> count;
+    for (const Vec3& p : field.walls.particles.positions)
+    {
+        const double layer = depth_in_box(p, low, size) / dp - 0.5;
+        EXPECT_NEAR(layer, std::round(layer), 1e-6);
+        ++count[static_cast<int>(std::lround(layer))];
+    }
+    ASSERT_EQ(count.size(), 3);
+    for (const auto& [layer, particles] : count)
+    {
+        const Vec3 s = size - (2 * layer + 1) * dp * Vec3{1, 1, 1};
+        const double area = 2 * (s.x * s.y + s.y * s.z + s.z * s.x) / (dp * dp);
+        EXPECT_NEAR(particles / area, 1, 0.04) << "layer " << layer;
+    }
+}
+
+TEST(WallLayers, AndTheNodesUnderThemHaveTheVolumeOfTheBody)
+{
+    Drawing drawing = layered();
+    const Vec3 low{-0.93, -0.77, -0.85};
+    const Vec3 size{1.8, 1.5, 1.6};
+    drawing.box(low, size);
+    const Normals all = normals_of(drawing, relaxed(drawing));
+    EXPECT_NEAR(
+        static_cast<double>(all.positions.size()) * std::pow(dp, 3) / (size.x * size.y * size.z), 1,
+        0.015);
+    for (const Vec3& p : all.positions) EXPECT_GT(depth_in_box(p, low, size), 0.499 * dp);
+    PointGrid grid(0.6 * dp, all.positions.size());
+    for (const Vec3& p : all.positions)
+    {
+        EXPECT_FALSE(grid.has_nearer(p, 0.6 * dp));
+        grid.add(p);
+    }
+}
+
+TEST(WallLayers, LookFromEachParticleToTheNearestPlaceOfTheSurface)
+{
+    Drawing drawing = layered();
+    const Vec3 low{-0.93, -0.77, -0.85};
+    const Vec3 size{1.8, 1.5, 1.6};
+    drawing.box(low, size);
+    const Normals all = normals_of(drawing, relaxed(drawing));
+    ASSERT_EQ(all.normals.size(), all.positions.size());
+    for (std::size_t i = 0; i < all.normals.size(); ++i)
+    {
+        const double depth = depth_in_box(all.positions[i], low, size);
+        if (depth > kernel - 0.5 * dp) continue;
+        EXPECT_NEAR(norm(all.normals[i]), depth, 1e-6);
+        EXPECT_NEAR(depth_in_box(all.positions[i] + all.normals[i], low, size), 0, 1e-6);
+    }
+}
+
+/// A plate of one dp has one layer, in its middle.
+TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShare)
+{
+    Drawing drawing = layered();
+    const Vec3 low{-0.93, -0.77, -0.03};
+    const Vec3 size{1.8, 1.5, dp};
+    drawing.box(low, size);
+    const RunField field = relaxed(drawing);
+    const WallParticles& particles = field.walls.particles;
+    EXPECT_NEAR(static_cast<double>(particles.size()) / (18 * 15), 1, 0.1);
+    for (const Vec3& p : particles.positions) EXPECT_NEAR(p.z, -0.03 + dp / 2, 1e-9);
+    drawing.fill({0, 0, 1.5});
+    const Normals all = normals_of(drawing, relaxed(drawing));
+    EXPECT_NE(std::find_if(all.report.warnings.begin(), all.report.warnings.end(),
+                           [](const std::string& w)
+                           { return w.find("fluid on both sides") != std::string::npos; }),
+              all.report.warnings.end());
+}
+
+/// Fluid in a tank of walls of 4 dp: particles nearer to the outside look to the inside too.
+TEST(WallLayers, LookToTheSideThatFluidCanTouch)
+{
+    Drawing drawing = layered();
+    const Vec3 low{-1.05, -1.05, -1.05};
+    const Vec3 size{2.1, 2.1, 2.1};
+    drawing.box(low, size);
+    const Vec3 inner{-0.65, -0.65, -0.65};
+    const Vec3 inner_size{1.3, 1.3, 1.3};
+    BooleanDef boolean;
+    boolean.line = 8;
+    boolean.parts = {{0, false}, {1, false}};
+    boolean.tree.op = BooleanOp::Difference;
+    for (const std::uint32_t part : {0u, 1u})
+    {
+        BooleanNode leaf;
+        leaf.part = part;
+        boolean.tree.operands.push_back(leaf);
+    }
+    drawing.box(inner, inner_size);
+    drawing.def.booleans.push_back(boolean);
+    drawing.fill({0, 0, 0}, 0.3);
+    const Normals all = normals_of(drawing, relaxed(drawing));
+    std::size_t within_reach = 0;
+    for (std::size_t i = 0; i < all.normals.size(); ++i)
+    {
+        const double to_inside = -depth_in_box(all.positions[i], inner, inner_size);
+        if (to_inside > kernel - 0.5 * dp) continue;
+        ++within_reach;
+        EXPECT_NEAR(depth_in_box(all.positions[i] + all.normals[i], inner, inner_size), 0, 1e-5);
+    }
+    EXPECT_GT(within_reach, 3000);
+    EXPECT_TRUE(all.report.warnings.empty());
+}
+
+TEST(WallLayers, AreLinesIn2D)
+{
+    Drawing drawing = layered(true);
+    const Vec3 low{-0.93, -1, -0.85};
+    const Vec3 size{1.8, 2, 1.6};
+    drawing.box(low, size);
+    const Normals all = normals_of(drawing, relaxed(drawing));
+    EXPECT_NEAR(static_cast<double>(all.positions.size()) * dp * dp / (size.x * size.z), 1, 0.02);
+    for (std::size_t i = 0; i < all.positions.size(); ++i)
+    {
+        Vec3 p = all.positions[i];
+        EXPECT_EQ(p.y, 0);
+        const double depth = depth_in_box(p, low, size) / dp;
+        EXPECT_GT(depth, 0.499);
+        if (depth < 2)
+        {
+            EXPECT_NEAR(depth - 0.5, std::round(depth - 0.5), 1e-6);
+        }
+    }
+}
+
+TEST(WallLayers, HaveTheSameBytesWithAnyNumberOfThreads)
+{
+    Drawing drawing = layered();
+    drawing.box({-0.93, -0.77, -0.85}, {1.8, 1.5, 1.6});
+    EXPECT_EQ(relaxed(drawing, 1).walls.particles.positions,
+              relaxed(drawing, 4).walls.particles.positions);
+}
+
+} // namespace
+} // namespace fppg
