@@ -301,8 +301,9 @@ private:
                 if (depth > 0 && !wet.has_dry_sides())
                     normal = as_float(depth * own_normal(r, normal));
                 else
-                    normal = as_float(turn(
-                        wet.vector_from(place_in_run(particles_, *place.block, *place.run, k))));
+                    normal = as_float(
+                        turn(wet.vector_from(place_in_run(particles_, *place.block, *place.run, k),
+                                             depth > 0 ? 2 * reach : reach)));
             }
         };
         parallel_for(places_.size(), threads_, visit, 64);

@@ -281,11 +281,11 @@ void WetSurface::note_thin_walls(const RunField& field)
     }
 }
 
-Vec3 WetSurface::vector_from(const Vec3& p) const
+Vec3 WetSurface::vector_from(const Vec3& p, double most) const
 {
     if (query_ == nullptr) return {};
     const ClosestPoint near = query_->closest_point(p);
-    return near.distance <= reach_ ? near.point - p : Vec3{};
+    return near.distance <= most ? near.point - p : Vec3{};
 }
 
 } // namespace fppg

@@ -51,8 +51,8 @@ public:
     /// reach  metres, 2 h
     WetSurface(const RunField& field, std::uint16_t first_bound, double reach, int threads);
 
-    /// Metres, from a point to the nearest wet place within reach; zero where there is none.
-    Vec3 vector_from(const Vec3& p) const;
+    /// Metres, from a point to the nearest wet place; zero where none is within `most`.
+    Vec3 vector_from(const Vec3& p, double most) const;
     bool is_empty() const { return query_ == nullptr; }
     /// Some sides are dry, so that the nearest surface is not always the right one.
     bool has_dry_sides() const { return has_dry_sides_; }
