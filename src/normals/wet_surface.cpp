@@ -24,6 +24,11 @@ constexpr double longer_way_dp = 10;
 constexpr double longest_piece_dp = 3;
 constexpr double opposing = -0.5;
 
+bool is_same_side(const FittedBody& a, const FittedBody& b)
+{
+    return a.is_layer() && a.owner == b.owner && a.wall->sign() == b.wall->sign();
+}
+
 constexpr char is_wet = 0;
 constexpr char is_dry = 1;
 constexpr char is_thin = 2; ///< wet, and so is the other side
@@ -130,7 +135,7 @@ void WetSurface::cut_pieces(const RunField& field)
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
         // The first layer on each side names the surface and the way to the fluid.
-        if (!bodies[b].is_layer() || bodies[b - 1].wall == bodies[b].wall) continue;
+        if (!bodies[b].is_layer() || is_same_side(bodies[b - 1], bodies[b])) continue;
         const SurfaceMesh& mesh = bodies[b].wall->mesh();
         Piece piece;
         piece.body = bodies[b].owner;

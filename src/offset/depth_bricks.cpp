@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fppg
 {
@@ -17,16 +18,20 @@ struct Cube
 {
     std::array<std::int64_t, 3> first{0, 0, 0}; ///< cell
     std::int64_t size = 0;                      ///< cells
+    /// Metres; no corner or middle of it, or of a part of it, is farther from the surface.
+    double within = std::numeric_limits<double>::infinity();
 };
 
-/// Whether the surface may pass through a cube of cells; `distance` as it was measured.
-bool may_hold(const WallDepth& wall, const DepthGrid& grid, const Cube& cube, double depth)
+/// Whether the surface may pass through a cube of cells. Its `within` is made tighter.
+bool may_hold(const WallDepth& wall, const DepthGrid& grid, Cube& cube, double depth)
 {
     const double half = 0.5 * static_cast<double>(cube.size);
     const Vec3 middle =
         grid.node(cube.first[0], cube.first[1], cube.first[2]) + (half * grid.cell) * Vec3{1, 1, 1};
     const double reach = 2 * half * half_diagonal * grid.cell;
-    return std::fabs(std::fabs(wall.at(middle).depth) - depth) <= reach;
+    const DepthPlace place = wall.at(middle, cube.within);
+    cube.within = (norm(place.nearest - middle) + reach) * (1 + 1e-9);
+    return std::fabs(std::fabs(place.depth) - depth) <= reach;
 }
 
 } // namespace
@@ -80,7 +85,7 @@ std::vector<DepthBrick> find_bricks(const WallDepth& wall, const DepthGrid& grid
             }
             for (std::int64_t part = 0; part < 8; ++part)
             {
-                Cube cube{cubes[i].first, half};
+                Cube cube{cubes[i].first, half, cubes[i].within};
                 cube.first[0] += (part >> 2 & 1) * half;
                 cube.first[1] += (part >> 1 & 1) * half;
                 cube.first[2] += (part & 1) * half;
@@ -111,11 +116,13 @@ public:
         is_seen_.assign(brick.nodes.size(), 0);
     }
 
-    void descend(const std::array<int, 3>& first, int size)
+    /// within  metres, as in Cube
+    void descend(const std::array<int, 3>& first, int size, double within)
     {
-        const Cube cube{
+        Cube cube{
             {brick_.first[0] + first[0], brick_.first[1] + first[1], brick_.first[2] + first[2]},
-            size};
+            size,
+            within};
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (cube.first[axis] >= grid_.cells[axis]) return;
         if (size < brick_cells && !may_hold(wall_, grid_, cube, depth_)) return;
@@ -123,25 +130,26 @@ public:
         {
             for (int i = 0; i <= 2; ++i)
                 for (int j = 0; j <= 2; ++j)
-                    for (int k = 0; k <= 2; ++k) look({first[0] + i, first[1] + j, first[2] + k});
+                    for (int k = 0; k <= 2; ++k)
+                        look({first[0] + i, first[1] + j, first[2] + k}, cube.within);
             return;
         }
         const int half = size / 2;
         for (int part = 0; part < 8; ++part)
             descend({first[0] + (part >> 2 & 1) * half, first[1] + (part >> 1 & 1) * half,
                      first[2] + (part & 1) * half},
-                    half);
+                    half, cube.within);
     }
 
 private:
-    void look(const std::array<int, 3>& n)
+    void look(const std::array<int, 3>& n, double within)
     {
         const auto at = static_cast<std::size_t>((n[0] * brick_nodes + n[1]) * brick_nodes + n[2]);
         if (is_seen_[at] != 0) return;
         is_seen_[at] = 1;
         const Vec3 p =
             grid_.node(brick_.first[0] + n[0], brick_.first[1] + n[1], brick_.first[2] + n[2]);
-        const DepthPlace place = wall_.at(p);
+        const DepthPlace place = wall_.at(p, within);
         DepthNode& node = brick_.nodes[at];
         node.foot = place.foot;
         node.direction = place.direction;
@@ -160,7 +168,8 @@ private:
 
 void fill_brick(const WallDepth& wall, const DepthGrid& grid, double depth, DepthBrick& brick)
 {
-    BrickFiller(wall, grid, depth, brick).descend({0, 0, 0}, brick_cells);
+    BrickFiller(wall, grid, depth, brick)
+        .descend({0, 0, 0}, brick_cells, std::numeric_limits<double>::infinity());
 }
 
 } // namespace fppg

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numeric>
 #include <vector>
 
@@ -48,9 +49,25 @@ void drop_flat(SurfaceMesh& mesh)
         if (is_out[i] == 0) mesh.facets.push_back(kept[i]);
 }
 
-/// Joins the ends of short edges, each vertex with one other at most; returns whether any was.
+/// The vertices at the other ends of the edges of each vertex, ascending.
+std::vector<std::vector<std::uint32_t>> neighbours_of_vertices(const SurfaceMesh& mesh)
+{
+    std::vector<std::vector<std::uint32_t>> out(mesh.vertices.size());
+    for (const auto& edge : mesh.edges)
+    {
+        out[edge[0]].push_back(edge[1]);
+        out[edge[1]].push_back(edge[0]);
+    }
+    for (auto& list : out) std::sort(list.begin(), list.end());
+    return out;
+}
+
+/// Joins the ends of short edges, each vertex with one other at most and none of its neighbours
+/// with any; returns whether any was. Ends that have more neighbours in common than the facets of
+/// their edge say would pinch the surface.
 bool join_near_vertices(SurfaceMesh& mesh, double cell)
 {
+    const std::vector<std::vector<std::uint32_t>> around = neighbours_of_vertices(mesh);
     std::vector<std::uint32_t> of(mesh.vertices.size());
     std::iota(of.begin(), of.end(), 0u);
     std::vector<char> is_used(of.size(), 0);
@@ -59,7 +76,16 @@ bool join_near_vertices(SurfaceMesh& mesh, double cell)
     {
         if (is_used[edge[0]] != 0 || is_used[edge[1]] != 0) continue;
         if (!(norm(mesh.vertices[edge[0]] - mesh.vertices[edge[1]]) < one_vertex * cell)) continue;
-        is_used[edge[0]] = is_used[edge[1]] = 1;
+        std::vector<std::uint32_t> common;
+        std::set_intersection(around[edge[0]].begin(), around[edge[0]].end(),
+                              around[edge[1]].begin(), around[edge[1]].end(),
+                              std::back_inserter(common));
+        if (common.size() > 2) continue;
+        for (const std::uint32_t end : edge)
+        {
+            is_used[end] = 1;
+            for (const std::uint32_t v : around[end]) is_used[v] = 1;
+        }
         of[edge[1]] = edge[0];
         found = true;
     }

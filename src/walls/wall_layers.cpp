@@ -29,6 +29,8 @@ namespace
 
 /// Side of the cells that offset surfaces are cut from, dp.
 constexpr double offset_cell_dp = 0.5;
+/// No edge turns by more: all depths are distances.
+constexpr double no_edge_deg = 180;
 /// Layers of two sides that would be nearer than this merge, dp.
 constexpr double merge_dp = 0.6;
 /// Sides whose normals turn by more than 120 degrees face away from each other.
@@ -86,7 +88,9 @@ public:
 
     void build(WallSide side, bool is_closed)
     {
-        std::shared_ptr<const WallDepth> wall = wall_of(side, is_closed);
+        std::shared_ptr<const WallDepth> wall =
+            wall_of(side, is_closed, settings_.feature_angle_deg);
+        std::shared_ptr<const WallDepth> rounded; // made where a mitre fails
         if (wall == nullptr) return;
         const bool may_merge = is_closed && settings_.depths_dp[0] > 0;
         if (may_merge) find_thin_parts(*wall);
@@ -103,35 +107,45 @@ public:
             if (grid_.is_2d) options.plane_y = grid_.origin.y;
             OffsetSurface surface = offset_surface(*wall, options, threads_);
             if (surface.mesh.facets.empty()) break;
+            std::shared_ptr<const WallDepth> of_layer = wall;
+            // Where faces beyond come nearer than the tip of a mitre its depth jumps, and the
+            // surface tears; the plain distance has no jumps.
+            if (is_closed && !grid_.is_2d && surface.report.open_edges > 0)
+            {
+                if (rounded == nullptr) rounded = wall_of(side, is_closed, no_edge_deg);
+                of_layer = rounded;
+                surface = offset_surface(*of_layer, options, threads_);
+                if (surface.mesh.facets.empty()) break;
+            }
             FittedBody body;
             body.name = fmt::format("layer {}{}", k + 1, of_side);
             body.is_solid = out_.body.is_solid;
             body.owner = 0;
             body.layer = static_cast<int>(k);
             body.depth = depth;
-            body.wall = wall;
+            body.wall = of_layer;
             body.features = offset_features(surface, feature_options(settings_, grid_));
             body.mesh = std::move(surface.mesh);
             body.report = std::move(surface.report);
-            name_owners(*wall, body);
+            name_owners(*body.wall, body);
             add_particles(std::move(body));
         }
         if (!middle_.empty()) merge_sides(std::move(wall));
     }
 
 private:
-    std::shared_ptr<const WallDepth> wall_of(WallSide side, bool is_closed) const
+    std::shared_ptr<const WallDepth> wall_of(WallSide side, bool is_closed,
+                                             double sharp_angle_deg) const
     {
         const FittedBody& body = out_.body;
         if (!grid_.is_2d)
             return std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
-                                               settings_.feature_angle_deg, threads_);
+                                               sharp_angle_deg, threads_);
         MeshReport report;
         const double half_width = (settings_.depths_dp.back() + 4) * grid_.dp;
         SurfaceMesh mesh = drawn_out(body.mesh, grid_.origin.y, half_width, threads_, report);
         if (mesh.facets.empty()) return nullptr;
-        return std::make_shared<WallDepth>(mesh, report, false, side, settings_.feature_angle_deg,
-                                           threads_);
+        return std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
     }
 
     /// Of a combination: each facet belongs to the part that is nearest to it.
