@@ -119,10 +119,12 @@ struct FitSettings
     /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for
     /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc none but the surface.
     std::optional<int> layers;
-    std::optional<LayerSide> side; ///< of sheets; empty: behind
+    /// Of sheets; empty: away from the fluid, and behind where there is none.
+    std::optional<LayerSide> side;
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;
+    std::vector<Vec3> fluid_places; ///< where fluid is drawn, by which sides of sheets are chosen
     bool operator==(const FitSettings&) const = default;
 };
 

@@ -177,12 +177,39 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     return out;
 }
 
-FittedStep fit_step(const Scene& scene, const SceneStep& step, int threads)
+/// Places in the fluid of a case: the seeds of its fills, and the middles of its fluid shapes.
+std::vector<Vec3> places_in_fluid(const Scene& scene, int threads)
+{
+    std::vector<Vec3> out;
+    for (const SceneStep& step : scene.steps)
+    {
+        if (step.combination || step.draw->state->mk.kind != MkKind::Fluid) continue;
+        if (const auto* edit = std::get_if<Edit>(&step.draw->what))
+        {
+            if (const auto* fill = std::get_if<FillOp>(edit)) out.push_back(fill->seed);
+            if (const auto* fill = std::get_if<CavityFillOp>(edit)) out.push_back(fill->seed);
+        }
+        if (step.shape() == nullptr) continue;
+        for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
+        {
+            Box3 box;
+            for (const Vec3& v : shape.soup.vertices) box.add(v);
+            if (!box.is_empty()) out.push_back(0.5 * (box.min + box.max));
+        }
+    }
+    return out;
+}
+
+FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Vec3>& fluid,
+                    int threads)
 {
     const DrawState& state = *step.draw->state;
-    const FitSettings* settings =
+    const FitSettings* given =
         state.mk.kind == MkKind::Bound ? fit_settings(scene.def->fit, state.mk.mk) : nullptr;
-    if (settings == nullptr) return {};
+    if (given == nullptr) return {};
+    FitSettings own = *given;
+    own.fluid_places = fluid;
+    const FitSettings* settings = &own;
     if (step.combination) return fit_combination(scene, *step.combination, *settings, threads);
     if (step.shape() == nullptr || state.mode == DrawMode::Wire) return {};
     mesh_of(scene, *step.draw, threads); // what is wrong with the file is said with its place
@@ -204,10 +231,19 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
 {
     std::vector<FittedStep> out(scene.steps.size());
     if (scene.def->fit.is_empty()) return out;
+    const bool has_layers = [&]
+    {
+        const FitDef& fit = scene.def->fit;
+        return (fit.all && !fit.all->depths_dp.empty()) ||
+               std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
+                           [](const auto& of_mk) { return !of_mk.second.depths_dp.empty(); });
+    }();
+    const std::vector<Vec3> fluid =
+        has_layers ? places_in_fluid(scene, threads) : std::vector<Vec3>{};
     for (std::size_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
-        out[i] = fit_step(scene, scene.steps[i], threads);
+        out[i] = fit_step(scene, scene.steps[i], fluid, threads);
     }
     return out;
 }

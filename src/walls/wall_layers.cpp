@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -84,6 +85,24 @@ public:
     LayerBuilder(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out)
         : settings_(settings), grid_(grid), threads_(threads), out_(out)
     {
+    }
+
+    /// Of a sheet: where the fluid nearest to it is not; behind, where there is no fluid.
+    LayerSide side_without_fluid() const
+    {
+        if (settings_.fluid_places.empty()) return LayerSide::Behind;
+        const auto wall = wall_of(WallSide::Behind, false, no_edge_deg);
+        if (wall == nullptr) return LayerSide::Behind;
+        double nearest = std::numeric_limits<double>::infinity();
+        LayerSide side = LayerSide::Behind;
+        for (const Vec3& p : settings_.fluid_places)
+        {
+            const double depth = wall->at(p).depth;
+            if (std::fabs(depth) >= nearest) continue;
+            nearest = std::fabs(depth);
+            side = depth > 0 ? LayerSide::Front : LayerSide::Behind;
+        }
+        return side;
     }
 
     void build(WallSide side, bool is_closed)
@@ -448,7 +467,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
     const bool is_closed = out.body.measures.volume > 0;
     LayerBuilder builder(settings, grid, threads, out);
     const LayerSide side =
-        is_closed ? LayerSide::Behind : settings.side.value_or(LayerSide::Behind);
+        is_closed ? LayerSide::Behind : settings.side.value_or(builder.side_without_fluid());
     if (side != LayerSide::Front) builder.build(WallSide::Behind, is_closed);
     if (side != LayerSide::Behind) builder.build(WallSide::Front, is_closed);
     if (is_closed)
@@ -461,7 +480,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
                     out.zone,
                     by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
                     threads);
-        if (!settings.side)
+        if (!settings.side && settings.fluid_places.empty())
             out.warnings.push_back(
                 "layers of this sheet stand behind it, where its facets do not look: "
                 "side=\"front\" "
