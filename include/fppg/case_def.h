@@ -242,6 +242,7 @@ struct CaseDef
     std::vector<UserVariable> user_variables; ///< in printing order
     std::string variables_log; ///< "List of available variables: ..." at the end of reading
     std::vector<std::string> warnings;
+    std::vector<std::string> hints; ///< what would be better; no errors with -strict
 
     VresDef vres;         ///< no zones: one resolution
     std::size_t zone = 0; ///< which of them this case is

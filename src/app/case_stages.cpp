@@ -137,6 +137,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   for (const std::string& line : report.log) run.log.line(line);
                   made.node_files = std::move(report.node_files);
                   for (std::string& w : made.def.warnings) run.diagnose(std::move(w));
+                  for (std::string& w : made.def.hints) run.warn(std::move(w));
                   for (std::string& w : report.warnings) run.diagnose(std::move(w));
                   run.log.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
                                            report.triangles_ignored));

@@ -91,6 +91,24 @@ void evaluate_execution(std::vector<Element>& execution, const AttributeReader& 
     if (Element* special = first_of(execution, "special")) evaluate_all(*special, read);
 }
 
+std::optional<std::string> parameter_value(const std::vector<Element>& execution,
+                                           std::string_view key)
+{
+    std::optional<std::string> out;
+    for (const Element& parameters : execution)
+    {
+        if (parameters.kind != Element::Kind::Tag || parameters.name != "parameters") continue;
+        for (const Element& e : parameters.children)
+        {
+            if (e.kind != Element::Kind::Tag || e.name != "parameter") continue;
+            const std::string* own = e.find_attribute("key");
+            const std::string* value = e.find_attribute("value");
+            if (own != nullptr && value != nullptr && *own == key) out = *value;
+        }
+    }
+    return out;
+}
+
 std::string domain_limit(const AttributeReader& read, const Element& e, const std::string& text,
                          bool is_min)
 {
