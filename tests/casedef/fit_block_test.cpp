@@ -118,6 +118,7 @@ TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
     EXPECT_EQ(settings(def, 0).relax.tolerance, 0.001);
     FitSettings plain;
     plain.line = settings(def, 0).line;
+    plain.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
     EXPECT_EQ(settings(def, 0), plain);
 }
 
@@ -263,11 +264,13 @@ TEST(FitBlock, StaysInTheCopyOfTheDefinition)
 TEST(FitChoice, OnAddsTheDefaultsToWhatTheBlockNames)
 {
     const CaseDef plain = read(test::tank(), FitChoice::On);
-    EXPECT_EQ(settings(plain, 5), FitSettings{});
+    FitSettings defaults;
+    defaults.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
+    EXPECT_EQ(settings(plain, 5), defaults);
     const CaseDef named =
         read_block(R"(<bodyfitted mkbound="0" featureangle="20" />)", FitChoice::On);
     EXPECT_EQ(settings(named, 0).feature_angle_deg, 20);
-    EXPECT_EQ(settings(named, 1), FitSettings{});
+    EXPECT_EQ(settings(named, 1), defaults);
     const CaseDef all = read_block(R"(<bodyfitted featureangle="20" />)", FitChoice::On);
     EXPECT_EQ(settings(all, 1).feature_angle_deg, 20);
 }
