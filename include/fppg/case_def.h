@@ -229,6 +229,9 @@ struct CaseDef
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
+    /// To the next copy of the case along the axes that grid.is_periodic names, besides the period
+    /// itself, metres: minus XPeriodicIncY and XPeriodicIncZ of the solver's parameters, and so on.
+    std::array<Vec3, 3> period_shift{};
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
