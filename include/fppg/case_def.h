@@ -116,8 +116,8 @@ struct FitSettings
     double one_sheet_dp = 0.5;
     RelaxSettings relax;
     std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
-    /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for Mdbc
-    /// as many as fill the kernel of fluid at the wall, for Dbc none but the surface.
+    /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for
+    /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc none but the surface.
     std::optional<int> layers;
     std::optional<LayerSide> side; ///< of sheets; empty: behind
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the

@@ -206,9 +206,9 @@ void make_normals(CaseRunState& run, MadeCase& made)
               [&]
               {
                   NormalsReport report;
-                  made.particles.bound_normals = compute_normals(
-                      made.def, made.particles, made.field, normal_geometry(run, made),
-                      run.threads, report);
+                  made.particles.bound_normals =
+                      compute_normals(made.def, made.particles, made.field,
+                                      normal_geometry(run, made), run.threads, report);
                   made.normal_shapes = std::move(report.shapes);
                   for (const std::string& line : report.log) run.log.line(line);
                   for (std::string& w : report.warnings) run.warn(std::move(w));

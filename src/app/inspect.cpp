@@ -349,15 +349,14 @@ void write_particles(const Inspection& found, const Lengths& in, const Line& lin
     if (!report.is_watertight) return;
     std::size_t least = 0;
     while (least < Inspection::most_layers && !(found.layer_shares[least] > 0)) ++least;
-    const auto share = [&](std::size_t layers)
-    { return 100 * found.share_with_layers(layers); };
+    const auto share = [&](std::size_t layers) { return 100 * found.share_with_layers(layers); };
     line("  layers (mDBC)",
-         fmt::format("room for {} {}; 3 (coefh 1) behind {:.3g} % of the area, 4 (coefh 1.2) "
-                     "behind {:.3g} %",
-                     least,
-                     least == Inspection::most_layers ? "or more everywhere"
-                                                      : "at the thinnest place",
-                     share(3), share(4)));
+         fmt::format(
+             "room for {} {}; 3 (coefh 1) behind {:.3g} % of the area, 4 (coefh 1.2) "
+             "behind {:.3g} %",
+             least,
+             least == Inspection::most_layers ? "or more everywhere" : "at the thinnest place",
+             share(3), share(4)));
 }
 
 } // namespace

@@ -90,9 +90,10 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         for (std::size_t l = b; l < walls.bodies.size(); ++l)
             for (std::size_t kind = 0; kind < 3 && (l == b || walls.bodies[l].owner == b); ++kind)
                 all[kind] += counts[l][kind];
-        const std::string layers = layers_text(walls, b, [&](std::size_t l) {
-            return fmt::format("{}", counts[l][0] + counts[l][1] + counts[l][2]);
-        });
+        const std::string layers =
+            layers_text(walls, b,
+                        [&](std::size_t l)
+                        { return fmt::format("{}", counts[l][0] + counts[l][1] + counts[l][2]); });
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles{}",
                              body.name, body.line, body.mk, all[0], all[1], all[2],
                              layers.empty() ? "" : ", in layers of " + layers));

@@ -13,8 +13,8 @@ class RunLog;
 struct CaseRunState;
 struct MadeCase;
 
-/// What is to be said of each layer of a body, in one line; layers of both sides of a sheet that are
-/// as deep stand together. Empty for a body without layers.
+/// What is to be said of each layer of a body, in one line; layers of both sides of a sheet that
+/// are as deep stand together. Empty for a body without layers.
 ///
 /// body     index in walls.bodies, no layer
 /// text_of  of a layer, or of the body itself where its surface is the first layer

@@ -116,9 +116,10 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_option("--view", view,
                    "iso (default), front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in "
                    "degrees; a case in the plane of x and z is seen from the front by default");
-    app.add_option("--color,--colour", colour,
-                   "mk (default), kind (corner, edge, surface, volume) or layer (of walls, 1 next to "
-                   "the surface)");
+    app.add_option(
+        "--color,--colour", colour,
+        "mk (default), kind (corner, edge, surface, volume) or layer (of walls, 1 next to "
+        "the surface)");
     app.add_option("--mk", mks, "only these, such as 1,11-13");
     app.add_option("--cut", cuts, "keeps what is on one side: y>0.3 or z<1; may be repeated")
         .may_be_repeated();

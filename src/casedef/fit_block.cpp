@@ -165,9 +165,9 @@ private:
         else if (boundary == "dbc")
             s.boundary = WallBoundary::Dbc;
         else if (boundary != "auto")
-            read_.fail(e,
-                       fmt::format("attribute boundary=\"{}\" is invalid, expected auto, mdbc or dbc",
-                                   boundary));
+            read_.fail(
+                e, fmt::format("attribute boundary=\"{}\" is invalid, expected auto, mdbc or dbc",
+                               boundary));
         if (e.find_attribute("layers") != nullptr && !is_word(e, "layers", "auto"))
             s.layers = static_cast<int>(number_or(
                 e, "layers", 0, [](double v) { return v >= 1 && v <= 16 && v == std::floor(v); },

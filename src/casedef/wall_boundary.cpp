@@ -45,8 +45,8 @@ void judge_layers(const FitSettings& settings, double kernel_dp, CaseDef& def)
     const int needed = layers_seen(kernel_dp);
     if (settings.boundary != WallBoundary::Mdbc || !settings.layers || *settings.layers >= needed)
         return;
-    const std::string at =
-        fmt::format("{}:{}: <bodyfitted layers=\"{}\">: ", def.file, settings.line, *settings.layers);
+    const std::string at = fmt::format("{}:{}: <bodyfitted layers=\"{}\">: ", def.file,
+                                       settings.line, *settings.layers);
     if (*settings.layers == 1)
         def.warnings.push_back(
             at + fmt::format("fluid goes through walls of one layer under mDBC; at 2h = {:.3g} dp "

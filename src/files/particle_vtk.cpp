@@ -37,7 +37,8 @@ struct Contents
 
 struct Layout
 {
-    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance, layer;
+    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance,
+        layer;
     Contents has;
     std::uint64_t size = 0;
 };

@@ -350,8 +350,8 @@ Legend legend_of(const std::vector<ParticleCloud>& clouds,
             const ParticleCloud& cloud = clouds[c];
             const unsigned value = colour_value(cloud, i, colour);
             if (!legend.contains(value))
-                legend.emplace(value, std::pair(colour_of(cloud, i, colour),
-                                                colour_name(cloud, i, colour)));
+                legend.emplace(
+                    value, std::pair(colour_of(cloud, i, colour), colour_name(cloud, i, colour)));
         }
     return legend;
 }

@@ -103,8 +103,7 @@ unsigned colour_value(const ParticleCloud& cloud, std::size_t i, RenderColour co
 Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
 {
     if (colour == RenderColour::Kind) return colour_of_kind(cloud.kind[i]);
-    if (colour == RenderColour::Layer && cloud.layer[i] > 0)
-        return colour_of_layer(cloud.layer[i]);
+    if (colour == RenderColour::Layer && cloud.layer[i] > 0) return colour_of_layer(cloud.layer[i]);
     return colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]);
 }
 
@@ -116,9 +115,12 @@ std::string colour_name(const ParticleCloud& cloud, std::size_t i, RenderColour 
     if (colour == RenderColour::Kind)
         return value < std::size(kinds) ? kinds[value] : fmt::format("kind {}", value);
     if (colour == RenderColour::Layer)
-        return value == 0 ? "fluid" : value == no_layer ? "no layer" : fmt::format("layer {}", value);
+        return value == 0          ? "fluid"
+               : value == no_layer ? "no layer"
+                                   : fmt::format("layer {}", value);
     const bool has_type = !cloud.type.empty() && cloud.type[i] < std::size(types);
-    return fmt::format("mk {}{}{}", value, has_type ? " " : "", has_type ? types[cloud.type[i]] : "");
+    return fmt::format("mk {}{}{}", value, has_type ? " " : "",
+                       has_type ? types[cloud.type[i]] : "");
 }
 
 } // namespace fppg

@@ -164,8 +164,7 @@ TEST(Inspect, FindsHowThinAPlateIs)
 TEST(Inspect, CountsTheLayersThatAWallHasRoomFor)
 {
     const TemporaryFile file = file_of(box({0, 0, 0}, {1, 1, 0.1}));
-    const auto share = [&](double thickness_dp, std::size_t layers)
-    {
+    const auto share = [&](double thickness_dp, std::size_t layers) {
         return inspect_mesh({.path = file.path(), .dp = 0.1 / thickness_dp})
             .share_with_layers(layers);
     };

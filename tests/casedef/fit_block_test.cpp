@@ -160,8 +160,8 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(mdbc, 0).depths_dp, ElementsAre(0.5, 1.5, 2.5));
     EXPECT_TRUE(mdbc.normals.is_active);
     EXPECT_THAT(mdbc.warnings, IsEmpty());
-    const CaseDef two = read(tank_with_boundary(
-        R"(<bodyfitted boundary="auto" layers="2" side="both" />)", best_mdbc));
+    const CaseDef two = read(
+        tank_with_boundary(R"(<bodyfitted boundary="auto" layers="2" side="both" />)", best_mdbc));
     EXPECT_THAT(settings(two, 0).depths_dp, ElementsAre(0.5, 1.5));
     EXPECT_EQ(settings(two, 0).side, LayerSide::Both);
     const CaseDef dbc = read_block(R"(<bodyfitted boundary="dbc" layers="3" />)");
@@ -177,8 +177,8 @@ TEST(FitBlock, WarnsOfOneLayerForMdbcAndHintsAtMore)
     EXPECT_THAT(one.warnings[0], HasSubstr("Case_Def.xml:9: <bodyfitted layers=\"1\">: fluid goes "
                                            "through walls of one layer"));
     EXPECT_THAT(one.warnings[0], HasSubstr("they need 3"));
-    const CaseDef two = read(tank_with_boundary(
-        R"(<bodyfitted mkbound="0,0" layers="2" />)", best_mdbc));
+    const CaseDef two =
+        read(tank_with_boundary(R"(<bodyfitted mkbound="0,0" layers="2" />)", best_mdbc));
     EXPECT_THAT(two.warnings, IsEmpty());
     ASSERT_EQ(two.hints.size(), 1u);
     EXPECT_THAT(two.hints[0], HasSubstr("sees 3 layers"));
@@ -189,8 +189,8 @@ TEST(FitBlock, HintsAtTheParametersThatKeepFluidOutOfMdbcWalls)
 {
     const auto hints = [](const std::string& parameters, const char* fppg)
     {
-        const CaseDef def = read(tank_with_boundary(
-            fppg, R"(<parameter key="Boundary" value="2" />)" + parameters));
+        const CaseDef def = read(
+            tank_with_boundary(fppg, R"(<parameter key="Boundary" value="2" />)" + parameters));
         EXPECT_TRUE(def.warnings.empty() || std::string(fppg).find("dbc") != std::string::npos);
         return def.hints;
     };
@@ -201,10 +201,13 @@ TEST(FitBlock, HintsAtTheParametersThatKeepFluidOutOfMdbcWalls)
     EXPECT_EQ(hints(no_penetration, "<bodyfitted />").size(), 1u);
     ASSERT_EQ(hints(slip, "<bodyfitted />").size(), 1u);
     EXPECT_THAT(hints(slip, "<bodyfitted />")[0], HasSubstr("NoPenetration is not 1"));
-    EXPECT_EQ(hints(slip + R"(<_parameter key="NoPenetration" value="1" />)", "<bodyfitted />").size(), 1u);
+    EXPECT_EQ(
+        hints(slip + R"(<_parameter key="NoPenetration" value="1" />)", "<bodyfitted />").size(),
+        1u);
     EXPECT_THAT(hints(slip + no_penetration, "<bodyfitted />"), IsEmpty());
-    EXPECT_THAT(hints(R"(<parameter key="SlipMode" value="3" />)" + no_penetration, "<bodyfitted />"),
-                IsEmpty());
+    EXPECT_THAT(
+        hints(R"(<parameter key="SlipMode" value="3" />)" + no_penetration, "<bodyfitted />"),
+        IsEmpty());
     EXPECT_THAT(hints("", ""), IsEmpty());
     EXPECT_THAT(hints("", R"(<bodyfitted boundary="dbc" />)"), IsEmpty());
 }

@@ -169,7 +169,8 @@ TEST(WriteParticlesVtk, MovesParticlesOffTheLatticeAndTurnsTheirNormals)
 TEST(WriteParticlesVtk, HasNoArraysOfWallsInACaseWithoutThem)
 {
     const VtkFile all(vtk_of(small_particles(), VtkSelection::All));
-    for (const char* name : {"Kind", "Normal", "Distance", "Layer"}) EXPECT_EQ(all.arrays.count(name), 0U);
+    for (const char* name : {"Kind", "Normal", "Distance", "Layer"})
+        EXPECT_EQ(all.arrays.count(name), 0U);
 }
 
 TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)

@@ -1,7 +1,7 @@
 // Particles off the lattice in cases that the solver repeats.
+#include "fppg/periodic.h"
 #include "fppg/case_def.h"
 #include "fppg/error.h"
-#include "fppg/periodic.h"
 
 #include "casedef/execution.h"
 #include "helpers/case_text.h"
