@@ -742,6 +742,20 @@ def pipe_bend(radius=0.05, wall=0.015, bend_radius=0.15, inlet=0.25, outlet=0.25
     return mesh
 
 
+def tilted_tube(radius=0.05, wall=0.025, length=0.32, rise=15.0, run=26.0, x=0.078125, sides=96):
+    """A straight tube along (run, 0, rise) through the origin, open at both ends, its middle at x."""
+    sine, cosine = (v / math.hypot(rise, run) for v in (rise, run))
+    rings = [[(r * c, r * s) for c, s in turn(sides)] for r in (radius + wall, radius)]
+    out = Mesh()
+    middle = x / cosine
+    straight = extrude_ring(*rings, middle - length / 2, middle + length / 2)
+    for facet in straight.facets:
+        corners = (straight.vertices[i] for i in facet)
+        # The axis turns from z to (cosine, 0, sine); the ring's x goes down.
+        out.triangle(*(out.vertex(sine * px + cosine * pz, py, sine * pz - cosine * px) for px, py, pz in corners))
+    return out
+
+
 def impeller(radius=0.06, hub_radius=0.014, height=0.03, thickness=0.006, blades=4, twist=40.0,
              levels=8):
     """An impeller about z, its middle at the origin: a hub with blades that turn by `twist` over its height.
@@ -832,7 +846,7 @@ def hull(length=0.6, beam=0.24, depth=0.14, deadrise=0.03, bow=0.6, rake=0.08, s
 SHAPES = {f.__name__: f for f in (box, icosphere, cylinder, torus, l_shape, gear, tyre, wheel,
                                   vehicle_body, housing, gearbox_case, lid, shaft, bearing,
                                   road_wheel, estate_body, estate_panels, pipe_bend, impeller, basin,
-                                  hull)}
+                                  hull, tilted_tube)}
 
 # The meshes that the cases read: file, shape, parameters.
 CASE_MESHES = (
@@ -860,6 +874,7 @@ CASE_MESHES = (
     ("stirred/impeller.stl", "impeller", {}),
     ("rest/basin.stl", "basin", {}),
     ("floating/hull.stl", "hull", {}),
+    ("pipe-tilted/tube.stl", "tilted_tube", {}),
 )
 
 # Those of the case templates, in every format that a draw command reads.

@@ -231,6 +231,9 @@ struct CaseDef
     std::vector<BooleanDef> booleans;
     std::vector<InitialOp> initials; ///< in the order of the file
     NormalsDef normals;
+    /// To the next copy of the case along the axes that grid.is_periodic names, besides the period
+    /// itself, metres: minus XPeriodicIncY and XPeriodicIncZ of the solver's parameters, and so on.
+    std::array<Vec3, 3> period_shift{};
     std::vector<FloatingDef> floatings;
     ExactFloatings exact_floatings;
     std::vector<DataFileUse> data_files; ///< each once; GenCase copies them beside the result
@@ -244,6 +247,7 @@ struct CaseDef
     std::vector<UserVariable> user_variables; ///< in printing order
     std::string variables_log; ///< "List of available variables: ..." at the end of reading
     std::vector<std::string> warnings;
+    std::vector<std::string> hints; ///< what would be better; no errors with -strict
 
     VresDef vres;         ///< no zones: one resolution
     std::size_t zone = 0; ///< which of them this case is

@@ -87,8 +87,9 @@ enum class VtkSelection
 /// GenCase v5.4.354. Mk is unsigned_char, unsigned_short where a selected mk is above 255.
 ///
 /// Of a case with fitted walls, All and Bound have behind these Kind (int, as FitKind; nodes are
-/// Volume), Normal (3 float; zero for Volume) and Distance (float, metres, negative inside;
-/// distance_of_nodes for nodes). Where Normal stands there already, that of the wall is WallNormal.
+/// Volume), Normal (3 float; zero for Volume), Distance (float, metres, negative inside;
+/// distance_of_nodes for nodes) and Layer (int; 0: in no layer of a wall). Where Normal stands
+/// there already, that of the wall is WallNormal.
 ///
 /// throws  IoError if the file cannot be written, or from 2,147,483,648 selected particles on
 void write_particles_vtk(OutputFile& file, const CaseParticles& particles,

@@ -22,6 +22,9 @@ struct LatticeGrid
     double dp = 0;
     std::array<std::uint32_t, 3> n{0, 0, 0}; ///< nodes along x, y, z; at least 1 each
     bool is_2d = false;                      ///< one layer in y, at origin.y
+    /// Axes along which the solver repeats the case (fppg/periodic.h): particles off the lattice
+    /// may be half a step beyond the first and the last nodes.
+    std::array<bool, 3> is_periodic{};
 };
 
 /// Nodes [z_begin, z_end) of the column at row `y` of one slab (= one x).

@@ -104,6 +104,8 @@ struct OffLatticeParticles
     std::vector<std::array<float, 3>> normals;
     std::vector<float> distances; ///< metres to the surface it belongs to, negative inside
     std::vector<float> rhop;      ///< boundary and floating particles: rhop0
+    /// Of fitted walls: 1 the layer nearest to the surface or on it, 2 the next; 0: in no layer.
+    std::vector<std::uint8_t> layers;
     /// How much of dp^3 (2D: dp^2) of a body it stands for (FittedBody::share); empty: all are 1.
     std::vector<float> shares;
 

@@ -20,6 +20,8 @@ struct ParticleCloud
     std::vector<std::uint16_t> mk;  ///< absolute
     std::vector<std::uint8_t> type; ///< as ParticleType; empty where the file does not say
     std::vector<std::uint8_t> kind; ///< as FitKind; empty where the file does not say
+    /// Of fitted walls, 1 nearest to the surface; 0: in none; empty where the file does not say.
+    std::vector<std::uint8_t> layer;
     std::vector<std::array<float, 3>> normals; ///< of walls, zero where there is none; as `kind`
     std::vector<float> distances; ///< metres to the walls, distance_of_nodes for nodes; as `kind`
 };
@@ -28,7 +30,7 @@ struct ParticleCloud
 ///
 /// name     a case without extension: `name.bi4` with `name.xml`, or else `name_All.vtk`;
 ///          or one file: `.bi4` or `.xml` of a case, or a legacy binary VTK file (POLYDATA) with
-///          point data Mk and, if it has them, Type, Kind, Distance and the normals of walls
+///          point data Mk and, if it has them, Type, Kind, Layer, Distance and the normals of walls
 ///          (WallNormal, or Normal in a file without NormalSize)
 /// has_kind_first  for a case: `name_All.vtk` first, because only VTK files hold the kind
 /// threads  number of threads; the result does not depend on it

@@ -49,6 +49,7 @@ enum class RenderColour : std::uint8_t
 {
     Mk,
     Kind,
+    Layer,
 };
 
 struct RenderOptions
@@ -84,6 +85,16 @@ Rgb colour_of_mk(std::uint16_t mk, std::uint8_t type);
 inline constexpr std::uint8_t unknown_type = 255;
 /// The colour of a kind. Values of no kind are grey.
 Rgb colour_of_kind(std::uint8_t kind);
+/// The colour of a layer of a wall, from 1 on.
+Rgb colour_of_layer(unsigned layer);
+
+/// What the colour of particle i stands for: its mk, its kind, or its layer (fluid: 0, other
+/// particles without a layer: no_layer).
+unsigned colour_value(const ParticleCloud& cloud, std::size_t i, RenderColour colour);
+inline constexpr unsigned no_layer = 256;
+Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour);
+/// For a legend: "mk 11 fixed", "edge", "layer 2", ...
+std::string colour_name(const ParticleCloud& cloud, std::size_t i, RenderColour colour);
 
 /// Draws particles as spheres on white: orthographic, two lights that move with the camera, one
 /// of which throws shadows. Several clouds stand side by side in panels of equal width, seen by one
@@ -93,7 +104,7 @@ Rgb colour_of_kind(std::uint8_t kind);
 /// threads  number of threads; the image does not depend on it
 /// returns  an image of the size asked for
 /// throws   UsageError if the options are out of range, no particle is left to draw, or the colour
-///          is by kind and a cloud has no kinds
+///          is by kind or layer and a cloud has none
 /// cost     about 80 bytes per particle besides the clouds; a million particles at 1600 x 1200 take
 ///          1.5 s of processor time, with reading and PNG (AMD EPYC)
 Image render_particles(const std::vector<ParticleCloud>& clouds, const RenderOptions& options,

@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 #include "fppg/normals.h"
+#include "fppg/periodic.h"
 #include "fppg/read_shapes.h"
 #include "fppg/relax_walls.h"
 
@@ -137,6 +138,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   for (const std::string& line : report.log) run.log.line(line);
                   made.node_files = std::move(report.node_files);
                   for (std::string& w : made.def.warnings) run.diagnose(std::move(w));
+                  for (std::string& w : made.def.hints) run.warn(std::move(w));
                   for (std::string& w : report.warnings) run.diagnose(std::move(w));
                   run.log.line(fmt::format("Triangles: {} ({} ignored)", report.triangles,
                                            report.triangles_ignored));
@@ -168,9 +170,18 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
     run.stage("PreparePoints",
               [&]
               {
+                  const SeamsClosed seams = close_seams(made.def, made.field);
+                  if (seams.left_out + seams.moved > 0)
+                      run.log.line(fmt::format(
+                          "Periodic seam: {} particles left out, as others are nearer than half "
+                          "a dp across it, {} moved by a period",
+                          seams.left_out, seams.moved));
                   std::vector<std::string> warnings;
                   made.particles =
                       make_particles(made.def, made.field, run.threads, made.constants, warnings);
+                  std::vector<std::string> periods;
+                  set_period(made.def, made.particles, periods);
+                  for (std::string& w : periods) run.diagnose(std::move(w));
                   log_particles(made.def, made.particles, made.constants, run.log);
                   const SettledFloatings floatings =
                       settle_floatings(made.scene, made.field.walls, made.particles);

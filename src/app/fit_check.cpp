@@ -2,6 +2,7 @@
 
 #include "fppg/files.h"
 
+#include "app/relax_stage.h"
 #include "app/run_log.h"
 
 #include <fmt/format.h>
@@ -49,11 +50,14 @@ public:
                       [static_cast<std::size_t>(walls.particles.kinds[i])];
     }
 
-    /// returns  the line of the log
+    /// returns  the line of the log, with those of its layers
     std::string look_at(std::size_t b)
     {
         const FittedBody& body = walls_.bodies[b];
         std::string line = fmt::format("  {} (xml row:{}, mk:{}):", body.name, body.line, body.mk);
+        const std::string layers =
+            layers_text(walls_, b, [&](std::size_t l) { return count_of_layer(l); });
+        if (!layers.empty()) line += fmt::format(" layers of {} particles;", layers);
         return line + count_of(b) + volume_of(b);
     }
 
@@ -92,6 +96,17 @@ private:
                            percent(share));
     }
 
+    std::string count_of_layer(std::size_t l)
+    {
+        std::uint64_t count = 0;
+        for (const std::uint64_t n : of_kind_[l]) count += n;
+        const double expected = walls_.bodies[l].measures.area / (dp_ * dp_);
+        if (!walls_.bodies[l].is_layer() || !(expected > 0)) return fmt::format("{}", count);
+        count_of(l);
+        return fmt::format("{} ({})", count,
+                           percent(walls_.bodies[l].measures.wall_particles / expected - 1));
+    }
+
     /// Its layers follow it.
     bool has_layers(std::size_t b) const
     {
@@ -102,7 +117,6 @@ private:
     {
         const FittedBody& body = walls_.bodies[b];
         const FitMeasures& measures = body.measures;
-        if (body.is_layer()) return {};
         if (!(measures.volume > 0)) return " no volume";
         if (!body.is_solid || measures.filled < nearly_all)
             return fmt::format(" {:.4g} {}, not filled by its draw", measures.volume / depth_,
@@ -195,7 +209,8 @@ std::vector<std::string> check_fit(const FitDef& settings, const FittedWalls& wa
 {
     FitCheck check(settings, walls, grid);
     log.line("Fitted bodies against their shapes:");
-    for (std::size_t b = 0; b < walls.bodies.size(); ++b) log.line(check.look_at(b));
+    for (std::size_t b = 0; b < walls.bodies.size(); ++b)
+        if (!walls.bodies[b].is_layer()) log.line(check.look_at(b));
     log.line();
     return check.warnings();
 }

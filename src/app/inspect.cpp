@@ -119,6 +119,20 @@ double thickness_behind(const SurfaceMesh& mesh, const MeshQuery& query, std::ui
     return nearest <= reach ? nearest : std::numeric_limits<double>::infinity();
 }
 
+/// Layers of both sides that are nearer than this are one, dp.
+constexpr double merged_layers_dp = 0.6;
+
+/// How many layers of mDBC walls there is room for through a wall, at depths of (k + 1/2) dp from
+/// both of its sides.
+std::size_t layers_through(double thickness_dp)
+{
+    const double of_a_side = std::floor(thickness_dp / 2 + 0.5 + 1e-6);
+    if (of_a_side < 1) return 0;
+    const bool are_merged = thickness_dp - 2 * (of_a_side - 0.5) < merged_layers_dp;
+    const double layers = 2 * of_a_side - (are_merged ? 1 : 0);
+    return static_cast<std::size_t>(std::min<double>(layers, Inspection::most_layers));
+}
+
 /// Looks for thin places at points spread evenly over the area.
 void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
 {
@@ -128,6 +142,7 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
     double area = 0;
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
     std::vector<Thickness> samples(thickness_samples);
+    const double reach = (Inspection::most_layers + 0.5) * found.options.dp;
     parallel_for(
         samples.size(), found.options.threads,
         [&](std::size_t i)
@@ -146,13 +161,15 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
             const auto& c = mesh.facets[f];
             const Vec3& a = mesh.vertices[c[0]];
             const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-            samples[i] = {p, thickness_behind(mesh, query, f, p, found.options.dp)};
+            samples[i] = {p, thickness_behind(mesh, query, f, p, reach)};
         },
         64);
     std::size_t thin = 0;
     Thickness least;
     for (const Thickness& sample : samples)
     {
+        found.layer_shares[layers_through(std::min(sample.value, reach) / found.options.dp)] +=
+            1.0 / thickness_samples;
         if (!(sample.value < found.options.dp)) continue;
         ++thin;
         if (sample.value < least.value) least = sample;
@@ -329,6 +346,17 @@ void write_particles(const Inspection& found, const Lengths& in, const Line& lin
                            100 * found.thin_share, in.length(found.thinnest),
                            in.place(found.thinnest_at))
              : "none found");
+    if (!report.is_watertight) return;
+    std::size_t least = 0;
+    while (least < Inspection::most_layers && !(found.layer_shares[least] > 0)) ++least;
+    const auto share = [&](std::size_t layers) { return 100 * found.share_with_layers(layers); };
+    line("  layers (mDBC)",
+         fmt::format(
+             "room for {} {}; 3 (coefh 1) behind {:.3g} % of the area, 4 (coefh 1.2) "
+             "behind {:.3g} %",
+             least,
+             least == Inspection::most_layers ? "or more everywhere" : "at the thinnest place",
+             share(3), share(4)));
 }
 
 } // namespace
@@ -423,6 +451,12 @@ std::string to_json(const Inspection& found)
         json["lines_shorter_than_dp"] = found.short_lines;
         json["thin"] = {{"share_of_area", found.thin_share}, {"least", found.thinnest}};
         if (found.thin_share > 0) json["thin"]["at"] = as_json(found.thinnest_at);
+        if (report.is_watertight && found.question.empty())
+        {
+            json["layers"]["share_of_area"] = Json::array();
+            for (const double share : found.layer_shares)
+                json["layers"]["share_of_area"].push_back(share);
+        }
     }
     json["warnings"] = found.file_warnings;
     for (const std::string& warning : report.warnings) json["warnings"].push_back(warning);

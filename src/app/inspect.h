@@ -61,6 +61,17 @@ struct Inspection
     double thin_share = 0; ///< of the area, where the opposite side is nearer than dp
     double thinnest = 0;   ///< the least distance found there; 0 if no place is thin
     Vec3 thinnest_at;
+    /// For how many layers of mDBC there is room through the body, counted from both sides, at most
+    /// most_layers: the share of the area for each number.
+    static constexpr std::size_t most_layers = 4;
+    std::array<double, most_layers + 1> layer_shares{};
+    /// The share of the area with room for so many layers or more.
+    double share_with_layers(std::size_t layers) const
+    {
+        double share = 0;
+        for (std::size_t n = layers; n <= most_layers; ++n) share += layer_shares[n];
+        return share;
+    }
 };
 
 /// Reads, takes in and measures a mesh file of any kind that mesh_format_of() knows; a CSV file is

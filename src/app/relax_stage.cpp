@@ -57,6 +57,22 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
 
 } // namespace
 
+std::string layers_text(const FittedWalls& walls, std::size_t body,
+                        const std::function<std::string(std::size_t)>& text_of)
+{
+    std::vector<std::string> layers;
+    for (std::size_t l = body + 1; l < walls.bodies.size(); ++l)
+    {
+        if (walls.bodies[l].owner != body) continue;
+        const auto number = static_cast<std::size_t>(walls.bodies[l].layer);
+        layers.resize(std::max(layers.size(), number + 1));
+        layers[number] += (layers[number].empty() ? "" : " and ") + text_of(l);
+    }
+    // The first of DBC stands on the surface.
+    if (!layers.empty() && layers[0].empty()) layers[0] = text_of(body);
+    return fmt::format("{}", fmt::join(layers, ", "));
+}
+
 void log_fitted_walls(const RunField& field, RunLog& log)
 {
     const FittedWalls& walls = field.walls;
@@ -68,9 +84,19 @@ void log_fitted_walls(const RunField& field, RunLog& log)
     for (std::size_t b = 0; b < walls.bodies.size(); ++b)
     {
         const FittedBody& body = walls.bodies[b];
-        log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
-                             body.name, body.line, body.mk, counts[b][0], counts[b][1],
-                             counts[b][2]));
+        if (body.is_layer()) continue;
+        // In lines of layers all kinds are of all layers.
+        std::array<std::uint64_t, 3> all{};
+        for (std::size_t l = b; l < walls.bodies.size(); ++l)
+            for (std::size_t kind = 0; kind < 3 && (l == b || walls.bodies[l].owner == b); ++kind)
+                all[kind] += counts[l][kind];
+        const std::string layers =
+            layers_text(walls, b,
+                        [&](std::size_t l)
+                        { return fmt::format("{}", counts[l][0] + counts[l][1] + counts[l][2]); });
+        log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles{}",
+                             body.name, body.line, body.mk, all[0], all[1], all[2],
+                             layers.empty() ? "" : ", in layers of " + layers));
         if (body.measures.filled > 0)
             log.line(fmt::format(
                 "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",

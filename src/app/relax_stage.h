@@ -2,12 +2,24 @@
 
 #include "fppg/lattice.h"
 
+#include <cstddef>
+#include <functional>
+#include <string>
+
 namespace fppg
 {
 
 class RunLog;
 struct CaseRunState;
 struct MadeCase;
+
+/// What is to be said of each layer of a body, in one line; layers of both sides of a sheet that
+/// are as deep stand together. Empty for a body without layers.
+///
+/// body     index in walls.bodies, no layer
+/// text_of  of a layer, or of the body itself where its surface is the first layer
+std::string layers_text(const FittedWalls& walls, std::size_t body,
+                        const std::function<std::string(std::size_t)>& text_of);
 
 /// Says of every fitted body how many particles stand on it, and the clearances of solids.
 void log_fitted_walls(const RunField& field, RunLog& log);

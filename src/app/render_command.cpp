@@ -116,8 +116,10 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     app.add_option("--view", view,
                    "iso (default), front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in "
                    "degrees; a case in the plane of x and z is seen from the front by default");
-    app.add_option("--color,--colour", colour,
-                   "mk (default) or kind (corner, edge, surface, volume)");
+    app.add_option(
+        "--color,--colour", colour,
+        "mk (default), kind (corner, edge, surface, volume) or layer (of walls, 1 next to "
+        "the surface)");
     app.add_option("--mk", mks, "only these, such as 1,11-13");
     app.add_option("--cut", cuts, "keeps what is on one side: y>0.3 or z<1; may be repeated")
         .may_be_repeated();
@@ -146,8 +148,10 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
     for (const std::string& cut : cuts) options.cuts.push_back(parse_cut(cut));
     if (colour == "kind")
         options.colour = RenderColour::Kind;
+    else if (colour == "layer")
+        options.colour = RenderColour::Layer;
     else if (colour != "mk")
-        refuse("--color", colour, "mk or kind");
+        refuse("--color", colour, "mk, kind or layer");
     if (call.threads < 0 || call.threads > 4096)
         throw UsageError(
             fmt::format("--threads: {} is out of range, expected 0 to 4096", call.threads));
@@ -164,28 +168,19 @@ bool is_in_plane(const ParticleCloud& cloud)
 /// Prints what the colours stand for.
 void print_colours(const std::vector<ParticleCloud>& clouds, const RenderOptions& options)
 {
-    static constexpr const char* kinds[] = {"corner", "edge", "surface", "volume"};
     std::vector<bool> is_wanted(65536, options.mks.empty());
     for (const std::uint16_t mk : options.mks) is_wanted[mk] = true;
-    const bool is_by_mk = options.colour == RenderColour::Mk;
     std::map<unsigned, std::pair<Rgb, std::string>> found;
     for (const ParticleCloud& cloud : clouds)
         for (std::size_t i = 0; i < cloud.mk.size(); ++i)
         {
-            const unsigned value = is_by_mk ? cloud.mk[i] : cloud.kind[i];
+            const unsigned value = colour_value(cloud, i, options.colour);
             if (!is_wanted[cloud.mk[i]] || found.contains(value)) continue;
-            const std::uint8_t type = cloud.type.empty() ? unknown_type : cloud.type[i];
-            if (is_by_mk)
-                found[value] = {colour_of_mk(cloud.mk[i], type),
-                                fmt::format("mk {} {}", value,
-                                            cloud.type.empty() ? "" : particle_type_name(type))};
-            else
-                found[value] = {colour_of_kind(cloud.kind[i]), value < std::size(kinds)
-                                                                   ? std::string(kinds[value])
-                                                                   : fmt::format("kind {}", value)};
+            found[value] = {colour_of(cloud, i, options.colour),
+                            colour_name(cloud, i, options.colour)};
         }
     for (const auto& [value, entry] : found)
-        fmt::print("  {}  {}\n", hex_of(entry.first), trimmed(entry.second));
+        fmt::print("  {}  {}\n", hex_of(entry.first), entry.second);
 }
 
 } // namespace
@@ -200,7 +195,7 @@ int run_render(const std::vector<std::string>& arguments)
     std::vector<ParticleCloud> clouds;
     for (const std::string& name : call.cases)
         clouds.push_back(
-            read_particles(name, call.options.colour == RenderColour::Kind, call.threads));
+            read_particles(name, call.options.colour != RenderColour::Mk, call.threads));
     if (!call.has_view && std::all_of(clouds.begin(), clouds.end(), is_in_plane))
         call.options.view = parse_view("front");
     const Image image = render_particles(clouds, call.options, call.threads);

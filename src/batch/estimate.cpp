@@ -86,7 +86,7 @@ private:
         for (const ParticleBlock& block : particles.blocks)
             out_.blocks.push_back({block.type, block.mk, block.count, true});
         out_.triangles = report.triangles;
-        for (const auto* list : {&def_.warnings, &report.warnings, &warnings})
+        for (const auto* list : {&def_.warnings, &def_.hints, &report.warnings, &warnings})
             out_.warnings.insert(out_.warnings.end(), list->begin(), list->end());
         note_files(report);
     }

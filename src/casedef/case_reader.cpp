@@ -80,6 +80,8 @@ public:
         program.run(read_.child(geometry, "commands"));
         commands_.require_all_overrides_used();
         evaluate_execution(def_.execution, read_);
+        if (vres == nullptr)
+            read_periodic_axes(def_.execution, def_.file, def_.grid.is_periodic, def_.period_shift);
 
         if (const Element* e = casedef.find_child("initials"))
             def_.initials = read_initials(*e, def_, read_, def_.warnings);

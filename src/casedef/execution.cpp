@@ -2,6 +2,7 @@
 
 #include "core/finite_number.h"
 #include "core/text.h"
+#include "fppg/error.h"
 
 #include <fmt/format.h>
 
@@ -89,6 +90,56 @@ void evaluate_execution(std::vector<Element>& execution, const AttributeReader& 
 {
     evaluate_parameters(*first_of(execution, "parameters"), read);
     if (Element* special = first_of(execution, "special")) evaluate_all(*special, read);
+}
+
+std::optional<std::string> parameter_value(const std::vector<Element>& execution,
+                                           std::string_view key)
+{
+    std::optional<std::string> out;
+    for (const Element& parameters : execution)
+    {
+        if (parameters.kind != Element::Kind::Tag || parameters.name != "parameters") continue;
+        for (const Element& e : parameters.children)
+        {
+            if (e.kind != Element::Kind::Tag || e.name != "parameter") continue;
+            const std::string* own = e.find_attribute("key");
+            const std::string* value = e.find_attribute("value");
+            const std::string* active = e.find_attribute("active");
+            const bool is_off = active != nullptr && (*active == "false" || *active == "0");
+            if (own != nullptr && value != nullptr && *own == key && !is_off) out = *value;
+        }
+    }
+    return out;
+}
+
+void read_periodic_axes(const std::vector<Element>& execution, const std::string& file,
+                        std::array<bool, 3>& is_periodic, std::array<Vec3, 3>& shift)
+{
+    is_periodic = {};
+    shift = {};
+    for (const std::size_t axis : {0U, 1U, 2U})
+        for (const std::size_t to : {0U, 1U, 2U})
+        {
+            const std::string key = fmt::format("{}PeriodicInc{}", "XYZ"[axis], "XYZ"[to]);
+            const std::optional<std::string> text =
+                axis == to ? std::nullopt : parameter_value(execution, key);
+            if (!text) continue;
+            const std::optional<double> value = finite_number(*text);
+            if (!value)
+                throw CaseError(fmt::format("{}: parameter {}: \"{}\" is invalid, expected metres",
+                                            file, key, *text));
+            is_periodic[axis] = true;
+            // The solver's increment leads from the end of the period back to its begin.
+            shift[axis][static_cast<int>(to)] = -*value;
+        }
+    for (const std::size_t open : {2U, 1U, 0U})
+    {
+        static constexpr const char* keys[] = {"YZPeriodic", "XZPeriodic", "XYPeriodic"};
+        if (!parameter_value(execution, keys[open])) continue;
+        is_periodic = {true, true, true};
+        is_periodic[open] = false;
+        shift = {};
+    }
 }
 
 std::string domain_limit(const AttributeReader& read, const Element& e, const std::string& text,

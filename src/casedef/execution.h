@@ -2,6 +2,14 @@
 
 #include "casedef/attributes.h"
 
+#include "fppg/vec.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace fppg
 {
 
@@ -20,6 +28,17 @@ std::vector<Element> read_execution(const Element& root, const AttributeReader& 
 /// throws CaseError for what GenCase refuses there: other elements in `<parameters>`, a second
 ///        `<simulationdomain>`, wrong limits and expressions
 void evaluate_execution(std::vector<Element>& execution, const AttributeReader& read);
+
+/// The value of a parameter of the solver; empty where the case does not give it.
+std::optional<std::string> parameter_value(const std::vector<Element>& execution,
+                                           std::string_view key);
+
+/// The axes along which the solver repeats the case, and the shift of the next copy across each:
+/// parameters XPeriodicIncY and the like, or XYPeriodic, XZPeriodic, YZPeriodic (JSph.cpp, v5.4).
+///
+/// throws CaseError for a value that is no number
+void read_periodic_axes(const std::vector<Element>& execution, const std::string& file,
+                        std::array<bool, 3>& is_periodic, std::array<Vec3, 3>& shift);
 
 /// A limit of a simulation domain as GenCase v5.4 writes it: a number as it stands, `default`,
 /// `default - NUMBER` or `default - NUMBER%`, with + at the upper limit; blanks and capitals do not

@@ -159,25 +159,31 @@ private:
     /// The place of the layers; `boundary` is left empty where the case's parameters decide.
     void read_layers(const Element& e, FitSettings& s) const
     {
-        if (e.find_attribute("boundary") != nullptr && !is_word(e, "boundary", "auto"))
-            s.boundary =
-                is_first_of(e, "boundary", "mdbc", "dbc") ? WallBoundary::Mdbc : WallBoundary::Dbc;
+        const std::string boundary = read_.text_or(e, "boundary", "auto");
+        if (boundary == "mdbc")
+            s.boundary = WallBoundary::Mdbc;
+        else if (boundary == "dbc")
+            s.boundary = WallBoundary::Dbc;
+        else if (boundary != "auto")
+            read_.fail(
+                e, fmt::format("attribute boundary=\"{}\" is invalid, expected auto, mdbc or dbc",
+                               boundary));
         if (e.find_attribute("layers") != nullptr && !is_word(e, "layers", "auto"))
             s.layers = static_cast<int>(number_or(
                 e, "layers", 0, [](double v) { return v >= 1 && v <= 16 && v == std::floor(v); },
                 "auto or a whole number from 1 to 16"));
-        const std::string* side = e.find_attribute("side");
-        if (side == nullptr) return;
-        if (*side == "behind")
+        if (e.find_attribute("side") == nullptr) return;
+        const std::string& side = read_.text(e, "side");
+        if (side == "behind")
             s.side = LayerSide::Behind;
-        else if (*side == "front")
+        else if (side == "front")
             s.side = LayerSide::Front;
-        else if (*side == "both")
+        else if (side == "both")
             s.side = LayerSide::Both;
         else
             read_.fail(e, fmt::format("attribute side=\"{}\" is invalid, expected behind, front or "
                                       "both",
-                                      *side));
+                                      side));
     }
 
     RelaxSettings relax_of(const Element& e) const

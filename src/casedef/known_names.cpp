@@ -95,10 +95,10 @@ constexpr auto attribute_table = std::to_array<NameRow>({
 "redrawnear redrawnearbox"},
     {"bound fluid",
 "lattice"},
+    {"boundary clearance density featureangle layers mkbound plates side",
+"bodyfitted"},
     {"boundcount fluidcount",
 "mkconfig"},
-    {"clearance density featureangle mkbound plates",
-"bodyfitted"},
     {"closed",
 "drawextrude"},
     {"ctecylindercover ctecylindernumsides ctecylindertube cteellipsoid cteline "

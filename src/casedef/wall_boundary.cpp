@@ -1,9 +1,12 @@
 #include "casedef/wall_boundary.h"
 
+#include "casedef/execution.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,41 +16,74 @@ namespace fppg
 namespace
 {
 
-/// The value of a parameter of the solver; empty without.
-std::optional<std::string> parameter_of(const CaseDef& def, std::string_view name)
+/// A parameter of the solver, as it reads whole numbers; empty where the case does not give it.
+std::optional<int> whole_parameter(const CaseDef& def, std::string_view key)
 {
-    std::optional<std::string> out;
-    for (const Element& e : def.execution)
-    {
-        if (e.name != "parameters") continue;
-        for (const Element& p : e.children)
-        {
-            const std::string* key = p.find_attribute("key");
-            const std::string* value = p.find_attribute("value");
-            if (key != nullptr && value != nullptr && *key == name) out = *value;
-        }
-    }
-    return out;
+    const std::optional<std::string> text = parameter_value(def.execution, key);
+    if (!text) return std::nullopt;
+    return static_cast<int>(std::strtol(text->c_str(), nullptr, 10));
 }
 
-/// Fluid at the surface sees 2 h of wall, so that layer k is needed while k < 2h/dp - 1.
+/// As many layers as fluid at the surface sees: layer k is needed while k < 2h/dp - 1.
+int layers_seen(double kernel_dp)
+{
+    return std::max(1, static_cast<int>(std::ceil(kernel_dp - 1 - 1e-9)));
+}
+
 std::vector<double> layer_depths(const FitSettings& settings, double kernel_dp)
 {
     std::vector<double> out;
     const bool is_mdbc = settings.boundary == WallBoundary::Mdbc;
-    int count = settings.layers.value_or(0);
-    if (is_mdbc && !settings.layers)
-        count = std::max(1, static_cast<int>(std::ceil(kernel_dp - 1 - 1e-9)));
+    const int count = settings.layers.value_or(is_mdbc ? layers_seen(kernel_dp) : 0);
     for (int k = 0; k < count; ++k) out.push_back(k + (is_mdbc ? 0.5 : 0.0));
     return out;
+}
+
+/// Says of layers for mDBC that are fewer than fluid sees what that means.
+void judge_layers(const FitSettings& settings, double kernel_dp, CaseDef& def)
+{
+    const int needed = layers_seen(kernel_dp);
+    if (settings.boundary != WallBoundary::Mdbc || !settings.layers || *settings.layers >= needed)
+        return;
+    const std::string at = fmt::format("{}:{}: <bodyfitted layers=\"{}\">: ", def.file,
+                                       settings.line, *settings.layers);
+    if (*settings.layers == 1)
+        def.warnings.push_back(
+            at + fmt::format("fluid goes through walls of one layer under mDBC; at 2h = {:.3g} dp "
+                             "they need {} (layers=\"auto\").",
+                             kernel_dp, needed));
+    else
+        def.hints.push_back(at + fmt::format("at 2h = {:.3g} dp fluid at the wall sees {} layers "
+                                             "(layers=\"auto\").",
+                                             kernel_dp, needed));
+}
+
+/// Of walls in layers: the parameters with which the solver keeps fluid out of them.
+void hint_at_parameters(CaseDef& def)
+{
+    const auto is_mdbc = [](const FitSettings& s) { return s.boundary == WallBoundary::Mdbc; };
+    if (!(def.fit.all && is_mdbc(*def.fit.all)) &&
+        std::none_of(def.fit.of_mk.begin(), def.fit.of_mk.end(),
+                     [&](const auto& of_mk) { return is_mdbc(of_mk.second); }))
+        return;
+    const int slip = whole_parameter(def, "SlipMode").value_or(1);
+    const bool keeps_out = whole_parameter(def, "NoPenetration").value_or(0) == 1;
+    if (slip >= 2 && keeps_out) return;
+    const std::string wrong = slip < 2 ? "SlipMode is 1" : "NoPenetration is not 1";
+    def.hints.push_back(fmt::format(
+        "{}: the parameter {}, with which fluid creeps into walls of mDBC; SlipMode=2 (or 3: free "
+        "slip) with NoPenetration=1 holds it in the solver.",
+        def.file, wrong));
 }
 
 } // namespace
 
 void settle_boundaries(CaseDef& def)
 {
-    const std::optional<std::string> parameter = parameter_of(def, "Boundary");
-    const bool is_mdbc = parameter == "2";
+    if (def.fit.is_empty()) return;
+    const std::optional<int> parameter = whole_parameter(def, "Boundary");
+    const bool is_mdbc = parameter == 2;
+    const double kernel_dp = 2 * def.h / def.grid.dp;
     const auto settle = [&](FitSettings& s)
     {
         if (!s.boundary)
@@ -57,12 +93,21 @@ void settle_boundaries(CaseDef& def)
                 "{}:{}: <bodyfitted boundary=\"{}\">: the parameter Boundary of the case is {}, "
                 "with which the solver expects walls for {}.",
                 def.file, s.line, is_mdbc ? "dbc" : "mdbc", *parameter, is_mdbc ? "mDBC" : "DBC"));
-        s.depths_dp = layer_depths(s, 2 * def.h / def.grid.dp);
+        s.depths_dp = layer_depths(s, kernel_dp);
         // The places themselves give the normals.
         if (s.boundary == WallBoundary::Mdbc) def.normals.is_active = true;
     };
     if (def.fit.all) settle(*def.fit.all);
-    for (auto& of_mk : def.fit.of_mk) settle(of_mk.second);
+    // The elements with an mk list give one entry an mk.
+    int judged = 0;
+    if (def.fit.all) judge_layers(*def.fit.all, kernel_dp, def);
+    for (auto& of_mk : def.fit.of_mk)
+    {
+        settle(of_mk.second);
+        if (of_mk.second.line != judged) judge_layers(of_mk.second, kernel_dp, def);
+        judged = of_mk.second.line;
+    }
+    if (is_mdbc) hint_at_parameters(def);
 }
 
 } // namespace fppg

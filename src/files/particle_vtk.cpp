@@ -37,7 +37,8 @@ struct Contents
 
 struct Layout
 {
-    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance;
+    Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance,
+        layer;
     Contents has;
     std::uint64_t size = 0;
 };
@@ -59,7 +60,7 @@ Layout lay_out(std::uint64_t n, const Contents& has)
           fmt::format("\nPOINT_DATA {}\nSCALARS Idp unsigned_int\nLOOKUP_TABLE default\n", n), 4);
     const std::string fields =
         fmt::format("\nFIELD FieldData {}",
-                    2 + (has.vel_and_rhop ? 2 : 0) + (has.normals ? 2 : 0) + (has.walls ? 3 : 0));
+                    2 + (has.vel_and_rhop ? 2 : 0) + (has.normals ? 2 : 0) + (has.walls ? 4 : 0));
     const char* const mk_type = has.mk_width == 1 ? "unsigned_char" : "unsigned_short";
     if (has.vel_and_rhop)
     {
@@ -85,6 +86,7 @@ Layout lay_out(std::uint64_t n, const Contents& has)
         place(layout.wall_normal,
               fmt::format("\n{} 3 {} float\n", has.normals ? "WallNormal" : "Normal", n), 12);
         place(layout.distance, fmt::format("\nDistance 1 {} float\n", n), 4);
+        place(layout.layer, fmt::format("\nLayer 1 {} int\n", n), 4);
     }
     layout.size += 1;
     return layout;
@@ -104,7 +106,8 @@ struct PieceBuffer
           kind(sizes + (has.normals ? n : 0)),
           wall_normal(kind + (has.walls ? n : 0)),
           distance(wall_normal + (has.walls ? 3 * n : 0)),
-          mk16(reinterpret_cast<std::uint16_t*>(distance + (has.walls ? n : 0))),
+          layer(distance + (has.walls ? n : 0)),
+          mk16(reinterpret_cast<std::uint16_t*>(layer + (has.walls ? n : 0))),
           mk8(reinterpret_cast<std::uint8_t*>(mk16)),
           type(mk8 + 2 * n)
     {
@@ -112,7 +115,7 @@ struct PieceBuffer
     static std::size_t bytes_per_particle(const Contents& has)
     {
         return std::size_t{12 + 8 + 4 + 4 + 2 + 1} + (has.vel_and_rhop ? 12 : 0) +
-               (has.normals ? 16 : 0) + (has.walls ? 20 : 0);
+               (has.normals ? 16 : 0) + (has.walls ? 24 : 0);
     }
 
     std::uint32_t* points;
@@ -122,9 +125,10 @@ struct PieceBuffer
     std::uint32_t* vel;     ///< with vel_and_rhop
     std::uint32_t* normals; ///< with normals, as sizes
     std::uint32_t* sizes;
-    std::uint32_t* kind; ///< with walls, as wall_normal and distance
+    std::uint32_t* kind; ///< with walls, as wall_normal, distance and layer
     std::uint32_t* wall_normal;
     std::uint32_t* distance;
+    std::uint32_t* layer;
     std::uint16_t* mk16;
     std::uint8_t* mk8;
     std::uint8_t* type;
@@ -169,7 +173,7 @@ void fill_normals(const PieceBuffer& buffer, const CaseParticles& particles, std
     }
 }
 
-/// Kind, normal and distance.
+/// Kind, normal, distance and layer.
 void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParticles& off_lattice,
                 const ParticleSegment& segment)
 {
@@ -180,6 +184,7 @@ void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParti
                     big_endian(static_cast<std::uint32_t>(FitKind::Volume)));
         std::fill_n(buffer.wall_normal + 3 * at, 3 * std::size_t{segment.count}, std::uint32_t{0});
         std::fill_n(buffer.distance + at, segment.count, big_endian(distance_of_nodes));
+        std::fill_n(buffer.layer + at, segment.count, std::uint32_t{0});
         return;
     }
     Transform turn = motion_of(*segment.block);
@@ -194,6 +199,7 @@ void fill_walls(const PieceBuffer& buffer, std::size_t at, const OffLatticeParti
             buffer.wall_normal[3 * (at + k) + static_cast<std::size_t>(axis)] =
                 big_endian(static_cast<float>(normal[axis]));
         buffer.distance[at + k] = big_endian(off_lattice.distances[from]);
+        buffer.layer[at + k] = big_endian(std::uint32_t{off_lattice.layers[from]});
     }
 }
 
@@ -267,6 +273,7 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
     write(layout.kind, buffer.kind, 4);
     write(layout.wall_normal, buffer.wall_normal, 12);
     write(layout.distance, buffer.distance, 4);
+    write(layout.layer, buffer.layer, 4);
 }
 
 } // namespace
@@ -294,7 +301,7 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
     file.reserve(layout.size);
     for (const Part* part : {&layout.points, &layout.vertices, &layout.idp, &layout.vel,
                              &layout.rhop, &layout.type, &layout.mk, &layout.normals, &layout.sizes,
-                             &layout.kind, &layout.wall_normal, &layout.distance})
+                             &layout.kind, &layout.wall_normal, &layout.distance, &layout.layer})
         file.write_at(part->data - part->text.size(), part->text.data(), part->text.size());
     file.write_at(layout.size - 1, "\n", 1);
 

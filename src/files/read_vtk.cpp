@@ -84,6 +84,7 @@ void read_particles_vtk(const std::string& path, ParticleCloud& cloud, int threa
     copy_integers(walk, "Mk", walk.mk, n, cloud.mk, threads);
     if (!walk.type.type.empty()) copy_integers(walk, "Type", walk.type, n, cloud.type, threads);
     if (!walk.kind.type.empty()) copy_integers(walk, "Kind", walk.kind, n, cloud.kind, threads);
+    if (!walk.layer.type.empty()) copy_integers(walk, "Layer", walk.layer, n, cloud.layer, threads);
     copy_floats(walk, n, cloud, threads);
 }
 

@@ -83,6 +83,7 @@ void VtkWalk::keep(const std::string& name, const VtkArray& array, std::uint64_t
     if (name == "Type") type = array;
     if (name == "Kind") kind = array;
     if (name == "Distance") distance = array;
+    if (name == "Layer") layer = array;
     if (name == "NormalSize") has_sizes = true;
 }
 

@@ -39,7 +39,7 @@ inline float float_at(const char* place)
 class VtkWalk
 {
 public:
-    VtkArray points, idp, mk, type, kind, normal, wall_normal, distance, density, velocity;
+    VtkArray points, idp, mk, type, kind, normal, wall_normal, distance, layer, density, velocity;
     bool has_sizes = false; ///< an array NormalSize
 
     /// bytes   the whole file; must outlive the object

@@ -63,7 +63,8 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
                         thickness, grid.dp, thickness / 2));
     for (int axis = 0; axis < 3; ++axis)
     {
-        if (is_flat(axis)) continue;
+        // What goes on beyond a period is in the next copy of the case.
+        if (is_flat(axis) || grid.is_periodic[static_cast<std::size_t>(axis)]) continue;
         const std::int64_t last =
             static_cast<std::int64_t>(grid.n[static_cast<std::size_t>(axis)]) - 1;
         const std::int64_t low = snap(bounds.min[axis], grid.origin[axis], grid.dp);

@@ -5,16 +5,26 @@
 namespace fppg
 {
 
-/// Between the first and the last nodes of the lattice, with room for rounding; in 2D in the plane.
-inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid)
+/// Walls go on so far beyond both ends of a period until they are relaxed, dp.
+inline constexpr double beyond_period_dp = 3;
+
+/// Between the first and the last nodes of the lattice, with room for rounding, along a periodic
+/// axis from half a step before the first to half a step behind the last; in 2D in the plane.
+///
+/// beyond_dp  along a periodic axis so much farther on both sides
+inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid, double beyond_dp = 0)
 {
     constexpr double tolerance = 1e-6; // dp
     for (int axis = 0; axis < 3; ++axis)
     {
+        const auto a = static_cast<std::size_t>(axis);
         const double index = (p[axis] - grid.origin[axis]) / grid.dp;
-        if (!(index >= -tolerance &&
-              index <= grid.n[static_cast<std::size_t>(axis)] - 1 + tolerance))
-            return false;
+        const double last = grid.n[a] - 1;
+        // What is at the end of a period is at its begin too.
+        const double low = grid.is_periodic[a] ? -0.5 - beyond_dp - tolerance : -tolerance;
+        const double high =
+            last + (grid.is_periodic[a] ? 0.5 + beyond_dp - 2 * tolerance : tolerance);
+        if (!(index >= low && index <= high)) return false;
     }
     return true;
 }

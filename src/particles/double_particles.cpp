@@ -92,6 +92,7 @@ private:
         off_lattice_.kinds.push_back(FitKind::Volume);
         off_lattice_.normals.push_back({});
         off_lattice_.distances.push_back(distance_of_nodes);
+        off_lattice_.layers.push_back(0);
         off_lattice_.rhop.push_back(density);
     }
 
@@ -114,6 +115,7 @@ private:
             off_lattice_.kinds[i] = old.kinds[from];
             off_lattice_.normals[i] = old.normals[from];
             off_lattice_.distances[i] = old.distances[from];
+            off_lattice_.layers[i] = old.layers[from];
         }
     }
 

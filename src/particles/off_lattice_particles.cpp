@@ -122,6 +122,7 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
     out.kinds.resize(n);
     out.normals.resize(n);
     out.distances.resize(n);
+    out.layers.assign(n, 0);
     out.rhop.resize(n);
     out.shares.assign(n, 1);
     const WallSurfaces surfaces(walls);
@@ -141,6 +142,8 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
                     out.kinds[at] = walls.particles.kinds[source];
                     out.normals[at] = place.normal;
                     out.distances[at] = place.distance;
+                    out.layers[at] = static_cast<std::uint8_t>(
+                        walls.bodies[walls.particles.bodies[source]].layer + 1);
                     out.shares[at] =
                         static_cast<float>(walls.owner_of(walls.particles.bodies[source]).share);
                 }

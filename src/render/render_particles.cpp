@@ -146,6 +146,11 @@ void check_options(const std::vector<ParticleCloud>& clouds, const RenderOptions
             fmt::format("'{}' has no array Kind to colour by; _All.vtk of a body-fitted case "
                         "has one",
                         cloud.file));
+        require(options.colour != RenderColour::Layer || !cloud.layer.empty() ||
+                    cloud.positions.empty(),
+                fmt::format("'{}' has no array Layer to colour by; _All.vtk of a body-fitted case "
+                            "has one",
+                            cloud.file));
         require(cloud.positions.size() <= std::numeric_limits<std::uint32_t>::max() - 1,
                 fmt::format("'{}' has {} particles, a picture takes up to 4,294,967,294",
                             cloud.file, cloud.positions.size()));
@@ -197,13 +202,6 @@ Lights place_lights(const CameraAxes& axes)
         return to_float(d / norm(d));
     };
     return {direction(-0.45, 0.75, 0.75), direction(0.8, 0.1, 0.6)};
-}
-
-Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
-{
-    return colour == RenderColour::Kind
-               ? colour_of_kind(cloud.kind[i])
-               : colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]);
 }
 
 /// One cloud, ready for rays.
@@ -339,27 +337,21 @@ struct Tile
     int y = 0;
 };
 
-/// What a colour stands for, by mk or kind.
+/// What a colour stands for, by colour_value().
 using Legend = std::map<unsigned, std::pair<Rgb, std::string>>;
 
 Legend legend_of(const std::vector<ParticleCloud>& clouds,
                  const std::vector<std::vector<std::uint32_t>>& chosen, RenderColour colour)
 {
-    static constexpr const char* kinds[] = {"corner", "edge", "surface", "volume"};
-    static constexpr const char* types[] = {"fixed", "moving", "floating", "fluid"};
     Legend legend;
     for (std::size_t c = 0; c < clouds.size(); ++c)
         for (const std::uint32_t i : chosen[c])
         {
             const ParticleCloud& cloud = clouds[c];
-            const unsigned value = colour == RenderColour::Kind ? cloud.kind[i] : cloud.mk[i];
-            if (legend.contains(value)) continue;
-            std::string name = fmt::format("mk {}", value);
-            if (colour == RenderColour::Kind)
-                name = value < std::size(kinds) ? kinds[value] : fmt::format("kind {}", value);
-            else if (!cloud.type.empty() && cloud.type[i] < std::size(types))
-                name += fmt::format(" {}", types[cloud.type[i]]);
-            legend.emplace(value, std::pair(colour_of(cloud, i, colour), std::move(name)));
+            const unsigned value = colour_value(cloud, i, colour);
+            if (!legend.contains(value))
+                legend.emplace(
+                    value, std::pair(colour_of(cloud, i, colour), colour_name(cloud, i, colour)));
         }
     return legend;
 }

@@ -85,4 +85,42 @@ Rgb colour_of_kind(std::uint8_t kind)
     return kind < std::size(colours) ? colours[kind] : Rgb{130, 130, 130};
 }
 
+Rgb colour_of_layer(unsigned layer)
+{
+    static constexpr Rgb colours[] = {{206, 52, 52},  {232, 160, 44},  {112, 160, 84},
+                                      {80, 130, 130}, {150, 108, 176}, {120, 92, 72}};
+    return colours[(layer - 1) % std::size(colours)];
+}
+
+unsigned colour_value(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
+{
+    if (colour == RenderColour::Mk) return cloud.mk[i];
+    if (colour == RenderColour::Kind) return cloud.kind[i];
+    if (cloud.layer[i] > 0) return cloud.layer[i];
+    return !cloud.type.empty() && cloud.type[i] == 3 ? 0 : no_layer;
+}
+
+Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
+{
+    if (colour == RenderColour::Kind) return colour_of_kind(cloud.kind[i]);
+    if (colour == RenderColour::Layer && cloud.layer[i] > 0) return colour_of_layer(cloud.layer[i]);
+    return colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]);
+}
+
+std::string colour_name(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
+{
+    static constexpr const char* kinds[] = {"corner", "edge", "surface", "volume"};
+    static constexpr const char* types[] = {"fixed", "moving", "floating", "fluid"};
+    const unsigned value = colour_value(cloud, i, colour);
+    if (colour == RenderColour::Kind)
+        return value < std::size(kinds) ? kinds[value] : fmt::format("kind {}", value);
+    if (colour == RenderColour::Layer)
+        return value == 0          ? "fluid"
+               : value == no_layer ? "no layer"
+                                   : fmt::format("layer {}", value);
+    const bool has_type = !cloud.type.empty() && cloud.type[i] < std::size(types);
+    return fmt::format("mk {}{}{}", value, has_type ? " " : "",
+                       has_type ? types[cloud.type[i]] : "");
+}
+
 } // namespace fppg

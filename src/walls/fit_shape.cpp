@@ -106,7 +106,7 @@ void keep_particles(const LatticeGrid& grid, const std::vector<ClipPlane>& clips
         [&](std::size_t i)
         {
             const Vec3& p = particles.positions[i];
-            is_out[i] = !is_in_domain(p, grid) || !is_kept_by(clips, p, grid.dp);
+            is_out[i] = !is_in_domain(p, grid, beyond_period_dp) || !is_kept_by(clips, p, grid.dp);
         },
         particles_per_chunk);
     for (std::size_t i = 0; i < n; ++i)

@@ -161,6 +161,23 @@ TEST(Inspect, FindsHowThinAPlateIs)
     EXPECT_EQ(inspect_mesh({.path = file.path(), .dp = 0.029}).thin_share, 0);
 }
 
+TEST(Inspect, CountsTheLayersThatAWallHasRoomFor)
+{
+    const TemporaryFile file = file_of(box({0, 0, 0}, {1, 1, 0.1}));
+    const auto share = [&](double thickness_dp, std::size_t layers) {
+        return inspect_mesh({.path = file.path(), .dp = 0.1 / thickness_dp})
+            .share_with_layers(layers);
+    };
+    EXPECT_NEAR(share(4, 4), 1, 1e-9);
+    EXPECT_LT(share(3, 4), 0.2); // those of the narrow sides
+    EXPECT_NEAR(share(3, 3), 1, 1e-9);
+    EXPECT_LT(share(1.4, 2), 0.2); // the two of both sides are one
+    EXPECT_NEAR(share(1.4, 1), 1, 1e-9);
+    EXPECT_LT(share(0.9, 1), 0.2);
+    EXPECT_TRUE(has(to_text(inspect_mesh({.path = file.path(), .dp = 0.1 / 3})),
+                    "room for 3 at the thinnest place; 3 (coefh 1) behind 100 % of the area"));
+}
+
 TEST(Inspect, GuessesMillimetresFromTheSizeAndFromDp)
 {
     const TemporaryFile large = file_of(box({0, 0, 0}, {300, 1, 1}));

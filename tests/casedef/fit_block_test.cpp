@@ -118,7 +118,7 @@ TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
     EXPECT_EQ(settings(def, 0).relax.tolerance, 0.001);
     FitSettings plain;
     plain.line = settings(def, 0).line;
-    plain.boundary = WallBoundary::Dbc;
+    plain.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
     EXPECT_EQ(settings(def, 0), plain);
 }
 
@@ -140,6 +140,76 @@ TEST(FitBlock, LetsTheLaterElementWin)
     const CaseDef all_last = read_block(
         R"(<bodyfitted mkbound="0" featureangle="20" /><bodyfitted featureangle="10" />)");
     EXPECT_EQ(settings(all_last, 0).feature_angle_deg, 10);
+}
+
+/// With this boundary condition in the parameters of the case.
+CaseText tank_with_boundary(const std::string& fppg, const std::string& parameters)
+{
+    CaseText out = tank_with("<fppg>" + fppg + "</fppg>");
+    out.execution = "<parameters>" + parameters + "</parameters>";
+    return out;
+}
+
+const std::string best_mdbc =
+    R"(<parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" />)";
+
+TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
+{
+    using testing::ElementsAre;
+    const CaseDef mdbc = read(tank_with_boundary(R"(<bodyfitted />)", best_mdbc));
+    EXPECT_THAT(settings(mdbc, 0).depths_dp, ElementsAre(0.5, 1.5, 2.5));
+    EXPECT_TRUE(mdbc.normals.is_active);
+    EXPECT_THAT(mdbc.warnings, IsEmpty());
+    const CaseDef two = read(
+        tank_with_boundary(R"(<bodyfitted boundary="auto" layers="2" side="both" />)", best_mdbc));
+    EXPECT_THAT(settings(two, 0).depths_dp, ElementsAre(0.5, 1.5));
+    EXPECT_EQ(settings(two, 0).side, LayerSide::Both);
+    const CaseDef dbc = read_block(R"(<bodyfitted boundary="dbc" layers="3" />)");
+    EXPECT_THAT(settings(dbc, 0).depths_dp, ElementsAre(0, 1, 2));
+    EXPECT_FALSE(dbc.normals.is_active);
+    EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
+}
+
+TEST(FitBlock, WarnsOfOneLayerForMdbcAndHintsAtMore)
+{
+    const CaseDef one = read(tank_with_boundary(R"(<bodyfitted layers="1" />)", best_mdbc));
+    ASSERT_EQ(one.warnings.size(), 1u);
+    EXPECT_THAT(one.warnings[0], HasSubstr("Case_Def.xml:9: <bodyfitted layers=\"1\">: fluid goes "
+                                           "through walls of one layer"));
+    EXPECT_THAT(one.warnings[0], HasSubstr("they need 3"));
+    const CaseDef two =
+        read(tank_with_boundary(R"(<bodyfitted mkbound="0,0" layers="2" />)", best_mdbc));
+    EXPECT_THAT(two.warnings, IsEmpty());
+    ASSERT_EQ(two.hints.size(), 1u);
+    EXPECT_THAT(two.hints[0], HasSubstr("sees 3 layers"));
+    EXPECT_THAT(read_block(R"(<bodyfitted boundary="dbc" layers="1" />)").warnings, IsEmpty());
+}
+
+TEST(FitBlock, HintsAtTheParametersThatKeepFluidOutOfMdbcWalls)
+{
+    const auto hints = [](const std::string& parameters, const char* fppg)
+    {
+        const CaseDef def = read(
+            tank_with_boundary(fppg, R"(<parameter key="Boundary" value="2" />)" + parameters));
+        EXPECT_TRUE(def.warnings.empty() || std::string(fppg).find("dbc") != std::string::npos);
+        return def.hints;
+    };
+    const std::string no_penetration = R"(<parameter key="NoPenetration" value="1" />)";
+    const std::string slip = R"(<parameter key="SlipMode" value="2" />)";
+    ASSERT_EQ(hints("", "<bodyfitted />").size(), 1u);
+    EXPECT_THAT(hints("", "<bodyfitted />")[0], HasSubstr("SlipMode is 1"));
+    EXPECT_EQ(hints(no_penetration, "<bodyfitted />").size(), 1u);
+    ASSERT_EQ(hints(slip, "<bodyfitted />").size(), 1u);
+    EXPECT_THAT(hints(slip, "<bodyfitted />")[0], HasSubstr("NoPenetration is not 1"));
+    EXPECT_EQ(
+        hints(slip + R"(<_parameter key="NoPenetration" value="1" />)", "<bodyfitted />").size(),
+        1u);
+    EXPECT_THAT(hints(slip + no_penetration, "<bodyfitted />"), IsEmpty());
+    EXPECT_THAT(
+        hints(R"(<parameter key="SlipMode" value="3" />)" + no_penetration, "<bodyfitted />"),
+        IsEmpty());
+    EXPECT_THAT(hints("", ""), IsEmpty());
+    EXPECT_THAT(hints("", R"(<bodyfitted boundary="dbc" />)"), IsEmpty());
 }
 
 TEST(FitBlock, EvaluatesExpressionsWithVariablesOfTheCommands)
@@ -198,7 +268,7 @@ TEST(FitChoice, OnAddsTheDefaultsToWhatTheBlockNames)
 {
     const CaseDef plain = read(test::tank(), FitChoice::On);
     FitSettings defaults;
-    defaults.boundary = WallBoundary::Dbc; // the case has no parameter Boundary
+    defaults.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
     EXPECT_EQ(settings(plain, 5), defaults);
     const CaseDef named =
         read_block(R"(<bodyfitted mkbound="0" featureangle="20" />)", FitChoice::On);
@@ -331,6 +401,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "attribute density=\"Area\" is invalid, expected area or cell"},
         Mistake{"Plates", R"(<fppg><bodyfitted plates="none" /></fppg>)",
                 "attribute plates=\"none\" is invalid, expected auto, both or one"},
+        Mistake{"Boundary", R"(<fppg><bodyfitted boundary="mDBC" /></fppg>)",
+                "<bodyfitted>: attribute boundary=\"mDBC\" is invalid, expected auto, mdbc or dbc"},
+        Mistake{"NoLayers", R"(<fppg><bodyfitted layers="0" /></fppg>)",
+                "attribute layers=\"0\" is 0, expected auto or a whole number from 1 to 16"},
+        Mistake{"TooManyLayers", R"(<fppg><bodyfitted layers="17" /></fppg>)",
+                "layers=\"17\" is 17, expected auto or a whole number from 1 to 16"},
+        Mistake{"HalfALayer", R"(<fppg><bodyfitted layers="2.5" /></fppg>)",
+                "layers=\"2.5\" is 2.5, expected auto or a whole number"},
+        Mistake{"EmptyLayers", R"(<fppg><bodyfitted layers="" /></fppg>)",
+                "attribute layers=\"\" is empty, expected auto or a whole number"},
+        Mistake{"WordForLayers", R"(<fppg><bodyfitted layers="deep" /></fppg>)",
+                "attribute layers=\"deep\""},
+        Mistake{"Side", R"(<fppg><bodyfitted side="inside" /></fppg>)",
+                "attribute side=\"inside\" is invalid, expected behind, front or both"},
         Mistake{"NoIterations", R"(<fppg><bodyfitted><relax iterations="0" /></bodyfitted></fppg>)",
                 "iterations=\"0\" is 0, expected auto or a whole number from 1 to 1000000"},
         Mistake{"HalfAnIteration",

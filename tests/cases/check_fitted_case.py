@@ -15,6 +15,11 @@ expected_fitted.json names the mesh with its mk and place, or a list of them as 
 A record may hold "bodies" instead, a list of mesh, mk, turn and move of bodies that stand apart;
 "volume_within" in one is how far the volume that its particles stand for may be off (default 0.01; more
 where edges are closer than dp), null where they are not meant to stand for it.
+
+A record with "layers" in its counts is of one mesh with layers for mDBC: layer k stands (k - 1/2) dp behind
+the mesh, and no normal of it is missing or leads elsewhere. It has "volume_within" too. "period" is the
+vector to the next copy of a case that is periodic along x: the solver's period, CasePosMax - CasePosMin + dp,
+is that, and no two particles are nearer than half a dp across it.
 """
 
 import os
@@ -86,7 +91,9 @@ def summarise(case):
     values, _ = read_bi4(case + ".bi4")
     picture = read_vtk(case + "_All.vtk")
     kinds = np.bincount(np.asarray(picture["Kind"]).ravel(), minlength=4)
+    layers = np.bincount(np.asarray(picture["Layer"]).ravel())[1:]
     return {
+        **({"layers": [int(n) for n in layers]} if len(layers) > 1 else {}),
         "np": values["CaseNp"],
         "blocks": [{k: b[k] for k in ("type", "mk", "count")} for b in read_blocks(case + ".xml")],
         "corners": int(kinds[0]), "edges": int(kinds[1]), "surface": int(kinds[2]),
@@ -124,8 +131,60 @@ def body_faults(record, folder, dp, positions, kind, mk):
         yield f"fluid stands {nearest:.3g} dp from the mesh of mk {record['mk']}"
 
 
+def layer_faults(case, folder, expected):
+    """Yields a line for everything that is wrong about a wall in layers."""
+    values, arrays = read_bi4(case + ".bi4")
+    picture = read_vtk(case + "_All.vtk")
+    dp, positions = values["Dp"], arrays["Posd"]
+    layer, mk = np.asarray(picture["Layer"]).ravel(), np.asarray(picture["Mk"]).ravel()
+    facets = read_stl(os.path.join(folder, expected["mesh"])) @ np.array(expected["turn"]).T
+    facets += np.array(expected["move"])
+    wall = sample(np.flatnonzero((layer > 0) & (mk == expected["mk"])))
+    depth = distances(positions[wall], facets) / dp - (layer[wall] - 0.5)
+    # Behind an edge that looks inwards a layer is deeper, where its two sides meet.
+    if depth.min() < -2e-3 or np.quantile(depth, 0.9) > 2e-3:
+        yield f"particles of layers are {depth.min():.3g} to {np.quantile(depth, 0.9):.3g} dp off their depth"
+    normals = arrays["BoundNor"][wall].astype(float)
+    length = np.linalg.norm(normals, axis=1) / dp
+    feet = distances(positions[wall] + normals, facets)[length > 0].max() / dp
+    if feet > 2e-3:
+        yield f"a normal ends {feet:.3g} dp from the mesh"
+    if np.count_nonzero(length == 0) > 0:
+        yield f"{np.count_nonzero(length == 0)} of {len(length)} particles of layers have no normal"
+    body = mk == expected["mk"]
+    volume, within = volume_of(facets), expected.get("volume_within", 0.01)
+    if within is not None and abs(np.count_nonzero(body) * dp ** 3 / volume - 1) > within:
+        yield f"the particles stand for {np.count_nonzero(body) * dp ** 3:.6g} m3, the body has {volume:.6g}"
+    fluid = positions[mk == 1]
+    near = fluid[np.all((fluid > facets.min(axis=(0, 1)) - dp) & (fluid < facets.max(axis=(0, 1)) + dp), axis=1)]
+    nearest = distances(sample(near), facets).min() / dp
+    if nearest < 0.25:
+        yield f"fluid stands {nearest:.3g} dp from the mesh"
+    if "period" in expected:
+        yield from period_faults(values, positions, expected["period"])
+    yield from differences(summarise(case), expected["counts"], is_same)
+
+
+def period_faults(values, positions, period):
+    dp, low, high = values["Dp"], values["CasePosMin"], values["CasePosMax"]
+    if abs(high[0] - low[0] + dp - period[0]) > 1e-9:
+        yield f"the solver takes {high[0] - low[0] + dp:.9g} m for the period, expected {period[0]:.9g}"
+    steps = (positions[:, 0] - low[0]) / dp
+    if steps.min() < -0.5 - 1e-5 or steps.max() > period[0] / dp - 0.5:
+        yield f"particles from {steps.min():.6g} to {steps.max():.6g} dp along x are not of one period"
+    if steps.min() > -0.4 or steps.max() < period[0] / dp - 0.6:
+        yield f"particles from {steps.min():.6g} to {steps.max():.6g} dp along x do not fill the period"
+    begin, end = positions[steps < 1] + period, positions[steps > period[0] / dp - 2]
+    nearest = min(np.linalg.norm(end - p, axis=1).min() for p in begin) / dp
+    if nearest < 0.499:
+        yield f"two particles are {nearest:.3g} dp apart across the period"
+
+
 def faults(case, folder, expected):
     """Yields a line for everything about the particles that is wrong."""
+    if "layers" in expected["counts"]:
+        yield from layer_faults(case, folder, expected)
+        return
     values, arrays = read_bi4(case + ".bi4")
     picture = read_vtk(case + "_All.vtk")
     dp, positions = values["Dp"], arrays["Posd"]

@@ -137,6 +137,7 @@ inline CaseParticles walled_particles()
                                    FitKind::Volume, FitKind::Volume};
     particles.off_lattice.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0.6F, 0.8F}, {0, 0, 0}, {0, 0, 0}};
     particles.off_lattice.distances = {0, 1e-17F, -1e-17F, 0.1F, 0.2F};
+    particles.off_lattice.layers = {1, 2, 3, 0, 0};
     particles.off_lattice.rhop = {999, 999, 1010, 1011, 1012};
     return particles;
 }

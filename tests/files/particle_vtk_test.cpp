@@ -102,7 +102,7 @@ TEST(WriteParticlesVtk, WritesAnEmptySelection)
     EXPECT_TRUE(empty.points.empty());
 }
 
-TEST(WriteParticlesVtk, HasKindNormalAndDistanceWhereThereAreWalls)
+TEST(WriteParticlesVtk, HasKindNormalDistanceAndLayerWhereThereAreWalls)
 {
     const CaseParticles particles = walled_particles();
     const VtkFile all(vtk_of(particles, VtkSelection::All));
@@ -120,6 +120,9 @@ TEST(WriteParticlesVtk, HasKindNormalAndDistanceWhereThereAreWalls)
     EXPECT_EQ(all.arrays.at("Distance")[5], 1e-17F);
     EXPECT_EQ(all.arrays.at("Distance").back(), 0.2F);
     EXPECT_EQ(bound.arrays.at("Distance")[5], 1e-17F);
+    EXPECT_EQ(bound.types.at("Layer"), "int");
+    EXPECT_EQ(bound.arrays.at("Layer"), (std::vector<double>{0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(all.arrays.at("Layer")[25], 3);
     EXPECT_EQ(all.points[3 * 5 + 2], static_cast<float>(1.0 / 3));
     EXPECT_EQ(all.arrays.at("Rhop")[4], 999);
     EXPECT_EQ(all.arrays.at("Rhop").back(), 1012);
@@ -166,7 +169,8 @@ TEST(WriteParticlesVtk, MovesParticlesOffTheLatticeAndTurnsTheirNormals)
 TEST(WriteParticlesVtk, HasNoArraysOfWallsInACaseWithoutThem)
 {
     const VtkFile all(vtk_of(small_particles(), VtkSelection::All));
-    for (const char* name : {"Kind", "Normal", "Distance"}) EXPECT_EQ(all.arrays.count(name), 0U);
+    for (const char* name : {"Kind", "Normal", "Distance", "Layer"})
+        EXPECT_EQ(all.arrays.count(name), 0U);
 }
 
 TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)
@@ -189,6 +193,7 @@ TEST(WriteParticlesVtk, GivesTheSameBytesForAnyNumberOfThreads)
         particles.off_lattice.kinds.push_back(static_cast<FitKind>(i % 4));
         particles.off_lattice.normals.push_back({0, static_cast<float>(i), 0});
         particles.off_lattice.distances.push_back(static_cast<float>(-i));
+        particles.off_lattice.layers.push_back(static_cast<std::uint8_t>(i % 4));
         particles.off_lattice.rhop.push_back(static_cast<float>(1000 + i));
     }
     for (const VtkSelection selection :

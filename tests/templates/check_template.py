@@ -120,6 +120,27 @@ def check_FittedNormals(result):
         yield "a normal below the surface does not lead to it"
 
 
+def check_FittedLayers(result):
+    ball = result.mesh("ball.stl", (0.83, 0.39, 0.54))
+    normals = result.arrays["BoundNor"].astype(float)
+    bound = np.flatnonzero((result.mk > 10) & (result.kind < VOLUME))
+    for mk, layers, depth in ((11, 3, lambda p: distances(p, ball)), (12, 4, lambda p: 0.21 - p[:, 2])):
+        own = bound[result.mk[bound] == mk]
+        positions = result.positions[own]
+        steps = depth(positions) / result.dp
+        for k in range(layers):
+            if np.count_nonzero(abs(steps - k - 0.5) < 1e-3) < 50:
+                yield f"mk {mk}: no layer stands {k + 0.5} dp behind the surface"
+        if np.abs(steps - np.rint(steps - 0.5) - 0.5).max() > 1e-3 or steps.max() > layers:
+            yield f"mk {mk}: particles stand between the layers"
+        if np.abs(depth(positions + normals[own])).max() > 1e-3 * result.dp:
+            yield f"mk {mk}: a normal does not lead to the surface"
+        if np.abs(np.linalg.norm(normals[own], axis=1) / result.dp - steps).max() > 1e-3:
+            yield f"mk {mk}: a normal is not the shortest way to the surface"
+    if not np.all(is_inside(result.positions[result.mk == 11], ball)):
+        yield "a particle of the ball is outside of it"
+
+
 def check_FittedPlates(result):
     heights = result.positions[result.mk == 11][:, 2]
     if not np.all(np.isclose(abs(heights - 0.21), 0.005, atol=1e-5)):
