@@ -10,6 +10,13 @@
 namespace fppg
 {
 
+namespace
+{
+
+constexpr char without_side = 2;
+
+} // namespace
+
 void measure_facets(SurfaceMesh& mesh, int threads)
 {
     const std::size_t n = mesh.facets.size();
@@ -28,7 +35,9 @@ void measure_facets(SurfaceMesh& mesh, int threads)
             for (const std::uint32_t v : mesh.facets[f])
                 size = std::max(size, largest_coordinate(mesh.vertices[v]));
             // A height of 16 roundings keeps the normal within about four degrees.
-            is_thin[f] = m.height < 16 * float_step * size;
+            is_thin[f] = m.height < 16 * float_step * size ? 1 : 0;
+            // Below half a rounding nothing says which way the facet looks.
+            if (m.height < 0.5 * float_step * size) is_thin[f] = without_side;
             longest[f] = static_cast<char>(m.longest);
         },
         4096);
@@ -40,7 +49,8 @@ void measure_facets(SurfaceMesh& mesh, int threads)
             at = mesh.neighbours[at][static_cast<std::size_t>(longest[at])];
         if (at == no_index || is_thin[at] != 0) continue;
         // A thin facet that is the edge of a thin plate keeps its own side.
-        if (dot(mesh.normals[at], mesh.normals[f]) > 0) mesh.normals[f] = mesh.normals[at];
+        if (is_thin[f] == without_side || dot(mesh.normals[at], mesh.normals[f]) > 0)
+            mesh.normals[f] = mesh.normals[at];
     }
 }
 
