@@ -15,8 +15,8 @@ namespace fppg
 namespace
 {
 
-/// A place of a particle that was taken out is looked for this near, dp.
-constexpr double reach_of_cuts_dp = 3;
+/// Cells in which places of particles that were taken out are sorted, dp.
+constexpr double cell_of_cuts_dp = 3;
 /// None is put so near to it again, dp.
 constexpr double reach_of_insertion_dp = 1.5;
 constexpr int surface_iterations = 100;
@@ -100,10 +100,10 @@ private:
         options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
         options.on_snapshot = [&](int iteration, const WallParticles& now)
         { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
-        PointGrid cut(reach_of_cuts_dp * dp, walls.cut.size());
+        PointGrid cut(cell_of_cuts_dp * dp, walls.cut.size());
         for (const Vec3& p : walls.cut) cut.add(p);
         const WallParticles& second = walls.second_sheets;
-        PointGrid second_sheets(reach_of_cuts_dp * dp, second.size());
+        PointGrid second_sheets(cell_of_cuts_dp * dp, second.size());
         for (const Vec3& p : second.positions) second_sheets.add(p);
         if (!walls.cut.empty() || second.size() > 0)
             options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)

@@ -14,7 +14,8 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
-constexpr double opposing = -0.5;
+/// Sides whose normals turn by more than 120 degrees face away from each other.
+constexpr double facing_away = -0.5;
 /// From sharp edges, dp.
 constexpr double off_edges_dp = 0.45;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
@@ -72,7 +73,7 @@ public:
         if (!is_thin) return std::nullopt;
         const Vec3 up = centre - other;
         const double size = norm(up);
-        if (!(size > 0) || !(dot(up, down) < opposing * size)) return std::nullopt;
+        if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
         if (edges_.has_nearer(centre, off_edges_dp * options_.dp)) return std::nullopt;
         return MiddlePoint{centre, facet};
     }
