@@ -158,7 +158,7 @@ def layer_faults(case, folder, expected):
     fluid = positions[mk == 1]
     near = fluid[np.all((fluid > facets.min(axis=(0, 1)) - dp) & (fluid < facets.max(axis=(0, 1)) + dp), axis=1)]
     nearest = distances(sample(near), facets).min() / dp
-    if nearest < 0.25:
+    if nearest < 0.1:
         yield f"fluid stands {nearest:.3g} dp from the mesh"
     if "period" in expected:
         yield from period_faults(values, positions, expected["period"])
