@@ -1,6 +1,7 @@
 #include "offset/creases.h"
 
 #include "core/parallel.h"
+#include "offset/dual_cells.h"
 #include "offset/quadric.h"
 #include "offset/slivers.h"
 
@@ -24,8 +25,6 @@ constexpr double beside_edge = 0.08;
 constexpr double longest_move = 0.7;
 /// The same where the surface was cut off.
 constexpr double longest_pull = 1.5;
-/// As in dual_cells.cpp.
-constexpr double jump_of_feet = 2.5;
 /// Edges of a gap that is closed.
 constexpr int gap_edges = 3;
 /// Cosine of the turn of a crease in a gap, 75 degrees.
@@ -183,7 +182,7 @@ private:
                             const Vec3& to) const
     {
         return dot(a.direction, b.direction) < turn_ &&
-               norm(a.foot - b.foot) > jump_of_feet * norm(to - from);
+               norm(a.foot - b.foot) > foot_jump * norm(to - from);
     }
 
     /// Where a crease sticks out into a cell none of whose edges it meets, the facets cut it off:

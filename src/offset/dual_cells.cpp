@@ -22,9 +22,6 @@ struct EdgeCrossing
 
 /// Two tangents of one smooth depth agree to this, in edges of the grid.
 constexpr double same_tangent = 0.03;
-/// The feet of two places are so much farther apart than the places where the surface has a crease
-/// between them: behind a round wall they are R / (R - depth) apart.
-constexpr double foot_jump = 2.5;
 /// Cosine of the least turn of a crease, 12 degrees.
 constexpr double least_turn = 0.978;
 /// A vertex on a crease may stand so far outside of its cell, in cells.

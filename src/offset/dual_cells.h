@@ -13,6 +13,10 @@ namespace fppg
 /// follow cyclically.
 inline constexpr int edges_of_cell = 12;
 
+/// The feet of two places are so much farther apart than the places where the surface has a crease
+/// between them: behind a round wall they are R / (R - depth) apart.
+inline constexpr double foot_jump = 2.5;
+
 /// A vertex of the offset surface.
 struct DualVertex
 {
