@@ -111,9 +111,9 @@ struct FitSettings
     double feature_angle_deg = 30; ///< [0, 180)
     FitDensity density = FitDensity::Area;
     std::optional<double> clearance_dp; ///< 0.5 to 1; empty: chosen per body from its volume
-    /// A plate thinner than this gets one sheet of particles instead of one on each side, dp: from
-    /// half a dp down two sheets are one of twice the density to SPH.
-    double one_sheet_dp = 0.5;
+    /// A plate thinner than this gets one sheet of particles instead of one on each side, dp: no
+    /// two particles of a wall are nearer (least_pair_dp).
+    double one_sheet_dp = 0.6;
     RelaxSettings relax;
     std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
     /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for

@@ -8,6 +8,10 @@
 namespace fppg
 {
 
+/// Particles of walls are no nearer than this to one another, dp: where corners, edges and surfaces
+/// want more, corners come first, then edges, then surfaces.
+inline constexpr double least_pair_dp = 0.6;
+
 struct FeatureOptions
 {
     double angle_deg =
@@ -62,26 +66,35 @@ struct FeatureParticle
     std::uint32_t edge = no_index;   ///< mesh edge that an edge particle lies on
 };
 
+/// Corners, and places along lines, that have no particle because another one is too near.
+struct FeaturesLeftOut
+{
+    std::size_t corners = 0;
+    std::size_t edges = 0;
+};
+
 /// Particles on the corners and evenly along the lines, at no more than dp and as near dp as a
-/// line's length allows.
+/// line's length allows; a line of 1 to 1.2 dp has none between its ends.
 ///
 /// Where corners lie closer than dp, or lines are shorter or run closer than dp, they are thinned:
 /// - corners with more lines first, then by vertex: one is kept if no kept one is nearer than
-///   0.5 dp, so every corner that is 0.5 dp from all others has its particle;
+///   0.6 dp (least_pair_dp), so every corner that is 0.6 dp from all others has its particle;
 /// - longer lines first, then by index: a line of length L is cut into ceil(L / dp) equal parts; a
-///   particle nearer than 0.45 dp to an earlier one is left out;
-/// - then every line is walked, and each stretch that is farther than 0.5 dp from all particles is
+///   particle nearer than 0.6 dp to an earlier one is left out;
+/// - then every line is walked, and each stretch that is farther than 0.6 dp from all particles is
 ///   filled evenly.
-/// So every point of every line has a particle within 0.5 dp (but for rounding), and no two
-/// particles are nearer than 0.45 dp.
+/// So every point of every line has a particle within 0.6 dp (but for rounding), within 0.5 dp
+/// where corners and lines keep dp from one another, and no two particles are nearer than 0.6 dp.
 ///
-/// returns  corners by vertex, then the particles of each line in order along it; those of a
-///          thinned line only where others do not cover it. Positions lie on the edge to rounding
-/// throws   GeometryError for a dp that is not positive, or so small that more than 2^32 - 2
-///          particles are needed
-/// cost     O(particles + edges of lines) time
+/// left_out  may be null; how many were left out, less those that the last step put elsewhere
+/// returns   corners by vertex, then the particles of each line in order along it; those of a
+///           thinned line only where others do not cover it. Positions lie on the edge to rounding
+/// throws    GeometryError for a dp that is not positive, or so small that more than 2^32 - 2
+///           particles are needed
+/// cost      O(particles + edges of lines) time
 std::vector<FeatureParticle> place_feature_particles(const SurfaceMesh& mesh,
                                                      const Features& features,
-                                                     const FeatureOptions& options);
+                                                     const FeatureOptions& options,
+                                                     FeaturesLeftOut* left_out = nullptr);
 
 } // namespace fppg

@@ -6,6 +6,7 @@
 #include "fppg/vec.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -68,6 +69,9 @@ struct FittedBody
     /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
     FitMeasures measures;
+    /// Particles that it lacks because others are nearer than least_pair_dp to their places: on
+    /// corners, along edges, on surfaces.
+    std::array<std::size_t, 3> left_out{};
 
     /// Of a layer of a wall: the index of the body whose surface it lies behind; else no_index.
     std::uint32_t owner = no_index;

@@ -44,7 +44,12 @@ struct RelaxedPart
     std::size_t removed = 0;
     double variation_before = 0; ///< surfaces only
     double mean = 0;             ///< as in RelaxStep
+    /// Coefficient of variation; of surfaces that of the distance from each wall particle to the
+    /// nearest one, whatever edge, sheet or body it is on.
     double variation = 0;
+    /// Surfaces only: the same over the particles that move, each among those of its sheet.
+    double smooth_variation = 0;
+    double nearest_pair_dp = 0; ///< surfaces only
 };
 
 struct RelaxReport

@@ -42,9 +42,10 @@ struct SectionParticles
 ///
 /// A corner is where the chain, and the surface too, turns by more than the feature angle (with
 /// 0.01 degrees to spare), and every end of an open chain; a finely cut circle has none. A corner
-/// that is nearer than 0.5 dp along its chain to the one before is left out. Between corners, and
-/// around chains without any, particles stand evenly, at no more than dp and as near dp as the
-/// length allows: every point of the section has one within 0.5 dp along it.
+/// that is nearer than 0.6 dp (least_pair_dp) along its chain to the one before is left out.
+/// Between corners, and around chains without any, particles stand evenly, at no more than dp and
+/// as near dp as the length allows, but none between corners 1 to 1.2 dp apart: every point of the
+/// section has one within 0.6 dp along it.
 ///
 /// mesh     as repair_mesh() made it
 /// returns  chains in the order of their first facets, those shorter than 1e-6 dp left out;

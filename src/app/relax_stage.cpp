@@ -45,14 +45,28 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
         log.line(fmt::format("Relaxed {}: no particle that may move", part.what));
         return;
     }
-    const char* mean = part.what == "surface" ? "spacing" : "density";
+    const bool is_surface = part.what == "surface";
     std::string text = fmt::format(
         "Relaxed {}: {} particles, {} iterations, {} {:.4f}, coefficient of variation {:.4f}",
-        part.what, thousands(part.particles), part.iterations, mean, part.mean, part.variation);
+        part.what, thousands(part.particles), part.iterations, is_surface ? "spacing" : "density",
+        part.mean, part.variation);
     if (part.variation_before > 0) text += fmt::format(" (before: {:.4f})", part.variation_before);
+    if (is_surface)
+        text += fmt::format(", {:.4f} of smooth places, nearest pair {:.2f} dp",
+                            part.smooth_variation, part.nearest_pair_dp);
     if (part.inserted + part.removed > 0)
         text += fmt::format(", {} inserted, {} removed", part.inserted, part.removed);
-    log.line(text);
+    log.text_line(text);
+    Json fields{
+        {"what", part.what},      {"particles", part.particles}, {"iterations", part.iterations},
+        {"mean", part.mean},      {"variation", part.variation}, {"inserted", part.inserted},
+        {"removed", part.removed}};
+    if (is_surface)
+    {
+        fields["smooth_variation"] = part.smooth_variation;
+        fields["nearest_pair_dp"] = part.nearest_pair_dp;
+    }
+    log.fact("relaxed", fields);
 }
 
 } // namespace
@@ -104,6 +118,29 @@ void log_fitted_walls(const RunField& field, RunLog& log)
                 body.clearance_inside / dp, body.clearance_outside / dp));
     }
     log.line();
+}
+
+void log_left_out(const FittedWalls& walls, RunLog& log)
+{
+    bool is_first = true;
+    for (const FittedBody& body : walls.bodies)
+    {
+        const auto& [corners, edges, surface] = body.left_out;
+        if (corners + edges + surface == 0) continue;
+        if (is_first)
+            log.text_line(
+                fmt::format("Left out, as others are nearer than {:g} dp:", least_pair_dp));
+        is_first = false;
+        log.text_line(
+            fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles",
+                        body.name, body.line, body.mk, corners, edges, surface));
+        log.fact("left_out", {{"line", body.line},
+                              {"mk", body.mk},
+                              {"corners", corners},
+                              {"edges", edges},
+                              {"surface", surface}});
+    }
+    if (!is_first) log.text_line();
 }
 
 void run_relaxation(CaseRunState& run, MadeCase& made)

@@ -24,6 +24,10 @@ std::string layers_text(const FittedWalls& walls, std::size_t body,
 /// Says of every fitted body how many particles stand on it, and the clearances of solids.
 void log_fitted_walls(const RunField& field, RunLog& log);
 
+/// Says, for each body that has any, how many particles are left out because others are nearer than
+/// least_pair_dp to their places.
+void log_left_out(const FittedWalls& walls, RunLog& log);
+
 /// Runs relax_walls() with a line on the terminal that shows how far it is, and says afterwards
 /// what it did. Its history (CSV with a head line) goes into `made`, the snapshots that the case
 /// asks for (OUTPUT_Relax_0010.vtk) to the files of the run.

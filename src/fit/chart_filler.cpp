@@ -45,13 +45,6 @@ constexpr float square(double x)
     return static_cast<float>(x * x);
 }
 
-/// The two sides of a thin plate do not count as neighbours, however thin it is and wherever on the
-/// other side a particle is: each side is covered by its own.
-bool is_other_sheet(const Vec3& normal, const Vec3& other_normal)
-{
-    return dot(normal, other_normal) < -0.5;
-}
-
 Vec3 any_direction(const WorkFacet& facet)
 {
     const Vec3 side = facet.corners[1] - facet.corners[0];
@@ -177,9 +170,17 @@ struct ChartFiller::Work
                     note(site.position, mesh.facets[site.facet].normal);
     }
 
-    bool is_other_sheet_at(const Vec3& normal, std::size_t at) const
+    /// Whether a particle of the grid is no neighbour of a place.
+    ///
+    /// offset  from the place, dp
+    bool is_elsewhere(const Vec3& normal, std::uint32_t index, const Vec3& offset) const
     {
-        return is_other_sheet(normal, normals[near.index[at]]);
+        return is_other_sheet(normal, normals[index]) &&
+               !is_close_across(normal, offset, index < own->features.size());
+    }
+    bool is_elsewhere_at(const Vec3& normal, std::size_t at, const Vec3& shift) const
+    {
+        return is_elsewhere(normal, near.index[at], near.offset(at) - shift);
     }
 
     /// Squared distance (dp) to the nearest particle of the same sheet among those found, from a
@@ -187,13 +188,13 @@ struct ChartFiller::Work
     float nearest_squared(const Vec3& shift, const Vec3& normal) const
     {
         const NearestPoint nearest = nearest_to(near, shift);
-        if (near.count == 0 || !is_other_sheet_at(normal, nearest.at)) return nearest.squared;
+        if (near.count == 0 || !is_elsewhere_at(normal, nearest.at, shift)) return nearest.squared;
         float best = far_away_dp;
         for (std::size_t n = 0; n < near.count; ++n)
         {
             const Vec3 d = near.offset(n) - shift;
             const auto squared = static_cast<float>(dot(d, d));
-            if (squared < best && !is_other_sheet_at(normal, n)) best = squared;
+            if (squared < best && !is_elsewhere_at(normal, n, shift)) best = squared;
         }
         return best;
     }
@@ -241,7 +242,7 @@ struct ChartFiller::Work
         for (std::size_t k = 0; k < 6; ++k)
         {
             const bool is_taken = guesses.squared[k] < square(clearly_taken) &&
-                                  !is_other_sheet_at(normal, guesses.at[k]);
+                                  !is_other_sheet(normal, normals[near.index[guesses.at[k]]]);
             const bool is_there =
                 is_taken ? guesses.squared[k] < square(same_site)
                          : advance_to({site.position, site.facet,
@@ -291,7 +292,7 @@ struct ChartFiller::Work
             {
                 const Vec3 offset = near.offset(n);
                 const double squared = dot(offset, offset);
-                if ((squared < 1.7) != is_close || squared < 1e-9 || is_other_sheet_at(normal, n))
+                if ((squared < 1.7) != is_close || squared < 1e-9 || is_elsewhere_at(normal, n, {}))
                     continue;
                 const ChartPoint q{dot(offset, x_axis), dot(offset, y_axis)};
                 if (q.x * q.x + q.y * q.y < 0.04 * squared) continue;
@@ -328,9 +329,9 @@ struct ChartFiller::Work
         double best = neighbour_reach * neighbour_reach * dp * dp;
         grid.for_each_near(
             at.position, neighbour_reach, looked_at,
-            [&](std::uint32_t index, const Vec3&, double squared)
+            [&](std::uint32_t index, const Vec3& offset, double squared)
             {
-                if (squared < best && !(has_sheets && is_other_sheet(normal, normals[index])))
+                if (squared < best && !(has_sheets && is_elsewhere(normal, index, offset / dp)))
                     best = squared;
             });
         return std::sqrt(best);
@@ -380,8 +381,8 @@ struct ChartFiller::Work
     {
         bool result = true;
         grid.for_each_near(point, 0.7, looked_at,
-                           [&](std::uint32_t index, const Vec3&, double)
-                           { result = result && is_other_sheet(normal, normals[index]); });
+                           [&](std::uint32_t index, const Vec3& offset, double)
+                           { result = result && is_elsewhere(normal, index, offset / dp); });
         return result;
     }
 
@@ -397,7 +398,7 @@ struct ChartFiller::Work
             grid.for_each_near(at.position, neighbour_reach, looked_at,
                                [&](std::uint32_t index, const Vec3& offset, double squared)
                                {
-                                   if (squared >= best || is_other_sheet(normal, normals[index]))
+                                   if (squared >= best || is_elsewhere(normal, index, offset / dp))
                                        return;
                                    best = squared;
                                    towards = offset;

@@ -3,11 +3,31 @@
 #include "fit/charts.h"
 #include "fit/walk.h"
 
+#include <cmath>
 #include <functional>
 #include <memory>
 
 namespace fppg
 {
+
+/// The two sides of a thin plate do not count as neighbours, however thin it is and wherever on the
+/// other side a particle is: each side is covered by its own.
+inline bool is_other_sheet(const Vec3& normal, const Vec3& other_normal)
+{
+    return dot(normal, other_normal) < -0.5;
+}
+
+/// Whether a particle of another sheet counts as a neighbour all the same, or particles of both
+/// would be nearer than least_pair_dp: one on an edge or a corner, or on the other side of a narrow
+/// gap. (Of a plate so thin one sheet stays, see one_sheet.h.)
+///
+/// normal  of the place, unit
+/// offset  from there to the other particle, dp
+inline bool is_close_across(const Vec3& normal, const Vec3& offset, bool is_on_feature)
+{
+    const double across = dot(offset, normal);
+    return (is_on_feature || across > 0) && std::fabs(across) < least_pair_dp;
+}
 
 /// A particle on a corner or a feature line, as the filling of charts sees it.
 struct FeatureSite

@@ -190,7 +190,7 @@ private:
     std::vector<std::size_t> corners_of(const Chain& chain) const
     {
         const std::size_t segments = chain.facets.size();
-        const double apart = 0.5 * options_.dp * (1 - 1e-12);
+        const double apart = least_pair_dp * options_.dp * (1 - 1e-12);
         std::vector<std::size_t> kept;
         for (std::size_t k = 0; k <= segments; ++k)
         {
@@ -243,7 +243,8 @@ private:
     /// Even particles between two places along the chain, and at the first one if it has none yet.
     void add_stretch(const Chain& chain, double begin, double end, bool with_begin)
     {
-        const double parts = std::max(1.0, std::ceil((end - begin) / options_.dp * (1 - 1e-12)));
+        double parts = std::max(1.0, std::ceil((end - begin) / options_.dp * (1 - 1e-12)));
+        if (parts == 2 && end - begin < 2 * least_pair_dp * options_.dp) parts = 1;
         for (double i = with_begin ? 0 : 1; i < parts; ++i)
         {
             double s = begin + (end - begin) * (i / parts);

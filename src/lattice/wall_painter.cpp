@@ -1,6 +1,7 @@
 #include "lattice/wall_painter.h"
 
 #include "core/parallel.h"
+#include "meshes/crowded_points.h"
 #include "meshes/inside_test.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
@@ -251,8 +252,62 @@ void WallPainter::hand_over_shares()
     }
 }
 
+void WallPainter::cut_crowded()
+{
+    FittedWalls& walls = field_->walls;
+    const WallParticles& all = walls.particles;
+    const double distance = least_pair_dp * field_->grid.dp;
+    const auto owner_of = [&](std::size_t i) -> std::size_t
+    {
+        const FittedBody& body = walls.bodies[all.bodies[i]];
+        return body.is_layer() ? body.owner : all.bodies[i];
+    };
+    std::vector<Box3> boxes(walls.bodies.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (is_cut_[i] == 0) boxes[owner_of(i)].add(all.positions[i]);
+    std::vector<std::vector<Box3>> near(boxes.size()); // of others that a body may touch
+    for (std::size_t a = 0; a < boxes.size(); ++a)
+        for (std::size_t b = 0; b < boxes.size(); ++b)
+        {
+            if (a == b || boxes[a].is_empty() || boxes[b].is_empty()) continue;
+            bool meet = true;
+            for (int axis = 0; axis < 3; ++axis)
+                meet = meet && boxes[a].min[axis] <= boxes[b].max[axis] + distance &&
+                       boxes[b].min[axis] <= boxes[a].max[axis] + distance;
+            if (meet) near[a].push_back(boxes[b]);
+        }
+    std::vector<std::size_t> found; // later draws first, which stay
+    for (std::size_t i = all.size(); i-- > 0;)
+    {
+        if (is_cut_[i] != 0) continue;
+        const std::vector<Box3>& others = near[owner_of(i)];
+        if (std::any_of(others.begin(), others.end(),
+                        [&](const Box3& box)
+                        { return is_within(all.positions[i], box, distance); }))
+            found.push_back(i);
+    }
+    std::vector<Vec3> points;
+    std::vector<std::uint32_t> rank;
+    for (const std::size_t i : found)
+    {
+        points.push_back(all.positions[i]);
+        rank.push_back(4 * static_cast<std::uint32_t>(walls.bodies[all.bodies[i]].layer) +
+                       static_cast<std::uint32_t>(all.kinds[i]));
+    }
+    const auto may_stay = [&](std::size_t a, std::size_t b)
+    { return owner_of(found[a]) == owner_of(found[b]); };
+    const std::vector<char> goes = find_crowded(points, rank, distance, may_stay, threads_);
+    for (std::size_t k = 0; k < found.size(); ++k)
+    {
+        if (goes[k] == 0) continue;
+        is_cut_[found[k]] = touched;
+        ++walls.bodies[owner_of(found[k])].left_out[static_cast<std::size_t>(all.kinds[found[k]])];
+    }
+}
+
 void WallPainter::finish()
 {
+    cut_crowded();
     for (const Hollow& hollow : hollows_)
     {
         FittedBody& body = field_->walls.bodies[hollow.body];

@@ -206,6 +206,8 @@ public:
         return collect();
     }
 
+    const FeaturesLeftOut& left_out() const { return left_out_; }
+
 private:
     /// A stretch of a line, from and to in arc length.
     using Stretch = std::array<double, 2>;
@@ -240,18 +242,29 @@ private:
                          { return lines_at[a] > lines_at[b]; });
         for (const std::uint32_t v : order)
         {
-            if (grid_.has_nearer(mesh_.vertices[v], 0.5 * dp_)) continue;
+            if (grid_.has_nearer(mesh_.vertices[v], least_pair_dp * dp_))
+            {
+                ++left_out_.corners;
+                continue;
+            }
             grid_.add(mesh_.vertices[v]);
             has_particle_[v] = 1;
         }
+    }
+
+    /// Of dp at most, but one rather than two that are too short.
+    double parts_of(double length) const
+    {
+        // A line of exactly n dp is not cut into n + 1 parts because of rounding.
+        const double parts = std::max(1.0, std::ceil(length / dp_ * (1 - 1e-12)));
+        return parts == 2 && length < 2 * least_pair_dp * dp_ ? 1 : parts;
     }
 
     void divide(std::uint32_t index)
     {
         const FeatureLine& line = features_.lines[index];
         const LineWalk walk(mesh_, line);
-        // A line of exactly n dp is not cut into n + 1 parts because of rounding.
-        const double parts = std::max(1.0, std::ceil(walk.length() / dp_ * (1 - 1e-12)));
+        const double parts = parts_of(walk.length());
         const auto n = static_cast<std::size_t>(parts);
         std::size_t segment = 0;
         for (std::size_t i = line.is_closed ? 0 : 1; i < n; ++i)
@@ -259,7 +272,11 @@ private:
             const double s = walk.length() * static_cast<double>(i) / parts;
             while (segment + 1 < walk.segments() && walk.start_of(segment + 1) <= s) ++segment;
             const Vec3 p = walk.point_at(segment, s);
-            if (grid_.has_nearer(p, 0.45 * dp_)) continue;
+            if (grid_.has_nearer(p, least_pair_dp * dp_))
+            {
+                ++left_out_.edges;
+                continue;
+            }
             grid_.add(p);
             on_line_[index].push_back({s, segment, p});
         }
@@ -269,7 +286,7 @@ private:
     void find_open(const LineWalk& walk, std::size_t segment, const Stretch& piece,
                    std::vector<Stretch>& open) const
     {
-        const double reach = 0.5 * dp_ * (1 + 1e-6);
+        const double reach = least_pair_dp * dp_ * (1 + 1e-6);
         const double half = 0.5 * (piece[1] - piece[0]);
         const double middle = piece[0] + half;
         const Vec3 at = walk.point_at(segment, middle);
@@ -314,7 +331,9 @@ private:
     {
         const FeatureLine& line = features_.lines[index];
         const std::vector<OnLine>& own = on_line_[index];
-        // Between two of the line's own particles, or its kept ends, at most dp apart, all is near.
+        // Between two of the line's own particles, or its kept ends, so near to one another all is
+        // near.
+        const double nearest = 2 * least_pair_dp * dp_ * (1 + 1e-6);
         std::vector<double> stops;
         if (!line.is_closed && has_particle_[line.vertices.front()] != 0) stops.push_back(0);
         for (const OnLine& particle : own) stops.push_back(particle.s);
@@ -325,12 +344,12 @@ private:
         bool is_stop = !stops.empty() && stops.front() == 0;
         for (const double stop : stops)
         {
-            if (!is_stop || stop - s > dp_ * (1 + 1e-6)) doubtful.push_back({s, stop});
+            if (!is_stop || stop - s > nearest) doubtful.push_back({s, stop});
             s = stop;
             is_stop = true;
         }
         const bool wraps = line.is_closed && !stops.empty() && stops.front() == 0;
-        if (s < walk.length() && (!wraps || walk.length() - s > dp_ * (1 + 1e-6)))
+        if (s < walk.length() && (!wraps || walk.length() - s > nearest))
             doubtful.push_back({s, walk.length()});
 
         std::vector<Stretch> open;
@@ -362,16 +381,17 @@ private:
             for (const Stretch& open : open_stretches(index, walk))
             {
                 const double length = open[1] - open[0];
-                const double parts = std::max(1.0, std::ceil(length / dp_ * (1 - 1e-12)));
+                const double parts = parts_of(length);
                 for (double i = 0; i < parts; ++i)
                 {
                     const double s = open[0] + length * (i + 0.5) / parts;
                     const std::size_t segment = walk.segment_at(s);
                     const Vec3 p = walk.point_at(segment, s);
-                    if (grid_.has_nearer(p, 0.45 * dp_)) continue;
+                    if (grid_.has_nearer(p, least_pair_dp * dp_)) continue;
                     grid_.add(p);
                     own.push_back({s, segment, p});
                     has_added = true;
+                    if (left_out_.edges > 0) --left_out_.edges;
                 }
             }
             if (!has_added) return;
@@ -400,18 +420,23 @@ private:
     PointGrid grid_;
     std::vector<char> has_particle_; ///< per vertex: a kept corner
     std::vector<std::vector<OnLine>> on_line_;
+    FeaturesLeftOut left_out_;
 };
 
 } // namespace
 
 std::vector<FeatureParticle> place_feature_particles(const SurfaceMesh& mesh,
                                                      const Features& features,
-                                                     const FeatureOptions& options)
+                                                     const FeatureOptions& options,
+                                                     FeaturesLeftOut* left_out)
 {
     if (!(options.dp > 0) || !std::isfinite(options.dp))
         throw GeometryError(
             fmt::format("a particle distance of {} m, expected more than 0", options.dp));
-    return Placing(mesh, features, options.dp).run();
+    Placing placing(mesh, features, options.dp);
+    std::vector<FeatureParticle> particles = placing.run();
+    if (left_out != nullptr) *left_out = placing.left_out();
+    return particles;
 }
 
 } // namespace fppg

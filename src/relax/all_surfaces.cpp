@@ -1,6 +1,7 @@
 #include "relax/all_surfaces.h"
 
 #include "core/parallel.h"
+#include "meshes/crowded_points.h"
 #include "meshes/point_grid.h"
 #include "meshes/round_surface.h"
 #include "offset/offset_surface.h"
@@ -22,6 +23,8 @@ constexpr double reach_of_insertion_dp = 1.5;
 constexpr int surface_iterations = 100;
 /// Value of WallParticles::held of those that are there for a relaxation only.
 constexpr char of_border = 2;
+/// Particles with none nearer count as if one were so far, dp.
+constexpr double alone_dp = 2;
 
 class AllSurfaces
 {
@@ -105,10 +108,23 @@ private:
         const WallParticles& second = walls.second_sheets;
         PointGrid second_sheets(cell_of_cuts_dp * dp, second.size());
         for (const Vec3& p : second.positions) second_sheets.add(p);
-        if (!walls.cut.empty() || second.size() > 0)
+        const WallParticles all =
+            walls.bodies.size() > 1 ? join(particles, others) : WallParticles{};
+        PointGrid of_others(least_pair_dp * dp, all.size());
+        for (const Vec3& p : all.positions) of_others.add(p);
+        const auto is_apart = [&](std::size_t body, const Vec3& p)
+        {
+            bool out = true;
+            of_others.for_each_near(p, least_pair_dp * dp,
+                                    [&](std::uint32_t i, double)
+                                    { out = out && all.bodies[i] == body; });
+            return out;
+        };
+        if (!walls.cut.empty() || second.size() > 0 || all.size() > 0)
             options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
-            { return is_free(cut, second_sheets, body, p, normal); };
+            { return is_apart(body, p) && is_free(cut, second_sheets, body, p, normal); };
         const std::vector<double> before = count_by_body(particles);
+        const double variation_before = spacing_of(particles, others).variation;
         // Layers go on as far as they were laid, so that they stay even where another side takes
         // over.
         const bool has_border = add_borders(particles);
@@ -136,6 +152,7 @@ private:
                         project_to_depth(*body.wall, particles.positions[i], body.depth);
             },
             1024);
+        const std::size_t crowded = leave_out_crowded(particles, others);
         take_new_counts(before, count_by_body(particles));
         surface_iterations_done_ += done.after.iteration;
         RelaxedPart part;
@@ -143,11 +160,90 @@ private:
         part.iterations = done.after.iteration;
         part.particles = particles.size();
         part.inserted = done.inserted;
-        part.removed = done.removed;
-        part.variation_before = done.before.spacing_variation;
+        part.removed = done.removed + crowded;
         part.mean = done.after.spacing_mean;
-        part.variation = done.after.spacing_variation;
+        const Spacing spacing = spacing_of(particles, others);
+        part.variation_before = variation_before;
+        part.variation = spacing.variation;
+        part.smooth_variation = done.after.spacing_variation;
+        part.nearest_pair_dp = spacing.nearest_pair_dp;
         report_.parts.push_back(part);
+    }
+
+    struct Spacing
+    {
+        double variation = 0;
+        double nearest_pair_dp = alone_dp;
+    };
+
+    /// From each particle to the nearest one.
+    Spacing spacing_of(const WallParticles& particles, const WallParticles& others) const
+    {
+        Spacing out;
+        if (particles.size() == 0) return out;
+        const double dp = field_.grid.dp;
+        std::vector<Vec3> points = particles.positions;
+        points.insert(points.end(), others.positions.begin(), others.positions.end());
+        const std::vector<double> nearest = nearest_distances(points, alone_dp * dp, threads_);
+        double sum = 0, squares = 0;
+        for (std::size_t i = 0; i < particles.size(); ++i)
+        {
+            const double distance = nearest[i] / dp;
+            sum += distance;
+            squares += distance * distance;
+            out.nearest_pair_dp = std::min(out.nearest_pair_dp, distance);
+        }
+        const auto n = static_cast<double>(particles.size());
+        const double mean = sum / n;
+        if (mean > 0) out.variation = std::sqrt(std::max(0.0, squares / n - mean * mean)) / mean;
+        return out;
+    }
+
+    /// Takes out what came too near to particles of other sheets, layers and bodies: the shallower
+    /// layer stays, then corners, then edges. Returns how many.
+    std::size_t leave_out_crowded(WallParticles& particles, const WallParticles& others)
+    {
+        FittedWalls& walls = field_.walls;
+        std::vector<Vec3> points = particles.positions;
+        std::vector<std::uint32_t> rank;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            rank.push_back(1 +
+                           4 * static_cast<std::uint32_t>(walls.bodies[particles.bodies[i]].layer) +
+                           static_cast<std::uint32_t>(particles.kinds[i]));
+        points.insert(points.end(), others.positions.begin(), others.positions.end());
+        rank.resize(points.size(), 0);
+        const std::size_t own = particles.size();
+        const auto may_stay = [&](std::size_t i, std::size_t j)
+        {
+            if (i >= own || j >= own) return i >= own && j >= own;
+            return are_wanted_sheets(particles, i, j);
+        };
+        std::vector<char> goes = find_crowded(
+            points, rank, (1 - 1e-9) * least_pair_dp * field_.grid.dp, may_stay, threads_);
+        goes.resize(own);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < own; ++i)
+        {
+            if (goes[i] == 0) continue;
+            ++walls.owner_of(particles.bodies[i])
+                  .left_out[static_cast<std::size_t>(particles.kinds[i])];
+            ++count;
+        }
+        if (count > 0) particles.erase(goes);
+        return count;
+    }
+
+    /// Whether particles are on the two sheets of a plate, however thin, as plates="both" asks.
+    bool are_wanted_sheets(const WallParticles& particles, std::size_t i, std::size_t j) const
+    {
+        const FittedBody& body = field_.walls.bodies[particles.bodies[i]];
+        if (particles.bodies[i] != particles.bodies[j] || body.is_layer() ||
+            particles.kinds[i] != FitKind::Surface || particles.kinds[j] != FitKind::Surface)
+            return false;
+        const FitSettings* settings = settings_of(body.mk);
+        return settings != nullptr && settings->one_sheet_dp == 0 &&
+               dot(body.mesh.normals[particles.facets[i]], body.mesh.normals[particles.facets[j]]) <
+                   -0.5;
     }
 
     /// Puts the particles of layers that were left out for another side back, held.

@@ -248,7 +248,10 @@ void SurfaceLayer::build_list()
     {
         const float cosine =
             normals[i].x * normals[j].x + normals[i].y * normals[j].y + normals[i].z * normals[j].z;
-        return cosine >= opposing;
+        if (cosine >= opposing) return true;
+        return is_close_across({normals[i].x, normals[i].y, normals[i].z},
+                               vector_at(points_, j) - vector_at(points_, i),
+                               particles_[j].kind != FitKind::Surface);
     };
     list_.build(
         points_, threads_, [&](std::uint32_t i) { return particles_[i].is_moving; }, is_own_sheet);

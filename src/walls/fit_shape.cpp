@@ -5,6 +5,7 @@
 #include "fppg/section.h"
 
 #include "core/parallel.h"
+#include "meshes/crowded_points.h"
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
@@ -132,16 +133,47 @@ WallParticles of_body(SurfaceParticles&& surface)
     return out;
 }
 
+/// In 2D, where lines run close to one another: corners stay first. The sheets of a plate stay both
+/// where its settings say so.
+void drop_crowded_in_plane(const FitSettings& settings, double dp, int threads,
+                           SurfaceParticles& surface, FittedBody& body)
+{
+    const auto are_sheets = [&](std::size_t i, std::size_t j)
+    {
+        const std::vector<Vec3>& normals = body.mesh.normals;
+        return settings.one_sheet_dp == 0 &&
+               dot(normals[surface.facets[i]], normals[surface.facets[j]]) < -0.5;
+    };
+    std::vector<std::uint32_t> rank;
+    for (const FitKind kind : surface.kinds) rank.push_back(static_cast<std::uint32_t>(kind));
+    const std::vector<char> goes =
+        find_crowded(surface.positions, rank, least_pair_dp * dp * (1 - 1e-9), are_sheets, threads);
+    SurfaceParticles kept;
+    for (std::size_t i = 0; i < goes.size(); ++i)
+    {
+        if (goes[i] != 0)
+        {
+            ++body.left_out[static_cast<std::size_t>(surface.kinds[i])];
+            continue;
+        }
+        kept.positions.push_back(surface.positions[i]);
+        kept.kinds.push_back(surface.kinds[i]);
+        kept.facets.push_back(surface.facets[i]);
+    }
+    surface = std::move(kept);
+}
+
 /// On the surface, but for walls all of whose layers are behind it.
 void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out)
 {
-    const FittedBody& body = out.body;
+    FittedBody& body = out.body;
     if (!settings.depths_dp.empty() && settings.depths_dp[0] > 0) return;
     SurfaceParticles surface =
         grid.is_2d ? section_of(body, settings, grid) : surface_of(body, settings, grid, threads);
     if (settings.one_sheet_dp > 0)
         out.second_sheet = of_body(keep_one_sheet(
             body.mesh, body.features, {grid.dp, settings.one_sheet_dp}, surface, threads));
+    if (grid.is_2d) drop_crowded_in_plane(settings, grid.dp, threads, surface, body);
     if (body.round != nullptr)
         parallel_for(
             surface.positions.size(), threads,
@@ -184,17 +216,19 @@ void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDr
 
 } // namespace
 
-SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid, int threads)
+SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const LatticeGrid& grid,
+                            int threads)
 {
     FitOptions options;
     options.dp = grid.dp;
     options.lattice_origin = grid.origin;
     options.density = settings.density;
-    return fit_surface(
-        body.mesh, body.features,
-        place_feature_particles(body.mesh, body.features, feature_options(settings, grid)), options,
-        threads);
+    FeaturesLeftOut left_out;
+    const std::vector<FeatureParticle> on_features = place_feature_particles(
+        body.mesh, body.features, feature_options(settings, grid), &left_out);
+    body.left_out[0] += left_out.corners;
+    body.left_out[1] += left_out.edges;
+    return fit_surface(body.mesh, body.features, on_features, options, threads);
 }
 
 /// In 2D the wall is where the surface meets the plane of the particles.

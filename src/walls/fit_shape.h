@@ -13,8 +13,9 @@ namespace fppg
 FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& grid);
 
 /// Particles on the surface of a body; in 2D where it meets the plane of the particles.
-SurfaceParticles surface_of(const FittedBody& body, const FitSettings& settings,
-                            const LatticeGrid& grid, int threads);
+/// body.left_out counts what it lacks.
+SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const LatticeGrid& grid,
+                            int threads);
 SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
                             const LatticeGrid& grid);
 

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "fit/wall_section.h"
 #include "meshes/connect_mesh.h"
+#include "meshes/crowded_points.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
 #include "offset/layer_place.h"
@@ -38,8 +39,6 @@ constexpr double merge_dp = 0.6;
 constexpr double opposing = -0.5;
 /// No particle of a layer is so near to the middle of a thin part, which has its own, dp.
 constexpr double off_middle_dp = 0.35;
-/// Between particles of edges and corners, as place_feature_particles() leaves them, dp.
-constexpr double least_on_lines_dp = 0.45;
 /// A node in a thin part stays where no particle of a layer is nearer than this, and it is so deep,
 /// dp.
 constexpr double gap_dp = 0.85;
@@ -237,33 +236,31 @@ private:
         out_.layers.push_back(std::move(body));
     }
 
-    /// Creases that meet in a small angle may have particles that came together on them.
-    void drop_crowded_features(SurfaceParticles& particles, std::vector<char>& is_out) const
+    /// What is nearer than least_pair_dp to layers before, to corners or edges goes; of the ones
+    /// that are left out for another side (is_out) what is near those that stay.
+    void drop_crowded(const std::vector<char>& is_out, SurfaceParticles& particles,
+                      std::vector<char>& goes)
     {
-        const double least = least_on_lines_dp * grid_.dp;
-        PointGrid taken(least, particles.positions.size() / 8);
-        std::vector<char> is_dropped(particles.positions.size(), 0);
-        bool has_dropped = false;
-        for (std::size_t i = 0; i < particles.positions.size(); ++i)
+        std::vector<Vec3> points = particles.positions;
+        std::vector<std::uint32_t> rank;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            rank.push_back((is_out[i] != 0 ? 5 : 1) +
+                           static_cast<std::uint32_t>(particles.kinds[i]));
+        const std::size_t own = points.size();
+        const std::vector<Vec3>& before = out_.particles.positions;
+        points.insert(points.end(), before.begin(), before.end());
+        rank.resize(points.size(), 0);
+        const auto may_stay = [&](std::size_t i, std::size_t j)
         {
-            const FitKind kind = particles.kinds[i];
-            if (kind != FitKind::Corner && kind != FitKind::Edge) continue;
-            is_dropped[i] = taken.has_nearer(particles.positions[i], least) ? 1 : 0;
-            if (is_dropped[i] == 0) taken.add(particles.positions[i]);
-            has_dropped = has_dropped || is_dropped[i] != 0;
-        }
-        if (!has_dropped) return;
-        const auto compact = [&](auto& values)
-        {
-            std::size_t count = 0;
-            for (std::size_t i = 0; i < is_dropped.size(); ++i)
-                if (is_dropped[i] == 0) values[count++] = values[i];
-            values.resize(count);
+            const auto is_of_other_side = [&](std::size_t k) { return k < own && is_out[k] != 0; };
+            return (i >= own && (j >= own || is_of_other_side(j))) ||
+                   (j >= own && is_of_other_side(i));
         };
-        compact(particles.positions);
-        compact(particles.kinds);
-        compact(particles.facets);
-        compact(is_out);
+        goes = find_crowded(points, rank, least_pair_dp * grid_.dp, may_stay, threads_);
+        goes.resize(own);
+        for (std::size_t i = 0; i < own; ++i)
+            if (goes[i] != 0 && is_out[i] == 0)
+                ++out_.body.left_out[static_cast<std::size_t>(particles.kinds[i])];
     }
 
     void add_particles(FittedBody&& layer)
@@ -271,6 +268,8 @@ private:
         const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
         SurfaceParticles particles = grid_.is_2d ? section_of(layer, settings_, grid_)
                                                  : surface_of(layer, settings_, grid_, threads_);
+        for (std::size_t kind = 0; kind < layer.left_out.size(); ++kind)
+            out_.body.left_out[kind] += std::exchange(layer.left_out[kind], 0);
         const LayerPlaces places(layer, grid_.dp);
         std::vector<char> is_out(particles.positions.size());
         parallel_for(
@@ -284,9 +283,11 @@ private:
                             (near_middle_ && near_middle_->has_nearer(p, off_middle_dp * grid_.dp));
             },
             256);
-        drop_crowded_features(particles, is_out);
+        std::vector<char> goes;
+        drop_crowded(is_out, particles, goes);
         for (std::size_t i = 0; i < is_out.size(); ++i)
         {
+            if (goes[i] != 0) continue;
             WallParticles& to = is_out[i] != 0 ? out_.second_sheet : out_.particles;
             to.positions.push_back(particles.positions[i]);
             to.kinds.push_back(particles.kinds[i]);
