@@ -67,6 +67,8 @@ bool relaxes(const CaseDef& def, const RunField& field);
 /// fluid.
 ///
 /// The particles of a surface stay on it (relax_surface()); those within 2 dp of a cut are held.
+/// Afterwards no two of all surfaces are nearer than least_pair_dp, but those on both sheets of a
+/// plate whose settings ask for both: the shallower layer stays, then corners, then edges.
 /// Lattice nodes within the band of a wall become particles off the lattice: they go into
 /// walls.volume, and their nodes are covered. Nodes that did not move stay nodes.
 /// Nodes within 3 dp of a place where a wall was cut do not move, nor do those along a sheet that

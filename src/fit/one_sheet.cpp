@@ -17,6 +17,8 @@ namespace
 /// Two particles on either side of a plate lie up to this far apart, dp: its thickness and half a
 /// spacing along it.
 constexpr double sheet_reach_dp = 1.2;
+/// A plate this much thinner than the thickness still has it: coordinates of files are rounded.
+constexpr double rounding_of_thickness = 1e-4;
 /// Tells the sides of a surface that faces itself; no plane of a drawing is likely to contain it.
 constexpr Vec3 staying_side{0.36, 0.48, 0.8};
 /// A corner of a plate lies this far from the nearest particle on its sides, dp.
@@ -168,7 +170,8 @@ private:
         if (dot(normal_of(i), normal_of(j)) > -0.5) return false;
         const double dp = options_.dp;
         const double depth = dot(particles_.positions[i] - particles_.positions[j], normal_of(i));
-        return depth > 0 && depth < options_.thickness * dp && squared - depth * depth <= dp * dp;
+        return depth > 0 && depth < (1 - rounding_of_thickness) * options_.thickness * dp &&
+               squared - depth * depth <= dp * dp;
     }
 
     void take_behind_others()

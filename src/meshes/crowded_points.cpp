@@ -13,6 +13,8 @@ namespace
 {
 
 constexpr std::size_t points_per_chunk = 1024;
+/// So much of a distance may be lacking: coordinates of files are rounded.
+constexpr double rounding = 1e-4;
 
 PointGrid grid_of_all(const std::vector<Vec3>& points, double cell)
 {
@@ -49,8 +51,9 @@ std::vector<char> find_crowded(const std::vector<Vec3>& points,
                                int threads)
 {
     const PointGrid grid = grid_of_all(points, distance);
+    const double least = (1 - rounding) * distance;
     const auto is_too_near = [&](std::size_t i, std::size_t j, double squared)
-    { return j != i && squared < distance * distance && !(may_stay && may_stay(i, j)); };
+    { return j != i && squared < least * least && !(may_stay && may_stay(i, j)); };
     std::vector<char> has_near(points.size(), 0);
     parallel_for(
         points.size(), threads,

@@ -13,7 +13,8 @@ namespace fppg
 /// The distance from each point to the nearest other one, or `reach` where none is nearer, metres.
 std::vector<double> nearest_distances(const std::vector<Vec3>& points, double reach, int threads);
 
-/// Which points have to go so that no two that stay are nearer than a distance to each other.
+/// Which points have to go so that no two that stay are nearer than a distance to each other, but
+/// for 1e-4 of it (rounding of files).
 ///
 /// rank      per point: of two that are too near the one of lower rank stays, of equal ones the
 ///           first

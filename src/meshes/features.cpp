@@ -17,6 +17,9 @@ namespace
 constexpr double degree = 3.14159265358979323846 / 180;
 /// Between angles that are meant to be equal.
 constexpr double spare_deg = 0.01;
+/// No place of a line is farther from a particle, dp. At least_pair_dp, where lines crowd there
+/// would be up to twice as many particles as elsewhere.
+constexpr double line_reach_dp = 0.7;
 
 /// Radians between two directions, exact near 0 and pi as well.
 double angle_between(const Vec3& a, const Vec3& b)
@@ -286,7 +289,7 @@ private:
     void find_open(const LineWalk& walk, std::size_t segment, const Stretch& piece,
                    std::vector<Stretch>& open) const
     {
-        const double reach = least_pair_dp * dp_ * (1 + 1e-6);
+        const double reach = line_reach_dp * dp_ * (1 + 1e-6);
         const double half = 0.5 * (piece[1] - piece[0]);
         const double middle = piece[0] + half;
         const Vec3 at = walk.point_at(segment, middle);
@@ -333,7 +336,7 @@ private:
         const std::vector<OnLine>& own = on_line_[index];
         // Between two of the line's own particles, or its kept ends, so near to one another all is
         // near.
-        const double nearest = 2 * least_pair_dp * dp_ * (1 + 1e-6);
+        const double nearest = 2 * line_reach_dp * dp_ * (1 + 1e-6);
         std::vector<double> stops;
         if (!line.is_closed && has_particle_[line.vertices.front()] != 0) stops.push_back(0);
         for (const OnLine& particle : own) stops.push_back(particle.s);

@@ -218,8 +218,8 @@ private:
             if (i >= own || j >= own) return i >= own && j >= own;
             return are_wanted_sheets(particles, i, j);
         };
-        std::vector<char> goes = find_crowded(
-            points, rank, (1 - 1e-9) * least_pair_dp * field_.grid.dp, may_stay, threads_);
+        std::vector<char> goes =
+            find_crowded(points, rank, least_pair_dp * field_.grid.dp, may_stay, threads_);
         goes.resize(own);
         std::size_t count = 0;
         for (std::size_t i = 0; i < own; ++i)

@@ -71,6 +71,7 @@ public:
     {
         if (!field_.grid.is_2d)
             relax_all_surfaces(def_, field_, threads_, observe_, report_, snapshot_);
+        cover_crowded_nodes();
         relax_volumes();
     }
 
@@ -81,6 +82,62 @@ private:
     {
         if (observe_ && !observe_(step)) report_.is_stopped = true;
         return !report_.is_stopped;
+    }
+
+    /// Nodes between layers, that particles of the layers came too near to, go.
+    void cover_crowded_nodes()
+    {
+        std::vector<char> is_layered(65536, 0);
+        std::vector<Vec3> layers;
+        for (std::size_t i = 0; i < field_.walls.particles.size(); ++i)
+        {
+            const FittedBody& body = field_.walls.bodies[field_.walls.particles.bodies[i]];
+            if (!body.is_layer()) continue;
+            is_layered[body.mk] = 1;
+            layers.push_back(field_.walls.particles.positions[i]);
+        }
+        if (layers.empty() || field_.grid.is_2d) return;
+        const double distance = (1 - 1e-9) * least_pair_dp * field_.grid.dp;
+        PointGrid grid(distance, layers.size());
+        for (const Vec3& p : layers) grid.add(p);
+        std::vector<SlabRun> runs;
+        for_each_run(
+            [&](const SlabRun& r)
+            {
+                if (is_layered[r.run.mk] != 0) runs.push_back(r);
+            });
+        const NearBlocks& blocks = near_blocks(3, 1);
+        const auto look_at = [&](const SlabRun& r, std::vector<Mover>& out)
+        {
+            const auto test = [&](std::uint32_t begin, std::uint32_t end)
+            {
+                for (std::uint32_t z = begin; z < end; ++z)
+                {
+                    const NodeIndex node{r.x, r.run.y, z};
+                    if (grid.has_nearer(place_of(node, field_.grid), distance))
+                        out.push_back({node, r.run.mk});
+                }
+            };
+            blocks.for_each_stretch(r.x, r.run, test);
+        };
+        std::vector<std::vector<Mover>> left(field_.slabs.size());
+        std::map<std::uint16_t, double> counts;
+        for (const auto& chunk : find_in_chunks<Mover>(runs, look_at, threads_))
+            for (const Mover& m : chunk)
+            {
+                left[m.node.x].push_back(m);
+                ++counts[m.mk];
+            }
+        for (std::size_t x = 0; x < left.size(); ++x) cover(field_.slabs[x], left[x]);
+        for (const auto& [mk, count] : counts)
+        {
+            Region region;
+            region.band.assign(65536, 0);
+            region.band[mk] = 1;
+            take_new_nodes(region, -count);
+            if (!report_.parts.empty())
+                report_.parts.front().removed += static_cast<std::size_t>(count);
+        }
     }
 
     void relax_volumes()

@@ -147,7 +147,7 @@ void drop_crowded_in_plane(const FitSettings& settings, double dp, int threads,
     std::vector<std::uint32_t> rank;
     for (const FitKind kind : surface.kinds) rank.push_back(static_cast<std::uint32_t>(kind));
     const std::vector<char> goes =
-        find_crowded(surface.positions, rank, least_pair_dp * dp * (1 - 1e-9), are_sheets, threads);
+        find_crowded(surface.positions, rank, least_pair_dp * dp, are_sheets, threads);
     SurfaceParticles kept;
     for (std::size_t i = 0; i < goes.size(); ++i)
     {

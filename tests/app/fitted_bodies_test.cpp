@@ -213,7 +213,7 @@ TEST(FloatingMass, OfBodiesThatTouchIsThatOfEach)
 // -- plates
 // ------------------------------------------------------------------------------------------
 
-TEST(FittedPlate, ThinnerThanHalfADpHasOneSheetByDefault)
+TEST(FittedPlate, ThinnerThanADistanceOfParticlesHasOneSheetByDefault)
 {
     const double area = 0.51 * 0.43;
     const auto particles_a_dp2 = [&](double thickness, const std::string& plates)
@@ -230,6 +230,7 @@ TEST(FittedPlate, ThinnerThanHalfADpHasOneSheetByDefault)
     EXPECT_NEAR(particles_a_dp2(0.008, ""), 1, 0.12);
     EXPECT_NEAR(particles_a_dp2(0.008, "auto"), 1, 0.12);
     EXPECT_NEAR(particles_a_dp2(0.008, "both"), 2, 0.3);
+    EXPECT_NEAR(particles_a_dp2(0.011, ""), 1, 0.12);
     EXPECT_NEAR(particles_a_dp2(0.012, ""), 2, 0.3);
     EXPECT_NEAR(particles_a_dp2(0.012, "one"), 1, 0.12);
 }
@@ -277,7 +278,7 @@ TEST(FittedPlate, KeepsParticlesApartWhereTheSidesOfABladeMeet)
     for (std::size_t i = 0; i < cloud.positions.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
             nearest = std::min(nearest, norm(cloud.positions[i] - cloud.positions[k]));
-    EXPECT_GT(nearest / dp, 0.5);
+    EXPECT_GT(nearest / dp, 0.599);
 }
 
 TEST(FillInside, FillsABodyAndItsReversedCopyAsOneSolidAndSaysSo)

@@ -134,8 +134,8 @@ void expect_good(const SurfaceMesh& mesh, double dp, double angle_deg = 30)
     const FeatureOptions options{.angle_deg = angle_deg, .dp = dp};
     const Features features = find_features(mesh, options);
     const std::vector<FeatureParticle> particles = place_feature_particles(mesh, features, options);
-    EXPECT_LE(largest_gap(mesh, features, particles, dp), 0.501 * dp);
-    EXPECT_GE(smallest_distance(particles, dp), 0.45 * dp * (1 - 1e-12));
+    EXPECT_LE(largest_gap(mesh, features, particles, dp), 0.701 * dp);
+    EXPECT_GE(smallest_distance(particles, dp), 0.6 * dp * (1 - 1e-12));
     EXPECT_EQ(covered_corners(mesh, features, particles, dp), 1);
 }
 
@@ -270,6 +270,39 @@ TEST(PlaceFeatureParticles, CoversAGearFromFineToFarTooCoarse)
 {
     const SurfaceMesh mesh = taken_in(gear(23, 1, 0.15, 0.3));
     for (const double dp : {0.005, 0.013, 0.04, 0.07, 0.11, 0.2, 0.5, 3.0}) expect_good(mesh, dp);
+}
+
+TEST(PlaceFeatureParticles, LeaveNoPlaceFartherThanHalfADpWhereLinesAreApart)
+{
+    const SurfaceMesh mesh = taken_in(gear(23, 1, 0.15, 0.3));
+    for (const double dp : {0.005, 0.013, 0.03})
+    {
+        const FeatureOptions options{.dp = dp};
+        const Features features = find_features(mesh, options);
+        FeaturesLeftOut left_out;
+        const auto particles = place_feature_particles(mesh, features, options, &left_out);
+        EXPECT_LE(largest_gap(mesh, features, particles, dp), 0.501 * dp) << dp;
+        EXPECT_EQ(left_out.corners + left_out.edges, 0u) << dp;
+    }
+}
+
+TEST(PlaceFeatureParticles, SayHowManyTheyLeaveOutWhereCornersAreTooNear)
+{
+    // Two bars 0.3 dp apart, each of 0.5 dp by 0.5 dp.
+    const double dp = 0.1;
+    const SurfaceMesh mesh =
+        taken_in(joined(box({0, 0, 0}, {0.05, 1, 0.05}), box({0.08, 0, 0}, {0.13, 1, 0.05})));
+    const FeatureOptions options{.dp = dp};
+    const Features features = find_features(mesh, options);
+    FeaturesLeftOut left_out;
+    const auto particles = place_feature_particles(mesh, features, options, &left_out);
+    const auto corners = static_cast<std::size_t>(std::count_if(
+        particles.begin(), particles.end(), [](const FeatureParticle& p) { return p.is_corner; }));
+    EXPECT_EQ(corners + left_out.corners, 16u);
+    EXPECT_LE(corners, 12u);
+    EXPECT_GE(left_out.edges, 20u);
+    EXPECT_LE(largest_gap(mesh, features, particles, dp), 0.701 * dp);
+    EXPECT_GE(smallest_distance(particles, dp), 0.6 * dp);
 }
 
 TEST(PlaceFeatureParticles, CoversLinesCloserThanDp)
