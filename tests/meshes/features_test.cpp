@@ -300,7 +300,7 @@ TEST(PlaceFeatureParticles, SayHowManyTheyLeaveOutWhereCornersAreTooNear)
         particles.begin(), particles.end(), [](const FeatureParticle& p) { return p.is_corner; }));
     EXPECT_EQ(corners + left_out.corners, 16u);
     EXPECT_LE(corners, 12u);
-    EXPECT_GE(left_out.edges, 20u);
+    EXPECT_GE(left_out.edges, 10u);
     EXPECT_LE(largest_gap(mesh, features, particles, dp), 0.701 * dp);
     EXPECT_GE(smallest_distance(particles, dp), 0.6 * dp);
 }
