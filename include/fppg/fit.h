@@ -45,10 +45,10 @@ struct SurfaceParticles
 /// Area: no surface point is farther than 0.92 dp from a particle, and no surface particle is
 /// nearer than 0.86 dp to another particle of its sheet; before relaxation, 0.9 to 1.15 particles a
 /// dp^2. Facets whose normals are more than 120 degrees apart are of two sheets: both sides of a
-/// plate are covered, however thin it is; but edges and corners of another sheet, and the other side
-/// of a gap, that are nearer than 0.6 dp count as of the same sheet. Feature edges and edges without
-/// exactly two facets end a surface. A part narrower than half a dp has one particle for all its
-/// sides, unless another is near.
+/// plate are covered, however thin it is; but edges and corners of another sheet, and the other
+/// side of a gap, that are nearer than 0.6 dp count as of the same sheet. Feature edges and edges
+/// without exactly two facets end a surface. A part narrower than half a dp has one particle for
+/// all its sides, unless another is near.
 ///
 /// Cell: every cell of the lattice (the cube of side dp around each node) that a facet crosses or
 /// touches is mapped to the surface point nearest to its node; points within 0.001 dp of another

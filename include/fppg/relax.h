@@ -64,8 +64,8 @@ struct RelaxSurfaceReport
 /// those nearer than 0.7 dp to another are taken out.
 ///
 /// As in fit_surface(), normals more than 120 degrees apart are of two sheets (the sides of a thin
-/// plate), which do not push each other unless edges, corners or a gap bring them nearer than 0.6 dp;
-/// an edge or corner particle has the mean normal of its facets.
+/// plate), which do not push each other unless edges, corners or a gap bring them nearer than 0.6
+/// dp; an edge or corner particle has the mean normal of its facets.
 ///
 /// bodies     with mesh and features; the particles name them
 /// particles  by body; those of a body keep their order, and new ones follow at its end with the mk

@@ -154,20 +154,9 @@ private:
             1024);
         const std::size_t crowded = leave_out_crowded(particles, others);
         take_new_counts(before, count_by_body(particles));
-        surface_iterations_done_ += done.after.iteration;
-        RelaxedPart part;
-        part.what = "surface";
-        part.iterations = done.after.iteration;
-        part.particles = particles.size();
-        part.inserted = done.inserted;
-        part.removed = done.removed + crowded;
-        part.mean = done.after.spacing_mean;
-        const Spacing spacing = spacing_of(particles, others);
-        part.variation_before = variation_before;
-        part.variation = spacing.variation;
-        part.smooth_variation = done.after.spacing_variation;
-        part.nearest_pair_dp = spacing.nearest_pair_dp;
-        report_.parts.push_back(part);
+        add_report(done, spacing_of(particles, others), variation_before);
+        report_.parts.back().particles = particles.size();
+        report_.parts.back().removed += crowded;
     }
 
     struct Spacing
@@ -175,6 +164,22 @@ private:
         double variation = 0;
         double nearest_pair_dp = alone_dp;
     };
+
+    void add_report(const RelaxSurfaceReport& done, const Spacing& spacing, double variation_before)
+    {
+        surface_iterations_done_ += done.after.iteration;
+        RelaxedPart part;
+        part.what = "surface";
+        part.iterations = done.after.iteration;
+        part.inserted = done.inserted;
+        part.removed = done.removed;
+        part.mean = done.after.spacing_mean;
+        part.variation_before = variation_before;
+        part.variation = spacing.variation;
+        part.smooth_variation = done.after.spacing_variation;
+        part.nearest_pair_dp = spacing.nearest_pair_dp;
+        report_.parts.push_back(part);
+    }
 
     /// From each particle to the nearest one.
     Spacing spacing_of(const WallParticles& particles, const WallParticles& others) const
