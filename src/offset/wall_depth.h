@@ -4,9 +4,11 @@
 
 #include "meshes/inside_test.h"
 #include "meshes/pseudo_normals.h"
+#include "offset/round_wall.h"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace fppg
@@ -48,6 +50,15 @@ public:
     WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_solid, WallSide side,
               double sharp_angle_deg, int threads);
 
+    /// Of a round body: takes places from its exact surface. In 2D the mesh is that of the lines in
+    /// the plane of the case.
+    ///
+    /// body  the mesh that the round surface belongs to
+    void take_round_surface(const SurfaceMesh& body, std::shared_ptr<const RoundSurface> round,
+                            bool is_2d);
+    /// Null for bodies that are not round.
+    const RoundWall* round() const { return round_.get(); }
+
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
     const SurfaceMesh& mesh() const { return mesh_; }
@@ -57,6 +68,7 @@ public:
 private:
     const MeshQuery& query() const { return test_.query(); }
     bool is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const;
+    DepthPlace seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const;
     void mitre(const Vec3& p, std::uint32_t facet, const FacetPlace& place, DepthPlace& out) const;
 
     SurfaceMesh mesh_;
@@ -66,6 +78,8 @@ private:
     bool asks_inside_ = false;
     double sign_ = 1;
     std::vector<char> is_sharp_; ///< per edge
+    double turn_ = 0;            ///< cosine of the angle from which edges are sharp
+    std::unique_ptr<RoundWall> round_;
 };
 
 } // namespace fppg

@@ -158,13 +158,20 @@ private:
     {
         const FittedBody& body = out_.body;
         if (!grid_.is_2d)
-            return std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
-                                               sharp_angle_deg, threads_);
+        {
+            auto wall = std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
+                                                    sharp_angle_deg, threads_);
+            wall->take_round_surface(body.mesh, body.round, false);
+            return wall;
+        }
         MeshReport report;
         const double half_width = (settings_.depths_dp.back() + 4) * grid_.dp;
         SurfaceMesh mesh = drawn_out(body.mesh, grid_.origin.y, half_width, threads_, report);
         if (mesh.facets.empty()) return nullptr;
-        return std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
+        auto wall =
+            std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
+        wall->take_round_surface(body.mesh, body.round, true);
+        return wall;
     }
 
     /// Of a combination: each facet belongs to the part that is nearest to it.
