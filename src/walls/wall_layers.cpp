@@ -449,6 +449,7 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
     std::vector<double> dropped(out.layers.size() + 1, 0);
     for (const std::uint32_t b : out.second_sheet.bodies) ++dropped[b];
     FitMeasures& of_body = out.body.measures;
+    const bool is_closed = of_body.volume > 0;
     for (std::size_t k = 0; k < out.layers.size(); ++k)
     {
         FitMeasures& measures = out.layers[k].measures;
@@ -457,11 +458,14 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
         for (const double a : out.layers[k].mesh.areas) area += a;
         // In 2D the strip is two halves of a cell wide.
         if (grid.is_2d) area *= 1 / offset_cell_dp;
+        // Those of a closed body end only where others take over.
+        if (!is_closed) area += 0.5 * grid.dp * open_rims(out.layers[k].mesh, grid);
         if (out.layers[k].mesh.facets.empty()) area = counts[k + 1] * grid.dp * grid.dp;
         measures.area = all > 0 ? area * counts[k + 1] / all : 0;
         measures.second_sheet = area - measures.area;
         measures.wall_particles = counts[k + 1];
         of_body.wall_particles += counts[k + 1];
+        of_body.layer_particles += counts[k + 1];
         of_body.wall_volume += counts[k + 1] * dp3;
     }
     out.body.settle_share(grid.dp);
