@@ -23,6 +23,8 @@ constexpr double longer_way_dp = 10;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
 constexpr double opposing = -0.5;
+/// Pieces of one side turn by less than 60 degrees from one to the next.
+constexpr double same_facing = 0.5;
 
 bool is_same_side(const FittedBody& a, const FittedBody& b)
 {
@@ -217,6 +219,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
     if (std::any_of(pieces_.begin(), pieces_.end(), is_reached))
         for (Piece& piece : pieces_)
             if (!std::isfinite(piece.way)) piece.state = is_dry;
+    dry_to_the_rims();
     dry_along_edges();
 }
 
@@ -255,11 +258,44 @@ void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidW
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
     const double there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
+    piece.other_way = there;
     if (!std::isfinite(piece.way) && !std::isfinite(there)) return;
     if (piece.way > there + longer_way_dp)
         piece.state = is_dry;
     else if (!(there > piece.way + longer_way_dp))
         piece.state = is_thin;
+}
+
+/// Towards the rim of a tank the way to the outside is shorter. Its walls would look aslant to the
+/// strip there instead of through themselves.
+void WetSurface::dry_to_the_rims()
+{
+    std::vector<std::size_t> front;
+    std::vector<std::size_t> candidates;
+    PointGrid near(reach_, pieces_.size() / 4);
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+    {
+        const Piece& piece = pieces_[i];
+        if (piece.state == is_dry) front.push_back(i);
+        if (piece.state != is_thin || !(piece.way > piece.other_way + 1)) continue;
+        candidates.push_back(i);
+        near.add(piece.middle());
+    }
+    while (!front.empty() && !candidates.empty())
+    {
+        const Piece from = pieces_[front.back()];
+        front.pop_back();
+        near.for_each_near(from.middle(), reach_,
+                           [&](std::uint32_t c, double)
+                           {
+                               Piece& piece = pieces_[candidates[c]];
+                               if (piece.state == is_dry || piece.body != from.body ||
+                                   dot(piece.normal, from.normal) < same_facing)
+                                   return;
+                               piece.state = is_dry;
+                               front.push_back(candidates[c]);
+                           });
+    }
 }
 
 /// Along the edges of a dry side no place lies right behind another: what is far from the fluid and
