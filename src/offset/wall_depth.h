@@ -21,6 +21,10 @@ enum class WallSide : std::uint8_t
     Front,
 };
 
+/// A mitre is cut off where it is so much farther from its edge than deep: that of a corner of a
+/// box is not, 1.73.
+inline constexpr double longest_mitre = 1.8;
+
 /// A point seen from a wall.
 struct DepthPlace
 {
@@ -62,6 +66,11 @@ public:
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
     const SurfaceMesh& mesh() const { return mesh_; }
+    /// Whether depths may be those of a mitre around some point: an edge that has one is so near.
+    bool has_mitre_near(const Vec3& p, double within) const
+    {
+        return mitres_ != nullptr && mitres_->closest_point(p).distance <= within;
+    }
     /// 1 where the layers are behind the facets, -1 where they are in front.
     double sign() const { return sign_; }
 
@@ -77,8 +86,9 @@ private:
     double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
     bool asks_inside_ = false;
     double sign_ = 1;
-    std::vector<char> is_sharp_; ///< per edge
-    double turn_ = 0;            ///< cosine of the angle from which edges are sharp
+    std::vector<char> is_sharp_;        ///< per edge
+    double turn_ = 0;                   ///< cosine of the angle from which edges are sharp
+    std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
     std::unique_ptr<RoundWall> round_;
 };
 
