@@ -96,7 +96,14 @@ TEST(RoundLayers, OfATubeStandOnTheSideAskedForToItsEnds)
         const double sense = side == LayerSide::Behind ? 1 : -1;
         expect_exact_layers(
             drawing, [&](const Vec3& p) { return sense * (radius - std::hypot(p.y, p.z)); }, 3);
-        for (const Vec3& p : relaxed(drawing).walls.particles.positions)
+        const RunField field = relaxed(drawing);
+        // Half a step beyond the rims belongs to the particles on them.
+        for (const FittedBody& body : field.walls.bodies)
+            if (body.is_layer())
+            {
+                EXPECT_NEAR(body.measures.wall_particles * dp * dp / body.measures.area, 1, 0.04);
+            }
+        for (const Vec3& p : field.walls.particles.positions)
             EXPECT_TRUE(p.x > -1 - 0.01 * dp && p.x < 1.02 + 0.01 * dp);
     }
 }

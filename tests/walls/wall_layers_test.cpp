@@ -165,6 +165,22 @@ TEST(WallLayers, AreLinesIn2D)
     }
 }
 
+/// Under DBC, where the first stands on the surface, with half of its volume outside.
+TEST(WallLayers, StandForTheVolumeOfTheBodyHalfAsMuchOnItsSurface)
+{
+    Drawing drawing = layered();
+    drawing.def.fit.all->boundary = WallBoundary::Dbc;
+    drawing.def.fit.all->depths_dp = {0, 1, 2};
+    drawing.box({-0.93, -0.77, -0.85}, {1.8, 1.5, 1.6});
+    const RunField field = relaxed(drawing);
+    const FittedBody& body = field.walls.bodies[0];
+    EXPECT_NEAR(body.share, 0.5 * body.layer_share, 1e-12);
+    double volume = body.measures.node_volume;
+    for (const std::uint32_t b : field.walls.particles.bodies)
+        volume += (b == 0 ? body.share : body.layer_share) * dp * dp * dp;
+    EXPECT_NEAR(volume / (1.8 * 1.5 * 1.6), 1, 1e-9);
+}
+
 TEST(WallLayers, HaveTheSameBytesWithAnyNumberOfThreads)
 {
     Drawing drawing = layered();
