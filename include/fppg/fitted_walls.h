@@ -38,6 +38,7 @@ struct FitMeasures
     double area = 0;
     double second_sheet = 0; ///< area that is not in `area`: the side of a plate without particles
     double wall_particles = 0;
+    double layer_particles = 0; ///< those of them that stand in layers behind the surface
     double volume = 0;       ///< of the shape; 0: it is open
     double sheet_volume = 0; ///< of facets that bound no volume, as if dp thick
     double node_volume = 0;  ///< that the nodes inside stand for
@@ -68,6 +69,7 @@ struct FittedBody
     /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: in a filled body so much that
     /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
+    double layer_share = 1; ///< the same of a particle of its layers; on the surface it is half that
     FitMeasures measures;
     /// Particles that it lacks because others are nearer than least_pair_dp to their places: on
     /// corners, along edges, on surfaces.
@@ -81,17 +83,24 @@ struct FittedBody
     std::shared_ptr<const WallDepth> wall;
     bool is_layer() const { return owner != no_index; }
 
-    /// Settles the share by the measures.
+    /// Settles the shares by the measures.
     ///
     /// dp  metres
     void settle_share(double dp)
     {
         share = 1 / measures.kept;
+        layer_share = share;
         if (measures.filled <= 0 || measures.wall_particles <= 0) return;
         const double of_wall =
             std::max(0.0, measures.volume + measures.sheet_volume - measures.node_volume);
-        const double of_filled = of_wall / (measures.wall_particles * dp * dp * dp);
-        share = (1 + measures.filled * (of_filled - 1)) / measures.kept;
+        // Half of what a particle on the surface stands for is before that.
+        const double on_surface = measures.layer_particles > 0 ? 0.5 : 1;
+        const double whole =
+            measures.layer_particles +
+            on_surface * (measures.wall_particles - measures.layer_particles);
+        const double of_filled = of_wall / (whole * dp * dp * dp);
+        layer_share = (1 + measures.filled * (of_filled - 1)) / measures.kept;
+        share = (1 + measures.filled * (on_surface * of_filled - 1)) / measures.kept;
     }
 };
 

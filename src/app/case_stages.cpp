@@ -13,12 +13,14 @@
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
 #include "batch/particle_limit.h"
+#include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 
@@ -39,6 +41,15 @@ void enter_zone(MadeCase& made)
                         "<vres>: turned regions of other resolution together with particles "
                         "off the lattice (<setfrdrawmode>), and any with point files, are not "
                         "supported yet");
+    std::array<bool, 3> is_periodic{};
+    std::array<Vec3, 3> shift;
+    read_periodic_axes(made.def.execution, made.def.file, is_periodic, shift);
+    if (made.field.walls.volume.size() > 0 && is_periodic != std::array<bool, 3>{})
+        throw CaseError(made.def.file, made.def.vres.zones[0].line,
+                        "<vres>: regions of other resolution in a periodic case with particles off "
+                        "the lattice (<setfrdrawmode>) are not supported yet: they would not "
+                        "meet across the period; expected none of the parameters XPeriodicIncY "
+                        "and the like, or particles on the lattice only");
     clip_to_zone(made.def.vres, made.def.zone, made.field);
 }
 

@@ -373,7 +373,8 @@ private:
         if (!def_.fit.is_empty())
             read_.fail(e,
                        "regions of other resolution together with body-fitted walls are not "
-                       "supported yet");
+                       "supported yet, expected <vres active=\"false\">, or -fit:off, which puts "
+                       "the walls on the lattice");
         if (!def_.point_files.empty())
             read_.fail(e,
                        "regions of other resolution together with <fppg><points> are not "

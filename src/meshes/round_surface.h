@@ -21,6 +21,7 @@ struct RoundSurface
     double size = 0; ///< metres, of a radius: by it rounding is measured
     /// Facets that look along it are plane covers, which are exact; zero: there are none.
     Vec3 cover_normal{};
+    bool is_distance = true; ///< the level is the distance, not only zero where that is
 };
 
 /// A vector of length 1 in the same direction; of the zero vector zero.

@@ -23,6 +23,8 @@ constexpr double longer_way_dp = 10;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
 constexpr double opposing = -0.5;
+/// Pieces of one side turn by less than 60 degrees from one to the next.
+constexpr double same_facing = 0.5;
 
 bool is_same_side(const FittedBody& a, const FittedBody& b)
 {
@@ -119,10 +121,15 @@ WetSurface::WetSurface(const RunField& field, std::uint16_t first_bound, double 
         judge(field, FluidWay(field, first_bound), threads);
     TriangleSoup wet;
     for (const Piece& piece : pieces_)
-        if (piece.state != is_dry)
-            wet.vertices.insert(wet.vertices.end(), piece.corners.begin(), piece.corners.end());
-        else
+    {
+        if (piece.state == is_dry)
+        {
             has_dry_sides_ = true;
+            continue;
+        }
+        wet.vertices.insert(wet.vertices.end(), piece.corners.begin(), piece.corners.end());
+        round_walls_.push_back(piece.round_wall);
+    }
     note_thin_walls(field);
     pieces_.clear();
     if (!wet.vertices.empty()) query_ = std::make_unique<MeshQuery>(std::move(wet), threads);
@@ -140,6 +147,7 @@ void WetSurface::cut_pieces(const RunField& field)
         Piece piece;
         piece.body = bodies[b].owner;
         piece.is_closed = bodies[piece.body].measures.volume > 0;
+        piece.round_wall = bodies[b].wall->round() != nullptr ? bodies[b].wall.get() : nullptr;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
             for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
@@ -211,6 +219,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
     if (std::any_of(pieces_.begin(), pieces_.end(), is_reached))
         for (Piece& piece : pieces_)
             if (!std::isfinite(piece.way)) piece.state = is_dry;
+    dry_to_the_rims();
     dry_along_edges();
 }
 
@@ -249,11 +258,44 @@ void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidW
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
     const double there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
+    piece.other_way = there;
     if (!std::isfinite(piece.way) && !std::isfinite(there)) return;
     if (piece.way > there + longer_way_dp)
         piece.state = is_dry;
     else if (!(there > piece.way + longer_way_dp))
         piece.state = is_thin;
+}
+
+/// Towards the rim of a tank the way to the outside is shorter. Its walls would look aslant to the
+/// strip there instead of through themselves.
+void WetSurface::dry_to_the_rims()
+{
+    std::vector<std::size_t> front;
+    std::vector<std::size_t> candidates;
+    PointGrid near(reach_, pieces_.size() / 4);
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+    {
+        const Piece& piece = pieces_[i];
+        if (piece.state == is_dry) front.push_back(i);
+        if (piece.state != is_thin || !(piece.way > piece.other_way + 1)) continue;
+        candidates.push_back(i);
+        near.add(piece.middle());
+    }
+    while (!front.empty() && !candidates.empty())
+    {
+        const Piece from = pieces_[front.back()];
+        front.pop_back();
+        near.for_each_near(from.middle(), reach_,
+                           [&](std::uint32_t c, double)
+                           {
+                               Piece& piece = pieces_[candidates[c]];
+                               if (piece.state == is_dry || piece.body != from.body ||
+                                   dot(piece.normal, from.normal) < same_facing)
+                                   return;
+                               piece.state = is_dry;
+                               front.push_back(candidates[c]);
+                           });
+    }
 }
 
 /// Along the edges of a dry side no place lies right behind another: what is far from the fluid and
@@ -290,7 +332,14 @@ Vec3 WetSurface::vector_from(const Vec3& p, double most) const
 {
     if (query_ == nullptr) return {};
     const ClosestPoint near = query_->closest_point(p);
-    return near.distance <= most ? near.point - p : Vec3{};
+    if (near.distance > most) return {};
+    const WallDepth* round_wall = round_walls_[near.facet];
+    if (round_wall == nullptr) return near.point - p;
+    // From the facets to their exact surface. Its nearest place may be on a dry side.
+    const Vec3 nearest = round_wall->at(p).nearest;
+    const bool is_wet_one =
+        std::fabs(norm(nearest - p) - near.distance) <= 2 * round_wall->round()->chord();
+    return (is_wet_one ? nearest : round_wall->at(near.point).nearest) - p;
 }
 
 } // namespace fppg

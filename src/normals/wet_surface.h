@@ -43,8 +43,9 @@ private:
 /// The parts of the surfaces of layered walls that fluid can touch.
 ///
 /// Particles in a closed wall thinner than 4 h can look to two sides. Where fluid has a way
-/// at least 10 dp longer to one of them, or none, that side counts as dry (the outside of a tank);
-/// so does what another body covers. Everything else is wet.
+/// at least 10 dp longer to one of them, or none, that side counts as dry (the outside of a tank),
+/// up to its rim, where the way is not so much longer; so does what another body covers. Everything
+/// else is wet.
 class WetSurface
 {
 public:
@@ -73,10 +74,12 @@ private:
         std::array<Vec3, 3> corners;
         Vec3 normal; ///< to the fluid
         std::uint32_t body = 0;
+        const WallDepth* round_wall = nullptr;
         bool is_closed = false;
         char state = 0;
         double thickness = 0; ///< metres; 0: no other side was found
         double way = 0;       ///< of fluid to it, dp
+        double other_way = 0; ///< of fluid to the other side
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
     };
@@ -92,6 +95,7 @@ private:
     void judge(const RunField& field, const FluidWay& way, int threads);
     static bool is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp);
     void compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way, double dp) const;
+    void dry_to_the_rims();
     void dry_along_edges();
     void note_thin_walls(const RunField& field);
 
@@ -99,6 +103,7 @@ private:
     std::vector<Piece> pieces_;
     std::vector<ThinWall> thin_walls_;
     std::unique_ptr<MeshQuery> query_;
+    std::vector<const WallDepth*> round_walls_; ///< per facet of the query: null, or of round walls
     bool has_dry_sides_ = false;
 };
 

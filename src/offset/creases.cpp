@@ -1,7 +1,7 @@
 #include "offset/creases.h"
 
 #include "core/parallel.h"
-#include "offset/dual_cells.h"
+#include "offset/crease_mesh.h"
 #include "offset/quadric.h"
 #include "offset/slivers.h"
 
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -19,12 +20,10 @@ namespace
 
 /// Cosine of the turn of facets below which an edge is not looked at, 8 degrees.
 constexpr double looked_at = 0.990;
-/// A crease is looked for this far to both sides of an edge, dp.
-constexpr double beside_edge = 0.08;
 /// Vertices are moved onto a crease by so much at most, in cells.
 constexpr double longest_move = 0.7;
-/// The same where the surface was cut off.
-constexpr double longest_pull = 1.5;
+/// How often vertices are put onto creases and slivers between them taken out.
+constexpr int crease_rounds = 3;
 /// Edges of a gap that is closed.
 constexpr int gap_edges = 3;
 /// Cosine of the turn of a crease in a gap, 75 degrees.
@@ -39,27 +38,12 @@ constexpr std::size_t tiny_loop = 4;
 class CreaseFinder
 {
 public:
-    CreaseFinder(const WallDepth& wall, const OffsetOptions& options, int threads,
-                 OffsetSurface& offset)
-        : wall_(wall),
-          options_(options),
-          threads_(threads),
-          mesh_(offset.mesh),
-          turn_(std::cos(options.feature_angle_deg * std::numbers::pi / 180))
-    {
-        begin_.assign(mesh_.vertices.size() + 2, 0);
-        for (const auto& edge : mesh_.edges)
-            for (const std::uint32_t v : edge) ++begin_[v + 2];
-        for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-        around_.resize(2 * mesh_.edges.size());
-        for (std::uint32_t e = 0; e < mesh_.edges.size(); ++e)
-            for (const std::uint32_t v : mesh_.edges[e]) around_[begin_[v + 1]++] = e;
-    }
+    explicit CreaseFinder(const CreaseMesh& on) : on_(on) {}
 
     /// Puts the vertices at creases onto them; returns whether there are any.
     bool place_vertices()
     {
-        is_crease_.assign(mesh_.edges.size(), 0);
+        is_crease_.assign(on_.mesh.edges.size(), 0);
         pull_cut_creases();
         find(true);
         for (int round = 0; round < 2; ++round)
@@ -67,8 +51,12 @@ public:
             move_onto_creases();
             find(false);
         }
+        if (pull_cut_corners(on_, is_placed_)) find(false);
         return std::any_of(is_crease_.begin(), is_crease_.end(), [](char c) { return c != 0; });
     }
+
+    /// Per vertex whether it was put onto a crease.
+    const std::vector<char>& on_creases() const { return is_placed_; }
 
     std::vector<std::uint32_t> run()
     {
@@ -83,29 +71,15 @@ public:
     }
 
 private:
-    Vec3 normal_of(std::uint32_t facet) const
-    {
-        const auto& f = mesh_.facets[facet];
-        const Vec3& a = mesh_.vertices[f[0]];
-        const Vec3 n = cross(mesh_.vertices[f[1]] - a, mesh_.vertices[f[2]] - a);
-        const double size = norm(n);
-        return size > 0 ? n / size : Vec3{};
-    }
-
-    Vec3 middle_of(std::uint32_t facet) const
-    {
-        const auto& f = mesh_.facets[facet];
-        return (mesh_.vertices[f[0]] + mesh_.vertices[f[1]] + mesh_.vertices[f[2]]) / 3;
-    }
-
     /// From the middle of an edge into one of its facets, unit.
     Vec3 into_facet(std::uint32_t edge, std::uint32_t facet) const
     {
-        const Vec3& a = mesh_.vertices[mesh_.edges[edge][0]];
-        const Vec3 along = mesh_.vertices[mesh_.edges[edge][1]] - a;
+        const Vec3& a = on_.mesh.vertices[on_.mesh.edges[edge][0]];
+        const Vec3 along = on_.mesh.vertices[on_.mesh.edges[edge][1]] - a;
         Vec3 way;
-        for (const std::uint32_t v : mesh_.facets[facet])
-            if (v != mesh_.edges[edge][0] && v != mesh_.edges[edge][1]) way = mesh_.vertices[v] - a;
+        for (const std::uint32_t v : on_.mesh.facets[facet])
+            if (v != on_.mesh.edges[edge][0] && v != on_.mesh.edges[edge][1])
+                way = on_.mesh.vertices[v] - a;
         const double length = dot(along, along);
         if (!(length > 0)) return {};
         way = way - (dot(way, along) / length) * along;
@@ -116,40 +90,35 @@ private:
     /// Whether the direction of the depth turns across an edge by more than the feature angle.
     bool turns(std::uint32_t e) const
     {
-        const auto& facets = mesh_.edge_facets[e];
-        if (facets[1] == no_index || mesh_.is_manifold[e] == 0) return false;
-        if (dot(normal_of(facets[0]), normal_of(facets[1])) > looked_at) return false;
-        const Vec3 middle =
-            0.5 * (mesh_.vertices[mesh_.edges[e][0]] + mesh_.vertices[mesh_.edges[e][1]]);
+        const auto& facets = on_.mesh.edge_facets[e];
+        if (facets[1] == no_index || on_.mesh.is_manifold[e] == 0) return false;
+        if (dot(on_.normal_of(facets[0]), on_.normal_of(facets[1])) > looked_at) return false;
+        const Vec3 middle = 0.5 * (on_.mesh.vertices[on_.mesh.edges[e][0]] +
+                                   on_.mesh.vertices[on_.mesh.edges[e][1]]);
         std::array<Vec3, 2> directions;
         for (std::size_t s = 0; s < 2; ++s)
             directions[s] =
-                wall_.at(middle + (beside_edge * options_.dp) * into_facet(e, facets[s])).direction;
-        return dot(directions[0], directions[1]) < turn_;
+                on_.wall.at(middle + (beside_edge * on_.options.dp) * into_facet(e, facets[s]))
+                    .direction;
+        return dot(directions[0], directions[1]) < on_.turn;
     }
 
     bool has_crease(std::uint32_t v) const
     {
-        return std::any_of(edges_of(v), edges_end(v),
+        return std::any_of(on_.edges_of(v), on_.edges_end(v),
                            [&](std::uint32_t e) { return is_crease_[e] != 0; });
     }
-    const std::uint32_t* edges_of(std::uint32_t v) const { return around_.data() + begin_[v]; }
-    const std::uint32_t* edges_end(std::uint32_t v) const { return around_.data() + begin_[v + 1]; }
-    std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const
-    {
-        return mesh_.edges[e][0] == v ? mesh_.edges[e][1] : mesh_.edges[e][0];
-    }
-
     /// everywhere  else only at edges one of whose ends is on a crease
     void find(bool everywhere)
     {
-        std::vector<char> found(mesh_.edges.size(), 0);
+        std::vector<char> found(on_.mesh.edges.size(), 0);
         parallel_for(
-            mesh_.edges.size(), threads_,
+            on_.mesh.edges.size(), on_.threads,
             [&](std::size_t i)
             {
                 const auto e = static_cast<std::uint32_t>(i);
-                if (everywhere || has_crease(mesh_.edges[e][0]) || has_crease(mesh_.edges[e][1]))
+                if (everywhere || has_crease(on_.mesh.edges[e][0]) ||
+                    has_crease(on_.mesh.edges[e][1]))
                     found[e] = turns(e) ? 1 : 0;
             },
             256);
@@ -160,45 +129,56 @@ private:
     std::optional<Vec3> crease_place(std::uint32_t v, double longest = longest_move) const
     {
         std::vector<Vec3> faces;
-        for (const std::uint32_t* e = edges_of(v); e != edges_end(v); ++e)
-            for (const std::uint32_t f : mesh_.edge_facets[*e])
-                if (f != no_index) faces.push_back(middle_of(f));
-        const Vec3& from = mesh_.vertices[v];
+        for (const std::uint32_t* e = on_.edges_of(v); e != on_.edges_end(v); ++e)
+            for (const std::uint32_t f : on_.mesh.edge_facets[*e])
+                if (f != no_index) faces.push_back(on_.middle_of(f));
+        const Vec3& from = on_.mesh.vertices[v];
         Quadric quadric;
         for (const Vec3& p : faces)
         {
-            const DepthPlace place = wall_.at(p);
+            const DepthPlace place = on_.wall.at(p);
             const double at_vertex = place.depth + dot(place.direction, from - p);
-            quadric.add_plane(place.direction, options_.depth - at_vertex);
+            quadric.add_plane(place.direction, on_.options.depth - at_vertex);
         }
         const Vec3 start = from + quadric.least_point();
-        if (!(norm(start - from) < longest * options_.cell)) return std::nullopt;
-        const Vec3 out = project_to_crease(wall_, start, options_.depth, options_.dp, faces);
-        return norm(out - from) < longest * options_.cell ? std::optional(out) : std::nullopt;
+        if (!(norm(start - from) < longest * on_.options.cell)) return std::nullopt;
+        const Vec3 out =
+            project_to_crease(on_.wall, start, on_.options.depth, on_.options.dp, faces);
+        return norm(out - from) < longest * on_.options.cell ? std::optional(out) : std::nullopt;
     }
 
-    /// Whether the depths at two vertices are measured from two faces that meet between them.
-    bool has_crease_between(const DepthPlace& a, const DepthPlace& b, const Vec3& from,
-                            const Vec3& to) const
+    /// Whether the depths at two vertices are measured from two faces that meet between them: by
+    /// halves, whether the direction of the depth turns within as little as at a crease.
+    bool has_crease_between(const DepthPlace& a, const DepthPlace& b, Vec3 from, Vec3 to) const
     {
-        return dot(a.direction, b.direction) < turn_ &&
-               norm(a.foot - b.foot) > foot_jump * norm(to - from);
+        Vec3 near = a.direction;
+        Vec3 far = b.direction;
+        while (dot(near, far) < on_.turn)
+        {
+            if (!(norm(to - from) > 2 * beside_edge * on_.options.dp)) return true;
+            const Vec3 middle = 0.5 * (from + to);
+            const Vec3 direction = on_.wall.at(middle).direction;
+            const bool is_before = dot(near, direction) < dot(direction, far);
+            (is_before ? to : from) = middle;
+            (is_before ? far : near) = direction;
+        }
+        return false;
     }
 
     /// Where a crease sticks out into a cell none of whose edges it meets, the facets cut it off:
     /// of each of their sides that cross it one end is pulled onto it.
     void pull_cut_creases()
     {
-        std::vector<std::optional<DepthPlace>> places(mesh_.vertices.size());
+        std::vector<std::optional<DepthPlace>> places(on_.mesh.vertices.size());
         std::vector<std::uint32_t> near;
-        for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
+        for (std::size_t e = 0; e < on_.mesh.edges.size(); ++e)
         {
-            const auto& facets = mesh_.edge_facets[e];
+            const auto& facets = on_.mesh.edge_facets[e];
             if (facets[1] == no_index ||
-                dot(mesh_.normals[facets[0]], mesh_.normals[facets[1]]) > looked_at)
+                dot(on_.mesh.normals[facets[0]], on_.mesh.normals[facets[1]]) > looked_at)
                 continue;
             for (const std::uint32_t f : facets)
-                for (const std::uint32_t v : mesh_.facets[f])
+                for (const std::uint32_t v : on_.mesh.facets[f])
                     if (!places[v])
                     {
                         places[v] = DepthPlace{};
@@ -206,22 +186,23 @@ private:
                     }
         }
         parallel_for(
-            near.size(), threads_,
-            [&](std::size_t i) { places[near[i]] = wall_.at(mesh_.vertices[near[i]]); }, 64);
-        std::vector<char> is_pulled(mesh_.vertices.size(), 0);
-        for (const auto& edge : mesh_.edges)
+            near.size(), on_.threads,
+            [&](std::size_t i) { places[near[i]] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
+        std::vector<char> is_pulled(on_.mesh.vertices.size(), 0);
+        for (const auto& edge : on_.mesh.edges)
         {
             const auto [a, b] = edge;
             if (!places[a] || !places[b] || is_pulled[a] != 0 || is_pulled[b] != 0) continue;
-            if (!has_crease_between(*places[a], *places[b], mesh_.vertices[a], mesh_.vertices[b]))
+            if (!has_crease_between(*places[a], *places[b], on_.mesh.vertices[a],
+                                    on_.mesh.vertices[b]))
                 continue;
             const std::optional<Vec3> of_a = crease_place(a, longest_pull);
             const std::optional<Vec3> of_b = crease_place(b, longest_pull);
             if (!of_a && !of_b) continue;
-            const bool takes_a = of_a && (!of_b || norm(*of_a - mesh_.vertices[a]) <=
-                                                       norm(*of_b - mesh_.vertices[b]));
+            const bool takes_a = of_a && (!of_b || norm(*of_a - on_.mesh.vertices[a]) <=
+                                                       norm(*of_b - on_.mesh.vertices[b]));
             const std::uint32_t v = takes_a ? a : b;
-            mesh_.vertices[v] = takes_a ? *of_a : *of_b;
+            on_.mesh.vertices[v] = takes_a ? *of_a : *of_b;
             is_pulled[v] = 1;
         }
     }
@@ -229,14 +210,19 @@ private:
     void move_onto_creases()
     {
         std::vector<std::uint32_t> vertices;
-        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
+        for (std::uint32_t v = 0; v < on_.mesh.vertices.size(); ++v)
             if (has_crease(v)) vertices.push_back(v);
         std::vector<std::optional<Vec3>> places(vertices.size());
         parallel_for(
-            vertices.size(), threads_,
+            vertices.size(), on_.threads,
             [&](std::size_t i) { places[i] = crease_place(vertices[i]); }, 64);
+        is_placed_.assign(on_.mesh.vertices.size(), 0);
         for (std::size_t i = 0; i < vertices.size(); ++i)
-            if (places[i]) mesh_.vertices[vertices[i]] = *places[i];
+        {
+            if (!places[i]) continue;
+            on_.mesh.vertices[vertices[i]] = *places[i];
+            is_placed_[vertices[i]] = 1;
+        }
     }
 
     /// Where slivers lie along a crease both of their sides are found: of two ways from one end of
@@ -247,7 +233,7 @@ private:
         {
             if (is_crease_[e] == 0) continue;
             std::vector<std::uint32_t> loop{e};
-            if (find_loop(mesh_.edges[e][1], mesh_.edges[e][0], loop)) drop_one_way(loop);
+            if (find_loop(on_.mesh.edges[e][1], on_.mesh.edges[e][0], loop)) drop_one_way(loop);
         }
     }
 
@@ -258,12 +244,12 @@ private:
     {
         if (at == goal) return is_flat(loop);
         if (loop.size() == lens_edges) return false;
-        for (const std::uint32_t* e = edges_of(at); e != edges_end(at); ++e)
+        for (const std::uint32_t* e = on_.edges_of(at); e != on_.edges_end(at); ++e)
         {
             if (is_crease_[*e] == 0 || std::find(loop.begin(), loop.end(), *e) != loop.end())
                 continue;
             loop.push_back(*e);
-            if (find_loop(other_end(*e, at), goal, loop)) return true;
+            if (find_loop(on_.other_end(*e, at), goal, loop)) return true;
             loop.pop_back();
         }
         return false;
@@ -274,13 +260,13 @@ private:
     {
         std::vector<std::uint32_t> vertices;
         for (const std::uint32_t e : loop)
-            vertices.insert(vertices.end(), mesh_.edges[e].begin(), mesh_.edges[e].end());
-        std::array<std::uint32_t, 2> ends = mesh_.edges[loop[0]];
+            vertices.insert(vertices.end(), on_.mesh.edges[e].begin(), on_.mesh.edges[e].end());
+        std::array<std::uint32_t, 2> ends = on_.mesh.edges[loop[0]];
         double most = 0;
         for (const std::uint32_t a : vertices)
             for (const std::uint32_t b : vertices)
             {
-                const double d = norm(mesh_.vertices[a] - mesh_.vertices[b]);
+                const double d = norm(on_.mesh.vertices[a] - on_.mesh.vertices[b]);
                 if (d <= most) continue;
                 most = d;
                 ends = {a, b};
@@ -292,13 +278,13 @@ private:
     {
         if (loop.size() <= tiny_loop) return true;
         const auto [a, b] = far_ends(loop);
-        const Vec3& from = mesh_.vertices[a];
-        const Vec3 along = mesh_.vertices[b] - from;
+        const Vec3& from = on_.mesh.vertices[a];
+        const Vec3 along = on_.mesh.vertices[b] - from;
         const double length = norm(along);
         for (const std::uint32_t e : loop)
-            for (const std::uint32_t v : mesh_.edges[e])
-                if (norm(cross(mesh_.vertices[v] - from, along)) >
-                    lens_width * options_.cell * length)
+            for (const std::uint32_t v : on_.mesh.edges[e])
+                if (norm(cross(on_.mesh.vertices[v] - from, along)) >
+                    lens_width * on_.options.cell * length)
                     return false;
         return true;
     }
@@ -314,19 +300,19 @@ private:
                 std::size_t next = loop.size();
                 for (std::size_t i = 0; i < loop.size(); ++i)
                     if (is_used[i] == 0 &&
-                        (mesh_.edges[loop[i]][0] == at || mesh_.edges[loop[i]][1] == at))
+                        (on_.mesh.edges[loop[i]][0] == at || on_.mesh.edges[loop[i]][1] == at))
                         next = std::min(next, i);
                 if (next == loop.size()) return;
                 is_used[next] = 1;
                 way.push_back(loop[next]);
-                at = other_end(loop[next], at);
+                at = on_.other_end(loop[next], at);
             }
         // The one that other creases leave stays, else that with more vertices.
         const auto weight = [&](const std::vector<std::uint32_t>& way)
         {
             int out = static_cast<int>(way.size());
             for (const std::uint32_t e : way)
-                for (const std::uint32_t v : mesh_.edges[e])
+                for (const std::uint32_t v : on_.mesh.edges[e])
                     if (v != a && v != b && creases_at(v) > 2) out += 100;
             return out;
         };
@@ -336,7 +322,7 @@ private:
 
     int creases_at(std::uint32_t v) const
     {
-        return static_cast<int>(std::count_if(edges_of(v), edges_end(v),
+        return static_cast<int>(std::count_if(on_.edges_of(v), on_.edges_end(v),
                                               [&](std::uint32_t e) { return is_crease_[e] != 0; }));
     }
 
@@ -344,7 +330,7 @@ private:
     void close_gaps()
     {
         std::vector<std::uint32_t> ends;
-        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
+        for (std::uint32_t v = 0; v < on_.mesh.vertices.size(); ++v)
             if (creases_at(v) == 1) ends.push_back(v);
         for (const std::uint32_t v : ends)
             if (creases_at(v) == 1) close_gap(v);
@@ -360,38 +346,39 @@ private:
         };
         std::vector<Step> path;
         std::uint32_t at = end;
-        const std::uint32_t last = *std::find_if(
-            edges_of(end), edges_end(end), [&](std::uint32_t e) { return is_crease_[e] != 0; });
-        Vec3 way = mesh_.vertices[end] - mesh_.vertices[other_end(last, end)];
+        const std::uint32_t last =
+            *std::find_if(on_.edges_of(end), on_.edges_end(end),
+                          [&](std::uint32_t e) { return is_crease_[e] != 0; });
+        Vec3 way = on_.mesh.vertices[end] - on_.mesh.vertices[on_.other_end(last, end)];
         bool is_closed = false;
         while (static_cast<int>(path.size()) < gap_edges && !is_closed)
         {
             std::uint32_t best = no_index;
             Vec3 best_place;
             double best_turn = gap_turn;
-            for (const std::uint32_t* e = edges_of(at); e != edges_end(at); ++e)
+            for (const std::uint32_t* e = on_.edges_of(at); e != on_.edges_end(at); ++e)
             {
                 if (is_crease_[*e] != 0) continue;
-                const std::uint32_t w = other_end(*e, at);
+                const std::uint32_t w = on_.other_end(*e, at);
                 const bool is_on = creases_at(w) > 0;
-                const Vec3 rough = mesh_.vertices[w] - mesh_.vertices[at];
+                const Vec3 rough = on_.mesh.vertices[w] - on_.mesh.vertices[at];
                 if (dot(rough, way) < 0.1 * norm(rough) * norm(way)) continue;
                 const std::optional<Vec3> place =
-                    is_on ? std::optional(mesh_.vertices[w]) : crease_place(w);
+                    is_on ? std::optional(on_.mesh.vertices[w]) : crease_place(w);
                 if (!place) continue;
-                const Vec3 step = *place - mesh_.vertices[at];
+                const Vec3 step = *place - on_.mesh.vertices[at];
                 const double turn = dot(step, way) / (norm(step) * norm(way));
-                if (!(norm(step) > 0.05 * options_.cell) || !(turn > best_turn)) continue;
+                if (!(norm(step) > 0.05 * on_.options.cell) || !(turn > best_turn)) continue;
                 best_turn = turn;
                 best = *e;
                 best_place = *place;
             }
             if (best == no_index) break;
-            const std::uint32_t w = other_end(best, at);
+            const std::uint32_t w = on_.other_end(best, at);
             is_closed = creases_at(w) > 0;
-            path.push_back({best, w, mesh_.vertices[w]});
-            way = best_place - mesh_.vertices[at];
-            mesh_.vertices[w] = best_place;
+            path.push_back({best, w, on_.mesh.vertices[w]});
+            way = best_place - on_.mesh.vertices[at];
+            on_.mesh.vertices[w] = best_place;
             at = w;
         }
         for (const Step& step : path)
@@ -399,18 +386,13 @@ private:
             if (is_closed)
                 is_crease_[step.edge] = 1;
             else
-                mesh_.vertices[step.vertex] = step.old;
+                on_.mesh.vertices[step.vertex] = step.old;
         }
     }
 
-    const WallDepth& wall_;
-    const OffsetOptions& options_;
-    int threads_;
-    SurfaceMesh& mesh_;
-    double turn_;
-    std::vector<std::uint64_t> begin_; ///< edges of vertex v: around_[begin_[v]] to begin_[v + 1]
-    std::vector<std::uint32_t> around_;
+    const CreaseMesh& on_;
     std::vector<char> is_crease_;
+    std::vector<char> is_placed_; ///< per vertex
 };
 
 } // namespace
@@ -418,9 +400,17 @@ private:
 void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
                      OffsetSurface& offset)
 {
-    if (!CreaseFinder(wall, options, threads, offset).place_vertices()) return;
-    remove_slivers(offset.mesh, options.cell, threads, offset.report);
-    offset.creases = CreaseFinder(wall, options, threads, offset).run();
+    for (int round = 0; round < crease_rounds; ++round)
+    {
+        const CreaseMesh on(wall, options, threads, offset.mesh);
+        CreaseFinder finder(on);
+        if (!finder.place_vertices()) return;
+        const std::vector<char> on_creases = finder.on_creases();
+        if (turn_onto_creases(on, on_creases)) reconnect(offset.mesh, threads, offset.report);
+        remove_slivers(offset.mesh, options.cell, on_creases, threads, offset.report);
+    }
+    const CreaseMesh on(wall, options, threads, offset.mesh);
+    offset.creases = CreaseFinder(on).run();
     reconnect(offset.mesh, threads, offset.report);
 }
 

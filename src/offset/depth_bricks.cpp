@@ -30,8 +30,13 @@ bool may_hold(const WallDepth& wall, const DepthGrid& grid, Cube& cube, double d
         grid.node(cube.first[0], cube.first[1], cube.first[2]) + (half * grid.cell) * Vec3{1, 1, 1};
     const double reach = 2 * half * half_diagonal * grid.cell;
     const DepthPlace place = wall.at(middle, cube.within);
-    cube.within = (norm(place.nearest - middle) + reach) * (1 + 1e-9);
-    return std::fabs(std::fabs(place.depth) - depth) <= reach;
+    const double distance = norm(place.nearest - middle);
+    cube.within = (distance + reach) * (1 + 1e-9);
+    if (std::fabs(distance - depth) <= reach) return true;
+    // At a mitre the depth is less than the distance, and jumps where another side is as near.
+    return place.depth > 0 && distance > depth && distance - reach < longest_mitre * depth &&
+           (place.depth < depth + reach ||
+            wall.has_mitre_near(middle, longest_mitre * depth + reach));
 }
 
 } // namespace

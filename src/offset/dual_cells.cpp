@@ -40,7 +40,8 @@ std::array<int, 3> corner_of_edge(int edge, int end)
 }
 
 /// Where the depth along an edge passes the given one. Depth along a line is concave where the foot
-/// jumps from one face to another: then the first tangent that falls below the depth counts.
+/// jumps from one face to another: then the first tangent that falls below the depth counts. Behind
+/// an edge that runs into the wall it is convex: then it is the last one.
 EdgeCrossing cross_edge(const DepthNode& a, const Vec3& at_a, const DepthNode& b, const Vec3& at_b,
                         double depth)
 {
@@ -66,6 +67,19 @@ EdgeCrossing cross_edge(const DepthNode& a, const Vec3& at_a, const DepthNode& b
         if (first >= 0 && first <= 1)
         {
             t = first;
+            direction = is_of_deep ? deep.direction : high.direction;
+            foot = is_of_deep ? deep.foot : high.foot;
+        }
+    }
+    else if (excess_high < -same_tangent * length || excess_deep < -same_tangent * length)
+    {
+        const double t_deep = rate_deep < 0 ? (depth - deep.depth) / rate_deep : 2;
+        const double t_high = rate_high < 0 ? 1 + (depth - high.depth) / rate_high : 2;
+        const bool is_of_deep = t_deep > t_high;
+        const double last = std::max(t_deep, t_high);
+        if (last >= 0 && last <= 1)
+        {
+            t = last;
             direction = is_of_deep ? deep.direction : high.direction;
             foot = is_of_deep ? deep.foot : high.foot;
         }

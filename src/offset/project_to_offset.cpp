@@ -18,7 +18,7 @@ constexpr double beside_crease = 0.03;
 Vec3 project_to_depth(const WallDepth& wall, const Vec3& p, double depth)
 {
     Vec3 at = p;
-    for (int step = 0; step < 4; ++step)
+    for (int step = 0; step < 16; ++step)
     {
         const DepthPlace place = wall.at(at);
         const double off = depth - place.depth;

@@ -65,7 +65,7 @@ std::vector<std::vector<std::uint32_t>> neighbours_of_vertices(const SurfaceMesh
 /// Joins the ends of short edges, each vertex with one other at most and none of its neighbours
 /// with any; returns whether any was. Ends that have more neighbours in common than the facets of
 /// their edge say would pinch the surface.
-bool join_near_vertices(SurfaceMesh& mesh, double cell)
+bool join_near_vertices(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases)
 {
     const std::vector<std::vector<std::uint32_t>> around = neighbours_of_vertices(mesh);
     std::vector<std::uint32_t> of(mesh.vertices.size());
@@ -86,7 +86,9 @@ bool join_near_vertices(SurfaceMesh& mesh, double cell)
             is_used[end] = 1;
             for (const std::uint32_t v : around[end]) is_used[v] = 1;
         }
-        of[edge[1]] = edge[0];
+        // The vertex on a crease stays.
+        const std::size_t kept = on_creases[edge[1]] > on_creases[edge[0]] ? 1 : 0;
+        of[edge[1 - kept]] = edge[kept];
         found = true;
     }
     if (!found) return false;
@@ -155,11 +157,12 @@ bool turn_sides(SurfaceMesh& mesh, double cell)
 
 } // namespace
 
-void remove_slivers(SurfaceMesh& mesh, double cell, int threads, MeshReport& report)
+void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
+                    int threads, MeshReport& report)
 {
     for (int round = 0; round < rounds; ++round)
     {
-        const bool joined = join_near_vertices(mesh, cell);
+        const bool joined = join_near_vertices(mesh, cell, on_creases);
         if (joined) reconnect(mesh, threads, report);
         const bool turned = turn_sides(mesh, cell);
         if (turned) reconnect(mesh, threads, report);

@@ -2,6 +2,8 @@
 
 #include "fppg/surface_mesh.h"
 
+#include <vector>
+
 namespace fppg
 {
 
@@ -10,9 +12,11 @@ namespace fppg
 /// its longest side is turned to the other diagonal. Features and charts would take folded slivers
 /// for sheets of their own.
 ///
-/// mesh    connected before and after
-/// cell    metres
-void remove_slivers(SurfaceMesh& mesh, double cell, int threads, MeshReport& report);
+/// mesh        connected before and after
+/// cell        metres
+/// on_creases  per vertex: 1 where it is on a crease; these stay
+void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
+                    int threads, MeshReport& report);
 
 /// connect_mesh() once more, after vertices have moved; report.facets_read stays.
 void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report);

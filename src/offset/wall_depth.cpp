@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace fppg
 {
 namespace
 {
-
-/// A mitre is cut off where it is so much farther from its edge than deep: that of a corner of a
-/// box is not, 1.73.
-constexpr double longest_mitre = 1.8;
 
 } // namespace
 
@@ -23,17 +20,60 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
       normals_(mesh_),
       test_(soup_of(mesh_), threads),
       asks_inside_(is_solid && !report.is_watertight),
-      sign_(side == WallSide::Behind ? 1 : -1)
+      sign_(side == WallSide::Behind ? 1 : -1),
+      turn_(std::cos(sharp_angle_deg * std::numbers::pi / 180))
 {
     for (const Vec3& v : mesh_.vertices) size_ = std::max(size_, largest_coordinate(v));
-    const double turn = std::cos(sharp_angle_deg * std::numbers::pi / 180);
     is_sharp_.resize(mesh_.edges.size(), 0);
+    TriangleSoup mitred;
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
     {
         const auto& facets = mesh_.edge_facets[e];
-        if (facets[1] != no_index && mesh_.is_manifold[e] != 0)
-            is_sharp_[e] = dot(mesh_.normals[facets[0]], mesh_.normals[facets[1]]) < turn ? 1 : 0;
+        if (facets[1] == no_index || mesh_.is_manifold[e] == 0) continue;
+        is_sharp_[e] = dot(mesh_.normals[facets[0]], mesh_.normals[facets[1]]) < turn_ ? 1 : 0;
+        if (is_sharp_[e] == 0) continue;
+        const Vec3& begin = mesh_.vertices[mesh_.edges[e][0]];
+        const Vec3& end = mesh_.vertices[mesh_.edges[e][1]];
+        double rise = 0; // of one facet over the plane of the other
+        for (const std::uint32_t v : mesh_.facets[facets[1]])
+            rise += dot(mesh_.vertices[v] - begin, mesh_.normals[facets[0]]);
+        if (sign_ * rise > 0) mitred.vertices.insert(mitred.vertices.end(), {begin, end, end});
     }
+    if (!mitred.vertices.empty()) mitres_ = std::make_unique<MeshQuery>(std::move(mitred), threads);
+}
+
+void WallDepth::take_round_surface(const SurfaceMesh& body,
+                                   std::shared_ptr<const RoundSurface> round, bool is_2d)
+{
+    // Where the inside is in doubt, so is the side of the exact surface.
+    if (round != nullptr && !asks_inside_)
+        round_ = std::make_unique<RoundWall>(body, std::move(round), is_2d);
+}
+
+DepthPlace WallDepth::seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const
+{
+    DepthPlace out;
+    out.nearest = place.nearest;
+    out.foot = place.nearest;
+    out.facet = facet;
+    out.is_beyond_rim = place.is_beyond_rim;
+    const Vec3 way = p - place.nearest;
+    const double distance = norm(way);
+    const bool is_on_rim = place.face_count == 2;
+    const Vec3 normal = is_on_rim ? place.faces[0] + place.faces[1] : place.faces[0];
+    out.depth = sign_ * (dot(way, normal) < 0 ? distance : -distance);
+    if (distance > 1e-9 * size_)
+        out.direction = way / out.depth;
+    else
+        out.direction = -sign_ * unit(normal);
+    // A mitre, as behind edges of facets.
+    if (!is_on_rim || !(out.depth > 0) || dot(place.faces[0], place.faces[1]) >= turn_) return out;
+    const double of_first = -sign_ * dot(way, place.faces[0]);
+    const double of_second = -sign_ * dot(way, place.faces[1]);
+    out.depth = std::max(of_first, of_second);
+    out.direction = -sign_ * place.faces[of_first >= of_second ? 0 : 1];
+    out.foot = p - out.depth * out.direction;
+    return out;
 }
 
 bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const
@@ -50,6 +90,8 @@ bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& p
 DepthPlace WallDepth::at(const Vec3& p, double within) const
 {
     const ClosestPoint foot = query().closest_point(p, within);
+    if (round_ != nullptr)
+        if (const auto exact = round_->at(p, foot.point)) return seen_from(*exact, p, foot.facet);
     DepthPlace out;
     out.nearest = foot.point;
     out.foot = foot.point;

@@ -4,9 +4,11 @@
 
 #include "meshes/inside_test.h"
 #include "meshes/pseudo_normals.h"
+#include "offset/round_wall.h"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace fppg
@@ -18,6 +20,10 @@ enum class WallSide : std::uint8_t
     Behind, ///< against the normals of the facets; of closed solids the inside
     Front,
 };
+
+/// A mitre is cut off where it is so much farther from its edge than deep: that of a corner of a
+/// box is not, 1.73.
+inline constexpr double longest_mitre = 1.8;
 
 /// A point seen from a wall.
 struct DepthPlace
@@ -48,15 +54,30 @@ public:
     WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_solid, WallSide side,
               double sharp_angle_deg, int threads);
 
+    /// Of a round body: takes places from its exact surface. In 2D the mesh is that of the lines in
+    /// the plane of the case.
+    ///
+    /// body  the mesh that the round surface belongs to
+    void take_round_surface(const SurfaceMesh& body, std::shared_ptr<const RoundSurface> round,
+                            bool is_2d);
+    /// Null for bodies that are not round.
+    const RoundWall* round() const { return round_.get(); }
+
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
     const SurfaceMesh& mesh() const { return mesh_; }
+    /// Whether depths may be those of a mitre around some point: an edge that has one is so near.
+    bool has_mitre_near(const Vec3& p, double within) const
+    {
+        return mitres_ != nullptr && mitres_->closest_point(p).distance <= within;
+    }
     /// 1 where the layers are behind the facets, -1 where they are in front.
     double sign() const { return sign_; }
 
 private:
     const MeshQuery& query() const { return test_.query(); }
     bool is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const;
+    DepthPlace seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const;
     void mitre(const Vec3& p, std::uint32_t facet, const FacetPlace& place, DepthPlace& out) const;
 
     SurfaceMesh mesh_;
@@ -65,7 +86,10 @@ private:
     double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
     bool asks_inside_ = false;
     double sign_ = 1;
-    std::vector<char> is_sharp_; ///< per edge
+    std::vector<char> is_sharp_;        ///< per edge
+    double turn_ = 0;                   ///< cosine of the angle from which edges are sharp
+    std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
+    std::unique_ptr<RoundWall> round_;
 };
 
 } // namespace fppg

@@ -142,10 +142,11 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
                     out.kinds[at] = walls.particles.kinds[source];
                     out.normals[at] = place.normal;
                     out.distances[at] = place.distance;
-                    out.layers[at] = static_cast<std::uint8_t>(
-                        walls.bodies[walls.particles.bodies[source]].layer + 1);
-                    out.shares[at] =
-                        static_cast<float>(walls.owner_of(walls.particles.bodies[source]).share);
+                    const std::uint32_t of = walls.particles.bodies[source];
+                    const FittedBody& body = walls.bodies[of];
+                    out.layers[at] = static_cast<std::uint8_t>(body.layer + 1);
+                    out.shares[at] = static_cast<float>(
+                        body.is_layer() ? walls.owner_of(of).layer_share : body.share);
                 }
                 else
                 {

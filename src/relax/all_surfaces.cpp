@@ -306,9 +306,14 @@ private:
             if (before[b] == 0) continue;
             FittedBody& body = field_.walls.bodies[b];
             FittedBody& owner = field_.walls.owner_of(b);
-            const double more = body.measures.wall_particles * (after[b] / before[b] - 1);
+            const double own = body.measures.wall_particles - body.measures.layer_particles;
+            const double more = own * (after[b] / before[b] - 1);
             body.measures.wall_particles += more;
-            if (body.is_layer()) owner.measures.wall_particles += more;
+            if (body.is_layer())
+            {
+                owner.measures.wall_particles += more;
+                owner.measures.layer_particles += more;
+            }
             owner.measures.wall_volume +=
                 (body.is_layer() ? 1 : 0.5) * more * std::pow(field_.grid.dp, 3);
             owner.settle_share(field_.grid.dp);

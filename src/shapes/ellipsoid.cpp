@@ -24,7 +24,7 @@ ShapeMesh ellipsoid_mesh(const Vec3& focus0, const Vec3& focus1, double sum, dou
     const auto level = [focus0, focus1, sum](const Vec3& p) -> Level {
         return {norm(p - focus0) + norm(p - focus1) - sum, unit(p - focus0) + unit(p - focus1)};
     };
-    out.round = std::make_shared<const RoundSurface>(RoundSurface{level, sum});
+    out.round = std::make_shared<const RoundSurface>(RoundSurface{level, sum, {}, false});
     const double apart = norm(focus1 - focus0);
     const double along = 0.5 * sum;
     const double side = 0.5 * std::sqrt(std::max(0.0, (sum - apart) * (sum + apart)));

@@ -32,23 +32,6 @@ bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
                        });
 }
 
-/// Of open edges, metres; in 2D of those that meet the plane of the particles, dp each.
-double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
-{
-    double length = 0;
-    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
-    {
-        if (mesh.edge_facets[e][1] != no_index) continue;
-        const Vec3& a = mesh.vertices[mesh.edges[e][0]];
-        const Vec3& b = mesh.vertices[mesh.edges[e][1]];
-        if (!grid.is_2d)
-            length += norm(b - a);
-        else if ((a.y < grid.origin.y) != (b.y < grid.origin.y))
-            length += grid.dp;
-    }
-    return length;
-}
-
 /// A closed surface that holds no node is as good as solid: its particles stand for all of it.
 void take_measures(const ExclusionBand& zone, const ExclusionBandOptions& options,
                    std::size_t second_sheet, const LatticeGrid& grid, FittedBody& body)
@@ -215,6 +198,22 @@ void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDr
 }
 
 } // namespace
+
+double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
+{
+    double length = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        if (mesh.edge_facets[e][1] != no_index) continue;
+        const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+        const Vec3& b = mesh.vertices[mesh.edges[e][1]];
+        if (!grid.is_2d)
+            length += norm(b - a);
+        else if ((a.y < grid.origin.y) != (b.y < grid.origin.y))
+            length += grid.dp;
+    }
+    return length;
+}
 
 SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const LatticeGrid& grid,
                             int threads)

@@ -19,6 +19,10 @@ SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const
 SurfaceParticles section_of(const FittedBody& body, const FitSettings& settings,
                             const LatticeGrid& grid);
 
+/// Length of the open edges of a surface, metres; in 2D of those that meet the plane of the
+/// particles, dp each. Particles stand on them, so half of what these stand for is beyond.
+double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid);
+
 /// Puts particles on the true surface of a shape and finds the nodes inside and around it.
 ///
 /// shape    in the coordinates of the case

@@ -157,13 +157,20 @@ private:
     {
         const FittedBody& body = out_.body;
         if (!grid_.is_2d)
-            return std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
-                                               sharp_angle_deg, threads_);
+        {
+            auto wall = std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
+                                                    sharp_angle_deg, threads_);
+            wall->take_round_surface(body.mesh, body.round, false);
+            return wall;
+        }
         MeshReport report;
         const double half_width = (settings_.depths_dp.back() + 4) * grid_.dp;
         SurfaceMesh mesh = drawn_out(body.mesh, grid_.origin.y, half_width, threads_, report);
         if (mesh.facets.empty()) return nullptr;
-        return std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
+        auto wall =
+            std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
+        wall->take_round_surface(body.mesh, body.round, true);
+        return wall;
     }
 
     /// Of a combination: each facet belongs to the part that is nearest to it.
@@ -443,6 +450,7 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
     std::vector<double> dropped(out.layers.size() + 1, 0);
     for (const std::uint32_t b : out.second_sheet.bodies) ++dropped[b];
     FitMeasures& of_body = out.body.measures;
+    const bool is_closed = of_body.volume > 0;
     for (std::size_t k = 0; k < out.layers.size(); ++k)
     {
         FitMeasures& measures = out.layers[k].measures;
@@ -451,11 +459,14 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
         for (const double a : out.layers[k].mesh.areas) area += a;
         // In 2D the strip is two halves of a cell wide.
         if (grid.is_2d) area *= 1 / offset_cell_dp;
+        // Those of a closed body end only where others take over.
+        if (!is_closed) area += 0.5 * grid.dp * open_rims(out.layers[k].mesh, grid);
         if (out.layers[k].mesh.facets.empty()) area = counts[k + 1] * grid.dp * grid.dp;
         measures.area = all > 0 ? area * counts[k + 1] / all : 0;
         measures.second_sheet = area - measures.area;
         measures.wall_particles = counts[k + 1];
         of_body.wall_particles += counts[k + 1];
+        of_body.layer_particles += counts[k + 1];
         of_body.wall_volume += counts[k + 1] * dp3;
     }
     out.body.settle_share(grid.dp);

@@ -549,6 +549,23 @@ TEST(Regions, TakeOutParticlesOffTheLatticeNearTheirNodes)
     EXPECT_TRUE(contains(inner, R"(<fixed mkbound="2" mk="12" begin="152" count="102")")) << inner;
 }
 
+/// They would not meet across the period.
+TEST(Regions, AreRefusedInPeriodicCasesWithParticlesOffTheLattice)
+{
+    Scene scene(R"(<setfrdrawmode auto="true" />
+<drawline><point x="0.31" y="0" z="0.27" /><point x="4.61" y="0" z="4.43" /></drawline>)",
+                R"(<vres><bufferbox><point x="1" y="0" z="1" /><size x="3" y="0" z="3" />
+<dpratio v="2" /></bufferbox></vres>)");
+    scene.text.pointmin = R"(<pointmin x="0" y="0" z="0" />)";
+    scene.text.pointmax = R"(<pointmax x="5" y="0" z="5" />)";
+    scene.text.execution =
+        R"(<parameters><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
+    const RunResult result = scene.run();
+    EXPECT_NE(result.code, 0);
+    EXPECT_TRUE(contains(result.output, "regions of other resolution in a periodic case"))
+        << result.output;
+}
+
 TEST(PropertyFile, GivesPropertiesToLinkedMks)
 {
     Scene scene(box_command(R"(x="0" y="0" z="0")", R"(x="0.3" y="0.3" z="0.3")"));

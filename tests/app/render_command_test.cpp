@@ -47,6 +47,39 @@ TEST(RenderCommand, TakesTwoCasesBeforeOrAfterTheOptions)
     EXPECT_THROW(run_render({name, name, name, "-o", folder / "c.png"}), UsageError);
 }
 
+/// One colour a layer, named under the picture; fluid and what has no layer have their own.
+TEST(RenderCommand, ColoursTheLayersOfWalls)
+{
+    const TestFolder folder;
+    {
+        OutputFile vtk(folder / "Case_All.vtk");
+        write_particles_vtk(vtk, walled_particles(), small_constants(), VtkSelection::All, 1);
+        vtk.commit();
+    }
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(run_render({folder / "Case", "-o", folder / "layers.png", "--size", "160x120",
+                          "--color", "layer"}),
+              0);
+    const std::string said = testing::internal::GetCapturedStdout();
+    for (const char* name : {"layer 1\n", "layer 2\n", "layer 3\n", "no layer\n", "fluid\n"})
+        EXPECT_THAT(said, HasSubstr(name));
+    ASSERT_EQ(run_render({folder / "Case", "-o", folder / "mks.png", "--size", "160x120"}), 0);
+    EXPECT_NE(read_whole(folder / "layers.png"), read_whole(folder / "mks.png"));
+    EXPECT_THROW(run_render({folder / "Case", "-o", folder / "a.png", "--color", "layers"}),
+                 UsageError);
+}
+
+TEST(RenderCommand, NamesWhatHasNoLayersToColourBy)
+{
+    const TestFolder folder;
+    write_case(folder);
+    EXPECT_THAT(
+        [&] {
+            run_render({folder / "Case", "-o", folder / "a.png", "--color", "layer"});
+        },
+        ThrowsMessage<Error>(HasSubstr("has no array Layer to colour by")));
+}
+
 TEST(RenderCommand, ExplainsAnUnknownView)
 {
     EXPECT_THAT(

@@ -17,7 +17,8 @@ A record may hold "bodies" instead, a list of mesh, mk, turn and move of bodies 
 where edges are closer than dp), null where they are not meant to stand for it.
 
 A record with "layers" in its counts is of one mesh with layers for mDBC: layer k stands (k - 1/2) dp behind
-the mesh, and no normal of it is missing or leads elsewhere. It has "volume_within" too. "period" is the
+the mesh, to 1e-4 dp, and no normal of it is missing or leads elsewhere. No fluid is in the wall, nearer than
+0.1 dp to it or nearer than 0.5 dp to a particle of it. It has "volume_within" too. "period" is the
 vector to the next copy of a case that is periodic along x: the solver's period, CasePosMax - CasePosMin + dp,
 is that, and no two particles are nearer than half a dp across it.
 """
@@ -60,6 +61,17 @@ def distances(points, facets):
             on_side = u + np.clip(t, 0, 1)[..., None] * (v - u)
             sides = np.minimum(sides, np.linalg.norm(p - on_side, axis=2))
         best[p_begin:p_begin + 200] = np.where(inside, np.abs(height), sides).min(axis=1)
+    return best
+
+
+def nearest_between(points, others):
+    """The least distance between two sets of points, by sorting the others along x."""
+    others = others[np.argsort(others[:, 0])]
+    best = np.inf
+    for p in points:
+        low, high = np.searchsorted(others[:, 0], [p[0] - best, p[0] + best])
+        if high > low:
+            best = min(best, np.linalg.norm(others[low:high] - p, axis=1).min())
     return best
 
 
@@ -131,6 +143,24 @@ def body_faults(record, folder, dp, positions, kind, mk):
         yield f"fluid stands {nearest:.3g} dp from the mesh of mk {record['mk']}"
 
 
+def layer_depths(points, depth, facets):
+    """How much deeper than `depth` each point is. Behind an edge that runs into the wall, where the nearest
+    place is the edge itself, depth is the largest distance to the planes of the facets that meet there (a
+    mitre), at least the distance over 1.8; a layer whose mitre would tear has the distance there too."""
+    distance = distances(points, facets)
+    off = distance - depth
+    a, b, c = facets[:, 0], facets[:, 1], facets[:, 2]
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    for i in np.flatnonzero(off > 1e-5 * depth):
+        reach = distance[i] * (1 + 1e-6)
+        box = np.all((facets.min(axis=1) < points[i] + reach) & (facets.max(axis=1) > points[i] - reach), axis=1)
+        at = [f for f in np.flatnonzero(box) if distances(points[i:i + 1], facets[f:f + 1])[0] < reach]
+        planes = np.einsum("fk,fk->f", a[at] - points[i], normal[at]).max()
+        off[i] = max(planes, distance[i] / 1.8) - depth[i]
+    return off
+
+
 def layer_faults(case, folder, expected):
     """Yields a line for everything that is wrong about a wall in layers."""
     values, arrays = read_bi4(case + ".bi4")
@@ -140,14 +170,14 @@ def layer_faults(case, folder, expected):
     facets = read_stl(os.path.join(folder, expected["mesh"])) @ np.array(expected["turn"]).T
     facets += np.array(expected["move"])
     wall = sample(np.flatnonzero((layer > 0) & (mk == expected["mk"])))
-    depth = distances(positions[wall], facets) / dp - (layer[wall] - 0.5)
-    # Behind an edge that looks inwards a layer is deeper, where its two sides meet.
-    if depth.min() < -2e-3 or np.quantile(depth, 0.9) > 2e-3:
-        yield f"particles of layers are {depth.min():.3g} to {np.quantile(depth, 0.9):.3g} dp off their depth"
+    off = layer_depths(positions[wall], (layer[wall] - 0.5) * dp, facets) / dp
+    if np.abs(off).max() > 1e-4:
+        yield (f"particles of layers are {off.min():.3g} to {off.max():.3g} dp off their depth, "
+               f"{np.count_nonzero(np.abs(off) > 1e-4)} of {len(off)} by more than 1e-4")
     normals = arrays["BoundNor"][wall].astype(float)
     length = np.linalg.norm(normals, axis=1) / dp
     feet = distances(positions[wall] + normals, facets)[length > 0].max() / dp
-    if feet > 2e-3:
+    if feet > 1e-4:
         yield f"a normal ends {feet:.3g} dp from the mesh"
     if np.count_nonzero(length == 0) > 0:
         yield f"{np.count_nonzero(length == 0)} of {len(length)} particles of layers have no normal"
@@ -157,9 +187,16 @@ def layer_faults(case, folder, expected):
         yield f"the particles stand for {np.count_nonzero(body) * dp ** 3:.6g} m3, the body has {volume:.6g}"
     fluid = positions[mk == 1]
     near = fluid[np.all((fluid > facets.min(axis=(0, 1)) - dp) & (fluid < facets.max(axis=(0, 1)) + dp), axis=1)]
-    nearest = distances(sample(near), facets).min() / dp
+    # Before layers nodes stay from 0.1 dp on; the first layer is half a dp behind.
+    inside = np.count_nonzero(is_inside(near, facets))
+    if inside > 0:
+        yield f"{inside} particles of fluid are in the wall"
+    nearest = distances(near, facets).min() / dp
     if nearest < 0.1:
         yield f"fluid stands {nearest:.3g} dp from the mesh"
+    nearest = nearest_between(near, positions[body]) / dp
+    if nearest < 0.5:
+        yield f"fluid stands {nearest:.3g} dp from a particle of the wall"
     if "period" in expected:
         yield from period_faults(values, positions, expected["period"])
     yield from differences(summarise(case), expected["counts"], is_same)

@@ -71,12 +71,49 @@ TEST(OffsetSurface, OfABoxIsASmallerBoxWithItsEdgesAndCorners)
 TEST(OffsetSurface, OfACavityIsALargerBoxWithItsEdgesAndCorners)
 {
     const Wall wall(test::joined(cube(2), test::inverted(cube(1))));
-    const OffsetSurface surface = at_depth(wall.depth(true), 0.25);
-    const double outer = 3.5;
-    const double inner = 2.5;
-    // A corner that no edge of the grid meets may be cut off by a step or two of it.
-    EXPECT_NEAR(surface.report.area / (6 * (outer * outer + inner * inner)), 1, 1e-3);
-    EXPECT_NEAR(crease_length(surface) / (12 * (outer + inner)), 1, 0.01);
+    const WallDepth depth = wall.depth(true);
+    for (const double d : {0.05, 0.15, 0.25})
+    {
+        const OffsetSurface surface = at_depth(depth, d);
+        const double outer = 4 - 2 * d;
+        const double inner = 2 + 2 * d;
+        EXPECT_EQ(surface.report.open_edges, 0);
+        EXPECT_NEAR(surface.report.area / (6 * (outer * outer + inner * inner)), 1, 1e-4);
+        EXPECT_NEAR(crease_length(surface) / (12 * (outer + inner)), 1, 1e-3);
+    }
+}
+
+/// Turned against the grid that they are cut from, creases and their corners stick out into cells
+/// none of whose edges they meet.
+TEST(OffsetSurface, OfTurnedBoxesHasTheirEdgesAndCorners)
+{
+    for (const double angle : {0.4, 0.9, 2.1})
+    {
+        const auto turned = [&](const Vec3& p)
+        {
+            const Vec3 q{std::cos(angle) * p.x - std::sin(angle) * p.y,
+                         std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
+            return Vec3{q.x, std::cos(2 * angle) * q.y - std::sin(2 * angle) * q.z,
+                        std::sin(2 * angle) * q.y + std::cos(2 * angle) * q.z};
+        };
+        for (const bool is_cavity : {false, true})
+        {
+            TriangleSoup soup =
+                is_cavity ? test::joined(cube(1), test::inverted(cube(0.5))) : cube(0.6);
+            for (Vec3& v : soup.vertices) v = turned(v);
+            const Wall wall(soup);
+            const WallDepth depth = wall.depth(true);
+            for (const double d : {0.05, 0.15})
+            {
+                const OffsetSurface surface = at_depth(depth, d);
+                const double outer = is_cavity ? 2 - 2 * d : 1.2 - 2 * d;
+                const double inner = is_cavity ? 1 + 2 * d : 0;
+                EXPECT_EQ(surface.report.open_edges, 0);
+                EXPECT_NEAR(surface.report.area / (6 * (outer * outer + inner * inner)), 1, 1.5e-3);
+                EXPECT_NEAR(crease_length(surface) / (12 * (outer + inner)), 1, 0.08);
+            }
+        }
+    }
 }
 
 TEST(OffsetSurface, OfASphereIsASmoothSphere)

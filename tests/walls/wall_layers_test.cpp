@@ -1,12 +1,6 @@
-#include "fppg/normals.h"
-#include "fppg/particles.h"
-#include "fppg/read_shapes.h"
-#include "fppg/relax_walls.h"
-#include "fppg/shapes.h"
-
-#include "helpers/drawing.h"
 #include "meshes/point_grid.h"
 #include "offset/wall_depth.h"
+#include "walls/layered_drawing.h"
 
 #include <gtest/gtest.h>
 
@@ -20,65 +14,13 @@ namespace
 {
 
 using test::Drawing;
+using test::layered;
+using test::normals_of;
+using test::relaxed;
+using Normals = test::WallNormals;
 
 constexpr double dp = Drawing::dp;
-const double kernel = 2 * std::sqrt(3.0) * dp;
-
-/// A drawing whose walls are for mDBC, with three layers.
-Drawing layered(bool is_2d = false)
-{
-    Drawing drawing(is_2d);
-    drawing.def.h = kernel / 2;
-    drawing.def.normals.is_active = true;
-    drawing.def.fit.all->boundary = WallBoundary::Mdbc;
-    drawing.def.fit.all->depths_dp = {0.5, 1.5, 2.5};
-    if (is_2d) drawing.def.fit.all->depths_dp = {0.5, 1.5};
-    return drawing;
-}
-
-RunField relaxed(const Drawing& drawing, int threads = 1)
-{
-    RunField field = drawing.run(threads);
-    RelaxReport report;
-    relax_walls(drawing.def, field, threads, {}, report);
-    return field;
-}
-
-struct Normals
-{
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals;
-    NormalsReport report;
-};
-
-/// Of the boundary particles.
-Normals normals_of(const Drawing& drawing, const RunField& field)
-{
-    CaseDef def = drawing.def;
-    def.constants.rhop0 = 1000;
-    def.constants.gamma = 7;
-    def.constants.coef_sound = 20;
-    def.constants.coef_h = 1;
-    CaseConstants constants;
-    std::vector<std::string> warnings;
-    const CaseParticles particles = make_particles(def, field, 1, constants, warnings);
-    Normals out;
-    for (const auto& n : compute_normals(def, particles, field, {}, 1, out.report))
-        out.normals.push_back({n[0], n[1], n[2]});
-    for (const ParticleBlock& block : particles.blocks)
-    {
-        if (block.type == ParticleType::Fluid) continue;
-        for (const ParticleRun& run : block.runs)
-            for (std::uint32_t k = 0; k < run.count; ++k)
-                out.positions.push_back(
-                    run.is_off_lattice
-                        ? particles.off_lattice.positions[run.off_lattice_begin() + k]
-                        : field.grid.origin + dp * Vec3{static_cast<double>(run.x),
-                                                        static_cast<double>(run.y),
-                                                        static_cast<double>(run.z + k)});
-    }
-    return out;
-}
+const double kernel = test::kernel_reach;
 
 /// Of a box, positive inside.
 double depth_in_box(const Vec3& p, const Vec3& low, const Vec3& size)
@@ -221,6 +163,22 @@ TEST(WallLayers, AreLinesIn2D)
             EXPECT_NEAR(depth - 0.5, std::round(depth - 0.5), 1e-6);
         }
     }
+}
+
+/// Under DBC, where the first stands on the surface, with half of its volume outside.
+TEST(WallLayers, StandForTheVolumeOfTheBodyHalfAsMuchOnItsSurface)
+{
+    Drawing drawing = layered();
+    drawing.def.fit.all->boundary = WallBoundary::Dbc;
+    drawing.def.fit.all->depths_dp = {0, 1, 2};
+    drawing.box({-0.93, -0.77, -0.85}, {1.8, 1.5, 1.6});
+    const RunField field = relaxed(drawing);
+    const FittedBody& body = field.walls.bodies[0];
+    EXPECT_NEAR(body.share, 0.5 * body.layer_share, 1e-12);
+    double volume = body.measures.node_volume;
+    for (const std::uint32_t b : field.walls.particles.bodies)
+        volume += (b == 0 ? body.share : body.layer_share) * dp * dp * dp;
+    EXPECT_NEAR(volume / (1.8 * 1.5 * 1.6), 1, 1e-9);
 }
 
 TEST(WallLayers, HaveTheSameBytesWithAnyNumberOfThreads)
