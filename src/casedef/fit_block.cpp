@@ -397,13 +397,15 @@ private:
 
     void read_fluid_band(const Element& e) const
     {
-        require_known(e, {"mkfluid", "width"}, {});
+        require_known(e, {"mkfluid", "width", "active", "balance"}, {});
         FluidBand band;
         band.line = e.line;
         band.mk = mks_of(e, MkKind::Fluid);
         band.width_dp = number_or(
             e, "width", band.width_dp, [](double v) { return v > 0; },
             "a width above 0 (times dp)");
+        band.is_active = read_.flag_or(e, "active", true);
+        band.balances = read_.flag_or(e, "balance", true);
         def_.fluid_bands.push_back(std::move(band));
     }
 
@@ -491,6 +493,13 @@ const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk)
                                     [mk](const auto& of_mk) { return of_mk.first == mk; });
     if (found != fit.of_mk.rend()) return &found->second;
     return fit.all ? &*fit.all : nullptr;
+}
+
+bool CaseDef::balances() const
+{
+    return !fit.is_empty() && norm(constants.gravity) > 0 && constants.rhop_gradient != 1 &&
+           std::any_of(fluid_bands.begin(), fluid_bands.end(),
+                       [](const FluidBand& band) { return band.is_active && band.balances; });
 }
 
 void read_fit(const Element& root, const AttributeReader& read, FitChoice choice, CaseDef& def)

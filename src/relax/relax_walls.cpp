@@ -125,7 +125,7 @@ private:
                 for (const FluidBand& band : def_.fluid_bands)
                     if (is_fluid && (band.mk.empty() || std::find(band.mk.begin(), band.mk.end(),
                                                                   mk) != band.mk.end()))
-                        region.band[mk] = band.width_dp;
+                        region.band[mk] = band.is_active ? band.width_dp : 0;
             }
             std::vector<SlabRun> of_fluid;
             for_each_run(
