@@ -27,8 +27,7 @@ float density_in_run(const CaseParticles& particles, const ParticleBlock& block,
 {
     if (run.is_off_lattice) return particles.off_lattice.rhop[run.off_lattice_begin() + k];
     if (block.type != ParticleType::Fluid) return 0;
-    if (!particles.rhop.empty())
-        return particles.rhop[id - (particles.np - particles.n_fluid)];
+    if (!particles.rhop.empty()) return particles.rhop[id - (particles.np - particles.n_fluid)];
     return particles.rhop_of_depth[run.depth + (block.run_descending ? k : run.count - 1 - k)];
 }
 
@@ -80,8 +79,7 @@ void add(const NearParticle& p, RestRole role, double mass, FluidAtRest& rest)
     const double pressure = is_fluid ? rest.pressure_of_density(double{p.rhop}) : 0;
     rest.pressures.push_back(pressure);
     rest.densities.push_back(is_fluid ? double{p.rhop} : rest.rhop0);
-    rest.levels.push_back(rest.height(p.position) +
-                          pressure / (rest.rhop0 * norm(rest.gravity)));
+    rest.levels.push_back(rest.height(p.position) + pressure / (rest.rhop0 * norm(rest.gravity)));
 }
 
 /// Puts all arrays into the order of a Morton curve over cells of 2h.
@@ -149,9 +147,9 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
     const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2);
 
-    const std::vector<NearParticle> fluid =
-        near_particles(particles, blocks, [](const ParticleBlock& block)
-                       { return block.type == ParticleType::Fluid; });
+    const std::vector<NearParticle> fluid = near_particles(
+        particles, blocks,
+        [](const ParticleBlock& block) { return block.type == ParticleType::Fluid; });
     std::vector<char> moves(fluid.size(), 0);
     parallel_for(
         fluid.size(), reach.threads,
@@ -183,9 +181,9 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     };
     add_near(fluid, RestRole::Held, [&](std::size_t i) { return moves[i] != 0; });
     rest.ghosts.resize(rest.size());
-    const std::vector<NearParticle> bound =
-        near_particles(particles, blocks, [](const ParticleBlock& block)
-                       { return block.type != ParticleType::Fluid; });
+    const std::vector<NearParticle> bound = near_particles(
+        particles, blocks,
+        [](const ParticleBlock& block) { return block.type != ParticleType::Fluid; });
     add_near(bound, RestRole::Bound, [](std::size_t) { return false; });
     for (std::size_t i = rest.ghosts.size(); i < rest.size(); ++i)
     {
@@ -235,8 +233,8 @@ std::size_t hold_free_faces(FluidAtRest& rest, const NeighbourList& list, int th
             if (rest.roles[i] != RestRole::Moving) return;
             bool near = is_face[i] != 0;
             for (const std::uint32_t j : list.neighbours(row))
-                near = near || (is_face[j] && norm(rest.positions[i] - rest.positions[j]) <
-                                                  2 * rest.h);
+                near = near ||
+                       (is_face[j] && norm(rest.positions[i] - rest.positions[j]) < 2 * rest.h);
             is_held[i] = near;
         },
         NeighbourList::rows_per_chunk);

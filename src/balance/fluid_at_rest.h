@@ -26,8 +26,8 @@ enum class RestRole : std::uint8_t
     Bound,
 };
 
-/// Fluid beside fitted walls and what its forces reach, one entry each in all arrays, along a Morton
-/// curve. SI units.
+/// Fluid beside fitted walls and what its forces reach, one entry each in all arrays, along a
+/// Morton curve. SI units.
 struct FluidAtRest
 {
     // Of the case:
@@ -54,10 +54,7 @@ struct FluidAtRest
     double height(const Vec3& p) const { return -dot(p, gravity) / norm(gravity); }
     /// The pressure at a depth below the level; 0 above.
     double pressure(double depth) const { return std::max(0.0, rhop0 * norm(gravity) * depth); }
-    double density(double pressure) const
-    {
-        return rhop0 * std::pow(1 + pressure / b, 1 / gamma);
-    }
+    double density(double pressure) const { return rhop0 * std::pow(1 + pressure / b, 1 / gamma); }
     double pressure_of_density(double density) const
     {
         return b * (std::pow(density / rhop0, gamma) - 1);
@@ -65,7 +62,8 @@ struct FluidAtRest
     /// The factor of the kernel, of which wendland() and cubic_spline() are the shapes.
     double alpha() const
     {
-        if (is_cubic) return is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
+        if (is_cubic)
+            return is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
         return is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     }
     /// W / alpha at q = r / h.

@@ -35,10 +35,7 @@ struct SmallMatrix
     {
         return a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
     }
-    double& at(int i, int j)
-    {
-        return a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    }
+    double& at(int i, int j) { return a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; }
 };
 
 /// The determinant; 0 where there is no inverse.
@@ -109,8 +106,7 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
                                     nearest = squared;
                                     rest.levels[i] = rest.levels[of_point[at]];
                                 });
-            rest.pressures[i] =
-                rest.pressure(rest.levels[i] - rest.height(rest.positions[i]));
+            rest.pressures[i] = rest.pressure(rest.levels[i] - rest.height(rest.positions[i]));
             rest.densities[i] = rest.density(rest.pressures[i]);
         },
         64);
@@ -126,8 +122,7 @@ struct GhostPressures::Sums
 };
 
 GhostPressures::GhostPressures(const FluidAtRest& rest, RestBoundary boundary)
-    : boundary_(boundary),
-      list_(static_cast<float>(rest_reach_dp(rest)), skin_dp)
+    : boundary_(boundary), list_(static_cast<float>(rest_reach_dp(rest)), skin_dp)
 {
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (rest.roles[i] == RestRole::Bound && norm(rest.ghosts[i]) > 0)
@@ -206,9 +201,9 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
     if (is_new && sums.matrix.at(0, 0) < least_sum)
         density = std::max(rest.rhop0, shepard);
     else if (std::abs(invert(sums.matrix, inverse)) >= least_determinant &&
-             (!is_new || rest.dp * rest.dp * sums.matrix.largest_row_sum() *
-                                 inverse.largest_row_sum() <=
-                             largest_condition))
+             (!is_new ||
+              rest.dp * rest.dp * sums.matrix.largest_row_sum() * inverse.largest_row_sum() <=
+                  largest_condition))
     {
         has_fit = true;
         for (int r = 0; r < sums.matrix.n; ++r)
@@ -221,8 +216,8 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
     {
         const double c2 = rest.b * rest.gamma / rest.rhop0;
         const Vec3 n = ghost / norm(ghost);
-        const double cloned = c2 * (density - rest.rhop0) -
-                              rest.rhop0 * dot(rest.gravity, n) * norm(ghost);
+        const double cloned =
+            c2 * (density - rest.rhop0) - rest.rhop0 * dot(rest.gravity, n) * norm(ghost);
         density = rest.rhop0 + cloned / c2;
     }
     else if (has_fit)

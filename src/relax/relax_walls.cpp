@@ -446,8 +446,9 @@ bool relaxes(const CaseDef& def, const RunField& field)
         return settings != nullptr && settings->relax.is_active;
     };
     const std::vector<FittedBody>& bodies = field.walls.bodies;
-    return !bodies.empty() &&
-           (!def.fluid_bands.empty() || std::any_of(bodies.begin(), bodies.end(), is_active));
+    return !bodies.empty() && (std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                                           [](const FluidBand& band) { return band.is_active; }) ||
+                               std::any_of(bodies.begin(), bodies.end(), is_active));
 }
 
 void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,
