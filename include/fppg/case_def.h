@@ -142,6 +142,16 @@ struct FluidBand
     int line = 0;                  ///< of the element
     std::vector<std::uint16_t> mk; ///< absolute, ascending; empty: every fluid
     double width_dp = 3; ///< fluid this near to a fitted wall moves, in dp; above 0, finite
+    bool is_active = true; ///< false: it stays on the lattice
+    bool balances = true;  ///< it is brought to rest (balance.h)
+};
+
+/// Parameters of the solver on which places and densities depend.
+struct SolverParameters
+{
+    int boundary = 1;  ///< 1: DBC, 2: mDBC
+    int slip_mode = 1; ///< of mDBC
+    int kernel = 2;    ///< 1: cubic spline, 2: Wendland
 };
 
 /// `<fppg><floatings exact="true">`: floating bodies whose mass, centre and inertia are those of
@@ -223,6 +233,11 @@ struct CaseDef
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
+    SolverParameters solver; ///< of a case with fitted walls
+    /// Whether fluid starts balanced beside fitted walls (balance.h), with the densities of its
+    /// depth below a surface half a dp above its highest particles: gravity and depths give it
+    /// pressure, and a band of fluid asks for it.
+    bool balances() const;
     std::vector<PointFile> point_files; ///< in the order of the file
     /// `<fppg><offlattice hydrostatic="true" />`: fluid of `<setfrdrawmode>` has the density of its
     /// depth, where GenCase v5.4 gives it rhop0.

@@ -181,6 +181,9 @@ struct CaseParticles
     /// particles have rhop0. Particles off the lattice have free.rhop.
     std::vector<float> rhop_of_depth;
     std::vector<float> rhop;
+    /// Density of every boundary and floating particle, in id order, those off the lattice too;
+    /// empty: rhop0.
+    std::vector<float> bound_rhop;
 
     /// From every boundary particle to the boundary's surface, in id order; empty: the case asks
     /// for no normals. Zero: none.

@@ -33,4 +33,7 @@ void prepare_particles(CaseRunState& run, MadeCase& made);
 /// Collects the shape files, and computes the normals, which may be those of one.
 void make_normals(CaseRunState& run, MadeCase& made);
 
+/// Brings fluid beside fitted walls to rest; after the normals, from which mDBC takes pressures.
+void balance(CaseRunState& run, MadeCase& made);
+
 } // namespace fppg

@@ -59,6 +59,7 @@ void make_case(CaseRunState& run, const VresDef* vres, std::vector<ZoneSummary>&
     add_points(run, made);
     prepare_particles(run, made);
     make_normals(run, made);
+    balance(run, made);
     save_result(run, made);
     if (made.def.vres.is_active())
         zones.push_back(summary_of_zone(made.def, made.particles, made.constants));

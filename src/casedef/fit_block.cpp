@@ -397,13 +397,15 @@ private:
 
     void read_fluid_band(const Element& e) const
     {
-        require_known(e, {"mkfluid", "width"}, {});
+        require_known(e, {"mkfluid", "width", "active", "balance"}, {});
         FluidBand band;
         band.line = e.line;
         band.mk = mks_of(e, MkKind::Fluid);
         band.width_dp = number_or(
             e, "width", band.width_dp, [](double v) { return v > 0; },
             "a width above 0 (times dp)");
+        band.is_active = read_.flag_or(e, "active", true);
+        band.balances = read_.flag_or(e, "balance", true);
         def_.fluid_bands.push_back(std::move(band));
     }
 
@@ -493,6 +495,13 @@ const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk)
     return fit.all ? &*fit.all : nullptr;
 }
 
+bool CaseDef::balances() const
+{
+    return !fit.is_empty() && norm(constants.gravity) > 0 && constants.rhop_gradient != 1 &&
+           std::any_of(fluid_bands.begin(), fluid_bands.end(),
+                       [](const FluidBand& band) { return band.is_active && band.balances; });
+}
+
 void read_fit(const Element& root, const AttributeReader& read, FitChoice choice, CaseDef& def)
 {
     if (choice == FitChoice::Off) return;
@@ -504,6 +513,8 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
     settle_boundaries(def);
+    // Fluid that touches fitted walls is relaxed with them unless the case says otherwise.
+    if (def.fluid_bands.empty() && !def.fit.is_empty()) def.fluid_bands.emplace_back();
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

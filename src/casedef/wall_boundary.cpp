@@ -81,6 +81,9 @@ void hint_at_parameters(CaseDef& def)
 void settle_boundaries(CaseDef& def)
 {
     if (def.fit.is_empty()) return;
+    def.solver.boundary = whole_parameter(def, "Boundary").value_or(1);
+    def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
+    def.solver.kernel = whole_parameter(def, "Kernel").value_or(2);
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;

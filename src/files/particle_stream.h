@@ -118,6 +118,12 @@ void for_each_density(const CaseParticles& particles, float rhop0, const Particl
                       const Put& put)
 {
     const std::uint32_t count = segment.count;
+    if (segment.block->type != ParticleType::Fluid && !particles.bound_rhop.empty())
+    {
+        const float* values = particles.bound_rhop.data() + segment.id;
+        for (std::uint32_t k = 0; k < count; ++k) put(k, values[k]);
+        return;
+    }
     if (segment.run->is_off_lattice)
     {
         const float* values =

@@ -83,6 +83,8 @@ private:
     {
         const ConstantsDef& c = def_.constants;
         if (is_uniform_) return static_cast<float>(c.rhop0);
+        // GenCase's surface goes through the highest particles, that of the fluid lies above them.
+        if (def_.balances()) depth += def_.grid.dp / 2;
         return static_cast<float>(c.rhop0 *
                                   std::pow(1 + c.rhop0 * g_ * depth / constants_.b, 1 / c.gamma));
     }

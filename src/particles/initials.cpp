@@ -151,13 +151,6 @@ bool turns(const ParticleBlock& block)
     return motion_of(block).linear != Transform{}.linear;
 }
 
-bool scatters(const ParticleBlock& block)
-{
-    return std::any_of(block.initials.begin(), block.initials.end(),
-                       [](const InitialOp& op)
-                       { return std::holds_alternative<RandomMove>(op.what); });
-}
-
 /// Calls body(state) with particles of a block before `<initials>` that hold all its extremes; with
 /// all of them on request.
 template <typename Body>
@@ -217,8 +210,28 @@ void add_initial(const CaseDef& def, const CaseConstants& constants, const CaseP
     block.initials.push_back(std::move(op));
 }
 
-/// Sets pos_min and pos_max to the places after the moves.
-void set_moved_limits(const CaseDef& def, CaseParticles& particles)
+} // namespace
+
+bool scatters(const ParticleBlock& block)
+{
+    return std::any_of(block.initials.begin(), block.initials.end(),
+                       [](const InitialOp& op)
+                       { return std::holds_alternative<RandomMove>(op.what); });
+}
+
+bool sets_density(const ParticleBlock& block)
+{
+    return std::any_of(block.initials.begin(), block.initials.end(),
+                       [](const InitialOp& op)
+                       {
+                           return std::holds_alternative<UniformDensity>(op.what) ||
+                                  std::holds_alternative<GradientDensity>(op.what) ||
+                                  std::holds_alternative<DepthDensity>(op.what) ||
+                                  std::holds_alternative<MeshDensity>(op.what);
+                       });
+}
+
+void set_limits(const CaseDef& def, CaseParticles& particles)
 {
     Box3 all;
     for (const ParticleBlock& block : particles.blocks)
@@ -258,8 +271,6 @@ void set_moved_limits(const CaseDef& def, CaseParticles& particles)
     particles.pos_max = all.max;
 }
 
-} // namespace
-
 void apply_initials(const std::vector<InitialOp>& initials, InitialState& state)
 {
     for (const InitialOp& op : initials)
@@ -284,7 +295,7 @@ void set_initials(const CaseDef& def, const CaseConstants& constants, CasePartic
             add_initial(def, constants, particles, op, block);
             moves = moves || moves_particles(op);
         }
-    if (moves) set_moved_limits(def, particles);
+    if (moves) set_limits(def, particles);
 }
 
 } // namespace fppg

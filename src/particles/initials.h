@@ -21,6 +21,17 @@ void apply_initials(const std::vector<InitialOp>& initials, InitialState& state)
 /// All moves of a block in one; random ones, which only fluid has, do not count.
 Transform motion_of(const ParticleBlock& block);
 
+/// Whether a block has `<moverandom>`.
+bool scatters(const ParticleBlock& block);
+
+/// Whether a block's densities are set by `<initials>`.
+bool sets_density(const ParticleBlock& block);
+
+/// Sets pos_min and pos_max to the places after the moves.
+///
+/// throws  CaseError as set_initials() does
+void set_limits(const CaseDef& def, CaseParticles& particles);
+
 /// Gives every block the operations of its mk, with all that they leave empty: gravity, rhop0,
 /// gamma and b of the case, and for densitydepth without posswl the highest against gravity of the
 /// particles that it selects, at their places then (found with GenCase v5.4.354: two fluids of

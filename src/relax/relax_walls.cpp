@@ -182,7 +182,7 @@ private:
                 for (const FluidBand& band : def_.fluid_bands)
                     if (is_fluid && (band.mk.empty() || std::find(band.mk.begin(), band.mk.end(),
                                                                   mk) != band.mk.end()))
-                        region.band[mk] = band.width_dp;
+                        region.band[mk] = band.is_active ? band.width_dp : 0;
             }
             std::vector<SlabRun> of_fluid;
             for_each_run(
@@ -503,8 +503,9 @@ bool relaxes(const CaseDef& def, const RunField& field)
         return settings != nullptr && settings->relax.is_active;
     };
     const std::vector<FittedBody>& bodies = field.walls.bodies;
-    return !bodies.empty() &&
-           (!def.fluid_bands.empty() || std::any_of(bodies.begin(), bodies.end(), is_active));
+    return !bodies.empty() && (std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                                           [](const FluidBand& band) { return band.is_active; }) ||
+                               std::any_of(bodies.begin(), bodies.end(), is_active));
 }
 
 void relax_walls(const CaseDef& def, RunField& field, int threads, const RelaxObserver& observe,

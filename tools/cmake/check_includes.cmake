@@ -31,6 +31,8 @@ set(boolean_may_see fit meshes particles nodes core)
 set(relax_may_see fit offset casedef shapes meshes particles nodes core)
 # Body-fitted shapes and combinations of a scene; what they leave of it is painted on the lattice.
 set(walls_may_see boolean fit offset lattice scene casedef shapes meshes particles nodes core)
+# Fluid at rest, by the solver's own equations.
+set(balance_may_see relax fit offset casedef shapes meshes particles nodes core)
 set(render_may_see files particles shapes meshes core)
 # What differs in Case.xml is found in its tree, which casedef reads.
 set(compare_may_see report files casedef particles shapes meshes core)
@@ -42,7 +44,7 @@ set(leak_may_see walls lattice scene files casedef shapes meshes particles nodes
 set(check_may_see report files casedef particles shapes meshes core)
 # The text of a definition, in newer forms.
 set(upgrade_may_see core)
-set(app_may_see upgrade check leak batch report compare render walls lattice fit boolean relax normals files scene casedef shapes meshes
+set(app_may_see upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
     particles nodes core)
 set(main_may_see app)
 
@@ -50,6 +52,7 @@ set(main_may_see app)
 set(fit_headers fit one_sheet section exclusion_band)
 set(boolean_headers boolean)
 set(relax_headers relax relax_volume relax_walls)
+set(balance_headers balance)
 set(compare_headers compare)
 set(render_headers render)
 set(check_headers check)

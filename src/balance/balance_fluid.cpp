@@ -1,0 +1,382 @@
+#include "fppg/balance.h"
+
+#include "balance/fluid_at_rest.h"
+#include "balance/take_places.h"
+#include "balance/wall_pressure.h"
+#include "core/parallel.h"
+#include "particles/initials.h"
+#include "relax/all_walls.h"
+#include "relax/wall_planes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace fppg
+{
+namespace
+{
+
+// Lengths in dp.
+constexpr double list_skin = 0.6;
+constexpr double longest_step = 0.05;
+constexpr double farthest = 1.0;
+constexpr double least_wall_distance = 0.2;
+constexpr double reach_of_walls = 2.5;
+/// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
+constexpr double step_factor = 0.01;
+constexpr double momentum = 0.85;
+constexpr int most_iterations = 160;
+constexpr int iterations_per_look = 5; ///< at mDBC's pressures
+constexpr int iterations_per_check = 20;
+/// Stiffness of dynamic boundaries over the pressure of their depth. The solver's is that of water;
+/// with this one, pressures follow within some steps of the size above.
+constexpr double wall_stiffness = 150;
+
+/// Why a case is not balanced; empty where it is.
+std::string reason_against(const CaseDef& def, const CaseParticles& particles)
+{
+    if (!def.balances()) return "the case does not ask for it";
+    for (const ParticleBlock& block : particles.blocks)
+    {
+        if (!motion_of(block).is_identity() || scatters(block))
+            return fmt::format("<initials> moves particles of mk {}", block.mk);
+        if (block.type == ParticleType::Fluid && sets_density(block))
+            return fmt::format("<initials> sets the density of mk {}", block.mk);
+    }
+    return {};
+}
+
+RestBoundary boundary_of(const CaseDef& def)
+{
+    if (def.solver.boundary != 2) return RestBoundary::Dbc;
+    return def.solver.slip_mode == 1 ? RestBoundary::Mdbc : RestBoundary::Mdbc2;
+}
+
+/// Moves particles along their accelerations until these are small.
+class Balancer
+{
+public:
+    Balancer(FluidAtRest& rest, const ClosestWallPoint& closest, RestBoundary boundary, int threads)
+        : rest_(rest),
+          closest_(closest),
+          threads_(threads),
+          list_(static_cast<float>(rest_reach_dp(rest)), static_cast<float>(list_skin)),
+          ghosts_(rest, boundary),
+          has_ghosts_(boundary != RestBoundary::Dbc)
+    {
+    }
+
+    void run(BalanceReport& report, const std::function<bool(const BalanceProgress&)>& on_iteration)
+    {
+        set_depth_pressures(rest_, threads_);
+        start_ = rest_.positions;
+        steps_.resize(rest_.size());
+        velocities_.resize(rest_.size());
+        accelerations_.resize(rest_.size());
+        walls_.resize(rest_.size());
+        allowed_.assign(rest_.size(), least_wall_distance * rest_.dp);
+        renew_lists(true);
+        report.held = hold_free_faces(rest_, list_, threads_);
+        renew_pressures();
+        accelerate();
+        report.before = judge();
+        State best{rest_.positions, rest_.pressures, report.before.mean};
+        int last_best = 0;
+        for (int it = 1; it <= most_iterations && report.particles > report.held; ++it)
+        {
+            step();
+            if (!has_ghosts_) press_walls();
+            if (list_.is_outdated(rest_.in_dp(rest_.positions), threads_)) renew_lists(false);
+            if (it % iterations_per_look == 0) renew_pressures();
+            accelerate();
+            report.iterations = it;
+            const double mean = mean_acceleration();
+            if (on_iteration && !on_iteration({it, most_iterations, mean})) break;
+            if (it % iterations_per_check != 0) continue;
+            // What is left does not fall any more: currents that the boundary condition drives.
+            if (mean > 0.95 * best.mean && it - last_best >= 4 * iterations_per_check) break;
+            if (mean < 0.95 * best.mean) last_best = it;
+            if (mean < best.mean) best = {rest_.positions, rest_.pressures, mean};
+        }
+        return_to(best);
+        report.after = judge();
+        sum_up_moves(report);
+    }
+
+private:
+    struct State
+    {
+        std::vector<Vec3> positions;
+        std::vector<double> pressures;
+        double mean = 0; ///< acceleration
+    };
+
+    void return_to(const State& state)
+    {
+        rest_.positions = state.positions;
+        rest_.pressures = state.pressures;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            rest_.densities[i] = rest_.density(rest_.pressures[i]);
+        renew_lists(false);
+        renew_pressures();
+        accelerate();
+    }
+
+    bool moves(std::size_t i) const { return rest_.roles[i] == RestRole::Moving; }
+
+    void renew_lists(bool is_first)
+    {
+        const PointArrays points = rest_.in_dp(rest_.positions);
+        list_.build(
+            points, threads_,
+            [&](std::size_t i)
+            { return moves(i) || (!has_ghosts_ && rest_.roles[i] == RestRole::Bound); },
+            [](std::size_t, std::size_t) { return true; });
+        if (has_ghosts_) ghosts_.find_neighbours(rest_, threads_);
+        looked_at_ = rest_.positions;
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (!moves(i)) return;
+                walls_[i] =
+                    find_wall_planes(rest_.positions[i], reach_of_walls * rest_.dp, closest_);
+                if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
+            },
+            64);
+    }
+
+    void renew_pressures()
+    {
+        if (has_ghosts_) ghosts_.set(rest_, threads_);
+    }
+
+    /// Pressures of their depth, then accelerations.
+    void accelerate()
+    {
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (!moves(i)) return;
+                rest_.pressures[i] =
+                    rest_.pressure(rest_.levels[i] - rest_.height(rest_.positions[i]));
+                rest_.densities[i] = rest_.density(rest_.pressures[i]);
+            },
+            1024);
+        const double scale = rest_.alpha() / (rest_.h * rest_.h);
+        const double reach = 4 * rest_.h * rest_.h;
+        parallel_for(
+            list_.rows(), threads_,
+            [&](std::size_t row)
+            {
+                const std::uint32_t i = list_.point(row);
+                if (!moves(i)) return;
+                const Vec3 at = rest_.positions[i];
+                Vec3 sum;
+                for (const std::uint32_t j : list_.neighbours(row))
+                {
+                    const Vec3 away = at - rest_.positions[j];
+                    const double squared = dot(away, away);
+                    if (squared >= reach) continue;
+                    const double of_pair =
+                        rest_.masses[j] * (rest_.pressures[i] + rest_.pressures[j]) /
+                        rest_.densities[j] * rest_.slope(std::sqrt(squared) / rest_.h);
+                    sum = sum + of_pair * away;
+                }
+                accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * sum;
+            },
+            NeighbourList::rows_per_chunk);
+    }
+
+    void step()
+    {
+        const double g = norm(rest_.gravity);
+        const double soft = rest_.rhop0 * g * rest_.dp;
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (!moves(i)) return;
+                const double scale = step_factor * rest_.h * rest_.h * rest_.rhop0 /
+                                     (std::max(rest_.pressures[i], soft / 2) + soft);
+                Vec3& v = velocities_[i];
+                v = momentum * v + scale * accelerations_[i];
+                const double length = norm(v);
+                if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
+                const Vec3 to = allowed_place(i, rest_.positions[i] + v);
+                steps_[i] = to - rest_.positions[i];
+                rest_.positions[i] = to;
+            },
+            256);
+    }
+
+    /// Pressures of dynamic boundaries rise where fluid comes nearer, as by the solver's equation
+    /// of continuity, with a lower stiffness.
+    void press_walls()
+    {
+        const double scale = rest_.alpha() / (rest_.h * rest_.h);
+        parallel_for(
+            list_.rows(), threads_,
+            [&](std::size_t row)
+            {
+                const std::uint32_t b = list_.point(row);
+                if (rest_.roles[b] != RestRole::Bound) return;
+                double strain = 0;
+                for (const std::uint32_t j : list_.neighbours(row))
+                {
+                    if (!moves(j)) continue;
+                    const Vec3 away = rest_.positions[b] - rest_.positions[j];
+                    strain -= rest_.masses[j] / rest_.densities[j] * scale *
+                              rest_.slope(norm(away) / rest_.h) * dot(steps_[j], away);
+                }
+                const double depth = rest_.levels[b] - rest_.height(rest_.positions[b]);
+                if (depth < -rest_.dp) return;
+                const double stiffness = wall_stiffness * rest_.pressure(std::max(depth, rest_.dp));
+                rest_.pressures[b] = std::max(0.0, rest_.pressures[b] + stiffness * strain);
+                rest_.densities[b] = rest_.density(rest_.pressures[b]);
+            },
+            NeighbourList::rows_per_chunk);
+    }
+
+    /// The place nearest to `to` that keeps its distance from walls and from the start.
+    Vec3 allowed_place(std::size_t i, Vec3 to) const
+    {
+        for (const WallPlane& plane : walls_[i])
+        {
+            const double distance = plane.distance - dot(to - looked_at_[i], plane.normal);
+            const double allowed = std::min(allowed_[i], plane.distance);
+            if (distance < allowed) to = to - (allowed - distance) * plane.normal;
+        }
+        const Vec3 moved = to - start_[i];
+        const double length = norm(moved);
+        if (length > farthest * rest_.dp) to = start_[i] + moved * (farthest * rest_.dp / length);
+        return to;
+    }
+
+    double mean_acceleration() const
+    {
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+        {
+            if (!moves(i)) continue;
+            sum += norm(accelerations_[i]);
+            ++count;
+        }
+        return count > 0 ? sum / static_cast<double>(count) / norm(rest_.gravity) : 0;
+    }
+
+    Accelerations judge() const
+    {
+        const double g = norm(rest_.gravity);
+        std::vector<double> sizes;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            if (moves(i)) sizes.push_back(norm(accelerations_[i]) / g);
+        Accelerations out;
+        if (sizes.empty()) return out;
+        const auto n = static_cast<double>(sizes.size());
+        out.mean = std::accumulate(sizes.begin(), sizes.end(), 0.0) / n;
+        out.above_5 = static_cast<double>(std::count_if(sizes.begin(), sizes.end(),
+                                                        [](double a) { return a > 0.05; })) /
+                      n;
+        const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * (n - 1));
+        std::nth_element(sizes.begin(), at, sizes.end());
+        out.of_99 = *at;
+        out.largest = *std::max_element(at, sizes.end());
+        return out;
+    }
+
+    void sum_up_moves(BalanceReport& report) const
+    {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+        {
+            if (!moves(i)) continue;
+            const double moved = norm(rest_.positions[i] - start_[i]) / rest_.dp;
+            report.mean_move_dp += moved;
+            report.largest_move_dp = std::max(report.largest_move_dp, moved);
+            ++count;
+        }
+        if (count > 0) report.mean_move_dp /= static_cast<double>(count);
+    }
+
+    FluidAtRest& rest_;
+    const ClosestWallPoint& closest_;
+    int threads_;
+    NeighbourList list_;
+    GhostPressures ghosts_;
+    bool has_ghosts_;
+    std::vector<Vec3> velocities_; ///< metres a step
+    std::vector<Vec3> accelerations_;
+    std::vector<Vec3> start_;
+    std::vector<Vec3> steps_;     ///< the last ones, metres
+    std::vector<Vec3> looked_at_; ///< places when walls were looked for
+    std::vector<WallPlanes> walls_;
+    std::vector<double> allowed_; ///< metres to a wall
+};
+
+std::vector<double> bands(const CaseDef& def)
+{
+    // Farther from walls than the reach of kernels, fluid lies as even as it was made.
+    const double least = 2 * def.h / def.grid.dp + 1.5;
+    std::vector<double> out(65536, 0);
+    for (const FluidBand& band : def.fluid_bands)
+        for (std::uint32_t mk = 0; mk < def.mk_bound_first; ++mk)
+            if (band.mk.empty() || std::binary_search(band.mk.begin(), band.mk.end(), mk))
+                out[mk] = band.is_active && band.balances ? std::max(least, band.width_dp) : 0;
+    return out;
+}
+
+/// Gives the particles of a case what balancing found.
+void take_over(const CaseDef& def, const FluidAtRest& rest, CaseParticles& particles)
+{
+    std::vector<NewPlace> places;
+    particles.bound_rhop.assign(particles.np - particles.n_fluid, static_cast<float>(rest.rhop0));
+    bool is_at_limit = false;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+    {
+        if (rest.roles[i] == RestRole::Bound)
+            particles.bound_rhop[rest.ids[i]] = static_cast<float>(rest.densities[i]);
+        if (rest.roles[i] != RestRole::Moving) continue;
+        places.push_back({rest.ids[i], rest.positions[i], static_cast<float>(rest.densities[i])});
+        for (int axis = 0; axis < 3; ++axis)
+            is_at_limit = is_at_limit ||
+                          rest.positions[i][axis] < particles.pos_min[axis] + 1.5 * rest.dp ||
+                          rest.positions[i][axis] > particles.pos_max[axis] - 1.5 * rest.dp;
+    }
+    std::sort(places.begin(), places.end(),
+              [](const NewPlace& a, const NewPlace& b) { return a.id < b.id; });
+    take_places(particles, places);
+    const bool is_periodic = std::any_of(def.grid.is_periodic.begin(), def.grid.is_periodic.end(),
+                                         [](bool is) { return is; });
+    if (is_at_limit && !is_periodic) set_limits(def, particles);
+}
+
+} // namespace
+
+BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
+                            const CaseConstants& constants, CaseParticles& particles, int threads,
+                            const std::function<bool(const BalanceProgress&)>& on_iteration)
+{
+    BalanceReport report;
+    report.why_not = reason_against(def, particles);
+    if (!report.why_not.empty() || field.walls.particles.size() == 0) return report;
+    const AllWalls all(field.walls.bodies, field.grid, threads);
+    if (all.is_empty()) return report;
+    RestReach reach;
+    reach.band_dp = bands(def);
+    reach.threads = threads;
+    reach.closest = [&](const Vec3& p, double within) { return all.closest_point(p, within); };
+    FluidAtRest rest = gather_fluid(def, field, constants, particles, reach);
+    report.particles = static_cast<std::size_t>(
+        std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
+    if (report.particles == 0) return report;
+    Balancer(rest, reach.closest, boundary_of(def), threads).run(report, on_iteration);
+    take_over(def, rest, particles);
+    return report;
+}
+
+} // namespace fppg

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/lattice.h"
+#include "fppg/particles.h"
+#include "fppg/relax_volume.h"
+
+#include "relax/kernel.h"
+#include "relax/neighbour_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace fppg
+{
+
+/// What a particle near a wall is to balance_fluid().
+enum class RestRole : std::uint8_t
+{
+    Moving,
+    Held, ///< fluid that stays
+    Bound,
+};
+
+/// Fluid beside fitted walls and what its forces reach, one entry each in all arrays, along a
+/// Morton curve. SI units.
+struct FluidAtRest
+{
+    // Of the case:
+    double dp = 0;
+    double h = 0;
+    double rhop0 = 0;
+    double gamma = 0;
+    double b = 0;
+    Vec3 gravity;
+    bool is_2d = false;
+    bool is_cubic = false; ///< kernel; else that of Wendland
+    Vec3 origin;           ///< of NeighbourList's coordinates
+
+    std::vector<std::uint64_t> ids;
+    std::vector<RestRole> roles;
+    std::vector<Vec3> positions;
+    std::vector<double> levels; ///< height at which the pressure is 0, of fluid
+    std::vector<double> masses;
+    std::vector<double> pressures;
+    std::vector<double> densities;
+    std::vector<Vec3> ghosts; ///< from a boundary particle to its ghost node; zero: none
+
+    std::size_t size() const { return positions.size(); }
+    double height(const Vec3& p) const { return -dot(p, gravity) / norm(gravity); }
+    /// The pressure at a depth below the level; 0 above.
+    double pressure(double depth) const { return std::max(0.0, rhop0 * norm(gravity) * depth); }
+    double density(double pressure) const { return rhop0 * std::pow(1 + pressure / b, 1 / gamma); }
+    double pressure_of_density(double density) const
+    {
+        return b * (std::pow(density / rhop0, gamma) - 1);
+    }
+    /// The factor of the kernel, of which wendland() and cubic_spline() are the shapes.
+    double alpha() const
+    {
+        if (is_cubic)
+            return is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
+        return is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
+    }
+    /// W / alpha at q = r / h.
+    double shape(double q) const
+    {
+        if (!is_cubic) return wendland(q);
+        if (q >= 2) return 0;
+        return q > 1 ? (2 - q) * (2 - q) * (2 - q) / 4 : 1 - 1.5 * q * q + 0.75 * q * q * q;
+    }
+    /// (dW/dq) / q / alpha.
+    double slope(double q) const
+    {
+        if (!is_cubic) return wendland_slope(q);
+        if (q >= 2) return 0;
+        return q > 1 ? -0.75 * (2 - q) * (2 - q) / q : -3 + 2.25 * q;
+    }
+    /// Positions as NeighbourList takes them: in dp from the origin.
+    PointArrays in_dp(std::span<const Vec3> points) const;
+};
+
+/// Reach of the neighbour lists in dp without their skin.
+inline double rest_reach_dp(const FluidAtRest& rest)
+{
+    return 2 * rest.h / rest.dp;
+}
+
+/// How far gather_fluid() looks.
+struct RestReach
+{
+    /// Fluid of an absolute mk this near to a fitted wall may move, in dp; 0: it stays. 65536.
+    std::vector<double> band_dp;
+    ClosestWallPoint closest;
+    int threads = 1;
+};
+
+/// Gathers fluid that is near fitted walls, and fluid and boundary particles that its forces reach.
+/// Nothing where no fluid is near a fitted wall.
+FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
+                         const CaseParticles& particles, const RestReach& reach);
+
+/// Holds fluid within 2h of a free face that is not level. The number of those held.
+///
+/// list  of all particles that may move
+std::size_t hold_free_faces(FluidAtRest& rest, const NeighbourList& list, int threads);
+
+} // namespace fppg

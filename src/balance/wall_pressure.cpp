@@ -1,0 +1,245 @@
+#include "balance/wall_pressure.h"
+
+#include "core/parallel.h"
+#include "meshes/point_grid.h"
+
+#include <limits>
+#include <utility>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr float skin_dp = 0.6F;
+constexpr int most_rows = 4;
+
+/// A square matrix of up to four rows, and its inverse by Gauss-Jordan with pivots.
+struct SmallMatrix
+{
+    int n = most_rows;
+    std::array<std::array<double, most_rows>, most_rows> a{};
+
+    double largest_row_sum() const
+    {
+        double out = 0;
+        for (int i = 0; i < n; ++i)
+        {
+            double sum = 0;
+            for (int j = 0; j < n; ++j) sum += std::abs(at(i, j));
+            out = std::max(out, sum);
+        }
+        return out;
+    }
+    double at(int i, int j) const
+    {
+        return a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    }
+    double& at(int i, int j) { return a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; }
+};
+
+/// The determinant; 0 where there is no inverse.
+double invert(SmallMatrix m, SmallMatrix& inverse)
+{
+    inverse = {};
+    inverse.n = m.n;
+    for (int i = 0; i < m.n; ++i) inverse.at(i, i) = 1;
+    double determinant = 1;
+    for (int c = 0; c < m.n; ++c)
+    {
+        int pivot = c;
+        for (int r = c + 1; r < m.n; ++r)
+            if (std::abs(m.at(r, c)) > std::abs(m.at(pivot, c))) pivot = r;
+        if (m.at(pivot, c) == 0) return 0;
+        if (pivot != c)
+        {
+            std::swap(m.a[static_cast<std::size_t>(pivot)], m.a[static_cast<std::size_t>(c)]);
+            std::swap(inverse.a[static_cast<std::size_t>(pivot)],
+                      inverse.a[static_cast<std::size_t>(c)]);
+            determinant = -determinant;
+        }
+        const double diagonal = m.at(c, c);
+        determinant *= diagonal;
+        for (int j = 0; j < m.n; ++j)
+        {
+            m.at(c, j) /= diagonal;
+            inverse.at(c, j) /= diagonal;
+        }
+        for (int r = 0; r < m.n; ++r)
+        {
+            const double factor = m.at(r, c);
+            if (r == c || factor == 0) continue;
+            for (int j = 0; j < m.n; ++j)
+            {
+                m.at(r, j) -= factor * m.at(c, j);
+                inverse.at(r, j) -= factor * inverse.at(c, j);
+            }
+        }
+    }
+    return determinant;
+}
+
+} // namespace
+
+void set_depth_pressures(FluidAtRest& rest, int threads)
+{
+    const double reach = 2 * rest.h + rest.dp;
+    PointGrid fluid(reach, rest.size());
+    std::vector<std::uint32_t> of_point;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (rest.roles[i] != RestRole::Bound)
+        {
+            fluid.add(rest.positions[i]);
+            of_point.push_back(static_cast<std::uint32_t>(i));
+        }
+    parallel_for(
+        rest.size(), threads,
+        [&](std::size_t i)
+        {
+            if (rest.roles[i] != RestRole::Bound) return;
+            double nearest = std::numeric_limits<double>::infinity();
+            rest.levels[i] = rest.height(rest.positions[i]);
+            fluid.for_each_near(rest.positions[i], reach,
+                                [&](std::uint32_t at, double squared)
+                                {
+                                    if (squared >= nearest) return;
+                                    nearest = squared;
+                                    rest.levels[i] = rest.levels[of_point[at]];
+                                });
+            rest.pressures[i] = rest.pressure(rest.levels[i] - rest.height(rest.positions[i]));
+            rest.densities[i] = rest.density(rest.pressures[i]);
+        },
+        64);
+}
+
+/// What the solver sums over the fluid around a ghost node. Rows: of the kernel and of the
+/// components of its gradient; columns: of the density there and of its gradient.
+struct GhostPressures::Sums
+{
+    SmallMatrix matrix;
+    std::array<double, most_rows> densities{};
+    bool has_fluid = false;
+};
+
+GhostPressures::GhostPressures(const FluidAtRest& rest, RestBoundary boundary)
+    : boundary_(boundary), list_(static_cast<float>(rest_reach_dp(rest)), skin_dp)
+{
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (rest.roles[i] == RestRole::Bound && norm(rest.ghosts[i]) > 0)
+        {
+            owners_.push_back(static_cast<std::uint32_t>(i));
+            masses_.push_back(rest.masses[i]);
+        }
+}
+
+void GhostPressures::find_neighbours(const FluidAtRest& rest, int threads)
+{
+    first_ghost_ = rest.size();
+    std::vector<Vec3> points = rest.positions;
+    for (const std::uint32_t i : owners_) points.push_back(rest.positions[i] + rest.ghosts[i]);
+    list_.build(
+        rest.in_dp(points), threads, [&](std::size_t i) { return i >= first_ghost_; },
+        [&](std::size_t, std::size_t j)
+        { return j < first_ghost_ && rest.roles[j] != RestRole::Bound; });
+}
+
+GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, const Vec3& ghost,
+                                             std::span<const std::uint32_t> neighbours) const
+{
+    Sums sums;
+    sums.matrix.n = rest.is_2d ? 3 : 4;
+    const double alpha = rest.alpha();
+    for (const std::uint32_t j : neighbours)
+    {
+        const Vec3 away = ghost - rest.positions[j];
+        const double q = norm(away) / rest.h;
+        if (q >= 2) continue;
+        sums.has_fluid = true;
+        const double volume = rest.masses[j] / rest.densities[j];
+        const Vec3 slope = alpha * rest.slope(q) / (rest.h * rest.h) * volume * away;
+        std::array<double, most_rows> rows{alpha * rest.shape(q) * volume, slope.x, slope.y,
+                                           slope.z};
+        std::array<double, most_rows> columns{1, -away.x, -away.y, -away.z};
+        if (rest.is_2d)
+        {
+            rows[2] = rows[3];
+            columns[2] = columns[3];
+        }
+        for (int r = 0; r < sums.matrix.n; ++r)
+        {
+            const double of_row = rows[static_cast<std::size_t>(r)];
+            sums.densities[static_cast<std::size_t>(r)] += of_row * rest.densities[j];
+            for (int c = 0; c < sums.matrix.n; ++c)
+                sums.matrix.at(r, c) += of_row * columns[static_cast<std::size_t>(c)];
+        }
+    }
+    return sums;
+}
+
+void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
+                             std::span<const std::uint32_t> neighbours) const
+{
+    // Of JSphCpu_mdbc.cpp.
+    constexpr double least_determinant = 1e-3;
+    constexpr double least_sum = 0.1;
+    constexpr double largest_condition = 50;
+    const Vec3 ghost = rest.ghosts[i];
+    const Sums sums = sums_at(rest, rest.positions[i] + ghost, neighbours);
+    const bool is_new = boundary_ == RestBoundary::Mdbc2;
+    if (!sums.has_fluid)
+    {
+        rest.pressures[i] = 0;
+        rest.densities[i] = rest.rhop0;
+        if (is_new) rest.masses[i] = 0;
+        return;
+    }
+    const double shepard = sums.densities[0] / sums.matrix.at(0, 0);
+    double density = shepard;
+    std::array<double, most_rows> fit{};
+    bool has_fit = false;
+    SmallMatrix inverse;
+    if (is_new && sums.matrix.at(0, 0) < least_sum)
+        density = std::max(rest.rhop0, shepard);
+    else if (std::abs(invert(sums.matrix, inverse)) >= least_determinant &&
+             (!is_new ||
+              rest.dp * rest.dp * sums.matrix.largest_row_sum() * inverse.largest_row_sum() <=
+                  largest_condition))
+    {
+        has_fit = true;
+        for (int r = 0; r < sums.matrix.n; ++r)
+            for (int c = 0; c < sums.matrix.n; ++c)
+                fit[static_cast<std::size_t>(r)] +=
+                    inverse.at(r, c) * sums.densities[static_cast<std::size_t>(c)];
+        density = fit[0];
+    }
+    if (is_new)
+    {
+        const double c2 = rest.b * rest.gamma / rest.rhop0;
+        const Vec3 n = ghost / norm(ghost);
+        const double cloned =
+            c2 * (density - rest.rhop0) - rest.rhop0 * dot(rest.gravity, n) * norm(ghost);
+        density = rest.rhop0 + cloned / c2;
+    }
+    else if (has_fit)
+        density -= fit[1] * ghost.x +
+                   (rest.is_2d ? fit[2] * ghost.z : fit[2] * ghost.y + fit[3] * ghost.z);
+    rest.masses[i] = masses_[static_cast<std::size_t>(
+        std::lower_bound(owners_.begin(), owners_.end(), i) - owners_.begin())];
+    rest.densities[i] = density;
+    rest.pressures[i] = rest.pressure_of_density(density);
+}
+
+void GhostPressures::set(FluidAtRest& rest, int threads) const
+{
+    parallel_for(
+        list_.rows(), threads,
+        [&](std::size_t row)
+        {
+            const std::uint32_t point = list_.point(row);
+            if (point >= first_ghost_)
+                set_one(rest, owners_[point - first_ghost_], list_.neighbours(row));
+        },
+        NeighbourList::rows_per_chunk);
+}
+
+} // namespace fppg

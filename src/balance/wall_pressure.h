@@ -1,0 +1,46 @@
+#pragma once
+
+#include "balance/fluid_at_rest.h"
+
+namespace fppg
+{
+
+/// How the solver treats the boundary.
+enum class RestBoundary : std::uint8_t
+{
+    Dbc,
+    Mdbc,  ///< SlipMode 1: density and its gradient at the ghost node
+    Mdbc2, ///< SlipMode 2 and 3: pressure cloned along the normal
+};
+
+/// Gives boundary particles the pressure of their depth below the level of the nearest fluid, and 0
+/// where no fluid is within 2h + dp.
+void set_depth_pressures(FluidAtRest& rest, int threads);
+
+/// The pressures that mDBC gives to boundary particles with a ghost node, from the fluid around it.
+class GhostPressures
+{
+public:
+    GhostPressures(const FluidAtRest& rest, RestBoundary boundary);
+    /// Makes the lists of fluid around ghost nodes anew; to be called whenever fluid has moved by
+    /// 0.3 dp since.
+    void find_neighbours(const FluidAtRest& rest, int threads);
+    /// Sets pressures, densities and masses of boundary particles with ghost nodes. Those without
+    /// fluid at their ghost node have no mass (SlipMode 2 and 3).
+    void set(FluidAtRest& rest, int threads) const;
+
+private:
+    struct Sums;
+    Sums sums_at(const FluidAtRest& rest, const Vec3& ghost,
+                 std::span<const std::uint32_t> neighbours) const;
+    void set_one(FluidAtRest& rest, std::uint32_t i,
+                 std::span<const std::uint32_t> neighbours) const;
+
+    RestBoundary boundary_;
+    NeighbourList list_;
+    std::vector<std::uint32_t> owners_; ///< of every ghost node
+    std::vector<double> masses_;        ///< of their particles
+    std::size_t first_ghost_ = 0;
+};
+
+} // namespace fppg

@@ -1,0 +1,193 @@
+// Water at rest beside fitted walls, judged by the sums of the solver over the particles of
+// Case.bi4.
+
+#include "fppg/read_particles.h"
+
+#include "helpers/bi4_array.h"
+#include "helpers/case_text.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace
+{
+
+using namespace fppg::test;
+using fppg::ParticleCloud;
+using fppg::Vec3;
+
+constexpr double dp = 0.1;
+constexpr double h = 1.7320508075688772 * dp;
+constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
+
+/// An open tank of 1.65 x 1.45 x 1 m, its walls sheets, with water 0.8 m deep up to where a box
+/// of this size along x from x = -0.2 ends.
+CaseText tank(const std::string& fppg, const std::string& water_size = "2.2")
+{
+    CaseText text;
+    text.pointmin = R"(<pointmin x="-0.3" y="-0.3" z="-0.3" />)";
+    text.pointmax = R"(<pointmax x="1.95" y="1.75" z="1.3" />)";
+    text.mainlist = R"(<setdrawmode mode="full" />
+<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.65" y="1.45" z="1" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.4" y="0.7" z="0.4"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x=")" +
+                    water_size + R"(" y="2" z="1.05" /></fillbox>)";
+    text.after_geometry = "<fppg>" + fppg + "</fppg>";
+    return text;
+}
+
+struct Result
+{
+    std::string output;
+    ParticleCloud cloud;
+    std::vector<float> densities;
+};
+
+Result make(const TemporaryFolder& folder, const CaseText& text, const Arguments& more = {})
+{
+    write_text(folder / "Case_Def.xml", text.text());
+    Arguments words{"Case_Def", "out/Case"};
+    words.insert(words.end(), more.begin(), more.end());
+    const RunResult done = run(folder, words);
+    EXPECT_EQ(done.code, 0) << done.output;
+    return {done.output, fppg::read_particles(folder / "out/Case", false, 1),
+            bi4_array<float>(read_text(folder / "out/Case.bi4"), "Rhop")};
+}
+
+/// What gravity is in these cases.
+constexpr double g = 9.81;
+
+/// Accelerations of the fluid over gravity, as the solver with dynamic boundaries sums them.
+std::vector<double> accelerations(const Result& r, double b)
+{
+    std::vector<double> out;
+    const auto pressure = [&](std::size_t i)
+    { return b * (std::pow(double{r.densities[i]} / 1000, 7) - 1); };
+    const double mass = 1000 * dp * dp * dp;
+    const double factor = -5 * 21 / (16 * std::numbers::pi) / (h * h * h * h * h);
+    const std::vector<Vec3>& at = r.cloud.positions;
+    for (std::size_t i = 0; i < at.size(); ++i)
+    {
+        if (r.cloud.mk[i] >= first_bound) continue;
+        Vec3 a{0, 0, -g};
+        for (std::size_t j = 0; j < at.size(); ++j)
+        {
+            const Vec3 away = at[i] - at[j];
+            const double q = norm(away) / h;
+            if (j == i || q >= 2) continue;
+            a = a - mass * (pressure(i) + pressure(j)) /
+                        (double{r.densities[i]} * double{r.densities[j]}) * factor *
+                        std::pow(1 - q / 2, 3) * away;
+        }
+        out.push_back(norm(a) / g);
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+double b_of(const TemporaryFolder& folder)
+{
+    const std::string xml = read_text(folder / "out/Case.xml");
+    const std::size_t at = xml.find("<b value=\"");
+    return std::stod(xml.substr(at + 10));
+}
+
+} // namespace
+
+TEST(Balance, WaterBesideFittedWallsStartsAtRest)
+{
+    const TemporaryFolder folder;
+    CaseText text = tank(R"(<bodyfitted layers="3" />)");
+    const Result even =
+        make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
+    const std::vector<double> before = accelerations(even, b_of(folder));
+    const Result calm = make(folder, text);
+    EXPECT_TRUE(contains(calm.output, "Balanced fluid")) << calm.output;
+    const std::vector<double> after = accelerations(calm, b_of(folder));
+    ASSERT_EQ(after.size(), before.size());
+    EXPECT_GT(before[before.size() / 2], 0.02);
+    EXPECT_LT(after[after.size() / 2], 0.01);
+    EXPECT_LT(after[after.size() * 99 / 100], 0.05);
+}
+
+TEST(Balance, DensitiesAreThoseOfTheDepthBelowTheSurface)
+{
+    const TemporaryFolder folder;
+    const Result calm = make(folder, tank("<bodyfitted />"));
+    const double b = b_of(folder);
+    double top = 0;
+    for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
+        if (calm.cloud.mk[i] < first_bound) top = std::max(top, calm.cloud.positions[i].z);
+    const auto of_depth = [&](double depth)
+    { return 1000 * std::pow(1 + 1000 * g * std::max(0.0, depth) / b, 1.0 / 7); };
+    // Nodes stand from z = 0.1 to 0.8, so the surface is at 0.85.
+    int walls = 0;
+    for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
+    {
+        const Vec3& p = calm.cloud.positions[i];
+        EXPECT_NEAR(calm.densities[i], of_depth(0.85 - p.z), 2e-3)
+            << p.x << ' ' << p.y << ' ' << p.z;
+        if (calm.cloud.mk[i] >= first_bound && p.z < 0.8) ++walls;
+    }
+    EXPECT_GT(walls, 500);
+    EXPECT_LT(top, 0.85);
+}
+
+TEST(Balance, FluidThatIsMeantToFallStaysAsItIs)
+{
+    const TemporaryFolder folder;
+    const Result even =
+        make(folder, tank(R"(<bodyfitted /><fluidband balance="false" />)", "1.05"));
+    const Result dam = make(folder, tank("<bodyfitted />", "1.05"));
+    EXPECT_TRUE(contains(dam.output, "held at free faces")) << dam.output;
+    ASSERT_EQ(dam.cloud.positions.size(), even.cloud.positions.size());
+    int face = 0;
+    int moved = 0;
+    for (std::size_t i = 0; i < even.cloud.positions.size(); ++i)
+    {
+        if (even.cloud.mk[i] >= first_bound) continue;
+        const double distance = norm(even.cloud.positions[i] - dam.cloud.positions[i]);
+        if (even.cloud.positions[i].x > 0.8 - 2 * h && even.cloud.positions[i].z < 0.6)
+        {
+            ++face;
+            EXPECT_EQ(distance, 0);
+        }
+        moved += distance > 0 ? 1 : 0;
+    }
+    EXPECT_GT(face, 100);
+    EXPECT_GT(moved, 100);
+}
+
+TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
+{
+    const TemporaryFolder folder;
+    const Result even = make(folder, tank(R"(<bodyfitted /><fluidband balance="false" />)"));
+    const Result calm = make(folder, tank("<bodyfitted />"), {"-threads:1"});
+    ASSERT_EQ(calm.cloud.mk, even.cloud.mk);
+    for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
+        EXPECT_LE(norm(calm.cloud.positions[i] - even.cloud.positions[i]), 1.0001 * dp);
+    const std::string one = read_text(folder / "out/Case.bi4");
+    make(folder, tank("<bodyfitted />"), {"-threads:8"});
+    EXPECT_EQ(read_text(folder / "out/Case.bi4"), one);
+}
+
+TEST(Balance, NothingIsDoneWithoutFittedWallsGravityOrDepths)
+{
+    const TemporaryFolder folder;
+    const Result lattice = make(folder, tank("<bodyfitted />"), {"-fit:off"});
+    EXPECT_FALSE(contains(lattice.output, "Balance"));
+    EXPECT_EQ(lattice.densities.front(), 1000);
+    CaseText weightless = tank("<bodyfitted />");
+    weightless.gravity = R"(<gravity x="0" y="0" z="0" />)";
+    EXPECT_FALSE(contains(make(folder, weightless).output, "Balance"));
+    CaseText uniform = tank("<bodyfitted />");
+    uniform.rhopgradient = R"(<rhopgradient value="1" />)";
+    EXPECT_FALSE(contains(make(folder, uniform).output, "Balance"));
+    EXPECT_FALSE(contains(
+        make(folder, tank(R"(<bodyfitted /><fluidband active="false" />)")).output, "Balance"));
+}
