@@ -32,6 +32,7 @@ struct BalanceReport
     std::size_t particles = 0; ///< that may move
     std::size_t held = 0; ///< of the fluid near walls, as a free face that is not level is near
     int iterations = 0;
+    bool is_balanced = false; ///< false: accelerations stay too large, the fluid is left as it was
     Accelerations before, after;
     double mean_move_dp = 0;
     double largest_move_dp = 0;
@@ -47,15 +48,16 @@ struct BalanceReport
 ///   a_i = g - sum_j m_j (p_i + p_j) / (rho_i rho_j) grad W(x_i - x_j),
 /// p the hydrostatic pressure rho0 g (level - height) below the level of the particle's column,
 /// half a dp above its highest particle; rho by the equation of state. Boundary particles have the
-/// pressure of their depth (DBC), 0 above the level, and more where fluid comes nearer, as by the
-/// solver's equation of continuity: a single sheet must push harder than layers. With mDBC they
-/// have what the solver gives them at each step from the fluid around their ghost nodes
-/// (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with h^2 rho / p, with momentum (heavy
-/// ball, factor 0.85); none is longer than 0.05 dp, no particle moves farther than one dp in all,
-/// none comes nearer to a wall than 0.2 dp or than it was.
+/// pressure of their depth (DBC), 0 above the level; or what mDBC gives them at each step from the
+/// fluid around their ghost nodes (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with
+/// h^2 rho / p, with momentum (heavy ball, factor 0.85); none is longer than 0.05 dp, no particle
+/// moves farther than one dp in all, none comes nearer to a wall than 0.2 dp or than it was.
 ///
 /// Fluid of a free face that is not level stays, with all within 2h of it: it is meant to fall, as
-/// in a dam break. So does fluid across a border of the case.
+/// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.05 g
+/// in the mean, all fluid stays: a single sheet of DBC, behind which nothing pushes, holds none at
+/// rest (raising its pressures as the solver does made a tank of sheets worse: mean speed 0.12
+/// instead of 0.076 m/s).
 ///
 /// normals    of `particles` must have been made where the case asks for them
 /// particles  fluid nodes that move become particles off the lattice, with the ids that they had

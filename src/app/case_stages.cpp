@@ -231,35 +231,21 @@ void make_normals(CaseRunState& run, MadeCase& made)
 void balance(CaseRunState& run, MadeCase& made)
 {
     if (!made.def.balances() || made.field.walls.particles.size() == 0) return;
-    run.stage(
-        "Balance",
-        [&]
-        {
-            const BalanceReport report = balance_fluid(
-                made.def, made.field, made.constants, made.particles, run.threads,
-                [](const BalanceProgress& p)
-                {
-                    StageBar::show(static_cast<double>(p.iteration) / p.last_iteration,
-                                   fmt::format("{} of at most {}, mean acceleration {:.4f} g",
-                                               p.iteration, p.last_iteration, p.mean_acceleration));
-                    return true;
-                });
-            if (!report.why_not.empty())
-                run.log.line(fmt::format("Balance: left out, as {}", report.why_not));
-            if (report.particles == 0) return;
-            run.log.line(fmt::format(
-                "Balanced fluid: {} particles near walls ({} of them held at free faces), {} "
-                "iterations, moved by {:.3f} dp, {:.2f} dp at most",
-                report.particles, report.held, report.iterations, report.mean_move_dp,
-                report.largest_move_dp));
-            const auto text = [](const Accelerations& a)
-            {
-                return fmt::format("mean {:.4f} g, 99 % below {:.3f} g, {:.2f} % above 0.05 g",
-                                   a.mean, a.of_99, 100 * a.above_5);
-            };
-            run.log.line(fmt::format("  accelerations at rest: {}; before: {}", text(report.after),
-                                     text(report.before)));
-        });
+    run.stage("Balance",
+              [&]
+              {
+                  const BalanceReport report = balance_fluid(
+                      made.def, made.field, made.constants, made.particles, run.threads,
+                      [](const BalanceProgress& p)
+                      {
+                          StageBar::show(
+                              static_cast<double>(p.iteration) / p.last_iteration,
+                              fmt::format("{} of at most {}, mean acceleration {:.4f} g",
+                                          p.iteration, p.last_iteration, p.mean_acceleration));
+                          return true;
+                      });
+                  log_balance(report, run.log);
+              });
 }
 
 } // namespace fppg

@@ -190,4 +190,33 @@ void log_zones(const std::vector<ZoneSummary>& zones, RunLog& log)
     log.line();
 }
 
+void log_balance(const BalanceReport& report, RunLog& log)
+{
+    if (!report.why_not.empty()) log.line(fmt::format("Balance: left out, as {}", report.why_not));
+    if (report.particles == 0) return;
+    const auto text = [](const Accelerations& a)
+    {
+        return fmt::format("mean {:.4f} g, 99 % below {:.3f} g, {:.2f} % above 0.05 g", a.mean,
+                           a.of_99, 100 * a.above_5);
+    };
+    const std::string held = report.held > 0 ? fmt::format(" ({} held, as they are at free faces)",
+                                                           thousands(report.held))
+                                             : std::string{};
+    if (!report.is_balanced)
+    {
+        log.line(
+            fmt::format("Balance: {} particles near walls{} stay as they are, as these walls "
+                        "do not hold them at rest; accelerations: {}",
+                        thousands(report.particles), held, text(report.before)));
+        return;
+    }
+    log.line(
+        fmt::format("Balanced fluid: {} particles near walls{}, {} iterations, moved by "
+                    "{:.3f} dp, {:.2f} dp at most",
+                    thousands(report.particles), held, report.iterations, report.mean_move_dp,
+                    report.largest_move_dp));
+    log.line(fmt::format("  accelerations at rest: {}; before: {}", text(report.after),
+                         text(report.before)));
+}
+
 } // namespace fppg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/balance.h"
 #include "fppg/case_def.h"
 #include "fppg/lattice.h"
 #include "fppg/particles.h"
@@ -24,6 +25,9 @@ void log_fill(const CavityFilled& fill, RunLog& log);
 /// words that callers of GenCase look for.
 void log_particles(const CaseDef& def, const CaseParticles& particles,
                    const CaseConstants& constants, RunLog& log);
+
+/// Prints what bringing fluid to rest came to.
+void log_balance(const BalanceReport& report, RunLog& log);
 
 /// What the summary of the zones of a case with `<vres>` says of one.
 struct ZoneSummary

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "particles/depths.h"
+#include "particles/roofs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,8 @@ public:
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
+        if (def_.balances() && is_vertical_ && !by_height_ && def_.constants.gravity.z < 0)
+            raise_roofed_depths(field_, meter_, top_);
         measure_off_lattice();
         constants_.hswl = hswl();
         set_speeds(def_, g_, constants_);

@@ -1,0 +1,167 @@
+#include "particles/roofs.h"
+
+#include "meshes/point_grid.h"
+
+#include <cmath>
+#include <queue>
+#include <tuple>
+
+namespace fppg
+{
+namespace
+{
+
+class RoofLevels
+{
+public:
+    RoofLevels(const RunField& field, const DepthMeter& meter,
+               std::vector<std::vector<std::uint32_t>>& top)
+        : field_(field),
+          meter_(meter),
+          top_(top),
+          walls_(2 * field.grid.dp, field.walls.particles.size()),
+          roofed_(field.slabs.size())
+    {
+        for (const Vec3& p : field.walls.particles.positions) walls_.add(p);
+    }
+
+    void run()
+    {
+        bool has_roofs = false;
+        for (std::uint32_t x = 0; x < field_.slabs.size(); ++x)
+        {
+            roofed_[x].assign(field_.slabs[x].size(), 0);
+            for (std::uint32_t i = 0; i < field_.slabs[x].size(); ++i)
+            {
+                if (!is_water(x, i)) continue;
+                roofed_[x][i] = is_roofed(x, i);
+                has_roofs = has_roofs || roofed_[x][i];
+            }
+        }
+        if (!has_roofs) return;
+        for (std::uint32_t x = 0; x < field_.slabs.size(); ++x)
+            for (std::uint32_t i = 0; i < field_.slabs[x].size(); ++i)
+                if (is_water(x, i)) open_.push({level(x, i), x, i});
+        while (!open_.empty())
+        {
+            const auto [high, x, i] = open_.top();
+            open_.pop();
+            if (high != level(x, i)) continue;
+            const std::uint32_t y = field_.slabs[x][i].y;
+            raise_beside(x, i, x, y + 1);
+            if (y > 0) raise_beside(x, i, x, y - 1);
+            if (x + 1 < field_.slabs.size()) raise_beside(x, i, x + 1, y);
+            if (x > 0) raise_beside(x, i, x - 1, y);
+        }
+    }
+
+private:
+    bool is_water(std::uint32_t x, std::uint32_t i) const
+    {
+        return meter_.medium(field_.slabs[x][i].mk) == Medium::Water;
+    }
+    /// The node at the surface above a run.
+    std::uint32_t level(std::uint32_t x, std::uint32_t i) const
+    {
+        return field_.slabs[x][i].z_end - 1 + top_[x][i];
+    }
+
+    /// Of the column of a run: whether a wall is above its top.
+    bool is_roofed(std::uint32_t x, std::uint32_t i) const
+    {
+        const std::vector<Run>& runs = field_.slabs[x];
+        std::size_t last = i;
+        while (last + 1 < runs.size() && runs[last + 1].y == runs[i].y &&
+               runs[last + 1].z_begin == runs[last].z_end &&
+               meter_.medium(runs[last + 1].mk) == Medium::Water)
+            ++last;
+        constexpr std::uint32_t reach = 2; // nodes
+        const std::uint32_t end = runs[last].z_end;
+        if (last + 1 < runs.size() && runs[last + 1].y == runs[i].y &&
+            runs[last + 1].z_begin < end + reach &&
+            meter_.medium(runs[last + 1].mk) == Medium::Wall)
+            return true;
+        const double dp = field_.grid.dp;
+        const Vec3 at =
+            field_.grid.origin + Vec3{static_cast<double>(x), static_cast<double>(runs[i].y),
+                                      static_cast<double>(end - 1)} *
+                                     dp;
+        bool found = false;
+        walls_.for_each_near(at, 2.2 * dp,
+                             [&](std::uint32_t w, double)
+                             {
+                                 const Vec3 away = walls_.points()[w] - at;
+                                 found = found ||
+                                         (away.z > 0.3 * dp && std::hypot(away.x, away.y) < away.z);
+                             });
+        return found;
+    }
+
+    /// Raises roofed water in a column beside a run.
+    void raise_beside(std::uint32_t x, std::uint32_t i, std::uint32_t to_x, std::uint32_t y)
+    {
+        const Run& from = field_.slabs[x][i];
+        const std::uint32_t high = level(x, i);
+        const std::vector<Run>& runs = field_.slabs[to_x];
+        auto run = std::lower_bound(runs.begin(), runs.end(), std::pair(y, from.z_begin),
+                                    [](const Run& r, const auto& v)
+                                    { return std::pair(r.y, r.z_end - 1) < v; });
+        for (; run != runs.end() && run->y == y && run->z_begin < from.z_end; ++run)
+        {
+            const auto at = static_cast<std::uint32_t>(run - runs.begin());
+            if (!roofed_[to_x][at] || level(to_x, at) >= high) continue;
+            top_[to_x][at] = high - (run->z_end - 1);
+            open_.push({high, to_x, at});
+            raise_column(to_x, at, high);
+        }
+    }
+
+    /// The water above and below a run in its column has the same level.
+    void raise_column(std::uint32_t x, std::uint32_t i, std::uint32_t high)
+    {
+        const std::vector<Run>& runs = field_.slabs[x];
+        const auto raise = [&](std::uint32_t at)
+        {
+            if (level(x, at) >= high) return;
+            top_[x][at] = high - (runs[at].z_end - 1);
+            open_.push({high, x, at});
+        };
+        const auto touch = [&](std::uint32_t lower)
+        {
+            return runs[lower].y == runs[lower + 1].y &&
+                   runs[lower].z_end == runs[lower + 1].z_begin && is_water(x, lower) &&
+                   is_water(x, lower + 1);
+        };
+        for (std::uint32_t at = i; at + 1 < runs.size() && touch(at); ++at) raise(at + 1);
+        for (std::uint32_t at = i; at > 0 && touch(at - 1); --at) raise(at - 1);
+    }
+
+    struct Open
+    {
+        std::uint32_t level = 0;
+        std::uint32_t x = 0;
+        std::uint32_t run = 0;
+        bool operator<(const Open& other) const
+        {
+            // The highest first; ties do not matter, as all runs end at the same levels.
+            return std::tuple(level, other.x, other.run) < std::tuple(other.level, x, run);
+        }
+    };
+
+    const RunField& field_;
+    const DepthMeter& meter_;
+    std::vector<std::vector<std::uint32_t>>& top_;
+    PointGrid walls_;
+    std::vector<std::vector<char>> roofed_;
+    std::priority_queue<Open> open_;
+};
+
+} // namespace
+
+void raise_roofed_depths(const RunField& field, const DepthMeter& meter,
+                         std::vector<std::vector<std::uint32_t>>& top)
+{
+    RoofLevels(field, meter, top).run();
+}
+
+} // namespace fppg
