@@ -19,7 +19,7 @@ namespace
 {
 
 // Lengths in dp.
-constexpr double list_skin = 0.6;
+constexpr double list_skin = 0.3;
 constexpr double longest_step = 0.05;
 constexpr double farthest = 1.0;
 constexpr double least_wall_distance = 0.2;
@@ -28,7 +28,7 @@ constexpr double reach_of_walls = 2.5;
 constexpr double step_factor = 0.0167;
 constexpr double momentum = 0.85;
 constexpr int most_iterations = 160;
-constexpr int iterations_per_look = 5; ///< at mDBC's pressures
+constexpr int iterations_per_look = 10; ///< at mDBC's pressures
 constexpr int iterations_per_check = 20;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.05;
@@ -73,6 +73,7 @@ public:
         start_ = rest_.positions;
         velocities_.resize(rest_.size());
         accelerations_.resize(rest_.size());
+        volumes_.resize(rest_.size());
         walls_.resize(rest_.size());
         allowed_.assign(rest_.size(), least_wall_distance * rest_.dp);
         renew_lists(true);
@@ -94,7 +95,7 @@ public:
             if (on_iteration && !on_iteration({it, most_iterations, mean})) break;
             if (it % iterations_per_check != 0) continue;
             // What is left does not fall any more: currents that the boundary condition drives.
-            if (mean > 0.95 * best.mean && it - last_best >= 4 * iterations_per_check) break;
+            if (mean > 0.95 * best.mean && it - last_best >= 3 * iterations_per_check) break;
             if (mean < 0.95 * best.mean) last_best = it;
             if (mean < best.mean) best = {rest_.positions, rest_.pressures, mean};
         }
@@ -163,29 +164,47 @@ private:
                 rest_.densities[i] = rest_.density(rest_.pressures[i]);
             },
             1024);
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            volumes_[i] = rest_.masses[i] / rest_.densities[i];
         const double scale = rest_.alpha() / (rest_.h * rest_.h);
-        const double reach = 4 * rest_.h * rest_.h;
         parallel_for(
             list_.rows(), threads_,
             [&](std::size_t row)
             {
                 const std::uint32_t i = list_.point(row);
                 if (!moves(i)) return;
-                const Vec3 at = rest_.positions[i];
-                Vec3 sum;
-                for (const std::uint32_t j : list_.neighbours(row))
-                {
-                    const Vec3 away = at - rest_.positions[j];
-                    const double squared = dot(away, away);
-                    if (squared >= reach) continue;
-                    const double of_pair =
-                        rest_.masses[j] * (rest_.pressures[i] + rest_.pressures[j]) /
-                        rest_.densities[j] * rest_.slope(std::sqrt(squared) / rest_.h);
-                    sum = sum + of_pair * away;
-                }
+                const Vec3 sum = rest_.is_cubic ? push_on(i, list_.neighbours(row),
+                                                          [&](double q) { return rest_.slope(q); })
+                                                : push_on(i, list_.neighbours(row),
+                                                          [](double q)
+                                                          {
+                                                              const double s = 1 - q / 2;
+                                                              return -5 * s * s * s;
+                                                          });
                 accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * sum;
             },
             NeighbourList::rows_per_chunk);
+    }
+
+    template <typename Slope>
+    Vec3 push_on(std::uint32_t i, std::span<const std::uint32_t> neighbours,
+                 const Slope& slope) const
+    {
+        const Vec3 at = rest_.positions[i];
+        const double pressure = rest_.pressures[i];
+        const double per_h = 1 / rest_.h;
+        const double reach = 4 * rest_.h * rest_.h;
+        Vec3 sum;
+        for (const std::uint32_t j : neighbours)
+        {
+            const Vec3 away = at - rest_.positions[j];
+            const double squared = dot(away, away);
+            if (squared >= reach) continue;
+            const double of_pair =
+                volumes_[j] * (pressure + rest_.pressures[j]) * slope(std::sqrt(squared) * per_h);
+            sum = sum + of_pair * away;
+        }
+        return sum;
     }
 
     void step()
@@ -278,6 +297,7 @@ private:
     bool has_ghosts_;
     std::vector<Vec3> velocities_; ///< metres a step
     std::vector<Vec3> accelerations_;
+    std::vector<double> volumes_; ///< mass over density
     std::vector<Vec3> start_;
     std::vector<Vec3> steps_;     ///< the last ones, metres
     std::vector<Vec3> looked_at_; ///< places when walls were looked for

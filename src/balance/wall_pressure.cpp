@@ -87,7 +87,7 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
     PointGrid fluid(reach, rest.size());
     std::vector<std::uint32_t> of_point;
     for (std::size_t i = 0; i < rest.size(); ++i)
-        if (rest.roles[i] != RestRole::Bound)
+        if (rest.roles[i] != RestRole::Bound && rest.pressures[i] > 0)
         {
             fluid.add(rest.positions[i]);
             of_point.push_back(static_cast<std::uint32_t>(i));
@@ -96,7 +96,8 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
         rest.size(), threads,
         [&](std::size_t i)
         {
-            if (rest.roles[i] != RestRole::Bound) return;
+            // Fluid above the highest nodes says nothing of the level.
+            if (rest.roles[i] != RestRole::Bound && rest.pressures[i] > 0) return;
             double nearest = std::numeric_limits<double>::infinity();
             rest.levels[i] = rest.height(rest.positions[i]);
             fluid.for_each_near(rest.positions[i], reach,

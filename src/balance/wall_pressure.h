@@ -13,8 +13,8 @@ enum class RestBoundary : std::uint8_t
     Mdbc2, ///< SlipMode 2 and 3: pressure cloned along the normal
 };
 
-/// Gives boundary particles the pressure of their depth below the level of the nearest fluid, and 0
-/// where no fluid is within 2h + dp.
+/// Gives boundary particles, and fluid without pressure, the level of the nearest fluid that has
+/// pressure, and the pressure of their depth below it; 0 where no fluid is within 2h + dp.
 void set_depth_pressures(FluidAtRest& rest, int threads);
 
 /// The pressures that mDBC gives to boundary particles with a ghost node, from the fluid around it.

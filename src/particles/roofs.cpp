@@ -34,7 +34,10 @@ public:
             for (std::uint32_t i = 0; i < field_.slabs[x].size(); ++i)
             {
                 if (!is_water(x, i)) continue;
-                roofed_[x][i] = is_roofed(x, i);
+                const std::size_t last = top_of_column(x, i);
+                // GenCase adds a step below a wall.
+                top_[x][i] = field_.slabs[x][last].z_end - field_.slabs[x][i].z_end;
+                roofed_[x][i] = is_roofed(x, last);
                 has_roofs = has_roofs || roofed_[x][i];
             }
         }
@@ -66,24 +69,30 @@ private:
         return field_.slabs[x][i].z_end - 1 + top_[x][i];
     }
 
-    /// Of the column of a run: whether a wall is above its top.
-    bool is_roofed(std::uint32_t x, std::uint32_t i) const
+    /// The highest run of the water column of a run.
+    std::size_t top_of_column(std::uint32_t x, std::size_t i) const
     {
         const std::vector<Run>& runs = field_.slabs[x];
-        std::size_t last = i;
-        while (last + 1 < runs.size() && runs[last + 1].y == runs[i].y &&
-               runs[last + 1].z_begin == runs[last].z_end &&
-               meter_.medium(runs[last + 1].mk) == Medium::Water)
-            ++last;
+        while (i + 1 < runs.size() && runs[i + 1].y == runs[i].y &&
+               runs[i + 1].z_begin == runs[i].z_end &&
+               meter_.medium(runs[i + 1].mk) == Medium::Water)
+            ++i;
+        return i;
+    }
+
+    /// Whether a wall is above a run that ends its column.
+    bool is_roofed(std::uint32_t x, std::size_t last) const
+    {
+        const std::vector<Run>& runs = field_.slabs[x];
         constexpr std::uint32_t reach = 2; // nodes
         const std::uint32_t end = runs[last].z_end;
-        if (last + 1 < runs.size() && runs[last + 1].y == runs[i].y &&
+        if (last + 1 < runs.size() && runs[last + 1].y == runs[last].y &&
             runs[last + 1].z_begin < end + reach &&
             meter_.medium(runs[last + 1].mk) == Medium::Wall)
             return true;
         const double dp = field_.grid.dp;
         const Vec3 at =
-            field_.grid.origin + Vec3{static_cast<double>(x), static_cast<double>(runs[i].y),
+            field_.grid.origin + Vec3{static_cast<double>(x), static_cast<double>(runs[last].y),
                                       static_cast<double>(end - 1)} *
                                      dp;
         bool found = false;
