@@ -141,7 +141,7 @@ struct FluidBand
 {
     int line = 0;                  ///< of the element
     std::vector<std::uint16_t> mk; ///< absolute, ascending; empty: every fluid
-    double width_dp = 3; ///< fluid this near to a fitted wall moves, in dp; above 0, finite
+    double width_dp = 3;   ///< fluid this near to a fitted wall moves, in dp; above 0, finite
     bool is_active = true; ///< false: it stays on the lattice
     bool balances = true;  ///< it is brought to rest (balance.h)
 };
@@ -233,7 +233,7 @@ struct CaseDef
 
     FitDef fit;                         ///< empty: every particle stands on the lattice
     std::vector<FluidBand> fluid_bands; ///< of a fluid that several name the last one counts
-    SolverParameters solver; ///< of a case with fitted walls
+    SolverParameters solver;            ///< of a case with fitted walls
     /// Whether fluid starts balanced beside fitted walls (balance.h), with the densities of its
     /// depth below a surface half a dp above its highest particles: gravity and depths give it
     /// pressure, and a band of fluid asks for it.

@@ -39,10 +39,10 @@ struct FitMeasures
     double second_sheet = 0; ///< area that is not in `area`: the side of a plate without particles
     double wall_particles = 0;
     double layer_particles = 0; ///< those of them that stand in layers behind the surface
-    double volume = 0;       ///< of the shape; 0: it is open
-    double sheet_volume = 0; ///< of facets that bound no volume, as if dp thick
-    double node_volume = 0;  ///< that the nodes inside stand for
-    double wall_volume = 0;  ///< that the wall's particles stand for, as far as they are inside
+    double volume = 0;          ///< of the shape; 0: it is open
+    double sheet_volume = 0;    ///< of facets that bound no volume, as if dp thick
+    double node_volume = 0;     ///< that the nodes inside stand for
+    double wall_volume = 0;     ///< that the wall's particles stand for, as far as they are inside
     /// How much of the volume has particles, 0 to 1: all of a solid, of a surface what fills give
     /// it; 1 too where its walls leave no room for nodes.
     double filled = 0;
@@ -69,7 +69,8 @@ struct FittedBody
     /// How much of dp^3 (2D: dp^2) a particle of its wall stands for: in a filled body so much that
     /// they and the nodes make up its volume, in a hollow one 1.
     double share = 1;
-    double layer_share = 1; ///< the same of a particle of its layers; on the surface it is half that
+    double layer_share =
+        1; ///< the same of a particle of its layers; on the surface it is half that
     FitMeasures measures;
     /// Particles that it lacks because others are nearer than least_pair_dp to their places: on
     /// corners, along edges, on surfaces.
@@ -95,9 +96,8 @@ struct FittedBody
             std::max(0.0, measures.volume + measures.sheet_volume - measures.node_volume);
         // Half of what a particle on the surface stands for is before that.
         const double on_surface = measures.layer_particles > 0 ? 0.5 : 1;
-        const double whole =
-            measures.layer_particles +
-            on_surface * (measures.wall_particles - measures.layer_particles);
+        const double whole = measures.layer_particles +
+                             on_surface * (measures.wall_particles - measures.layer_particles);
         const double of_filled = of_wall / (whole * dp * dp * dp);
         layer_share = (1 + measures.filled * (of_filled - 1)) / measures.kept;
         share = (1 + measures.filled * (on_surface * of_filled - 1)) / measures.kept;

@@ -32,7 +32,6 @@ using fppg::Vec3;
 using fppg::VtkFile;
 using namespace fppg::test;
 
-constexpr std::uint16_t fluid_mk = 1;
 constexpr std::uint16_t bound_mk = 10; ///< of mkbound 0
 
 /// Writes the case and runs it into out/Case with all files.
@@ -188,18 +187,6 @@ TEST_F(FittedSphere, HasBlocksInCaseXmlThatFitTheParticles)
     EXPECT_EQ(number(child(child(root, "execution"), "particles"), "np"), next);
 }
 
-TEST_F(FittedSphere, NumbersTheParticlesOfABlockByXThenYThenZ)
-{
-    const ParticleCloud cloud = particles(*folder_);
-    for (std::size_t i = 1; i < cloud.positions.size(); ++i)
-    {
-        const Vec3& a = cloud.positions[i - 1];
-        const Vec3& b = cloud.positions[i];
-        if (cloud.mk[i] != cloud.mk[i - 1]) continue;
-        EXPECT_LT(std::tie(a.x, a.y, a.z), std::tie(b.x, b.y, b.z)) << i;
-    }
-}
-
 TEST_F(FittedSphere, HasUnitNormalsThatPointOutwardsInThePicture)
 {
     const VtkFile picture(read_text(*folder_ / "out/Case_All.vtk"));
@@ -216,14 +203,6 @@ TEST_F(FittedSphere, HasUnitNormalsThatPointOutwardsInThePicture)
         EXPECT_GT(dot(n, p - sphere_center), 0.999 * sphere_radius);
         EXPECT_NEAR(distance[i], 0, 1e-6);
     }
-}
-
-TEST_F(FittedSphere, KeepsTheFluidHalfAStepAway)
-{
-    const ParticleCloud cloud = particles(*folder_);
-    const std::vector<Vec3> fluid = positions_of(cloud, fluid_mk);
-    EXPECT_GT(fluid.size(), 1000u);
-    for (const Vec3& p : fluid) EXPECT_GE(norm(p - sphere_center), sphere_radius + 0.49 * 0.05);
 }
 
 TEST_F(FittedSphere, WritesTheHistoryOfItsRelaxationUnlessRaw)

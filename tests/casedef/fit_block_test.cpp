@@ -87,7 +87,7 @@ TEST(FitBlock, FitsEveryBoundaryWithTheDefaultsWhenItSaysNothingElse)
         EXPECT_EQ(s.feature_angle_deg, 30);
         EXPECT_EQ(s.density, FitDensity::Area);
         EXPECT_FALSE(s.clearance_dp || s.relax.iterations);
-        EXPECT_EQ(s.one_sheet_dp, 0.5);
+        EXPECT_EQ(s.one_sheet_dp, 0.6);
         EXPECT_TRUE(s.relax.is_active);
         EXPECT_EQ(s.relax, RelaxSettings{});
     }
