@@ -144,6 +144,9 @@ struct FluidBand
     double width_dp = 3;   ///< fluid this near to a fitted wall moves, in dp; above 0, finite
     bool is_active = true; ///< false: it stays on the lattice
     bool balances = true;  ///< it is brought to rest (balance.h)
+    /// Particles come and go where they are too many or too few for the space between walls. Not
+    /// where the case has no `<fluidband>`: fills keep their litres.
+    bool fits_count = true;
 };
 
 /// Parameters of the solver on which places and densities depend.

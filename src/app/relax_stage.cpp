@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace fppg
 {
@@ -67,6 +68,19 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
         fields["nearest_pair_dp"] = part.nearest_pair_dp;
     }
     log.fact("relaxed", fields);
+}
+
+/// Fluid that is more or less than the case drew or filled.
+void warn_of_fluid_count(const RelaxedPart& part, CaseRunState& run, const std::string& file)
+{
+    const double more = static_cast<double>(part.inserted) - static_cast<double>(part.removed);
+    const double share = more / (static_cast<double>(part.particles) - more);
+    if (std::abs(share) < 0.001) return;
+    run.warn(fmt::format(
+        "{}: <fluidband>: {:+g} particles of fluid near walls ({:+.2f} % of them), so many as fit "
+        "between the walls; litres of fills are those before. Without the element their number "
+        "stays.",
+        file, more, 100 * share));
 }
 
 } // namespace
@@ -172,7 +186,11 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
         ++snapshots;
     };
     relax_walls(made.def, made.field, run.threads, observe, report, snapshot);
-    for (const RelaxedPart& part : report.parts) log_relaxed(part, run.log);
+    for (const RelaxedPart& part : report.parts)
+    {
+        log_relaxed(part, run.log);
+        if (part.what == "fluid") warn_of_fluid_count(part, run, made.def.file);
+    }
     if (snapshots > 0)
         run.log.line(
             fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", made.output, snapshots));

@@ -91,7 +91,7 @@ public:
             if (it % iterations_per_look == 0) renew_pressures();
             accelerate();
             report.iterations = it;
-            const double mean = mean_acceleration();
+            const double mean = judge().mean;
             if (on_iteration && !on_iteration({it, most_iterations, mean})) break;
             if (it % iterations_per_check != 0) continue;
             // What is left does not fall any more: currents that the boundary condition drives.
@@ -240,19 +240,6 @@ private:
         const double length = norm(moved);
         if (length > farthest * rest_.dp) to = start_[i] + moved * (farthest * rest_.dp / length);
         return to;
-    }
-
-    double mean_acceleration() const
-    {
-        double sum = 0;
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-        {
-            if (!moves(i)) continue;
-            sum += norm(accelerations_[i]);
-            ++count;
-        }
-        return count > 0 ? sum / static_cast<double>(count) / norm(rest_.gravity) : 0;
     }
 
     Accelerations judge() const

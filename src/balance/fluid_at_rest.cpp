@@ -22,19 +22,10 @@ struct NearParticle
     float rhop = 0;
 };
 
-float density_in_run(const CaseParticles& particles, const ParticleBlock& block,
-                     const ParticleRun& run, std::uint32_t k, std::uint64_t id)
-{
-    if (run.is_off_lattice) return particles.off_lattice.rhop[run.off_lattice_begin() + k];
-    if (block.type != ParticleType::Fluid) return 0;
-    if (!particles.rhop.empty()) return particles.rhop[id - (particles.np - particles.n_fluid)];
-    return particles.rhop_of_depth[run.depth + (block.run_descending ? k : run.count - 1 - k)];
-}
-
 /// Particles in the blocks of nodes around fitted walls, in the order of ids.
 template <typename Wanted>
 std::vector<NearParticle> near_particles(const CaseParticles& particles, const NearBlocks& blocks,
-                                         const Wanted& wanted)
+                                         float rhop0, const Wanted& wanted)
 {
     std::vector<NearParticle> out;
     for (const ParticleBlock& block : particles.blocks)
@@ -46,7 +37,7 @@ std::vector<NearParticle> near_particles(const CaseParticles& particles, const N
             const auto take = [&](std::uint32_t k)
             {
                 out.push_back({id + k, &block, place_in_run(particles, block, run, k),
-                               density_in_run(particles, block, run, k, id + k)});
+                               density_in_run(particles, block, run, k, id + k, rhop0)});
             };
             if (run.is_off_lattice)
                 for (std::uint32_t k = 0; k < run.count; ++k) take(k);
@@ -145,10 +136,11 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     for (const double band : reach.band_dp) widest = std::max(widest, band);
     const double forces = rest_reach_dp(rest) + list_skin_dp + 0.1;
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
+    const auto rhop0 = static_cast<float>(constants.rhop0);
     const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2);
 
     const std::vector<NearParticle> fluid = near_particles(
-        particles, blocks,
+        particles, blocks, rhop0,
         [](const ParticleBlock& block) { return block.type == ParticleType::Fluid; });
     std::vector<char> moves(fluid.size(), 0);
     parallel_for(
@@ -182,7 +174,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     add_near(fluid, RestRole::Held, [&](std::size_t i) { return moves[i] != 0; });
     rest.ghosts.resize(rest.size());
     const std::vector<NearParticle> bound = near_particles(
-        particles, blocks,
+        particles, blocks, rhop0,
         [](const ParticleBlock& block) { return block.type != ParticleType::Fluid; });
     add_near(bound, RestRole::Bound, [](std::size_t) { return false; });
     for (std::size_t i = rest.ghosts.size(); i < rest.size(); ++i)

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "core/most_particles.h"
+#include "particles/run_positions.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +21,6 @@ public:
     {
         shift_ = shift_ * (all_.grid.dp / 4);
         if (all_.grid.is_2d) shift_.y = 0;
-        fluid_begin_ = all_.np - all_.n_fluid;
     }
 
     /// Takes over the particles of a block, two for one where `doubles`.
@@ -33,13 +33,13 @@ public:
         {
             for (std::uint32_t i = 0; i < r.count; ++i, ++id)
             {
-                const float density = density_of(block, r, i, id);
+                const float density = density_in_run(all_, block, r, i, id, rhop0);
                 if (block.type == ParticleType::Fluid && !all_.rhop.empty())
                     rhop_.insert(rhop_.end(), doubles ? 2 : 1, density);
                 if (r.is_off_lattice)
                     add(r.off_lattice_begin() + i, doubles, density);
                 else if (doubles)
-                    add_pair(node(block, r, i), density);
+                    add_pair(place_in_run(all_, block, r, i), density);
             }
             if (doubles) continue;
             runs.push_back(r);
@@ -68,24 +68,6 @@ public:
     }
 
 private:
-    Vec3 node(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i) const
-    {
-        const double z =
-            block.run_descending ? static_cast<double>(r.z) - i : static_cast<double>(r.z) + i;
-        return all_.grid.origin +
-               Vec3{static_cast<double>(r.x), static_cast<double>(r.y), z} * all_.grid.dp;
-    }
-
-    float density_of(const ParticleBlock& block, const ParticleRun& r, std::uint32_t i,
-                     std::uint64_t id) const
-    {
-        if (r.is_off_lattice) return all_.off_lattice.rhop[r.off_lattice_begin() + i];
-        if (block.type != ParticleType::Fluid) return rhop0;
-        if (!all_.rhop.empty()) return all_.rhop[id - fluid_begin_];
-        if (all_.rhop_of_depth.empty()) return rhop0;
-        return all_.rhop_of_depth[r.depth + (block.run_descending ? i : r.count - 1 - i)];
-    }
-
     void add(const Vec3& position, float density)
     {
         off_lattice_.positions.push_back(position);
@@ -136,7 +118,6 @@ public:
 private:
     CaseParticles& all_;
     Vec3 shift_;
-    std::uint64_t fluid_begin_ = 0;
     std::uint64_t np_ = 0;
     OffLatticeParticles off_lattice_;
     std::vector<float> rhop_;

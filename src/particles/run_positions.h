@@ -17,4 +17,18 @@ inline Vec3 place_in_run(const CaseParticles& particles, const ParticleBlock& bl
             grid.origin.z + static_cast<double>(z) * grid.dp};
 }
 
+/// The density of particle k of a run.
+///
+/// id  of the particle
+/// rhop0  of particles that are no fluid, and of fluid without depths
+inline float density_in_run(const CaseParticles& particles, const ParticleBlock& block,
+                            const ParticleRun& run, std::uint32_t k, std::uint64_t id, float rhop0)
+{
+    if (run.is_off_lattice) return particles.off_lattice.rhop[run.off_lattice_begin() + k];
+    if (block.type != ParticleType::Fluid) return rhop0;
+    if (!particles.rhop.empty()) return particles.rhop[id - (particles.np - particles.n_fluid)];
+    if (particles.rhop_of_depth.empty()) return rhop0;
+    return particles.rhop_of_depth[run.depth + (block.run_descending ? k : run.count - 1 - k)];
+}
+
 } // namespace fppg

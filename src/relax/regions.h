@@ -38,6 +38,7 @@ struct Region
     std::vector<double> band; ///< per mk, in dp; 0: not of the region
     std::vector<char> beside; ///< per mk: not of the region, but its nodes push
     bool is_solid = false;
+    bool fits_count = true; ///< particles come and go (RelaxVolumeOptions::fit_count)
     double h_dp = 1;
     std::optional<int> iterations;
 };

@@ -172,6 +172,8 @@ private:
         {
             Region region;
             region.what = "fluid";
+            region.fits_count = std::any_of(def_.fluid_bands.begin(), def_.fluid_bands.end(),
+                                            [](const FluidBand& band) { return band.fits_count; });
             region.band.assign(65536, 0);
             region.beside.assign(65536, 0);
             for (std::uint32_t mk = 1; mk < 65536; ++mk)
@@ -405,7 +407,7 @@ private:
         options.h_dp = region.h_dp;
         options.iterations = region.iterations.value_or(volume_iterations);
         options.is_2d = grid.is_2d;
-        options.fit_count = true;
+        options.fit_count = region.fits_count;
         if (is_before_layers) options.behind_wall_dp = 0;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {

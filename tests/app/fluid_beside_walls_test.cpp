@@ -104,7 +104,7 @@ TEST(FluidBesideASphere, IsNumberedByXThenYThenZUnlessItIsBalanced)
     const std::string walls = R"(<bodyfitted layers="3" />)";
     const Made even = make_sphere_in_tank(walls + R"(<fluidband balance="false" />)");
     EXPECT_EQ(unsorted(even.cloud, true), 0u);
-    const Made balanced = make_sphere_in_tank(walls);
+    const Made balanced = make_sphere_in_tank(walls + "<fluidband />");
     EXPECT_EQ(unsorted(balanced.cloud, false), 0u);
     EXPECT_EQ(balanced.cloud.mk, even.cloud.mk);
 }

@@ -116,7 +116,7 @@ double b_of(const TemporaryFolder& folder)
 TEST(Balance, WaterBesideFittedWallsStartsAtRest)
 {
     const TemporaryFolder folder;
-    CaseText text = tank(R"(<bodyfitted layers="3" />)");
+    CaseText text = tank(R"(<bodyfitted layers="3" /><fluidband />)");
     const Result even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
     const std::vector<double> before = accelerations(even, b_of(folder));
@@ -161,7 +161,7 @@ TEST(Balance, FluidThatIsMeantToFallStaysAsItIs)
     const TemporaryFolder folder;
     const Result even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)", "1.05"));
-    const Result dam = make(folder, tank(R"(<bodyfitted layers="3" />)", "1.05"));
+    const Result dam = make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)", "1.05"));
     EXPECT_TRUE(contains(dam.output, "at free faces")) << dam.output;
     ASSERT_EQ(dam.cloud.positions.size(), even.cloud.positions.size());
     int face = 0;
@@ -186,12 +186,13 @@ TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
     const TemporaryFolder folder;
     const Result even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
-    const Result calm = make(folder, tank(R"(<bodyfitted layers="3" />)"), {"-threads:1"});
+    const Result calm =
+        make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)"), {"-threads:1"});
     ASSERT_EQ(calm.cloud.mk, even.cloud.mk);
     for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
         EXPECT_LE(norm(calm.cloud.positions[i] - even.cloud.positions[i]), 1.0001 * dp);
     const std::string one = read_text(folder / "out/Case.bi4");
-    make(folder, tank(R"(<bodyfitted layers="3" />)"), {"-threads:8"});
+    make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)"), {"-threads:8"});
     EXPECT_EQ(read_text(folder / "out/Case.bi4"), one);
 }
 
@@ -236,4 +237,21 @@ TEST(Balance, WaterUnderARoofHasThePressureOfTheOpenSurface)
             << p.x << ' ' << p.y << ' ' << p.z;
     }
     EXPECT_GT(under, 20);
+}
+
+TEST(Balance, NumberOfFluidStaysWithoutABandAndIsWarnedOfWithOne)
+{
+    const TemporaryFolder folder;
+    const auto count = [](const Result& r)
+    {
+        return std::count_if(r.cloud.mk.begin(), r.cloud.mk.end(),
+                             [](std::uint16_t mk) { return mk < first_bound; });
+    };
+    const auto on_nodes =
+        count(make(folder, tank(R"(<bodyfitted layers="3" /><fluidband active="false" />)")));
+    const Result plain = make(folder, tank(R"(<bodyfitted layers="3" />)"));
+    EXPECT_EQ(count(plain), on_nodes);
+    EXPECT_FALSE(contains(plain.output, "litres of fills")) << plain.output;
+    const Result asked = make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)"));
+    EXPECT_EQ(contains(asked.output, "litres of fills"), count(asked) != on_nodes) << asked.output;
 }
