@@ -149,12 +149,21 @@ struct FluidBand
     bool fits_count = true;
 };
 
-/// Parameters of the solver on which places and densities depend.
+/// Where the solver lets fluid in and out: the zones of `<special><inout>`.
+struct InOutZones
+{
+    /// Absolute, ascending: of fluid whose particles are the points of a zone.
+    std::vector<std::uint16_t> mk;
+    std::vector<Box3> boxes; ///< limits of the zones that are given by their shape
+};
+
+/// What the solver is told on which places and densities depend.
 struct SolverParameters
 {
     int boundary = 1;  ///< 1: DBC, 2: mDBC
     int slip_mode = 1; ///< of mDBC
     int kernel = 2;    ///< 1: cubic spline, 2: Wendland
+    InOutZones inout;
 };
 
 /// `<fppg><floatings exact="true">`: floating bodies whose mass, centre and inertia are those of

@@ -42,6 +42,14 @@ struct BufferZone
     Box3 inner;
 };
 
+/// A block of moving particles and where it is at even times, as maps of its places at the start.
+struct MovingBlock
+{
+    std::uint16_t mk = 0;          ///< absolute
+    double step = 0;               ///< seconds from one to the next
+    std::vector<Transform> places; ///< the first at 0 s; empty: a file moves it
+};
+
 /// What the solver knows of a case besides its particles. SI units.
 struct CheckSetup
 {
@@ -49,11 +57,15 @@ struct CheckSetup
     bool is_2d = false;
     double dp = 0;
     double h = 0;
-    double volume = 0;           ///< of a fluid particle: mass / rhop0
-    int boundary = 1;            ///< parameter Boundary: 1 DBC, 2 mDBC
-    int slip_mode = 1;           ///< parameter SlipMode
-    bool no_penetration = false; ///< parameter NoPenetration, where SlipMode is 2 or 3
-    Box3 domain;                 ///< as the solver sets it
+    double volume = 0;      ///< of a fluid particle: mass / rhop0
+    double speed_sound = 0; ///< m/s; 0: the case does not say it
+    double cfl_number = 0;
+    double least_step = 0;           ///< parameter DtMin, s; 0: the solver's own
+    std::vector<MovingBlock> moving; ///< up to TimeMax
+    int boundary = 1;                ///< parameter Boundary: 1 DBC, 2 mDBC
+    int slip_mode = 1;               ///< parameter SlipMode
+    bool no_penetration = false;     ///< parameter NoPenetration, where SlipMode is 2 or 3
+    Box3 domain;                     ///< as the solver sets it
     std::array<bool, 3> is_periodic{};
     std::array<Vec3, 3> periodic; ///< from a place to its copy, of each axis that is periodic
     std::vector<BufferZone> buffers;

@@ -63,6 +63,9 @@ Box3 limits_of(const ZoneBox& box);
 /// in.
 ZoneBox resized(ZoneBox box, double by, bool is_2d);
 
+/// Whether a place is in a box, its faces included; in 2D whatever its y.
+bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d);
+
 /// Takes the particles out of a field that zone `zone` has not: those outside its own box where
 /// that is turned, and those inside the zones in it, more than a dp beyond where the buffer ends.
 ///

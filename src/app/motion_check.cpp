@@ -1,16 +1,12 @@
 #include "app/motion_check.h"
 
-#include "casedef/transforms.h"
 #include "particles/initials.h"
+#include "particles/motion_path.h"
 #include "particles/run_positions.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 
 namespace fppg
@@ -19,120 +15,6 @@ namespace
 {
 
 constexpr int steps = 2000;
-
-double number(const Element& e, std::string_view name, double otherwise)
-{
-    const std::string* text = e.find_attribute(name);
-    if (text == nullptr) return otherwise;
-    const std::size_t begin = std::min(text->find_first_not_of(" \t+"), text->size());
-    double value = otherwise;
-    std::from_chars(text->data() + begin, text->data() + text->size(), value);
-    return value;
-}
-
-Vec3 vector(const Element& e, const char* child)
-{
-    const Element* c = e.find_child(child);
-    if (c == nullptr) return {};
-    return {number(*c, "x", 0), number(*c, "y", 0), number(*c, "z", 0)};
-}
-
-double child_number(const Element& e, const char* child, const char* name)
-{
-    const Element* c = e.find_child(child);
-    return c == nullptr ? 0 : number(*c, name, 0);
-}
-
-/// One movement, from its start to the time t after it, as a map of the places at its start.
-Transform moved(const Element& m, double t)
-{
-    const std::string* units = m.find_attribute("anglesunits");
-    const double angle = units != nullptr && *units == "radians" ? 1 : std::numbers::pi / 180;
-    const auto turn = [&](double by)
-    {
-        const Vec3 p1 = vector(m, "axisp1");
-        const Vec3 along = vector(m, "axisp2") - p1;
-        return norm(along) > 0 ? around(p1, rotation(along, by * angle)) : Transform{};
-    };
-    const auto circle = [&](double by)
-    {
-        const Vec3 ref = vector(m, "ref");
-        return translation(turn(by)(ref) - ref);
-    };
-    const auto sine = [&](double ampl, double freq, double phase)
-    {
-        return ampl * (std::sin(2 * std::numbers::pi * freq * t + phase * angle) -
-                       std::sin(phase * angle));
-    };
-    const double even = child_number(m, "vel", "ang") * t;
-    const double faster =
-        child_number(m, "velini", "ang") * t + child_number(m, "ace", "ang") * t * t / 2;
-    const double swing = sine(child_number(m, "ampl", "v"), child_number(m, "freq", "v"),
-                              child_number(m, "phase", "v"));
-    if (m.name == "mvrect") return translation(vector(m, "vel") * t);
-    if (m.name == "mvrectace")
-        return translation(vector(m, "velini") * t + vector(m, "ace") * (t * t / 2));
-    if (m.name == "mvrot") return turn(even);
-    if (m.name == "mvrotace") return turn(faster);
-    if (m.name == "mvrotsinu") return turn(swing);
-    if (m.name == "mvcir") return circle(even);
-    if (m.name == "mvcirace") return circle(faster);
-    if (m.name == "mvcirsinu") return circle(swing);
-    if (m.name == "mvrectsinu")
-    {
-        const Vec3 ampl = vector(m, "ampl");
-        const Vec3 freq = vector(m, "freq");
-        const Vec3 phase = vector(m, "phase");
-        return translation({sine(ampl.x, freq.x, phase.x), sine(ampl.y, freq.y, phase.y),
-                            sine(ampl.z, freq.z, phase.z)});
-    }
-    return {};
-}
-
-const Element* movement(const Element& object, const std::string& id)
-{
-    for (const Element& c : object.children)
-    {
-        const std::string* own = c.find_attribute("id");
-        if (own != nullptr && *own == id && c.name != "begin") return &c;
-    }
-    return nullptr;
-}
-
-/// Where an object is at a time, by its own movements: each `<begin>` starts a chain at its time,
-/// the one after it begins where that one left the object. Nothing: a file moves it, or, with
-/// mvnull, what stands elsewhere for the solver, such as <wavepaddles>.
-std::optional<Transform> place_at(const Element& object, double time)
-{
-    std::vector<const Element*> begins;
-    for (const Element& c : object.children)
-        if (c.name == "begin") begins.push_back(&c);
-    std::stable_sort(begins.begin(), begins.end(),
-                     [](const Element* a, const Element* b)
-                     { return number(*a, "start", 0) < number(*b, "start", 0); });
-    Transform place;
-    for (std::size_t i = 0; i < begins.size(); ++i)
-    {
-        double now = number(*begins[i], "start", 0);
-        double end = std::min(time, number(*begins[i], "finish", time));
-        if (i + 1 < begins.size()) end = std::min(end, number(*begins[i + 1], "start", 0));
-        const std::string* id = begins[i]->find_attribute("mov");
-        // A chain of movements without duration never ends.
-        for (int turns = 0; id != nullptr && now < end && turns < 100000; ++turns)
-        {
-            const Element* m = movement(object, *id);
-            if (m == nullptr) break;
-            if (m->name.ends_with("file") || m->name == "mvpredef" || m->name == "mvnull")
-                return std::nullopt;
-            const double duration = number(*m, "duration", 0);
-            const double part = duration < 0 ? end - now : std::min(duration, end - now);
-            place = moved(*m, part) * place;
-            now += std::max(part, 0.0);
-            id = m->find_attribute("next");
-        }
-    }
-    return place;
-}
 
 class MotionChecker
 {
@@ -145,13 +27,15 @@ public:
                 for (const Element& p : e.children)
                 {
                     const std::string* key = p.find_attribute("key");
-                    if (key != nullptr && *key == "TimeMax") end_ = number(p, "value", end_);
+                    if (key != nullptr && *key == "TimeMax") end_ = number_or(p, "value", end_);
                 }
     }
 
     std::vector<std::string> run()
     {
-        if (!has_own_domain()) follow(def_.motion, {});
+        if (!has_own_domain())
+            for_each_moving(def_.motion, [&](const Element& object, const MotionChain& chain)
+                            { check(object, chain); });
         return std::move(found_);
     }
 
@@ -171,21 +55,9 @@ private:
         return false;
     }
 
-    void follow(const Element& e, std::vector<const Element*> above)
+    void check(const Element& object, const MotionChain& chain)
     {
-        for (const Element& c : e.children)
-        {
-            if (c.name != "objreal" && c.name != "obj") continue;
-            std::vector<const Element*> chain = above;
-            chain.push_back(&c);
-            if (c.name == "objreal") check(c, chain);
-            follow(c, chain);
-        }
-    }
-
-    void check(const Element& object, const std::vector<const Element*>& chain)
-    {
-        const auto mkbound = static_cast<int>(number(object, "ref", -1));
+        const auto mkbound = static_cast<int>(number_or(object, "ref", -1));
         for (const ParticleBlock& block : particles_.blocks)
         {
             if (block.type != ParticleType::Moving || block.mk_type != mkbound) continue;
@@ -194,14 +66,8 @@ private:
             for (int step = 1; step <= steps; ++step)
             {
                 const double time = end_ * step / steps;
-                Transform place;
-                for (const Element* o : chain)
-                {
-                    const std::optional<Transform> own = place_at(*o, time);
-                    if (!own) return;
-                    place = place * *own;
-                }
-                if (leaves(object, box, place, time)) return;
+                const std::optional<Transform> place = place_at(chain, time);
+                if (!place || leaves(object, box, *place, time)) return;
             }
         }
     }

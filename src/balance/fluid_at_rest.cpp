@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 #include "particles/run_positions.h"
+#include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
 
 #include <algorithm>
@@ -142,6 +143,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const std::vector<NearParticle> fluid = near_particles(
         particles, blocks, rhop0,
         [](const ParticleBlock& block) { return block.type == ParticleType::Fluid; });
+    const LatticeStrips strips(def, field);
     std::vector<char> moves(fluid.size(), 0);
     parallel_for(
         fluid.size(), reach.threads,
@@ -149,7 +151,8 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
         {
             const double band = reach.band_dp[fluid[i].block->mk] * rest.dp;
             if (band <= 0) return;
-            moves[i] = norm(reach.closest(fluid[i].position) - fluid[i].position) <= band;
+            const Vec3& p = fluid[i].position;
+            moves[i] = norm(reach.closest(p) - p) <= band && !strips.has(p);
         },
         256);
     const auto moving = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), 1));

@@ -1,6 +1,7 @@
 #include "casedef/wall_boundary.h"
 
 #include "casedef/execution.h"
+#include "casedef/inout_zones.h"
 
 #include <fmt/format.h>
 
@@ -84,6 +85,7 @@ void settle_boundaries(CaseDef& def)
     def.solver.boundary = whole_parameter(def, "Boundary").value_or(1);
     def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
     def.solver.kernel = whole_parameter(def, "Kernel").value_or(2);
+    def.solver.inout = read_inout_zones(def, def.warnings);
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;

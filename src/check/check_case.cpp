@@ -1,3 +1,4 @@
+#include "check/judge_motion.h"
 #include "check/judge_places.h"
 #include "check/judge_walls.h"
 #include "check/read_setup.h"
@@ -249,6 +250,8 @@ CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, i
         sums.finish();
     }
     note_what_is_odd(mks, report);
+    for (std::string& note : judge_motion(particles, report.setup, wall_columns))
+        report.setup.notes.push_back(std::move(note));
     collect_faults(particles, masks, mks, report);
     for (const auto& [number, mk] : mks) report.mks.push_back(mk);
     return report;

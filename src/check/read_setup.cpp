@@ -6,8 +6,11 @@
 
 #include "core/finite_number.h"
 #include "fppg/error.h"
+#include "particles/motion_path.h"
 
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace fppg
 {
@@ -210,6 +213,40 @@ void read_buffers(const SetupReader& reader, const Element& zone, const std::str
     }
 }
 
+/// Where moving blocks are, in 1,000 steps up to TimeMax.
+void read_motion(const SetupReader& reader, CheckSetup& setup)
+{
+    constexpr int steps = 1000;
+    const Element* motion = reader.find({"execution", "motion"});
+    const Element* particles = reader.find({"execution", "particles"});
+    const double end = reader.parameter_or("TimeMax", 0);
+    if (motion == nullptr || particles == nullptr || !(end > 0)) return;
+    const auto follow = [&](const Element& object, const MotionChain& chain)
+    {
+        MovingBlock block;
+        block.step = end / steps;
+        for (int step = 0; step <= steps; ++step)
+        {
+            const std::optional<Transform> place = place_at(chain, step * block.step);
+            if (!place)
+            {
+                block.places.clear();
+                break;
+            }
+            block.places.push_back(*place);
+        }
+        for (const Element& of : particles->children)
+        {
+            if (of.name != "moving" ||
+                number_or(of, "refmotion", -1) != number_or(object, "ref", -2))
+                continue;
+            block.mk = static_cast<std::uint16_t>(number_or(of, "mk", 0));
+            setup.moving.push_back(block);
+        }
+    };
+    for_each_moving(*motion, follow);
+}
+
 } // namespace
 
 CheckSetup read_setup(const Element& root, const std::string& path, const Box3& particles)
@@ -220,6 +257,10 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
     setup.dp = reader.positive("dp");
     setup.h = reader.positive("h");
     setup.volume = reader.positive("massfluid") / reader.positive("rhop0");
+    setup.speed_sound =
+        std::sqrt(reader.constant("b") * reader.constant("gamma") / reader.positive("rhop0"));
+    setup.cfl_number = reader.constant("cflnumber");
+    setup.least_step = reader.parameter_or("DtMin", 0);
     setup.boundary = static_cast<int>(reader.parameter_or("Boundary", 1));
     setup.slip_mode = static_cast<int>(reader.parameter_or("SlipMode", 1));
     setup.no_penetration = setup.slip_mode >= 2 && reader.parameter_or("NoPenetration", 0) != 0;
@@ -229,6 +270,7 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
             "the cubic spline.");
     read_periodic(reader, setup, particles);
     read_domain(reader, setup, particles);
+    read_motion(reader, setup);
     const Element* vres = reader.find({"execution", "vres"});
     const std::string* id = vres != nullptr ? vres->find_attribute("selid") : nullptr;
     if (id != nullptr) read_buffers(reader, *vres, *id, setup);

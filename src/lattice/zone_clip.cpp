@@ -3,7 +3,9 @@
 #include "nodes/spans.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace fppg
 {
@@ -27,13 +29,14 @@ public:
             if (is_2d && axis == 1) continue;
             const Vec3& edge = box.edges[axis];
             const double scale = norm(edge) * norm(edge);
-            planes_.push_back({edge / scale, -dot(edge, box.corner) / scale});
+            planes_[static_cast<std::size_t>(count_++)] = {edge / scale,
+                                                           -dot(edge, box.corner) / scale};
         }
     }
 
     bool operator()(const Vec3& p) const
     {
-        return std::all_of(planes_.begin(), planes_.end(),
+        return std::all_of(planes_.begin(), planes_.begin() + count_,
                            [&](const Plane& plane)
                            {
                                const double value = dot(plane.normal, p) + plane.offset;
@@ -47,7 +50,8 @@ private:
         Vec3 normal;
         double offset = 0;
     };
-    std::vector<Plane> planes_;
+    std::array<Plane, 3> planes_;
+    std::ptrdiff_t count_ = 0;
 };
 
 /// The nodes of a plain box without those on its faces, which stand on their nearest nodes.
@@ -132,6 +136,11 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
 }
 
 } // namespace
+
+bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d)
+{
+    return BoxTest(box, is_2d)(p);
+}
 
 void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
 {

@@ -4,6 +4,7 @@
 #include "meshes/point_grid.h"
 #include "relax/all_surfaces.h"
 #include "relax/all_walls.h"
+#include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
 #include "relax/regions.h"
 
@@ -253,6 +254,9 @@ private:
         PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
         for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        const std::optional<LatticeStrips> strips =
+            region.is_solid ? std::nullopt
+                            : std::optional<LatticeStrips>(std::in_place, def_, field_);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
             const double band = region.band[r.run.mk];
@@ -266,7 +270,7 @@ private:
                     const Vec3 p = place_of(c.mover.node, grid);
                     const AllWalls::Closest near = all.closest(p);
                     if (near.distance > band * grid.dp ||
-                        cut.has_nearer(p, reach_of_cuts_dp * grid.dp))
+                        cut.has_nearer(p, reach_of_cuts_dp * grid.dp) || (strips && strips->has(p)))
                         continue;
                     c.body = near.body;
                     c.is_outside = near.is_outside;

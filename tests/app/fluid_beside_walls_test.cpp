@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace
 {
@@ -32,19 +34,29 @@ struct Made
 };
 
 /// A tank with water and a solid sphere of mkbound 1 under it, with this in its <fppg> block.
-Made make_sphere_in_tank(const std::string& fppg)
+CaseText sphere_in_tank(const std::string& fppg)
 {
-    const TemporaryFolder folder;
     CaseText text = tank();
     text.dp = fmt::format("{}", dp);
     text.mainlist += fmt::format(
         R"(<setdrawmode mode="full" /><setmkbound mk="1" /><drawsphere radius="{}"><point x="{}" y="{}" z="{}" /></drawsphere>)",
         sphere_radius, sphere_center.x, sphere_center.y, sphere_center.z);
     text.after_geometry = "<fppg>" + fppg + "</fppg>";
+    return text;
+}
+
+Made make(const CaseText& text)
+{
+    const TemporaryFolder folder;
     write_text(folder / "Case_Def.xml", text.text());
     const RunResult result = run(folder, {"Case_Def", "out/Case", "-save:all"});
     EXPECT_EQ(result.code, 0) << result.output;
     return {result.output, fppg::read_particles(folder / "out/Case", false, 1)};
+}
+
+Made make_sphere_in_tank(const std::string& fppg)
+{
+    return make(sphere_in_tank(fppg));
 }
 
 bool is_fluid(const ParticleCloud& cloud, std::size_t i)
@@ -107,6 +119,83 @@ TEST(FluidBesideASphere, IsNumberedByXThenYThenZUnlessItIsBalanced)
     const Made balanced = make_sphere_in_tank(walls + "<fluidband />");
     EXPECT_EQ(unsorted(balanced.cloud, false), 0u);
     EXPECT_EQ(balanced.cloud.mk, even.cloud.mk);
+}
+
+/// How many fluid particles are off the lattice: where is_strip says so, and elsewhere.
+template <typename IsStrip>
+std::pair<std::size_t, std::size_t> off_lattice(const ParticleCloud& cloud, const IsStrip& is_strip)
+{
+    std::pair<std::size_t, std::size_t> counts;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        if (!is_fluid(cloud, i)) continue;
+        const Vec3 at = cloud.positions[i] / dp;
+        const auto off = [](double x) { return std::abs(x - std::round(x)) > 1e-4; };
+        if (off(at.x) || off(at.y) || off(at.z))
+            ++(is_strip(cloud.positions[i], cloud.mk[i]) ? counts.first : counts.second);
+    }
+    return counts;
+}
+
+// The solver goes on with fluid on the lattice at these places; 2h is 0.1732 m.
+constexpr double strip = 0.173;
+const std::string layers = R"(<bodyfitted layers="3" />)";
+
+/// The gap to a box of 0.6 x 0.4 m across x at x = 0.7.
+bool is_at_zone(const Vec3& p)
+{
+    const Vec3 gap{p.x - 0.7, std::max({0.2 - p.y, p.y - 0.8, 0.0}),
+                   std::max({0.1 - p.z, p.z - 0.5, 0.0})};
+    return norm(gap) < strip;
+}
+
+TEST(FluidBesideASphere, StaysOnTheLatticeWhereAZoneLetsFluidIn)
+{
+    CaseText text = sphere_in_tank(layers);
+    text.execution +=
+        R"(<special><inout><inoutzone><zone3d><box><point x="0.7" y="0.2" z="0.1" /><size x="0" y="0.6" z="0.4" />)"
+        R"(<direction x="1" y="0" z="0" /></box></zone3d></inoutzone></inout></special>)";
+    const auto [at_zone, elsewhere] =
+        off_lattice(make(text).cloud, [](const Vec3& p, int) { return is_at_zone(p); });
+    EXPECT_EQ(at_zone, 0u);
+    EXPECT_GT(elsewhere, 500u);
+}
+
+TEST(FluidBesideASphere, StaysOnTheLatticeWhereItsParticlesAreAZone)
+{
+    CaseText text = sphere_in_tank(layers);
+    text.mainlist += R"(<setmkfluid mk="1" />)" +
+                     box_command(R"(x="0.65" y="0.2" z="0.1")", R"(x="0.05" y="0.6" z="0.4")");
+    text.execution +=
+        R"(<special><inout><inoutzone><zone3d><particles mkfluid="1" direction="right" /></zone3d></inoutzone></inout></special>)";
+    const auto [at_zone, elsewhere] = off_lattice(
+        make(text).cloud, [](const Vec3& p, int mk) { return mk == 2 || is_at_zone(p); });
+    EXPECT_EQ(at_zone, 0u);
+    EXPECT_GT(elsewhere, 300u);
+}
+
+TEST(FluidBesideASphere, StaysOnTheLatticeAtTheEndsOfAPeriod)
+{
+    CaseText text = sphere_in_tank(layers);
+    text.pointmin = R"(<pointmin x="-0.5" y="0.15" z="-0.5" />)";
+    text.pointmax = R"(<pointmax x="1.5" y="0.8" z="1.5" />)";
+    text.execution =
+        R"(<parameters><parameter key="TimeMax" value="1" /><parameter key="YPeriodicIncX" value="0" /></parameters>)";
+    const auto [at_ends, elsewhere] =
+        off_lattice(make(text).cloud,
+                    [](const Vec3& p, int) { return p.y < 0.125 + strip || p.y > 0.825 - strip; });
+    EXPECT_EQ(at_ends, 0u);
+    EXPECT_GT(elsewhere, 100u);
+}
+
+TEST(FluidBesideASphere, IsWarnedOfWhereAZoneCannotBePlaced)
+{
+    CaseText text = sphere_in_tank(layers);
+    text.execution +=
+        R"(<special><inout><inoutzone><zone3d><torus /></zone3d></inoutzone></inout></special>)";
+    const Made made = make(text);
+    EXPECT_TRUE(contains(made.output, "<inoutzone>: where it lets fluid in or out is not known"))
+        << made.output;
 }
 
 } // namespace

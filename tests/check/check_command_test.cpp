@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -206,4 +209,55 @@ TEST_F(CheckCommand, SaysWhatStopsTheSolverInBufferZones)
         EXPECT_FALSE(report.setup.buffers.empty()) << zone;
         EXPECT_EQ(report.total(Fault::InBufferZone), 0U) << to_text(report);
     }
+}
+
+/// A plate that turns about z above the water, one dp below another one.
+CaseText turning_plate(double degrees_per_second)
+{
+    CaseText out = tank();
+    out.dp = "0.05";
+    out.mainlist += R"(<setdrawmode mode="full" /><setmkbound mk="1" />)" +
+                    box_command(R"(x="0.4" y="0.3" z="0.7")", R"(x="0.2" y="0.4" z="0.05")") +
+                    R"(<setmkbound mk="2" />)" +
+                    box_command(R"(x="0.4" y="0.3" z="0.8")", R"(x="0.2" y="0.4" z="0.05")");
+    out.after_geometry = fmt::format(
+        R"(<motion><objreal ref="1"><begin mov="1" start="0.5" /><mvrot id="1" duration="0.1" anglesunits="degrees"><vel ang="{}" />)"
+        R"(<axisp1 x="0.5" y="0.5" z="0" /><axisp2 x="0.5" y="0.5" z="1" /></mvrot></objreal></motion>)",
+        degrees_per_second);
+    return out;
+}
+
+bool has_note(const CheckReport& report, const std::string& words)
+{
+    return std::any_of(report.setup.notes.begin(), report.setup.notes.end(),
+                       [&](const std::string& note) { return contains(note, words); });
+}
+
+/// The corners of the plate are 0.2236 m from its axis; the speed of sound is 48.5 m/s.
+TEST_F(CheckCommand, SaysWhereMovingPartsAreTooFastOrTooNear)
+{
+    generate(turning_plate(7200));
+    const CheckReport fast = check_case(folder_ / "Case", 2);
+    EXPECT_TRUE(has_note(fast, "mk 11: its fastest particle has 28.1 m/s at 0.501 s"))
+        << to_text(fast);
+    EXPECT_TRUE(has_note(fast, "Expected a speed of sound of 281 m/s")) << to_text(fast);
+    EXPECT_TRUE(has_note(fast, "mk 11 and mk 12 move against each other 1 dp apart"))
+        << to_text(fast);
+    EXPECT_FALSE(has_note(fast, "mk 11 and mk 10")) << to_text(fast);
+    generate(turning_plate(720));
+    EXPECT_FALSE(has_note(check_case(folder_ / "Case", 2), "fastest"));
+}
+
+TEST_F(CheckCommand, SaysThatTheLeastStepIsTooLong)
+{
+    const auto warns = [&](const std::string& step)
+    {
+        CaseText text = layered_tank();
+        replace(text.execution, "</parameters>",
+                R"(<parameter key="DtMin" value=")" + step + R"(" /></parameters>)");
+        generate(text);
+        return has_note(check_case(folder_ / "Case", 1), "DtMin is ");
+    };
+    EXPECT_TRUE(warns("0.001")); // CFL h / speedsound is 0.2 * 0.087 m / 37 m/s
+    EXPECT_FALSE(warns("0.0001"));
 }

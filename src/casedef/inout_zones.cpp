@@ -1,0 +1,168 @@
+#include "casedef/inout_zones.h"
+
+#include "casedef/transforms.h"
+#include "core/finite_number.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace fppg
+{
+namespace
+{
+
+double number(const Element* e, std::string_view name)
+{
+    const std::string* text = e == nullptr ? nullptr : e->find_attribute(name);
+    return text == nullptr ? 0 : finite_signed_number(trimmed(*text)).value_or(0);
+}
+
+Vec3 vector(const Element* e)
+{
+    return {number(e, "x"), number(e, "y"), number(e, "z")};
+}
+
+double angle_of(const Element& e)
+{
+    const std::string* unit = e.find_attribute("anglesunits");
+    const double angle = number(&e, "angle");
+    return unit != nullptr && lower_case(*unit) == "radians" ? angle : radians(angle);
+}
+
+/// What turns a zone; the identity where nothing does. A turn by Euler angles is not followed:
+/// `by_euler` is its centre.
+Transform turn_of(const Element& shape, const Vec3& first, std::optional<Vec3>& by_euler)
+{
+    Vec3 centre = first;
+    Vec3 axis;
+    double angle = 0;
+    if (const Element* e = shape.find_child("rotate"))
+    {
+        // Of lines in x and z; the solver turns x towards z.
+        if (e->find_attribute("centerx") != nullptr)
+            centre = {number(e, "centerx"), first.y, number(e, "centerz")};
+        axis = {0, -1, 0};
+        angle = angle_of(*e);
+    }
+    else if (const Element* about = shape.find_child("rotateaxis"))
+    {
+        centre = vector(about->find_child("point1"));
+        axis = vector(about->find_child("point2")) - centre;
+        angle = angle_of(*about);
+    }
+    else if (const Element* euler = shape.find_child("rotateadv"))
+        by_euler = vector(euler->find_child("center"));
+    if (!(norm(axis) > 0)) return {};
+    return translation(centre) * rotation(axis, angle) * translation(-1.0 * centre);
+}
+
+/// The corners of a line, box or circle; empty for other shapes.
+std::vector<Vec3> corners_of(const Element& shape)
+{
+    const Vec3 a = vector(shape.find_child("point"));
+    Vec3 size;
+    if (shape.name == "line")
+        size = vector(shape.find_child("point2")) - a;
+    else if (shape.name == "box")
+        size = vector(shape.find_child("size"));
+    else if (shape.name != "circle")
+        return {};
+    const double radius = number(shape.find_child("radius"), "v");
+    const Vec3 low = a - Vec3{radius, radius, radius};
+    const Vec3 across = size + 2 * Vec3{radius, radius, radius};
+    std::vector<Vec3> out;
+    for (unsigned corner = 0; corner < 8; ++corner)
+        out.push_back(low + Vec3{(corner & 1U) != 0 ? across.x : 0,
+                                 (corner & 2U) != 0 ? across.y : 0,
+                                 (corner & 4U) != 0 ? across.z : 0});
+    return out;
+}
+
+/// Adds the zone that a shape gives. False: it is not known.
+bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
+{
+    if (shape.name == "particles")
+    {
+        const double mkfluid = number(&shape, "mkfluid");
+        if (mkfluid >= 0 && mkfluid + def.mk_fluid_first < def.mk_bound_first)
+            zones.mk.push_back(static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first));
+        return true;
+    }
+    std::vector<Vec3> corners = corners_of(shape);
+    if (corners.empty()) return false;
+    if (def.grid.is_2d && shape.name == "line")
+        for (Vec3& c : corners) c.y = def.grid.origin.y;
+    std::optional<Vec3> by_euler;
+    const Transform turn = turn_of(shape, corners.front(), by_euler);
+    Box3 box;
+    for (const Vec3& c : corners)
+    {
+        box.add(turn(c));
+        if (!by_euler) continue;
+        const double reach = norm(c - *by_euler);
+        box.add(*by_euler + Vec3{reach, reach, reach});
+        box.add(*by_euler - Vec3{reach, reach, reach});
+    }
+    zones.boxes.push_back(box);
+    return true;
+}
+
+template <typename Visit>
+void for_each_child(const Element& e, const Visit& visit)
+{
+    for (const Element& child : e.children)
+    {
+        const std::string* active = child.find_attribute("active");
+        const bool is_off = active != nullptr && (*active == "false" || *active == "0");
+        if (child.kind == Element::Kind::Tag && !child.name.starts_with('_') && !is_off)
+            visit(child);
+    }
+}
+
+} // namespace
+
+InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnings)
+{
+    InOutZones zones;
+    const auto read_zone = [&](const Element& zone)
+    {
+        bool is_known = false;
+        for_each_child(zone,
+                       [&](const Element& of)
+                       {
+                           if (of.name != "zone2d" && of.name != "zone3d") return;
+                           for_each_child(of, [&](const Element& shape)
+                                          { is_known = add_shape(shape, def, zones) || is_known; });
+                       });
+        if (!is_known)
+            warnings.push_back(fmt::format(
+                "{}:{}: <{}>: where it lets fluid in or out is not known, expected <zone2d> or "
+                "<zone3d> with <particles>, <line>, <box> or <circle>; fluid beside it that is "
+                "near "
+                "body-fitted walls is moved off the lattice.",
+                def.file, zone.line, zone.name));
+    };
+    for (const Element& special : def.execution)
+    {
+        if (special.kind != Element::Kind::Tag || special.name != "special") continue;
+        for_each_child(special,
+                       [&](const Element& inout)
+                       {
+                           if (inout.name != "inout") return;
+                           for_each_child(inout,
+                                          [&](const Element& zone)
+                                          {
+                                              if (zone.name == "inoutzone") read_zone(zone);
+                                          });
+                       });
+    }
+    std::sort(zones.mk.begin(), zones.mk.end());
+    zones.mk.erase(std::unique(zones.mk.begin(), zones.mk.end()), zones.mk.end());
+    return zones;
+}
+
+} // namespace fppg

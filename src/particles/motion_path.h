@@ -1,0 +1,42 @@
+#pragma once
+
+#include "fppg/element.h"
+#include "fppg/vec.h"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace fppg
+{
+
+/// The number of an attribute, blanks and a + before it dropped; `otherwise` where there is none.
+double number_or(const Element& e, std::string_view name, double otherwise);
+
+/// An `<objreal>` of `<motion>` and the objects around it, the outermost first.
+using MotionChain = std::vector<const Element*>;
+
+/// Where an object of `<motion>` is at a time, as a map of the places at the start: each `<begin>`
+/// of an object starts a chain of movements at its time, the one after it begins where that one
+/// left the object; an object moves with those around it. Nothing: a file moves it, or, with
+/// mvnull, what stands elsewhere for the solver, such as <wavepaddles>.
+///
+/// time  seconds
+std::optional<Transform> place_at(const MotionChain& chain, double time);
+
+/// Calls visit(object, chain) for every `<objreal>` in `<motion>` or an object, the chain with the
+/// objects around it and itself.
+template <typename Visit>
+void for_each_moving(const Element& e, const Visit& visit, const MotionChain& around = {})
+{
+    for (const Element& c : e.children)
+    {
+        if (c.name != "objreal" && c.name != "obj") continue;
+        MotionChain chain = around;
+        chain.push_back(&c);
+        if (c.name == "objreal") visit(c, chain);
+        for_each_moving(c, visit, chain);
+    }
+}
+
+} // namespace fppg

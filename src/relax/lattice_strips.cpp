@@ -1,0 +1,73 @@
+#include "relax/lattice_strips.h"
+
+#include "fppg/vres.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace fppg
+{
+namespace
+{
+
+Box3 grown(const Box3& box, double by)
+{
+    return {box.min - Vec3{by, by, by}, box.max + Vec3{by, by, by}};
+}
+
+bool contains(const Box3& box, const Vec3& p)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (p[axis] < box.min[axis] || p[axis] > box.max[axis]) return false;
+    return true;
+}
+
+std::vector<Vec3> nodes_of(const std::vector<std::uint16_t>& mks, const RunField& field)
+{
+    std::vector<Vec3> out;
+    const LatticeGrid& grid = field.grid;
+    for (std::size_t x = 0; x < field.slabs.size() && !mks.empty(); ++x)
+        for (const Run& run : field.slabs[x])
+            for (std::uint32_t z = run.z_begin; z < run.z_end; ++z)
+                if (!run.is_covered && std::binary_search(mks.begin(), mks.end(), run.mk))
+                    out.push_back({grid.origin.x + static_cast<double>(x) * grid.dp,
+                                   grid.origin.y + run.y * grid.dp, grid.origin.z + z * grid.dp});
+    return out;
+}
+
+} // namespace
+
+LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
+    : reach_(2 * def.h + def.grid.dp), is_2d_(def.vres.is_2d), points_(reach_, 16)
+{
+    constexpr double far = std::numeric_limits<double>::infinity();
+    inside_ = {{-far, -far, -far}, {far, far, far}};
+    const LatticeGrid& grid = field.grid;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto a = static_cast<std::size_t>(axis);
+        if (!grid.is_periodic[a]) continue;
+        inside_.min[axis] = grid.origin[axis] - grid.dp / 2 + reach_;
+        inside_.max[axis] =
+            grid.origin[axis] + (static_cast<double>(grid.n[a]) - 0.5) * grid.dp - reach_;
+    }
+    for (const Vec3& p : nodes_of(def.solver.inout.mk, field)) points_.add(p);
+    for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));
+    for (std::size_t z = 0; z < def.vres.zones.size(); ++z)
+        if (def.vres.zones[z].parent == static_cast<int>(def.zone))
+            children_.push_back(resized(def.vres.zones[z].outer_begin, reach_, def.vres.is_2d));
+    if (def.zone > 0 && def.zone < def.vres.zones.size())
+        own_ = resized(def.vres.zones[def.zone].inner, -reach_, def.vres.is_2d);
+}
+
+bool LatticeStrips::has(const Vec3& p) const
+{
+    const auto is_in = [&](const ZoneBox& box) { return is_within(box, p, is_2d_); };
+    return !contains(inside_, p) || (own_ && !is_in(*own_)) ||
+           std::any_of(children_.begin(), children_.end(), is_in) ||
+           std::any_of(zones_.begin(), zones_.end(),
+                       [&](const Box3& zone) { return contains(zone, p); }) ||
+           points_.has_nearer(p, reach_);
+}
+
+} // namespace fppg
