@@ -1,6 +1,6 @@
 // Commands that set clips.
 #include "casedef/command_table.h"
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 #include "shapes/polyhedra.h"
 
 #include <algorithm>

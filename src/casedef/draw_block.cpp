@@ -1,8 +1,8 @@
 #include "casedef/draw_block.h"
 
 #include "casedef/block_reader.h"
-#include "casedef/transforms.h"
 #include "core/text.h"
+#include "core/transforms.h"
 
 #include <cmath>
 #include <string>

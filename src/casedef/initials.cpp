@@ -3,7 +3,7 @@
 #include "fppg/error.h"
 
 #include "casedef/mesh_data.h"
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 
 #include <fmt/format.h>
 

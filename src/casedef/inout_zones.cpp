@@ -1,8 +1,8 @@
 #include "casedef/inout_zones.h"
 
-#include "casedef/transforms.h"
 #include "core/finite_number.h"
 #include "core/text.h"
+#include "core/transforms.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 #include "casedef/command_table.h"
 #include "fppg/error.h"
 
-#include "casedef/transforms.h"
 #include "casedef/xml_document.h"
 #include "core/text.h"
+#include "core/transforms.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_library.h"
 #include "shapes/file_polygons.h"

@@ -1,6 +1,6 @@
 // Commands that change the matrix.
 #include "casedef/command_table.h"
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "casedef/vres.h"
 
 #include "casedef/execution.h"
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 
 #include <fmt/format.h>
 

@@ -45,7 +45,8 @@ std::pair<double, double> fastest(const MovingBlock& block, const std::vector<Ve
         {
             const double speed =
                 norm(block.places[step](p) - block.places[step - 1](p)) / block.step;
-            if (speed > out.first * (1 + 1e-6)) out = {speed, static_cast<double>(step) * block.step};
+            if (speed > out.first * (1 + 1e-6))
+                out = {speed, static_cast<double>(step) * block.step};
         }
     return out;
 }

@@ -1,6 +1,6 @@
 #include "particles/motion_path.h"
 
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 
 #include <algorithm>
 #include <charconv>

@@ -97,7 +97,7 @@ private:
             is_layered[body.mk] = 1;
             layers.push_back(field_.walls.particles.positions[i]);
         }
-        if (layers.empty() || field_.grid.is_2d) return;
+        if (layers.empty()) return;
         const double distance = (1 - 1e-9) * least_pair_dp * field_.grid.dp;
         PointGrid grid(distance, layers.size());
         for (const Vec3& p : layers) grid.add(p);

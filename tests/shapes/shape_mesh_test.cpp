@@ -1,7 +1,7 @@
 #include "shapes/shape_mesh.h"
 #include "meshes/round_surface.h"
 
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 #include "fppg/error.h"
 #include "meshes/test_shapes.h"
 #include "shapes/polyhedra.h"

@@ -2,7 +2,7 @@
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 
-#include "casedef/transforms.h"
+#include "core/transforms.h"
 #include "helpers/case_text.h"
 #include "helpers/dense_grid.h"
 #include "helpers/drawing.h"
