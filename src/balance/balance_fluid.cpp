@@ -24,6 +24,8 @@ constexpr double longest_step = 0.05;
 constexpr double farthest = 1.0;
 constexpr double least_wall_distance = 0.2;
 constexpr double reach_of_walls = 2.5;
+/// Below the level of its column; the highest particles start half a dp below it.
+constexpr double least_depth = 0.25;
 /// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
 constexpr double step_factor = 0.0167;
 constexpr double momentum = 0.85;
@@ -231,7 +233,7 @@ private:
             256);
     }
 
-    /// The place nearest to `to` that keeps its distance from walls and from the start.
+    /// The place nearest to `to` that keeps its distance from walls, start and surface.
     Vec3 allowed_place(std::size_t i, Vec3 to) const
     {
         for (const WallPlane& plane : walls_[i])
@@ -243,6 +245,8 @@ private:
         const Vec3 moved = to - start_[i];
         const double length = norm(moved);
         if (length > farthest * rest_.dp) to = start_[i] + moved * (farthest * rest_.dp / length);
+        const double above = rest_.height(to) - rest_.levels[i] + least_depth * rest_.dp;
+        if (above > 0) to = to + rest_.gravity * (above / norm(rest_.gravity));
         return to;
     }
 

@@ -29,13 +29,54 @@ unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std:
     return found;
 }
 
+/// A free surface goes on up to the wall that it meets: a particle at the height of a free one,
+/// next to it, that lacks the same neighbour is free too, though a wall, as one that leans over it,
+/// is near enough to be the cause.
+void follow_to_walls(const Band& band, const NeighbourList& list,
+                     const std::vector<unsigned char>& lacking,
+                     std::vector<unsigned char>& free_sides)
+{
+    const auto is_beside = [&](std::uint32_t i, std::uint32_t j, unsigned axis)
+    {
+        const std::array<float, 3> d{band.points.x[j] - band.points.x[i],
+                                     band.points.y[j] - band.points.y[i],
+                                     band.points.z[j] - band.points.z[i]};
+        const float across =
+            d[(axis + 1) % 3] * d[(axis + 1) % 3] + d[(axis + 2) % 3] * d[(axis + 2) % 3];
+        return std::abs(d[axis]) < 0.1f && across < 2.2f;
+    };
+    for (bool has_changed = true; has_changed;)
+    {
+        has_changed = false;
+        for (std::size_t row = 0; row < list.rows(); ++row)
+        {
+            const std::uint32_t i = list.point(row);
+            if (i >= band.moving || (lacking[i] & ~free_sides[i]) == 0) continue;
+            for (const std::uint32_t j : list.neighbours(row))
+            {
+                if (j >= band.moving) continue;
+                unsigned shared = free_sides[j] & lacking[i] & ~unsigned{free_sides[i]};
+                for (unsigned side = 0; shared != 0; ++side, shared >>= 1)
+                    if ((shared & 1) != 0 && is_beside(i, j, side / 2))
+                    {
+                        free_sides[i] = static_cast<unsigned char>(free_sides[i] | 1u << side);
+                        has_changed = true;
+                    }
+            }
+        }
+    }
+}
+
 } // namespace
 
 std::size_t hold_free_surface(Band& band, const NeighbourList& list,
                               const VolumeSurroundings& around, const RelaxVolumeOptions& options,
                               int threads)
 {
-    std::vector<char> is_surface(band.moving, 0);
+    // Per particle the sides, of the six along the axes, on which it lacks a neighbour: because of
+    // a wall, perhaps, or at a free surface.
+    std::vector<unsigned char> lacking(band.moving, 0);
+    std::vector<unsigned char> free_sides(band.moving, 0);
     const auto is_explained = [&](std::size_t i, unsigned side)
     {
         if (!around.closest) return false;
@@ -52,11 +93,14 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
             const unsigned found = axis_neighbours(band, i, list.neighbours(row));
             for (unsigned side = 0; side < 6; ++side)
             {
-                if (options.is_2d && side / 2 == 1) continue;
-                if ((found >> side & 1) == 0 && !is_explained(i, side)) is_surface[i] = 1;
+                if ((options.is_2d && side / 2 == 1) || (found >> side & 1) != 0) continue;
+                lacking[i] = static_cast<unsigned char>(lacking[i] | 1u << side);
+                if (!is_explained(i, side))
+                    free_sides[i] = static_cast<unsigned char>(free_sides[i] | 1u << side);
             }
         },
         NeighbourList::rows_per_chunk);
+    follow_to_walls(band, list, lacking, free_sides);
     // A little less than 2 h, where the kernel has ended: rows at just that distance are free.
     const auto reach = static_cast<float>(1.999 * options.h_dp);
     parallel_for(
@@ -65,10 +109,10 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
         {
             const std::uint32_t i = list.point(row);
             if (i >= band.moving) return;
-            band.is_held[i] = is_surface[i];
+            band.is_held[i] = free_sides[i] != 0 ? 1 : 0;
             for (const std::uint32_t j : list.neighbours(row))
             {
-                if (j >= band.moving || is_surface[j] == 0) continue;
+                if (j >= band.moving || free_sides[j] == 0) continue;
                 const float x = band.points.x[j] - band.points.x[i];
                 const float y = band.points.y[j] - band.points.y[i];
                 const float z = band.points.z[j] - band.points.z[i];
