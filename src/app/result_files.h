@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -20,6 +21,9 @@ class ResultFiles
 public:
     /// A new file; the reference holds until the next one is made.
     OutputFile& add(const std::string& path) { return files_.emplace_back(path); }
+
+    /// Adds a file that is written already.
+    void take(OutputFile file) { files_.push_back(std::move(file)); }
 
     /// Adds a file, lets body(file) write it, and tells how long it took.
     template <typename Body>
