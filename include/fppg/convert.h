@@ -23,7 +23,7 @@ struct FeedBody
     std::string name;
     std::uint16_t mk = 0; ///< absolute
     ParticleType type = ParticleType::Fixed;
-    double mass = 0; ///< of one particle, kg; in 2-D kg per metre
+    double mass = 0; ///< of a particle of volume dp^3, kg; in 2-D of dp^2, kg per metre
 };
 
 /// Some consecutive particles, one entry each in all arrays but those that the feed lacks.
@@ -67,6 +67,13 @@ struct ParticleFeed
     std::function<void(std::size_t piece, ParticlePiece& out)> read;
 
     std::size_t pieces() const;
+    /// dp^3, in 2-D dp^2.
+    double unit_volume() const;
+    /// Of a particle of a piece, kg; in 2-D kg per metre.
+    double mass(const ParticlePiece& piece, std::size_t k) const
+    {
+        return bodies[piece.bodies[k]].mass * (piece.volumes[k] / unit_volume());
+    }
 };
 
 /// Particles of a piece.

@@ -87,7 +87,7 @@ void fill_rows(const ParticleFeed& feed, const ParticlePiece& piece, const Vec3&
             put_float(piece.velocities.empty() ? 0 : double{piece.velocities[k][a]});
         put_float(feed.dp / 2);
         put_float(double{piece.densities[k]});
-        put_float(body.mass);
+        put_float(feed.mass(piece, k));
         put_float(piece.volumes[k]);
         put_int(body.mk);
         for (std::size_t a = 0; a < 3 && feed.has_normals; ++a)

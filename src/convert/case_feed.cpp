@@ -74,7 +74,7 @@ void read_case(const CaseParticles& particles, const ParticleFeed& facts,
     out.positions.resize(n);
     out.velocities.assign(n, {});
     out.densities.resize(n);
-    out.volumes.assign(n, std::pow(facts.dp, facts.is_2d ? 2 : 3));
+    out.volumes.assign(n, facts.unit_volume());
     out.normals.assign(facts.has_normals ? n : 0, {});
     out.ids.resize(n);
     out.bodies.resize(n);
@@ -97,6 +97,24 @@ void read_case(const CaseParticles& particles, const ParticleFeed& facts,
             read_wall_facts(particles, segment, at, out);
         });
     if (facts.has_normals) read_bound_normals(particles, out);
+}
+
+/// How many particles of volume dp^3 a body amounts to.
+double shares_of(const CaseParticles& particles, const ParticleBlock& block)
+{
+    const std::vector<float>& shares = particles.off_lattice.shares;
+    double sum = 0;
+    for (const ParticleRun& run : block.runs)
+    {
+        if (!run.is_off_lattice || shares.empty())
+        {
+            sum += run.count;
+            continue;
+        }
+        for (std::size_t k = 0; k < run.count; ++k)
+            sum += double{shares[run.off_lattice_begin() + k]};
+    }
+    return sum;
 }
 
 } // namespace
@@ -127,7 +145,8 @@ ParticleFeed feed_of_case(const CaseDef& def, const CaseParticles& particles,
         mk_types.push_back(block.mk_type);
     }
     for (const FloatingBody& floating : particles.floatings)
-        feed.bodies[floating.block].mass = floating.mass_part;
+        feed.bodies[floating.block].mass =
+            floating.mass_body / shares_of(particles, particles.blocks[floating.block]);
     name_bodies(def.casedef, mk_types, feed.bodies);
     const ParticleFeed facts = feed;
     const auto stream =

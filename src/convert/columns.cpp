@@ -62,7 +62,7 @@ void fill_field(const ParticleFeed& feed, const ParticlePiece& piece, std::uint6
         case Field::Pressure:
             return fill([&](std::size_t i) { return pressure_of(feed, piece.densities[i]); });
         case Field::Mass:
-            return fill([&](std::size_t i) { return body(i).mass; });
+            return fill([&](std::size_t i) { return feed.mass(piece, i); });
         case Field::Volume:
             return fill([&](std::size_t i) { return piece.volumes[i]; });
         case Field::Spacing:

@@ -24,7 +24,8 @@ void write_csv(const ParticleFeed& feed, const std::string& path, int threads, C
                          put_text(text, "{},{},{},", v[0], v[1], v[2]);
                      };
                      put_vector(piece.velocities);
-                     put_text(text, "{},{},{},", piece.densities[k], body.mass, piece.volumes[k]);
+                     put_text(text, "{},{},{},", piece.densities[k], feed.mass(piece, k),
+                              piece.volumes[k]);
                      put_vector(piece.normals);
                      put_text(text, "{},{},{},{},{},{}\n", feed.dp, piece.ids[k], body.mk,
                               body.name, types[static_cast<std::size_t>(body.type)],

@@ -60,8 +60,7 @@ void append_velocities(OutputFile& file, const ParticleFeed& feed, bool has_spin
 double material_density(const ParticleFeed& feed, const ParticlePiece& piece, std::size_t k)
 {
     const FeedBody& body = feed.bodies[piece.bodies[k]];
-    if (body.type == ParticleType::Floating && piece.volumes[k] > 0)
-        return body.mass / piece.volumes[k];
+    if (body.type == ParticleType::Floating) return body.mass / feed.unit_volume();
     return double{piece.densities[k]};
 }
 

@@ -52,13 +52,12 @@ bool is_2d(const ParticleSource& source)
     return flag != 0;
 }
 
-/// The mass of the particles of a floating body, as Case.xml says.
+/// The mass of the particles of a floating body: masspart is that of its fluid's particles.
 double floating_mass(const Element& block, std::uint64_t count, const std::string& path)
 {
-    if (const Element* part = block.find_child("masspart")) return number_of(*part, "value", path);
-    if (const Element* body = block.find_child("massbody"))
-        return number_of(*body, "value", path) / static_cast<double>(count);
-    throw CaseError(path, block.line, "<floating> has neither masspart nor massbody");
+    const Element* body = block.find_child("massbody");
+    if (body == nullptr) throw CaseError(path, block.line, "<floating> has no massbody");
+    return number_of(*body, "value", path) / static_cast<double>(count);
 }
 
 /// The blocks of Case.xml in the order of their ids, as CaseFacts::ranges.
@@ -129,7 +128,7 @@ void read_source(const ParticleSource& source, const ParticleFeed& facts, std::s
     out.positions.resize(n);
     out.velocities.resize(facts.has_velocities ? n : 0);
     out.densities.assign(n, static_cast<float>(facts.rhop0));
-    out.volumes.assign(n, std::pow(facts.dp, facts.is_2d ? 2 : 3));
+    out.volumes.assign(n, facts.unit_volume());
     out.ids.resize(n);
     out.bodies.resize(n);
     for (std::size_t k = 0; k < n; ++k)
@@ -151,6 +150,11 @@ void read_source(const ParticleSource& source, const ParticleFeed& facts, std::s
 std::size_t ParticleFeed::pieces() const
 {
     return (count + feed_piece - 1) / feed_piece;
+}
+
+double ParticleFeed::unit_volume() const
+{
+    return is_2d ? dp * dp : dp * dp * dp;
 }
 
 ParticleFeed feed_of_file(const std::string& name, const std::string& xml)

@@ -49,12 +49,15 @@ std::string xdmf_text(const ParticleFeed& feed, const std::vector<Column>& colum
                       const std::string& h5)
 {
     const std::uint64_t n = feed.count;
+    // meshio 5 reads no Time.
+    const std::string time =
+        feed.time > 0 ? fmt::format("<Time Value=\"{}\"/>\n", feed.time) : std::string();
     std::string text = fmt::format(
         "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
-        "<Grid Name=\"particles\" GridType=\"Uniform\">\n<Time Value=\"{}\"/>\n"
+        "<Grid Name=\"particles\" GridType=\"Uniform\">\n{}"
         "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}"
         "</Topology>\n<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
-        feed.time, n, data_item(columns.back(), n, h5), data_item(columns.front(), n, h5));
+        time, n, data_item(columns.back(), n, h5), data_item(columns.front(), n, h5));
     for (const Column& column : columns)
         if (column.field != Field::Position && column.field != Field::Index)
             text += fmt::format(

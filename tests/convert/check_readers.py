@@ -1,0 +1,227 @@
+"""What the codes that fppg convert writes for read of its files.
+
+check_readers.py READER FPPG    READER: vtk, meshio, h5py, pysph, lammps; exit code 77 where it is missing
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools"))
+
+SKIPPED = 77
+
+DEFINITION = """<?xml version="1.0" encoding="UTF-8" ?>
+<case><casedef>
+  <constantsdef>
+    <gravity x="0" y="0" z="-9.81" /> <rhop0 value="1000" /> <rhopgradient value="2" />
+    <hswl value="0" auto="true" /> <gamma value="7" /> <speedsystem value="0" auto="true" />
+    <coefsound value="20" /> <speedsound value="0" auto="true" /> <coefh value="1" /> <cflnumber value="0.2" />
+  </constantsdef>
+  <mkconfig boundcount="240" fluidcount="9" />
+  <fppg> <bodyfitted mkbound="0" /> </fppg>
+  <geometry>
+    <definition dp="0.05"> <pointmin x="-0.5" y="-0.5" z="-0.5" /> <pointmax x="1.5" y="1.5" z="1" /> </definition>
+    <commands><mainlist>
+      <setdrawmode mode="full" />
+      <setmkbound mk="0" />
+      <drawbox objname="plate"> <boxfill>solid</boxfill> <point x="0" y="0" z="0" /> <size x="1" y="1" z="0.23" /> </drawbox>
+      <setmkfluid mk="0" />
+      <drawbox> <boxfill>solid</boxfill> <point x="0.2" y="0.2" z="0.4" /> <size x="0.4" y="0.4" z="0.3" /> </drawbox>
+    </mainlist></commands>
+  </geometry>
+</casedef>
+<execution><parameters><parameter key="TimeMax" value="1" /></parameters></execution></case>
+"""
+PLATE_VOLUME = 0.23
+
+
+class Skip(Exception):
+    """The reader is not installed."""
+
+
+def module(name):
+    try:
+        return __import__(name)
+    except ImportError as error:
+        raise Skip(f"no Python module {name}: {error}") from error
+
+
+def make_case(folder, fppg, formats):
+    """A plate with fitted walls and some water, in these formats."""
+    with open(os.path.join(folder, "Case_Def.xml"), "w", encoding="utf-8") as file:
+        file.write(DEFINITION)
+    subprocess.run([fppg, "Case_Def", "Case", "-save:bi", f"-to:{formats}", "-quiet"], cwd=folder, check=True)
+    return os.path.join(folder, "Case")
+
+
+def reference(case):
+    from particle_files import read_bi4
+    _, arrays = read_bi4(case + ".bi4")
+    return arrays
+
+
+def expect_equal(numpy, found, wanted, what):
+    if not numpy.array_equal(found, wanted):
+        raise AssertionError(f"{what} differs from Case.bi4")
+
+
+def check_vtk(folder, fppg):
+    module("vtk")
+    import numpy
+    from vtk.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    case = make_case(folder, fppg, "vtu,trixi")
+    arrays = reference(case)
+    for name, count in (("Case.vtu", len(arrays["Idp"])), ("Case_trixi_plate.vtu", None), ("Case_trixi_fluid0.vtu", 567)):
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(os.path.join(folder, name))
+        reader.Update()
+        grid = reader.GetOutput()
+        if count is not None and (grid.GetNumberOfPoints() != count or grid.GetNumberOfCells() != count):
+            raise AssertionError(f"{name}: {grid.GetNumberOfPoints()} points, {grid.GetNumberOfCells()} cells, not {count}")
+        if grid.GetFieldData().GetArray("ndims").GetTuple1(0) != 3:
+            raise AssertionError(f"{name}: ndims is not 3")
+        data = grid.GetPointData()
+        for array in ("velocity", "density", "pressure", "particle_spacing", "mass", "volume", "mk", "normal", "kind"):
+            if data.GetArray(array) is None:
+                raise AssertionError(f"{name}: no array {array}")
+        if name == "Case.vtu":
+            expect_equal(numpy, vtk_to_numpy(grid.GetPoints().GetData()), arrays["Posd"], "the positions")
+            expect_equal(numpy, vtk_to_numpy(data.GetArray("density")), arrays["Rhop"], "the density")
+        if name == "Case_trixi_plate.vtu":
+            volume = vtk_to_numpy(data.GetArray("volume")).sum()
+            if abs(volume - PLATE_VOLUME) > 1e-6:
+                raise AssertionError(f"the plate has the volume {volume}, not {PLATE_VOLUME}")
+
+
+def check_meshio(folder, fppg):
+    meshio = module("meshio")
+    import numpy
+    case = make_case(folder, fppg, "vtu,xdmf")
+    arrays = reference(case)
+    for ending in ("vtu", "xdmf"):
+        if ending == "xdmf":
+            module("h5py")
+        mesh = meshio.read(f"{case}.{ending}")
+        expect_equal(numpy, mesh.points, arrays["Posd"], f"the positions in .{ending}")
+        expect_equal(numpy, mesh.point_data["density"].ravel(), arrays["Rhop"], f"the density in .{ending}")
+        if sum(len(block.data) for block in mesh.cells) != len(arrays["Idp"]):
+            raise AssertionError(f".{ending}: not a vertex a particle")
+
+
+def check_h5py(folder, fppg):
+    h5py = module("h5py")
+    import numpy
+    case = make_case(folder, fppg, "xdmf,pysph")
+    arrays = reference(case)
+    with h5py.File(case + ".h5", "r") as file:
+        expect_equal(numpy, file["position"][:], arrays["Posd"], "the positions")
+        expect_equal(numpy, file["id"][:], arrays["Idp"], "the ids")
+        if file.attrs["dp"] != 0.05:
+            raise AssertionError("dp is not 0.05")
+    with h5py.File(case + ".hdf5", "r") as file:
+        plate = file["particles/plate/arrays"]
+        found = numpy.stack([plate[axis][:] for axis in "xyz"], axis=1)
+        expect_equal(numpy, found, arrays["Posd"][:len(found)], "the places of the plate")
+        if abs(plate["volume"][:].sum() - PLATE_VOLUME) > 1e-6:
+            raise AssertionError("the volumes of the plate do not add up")
+        if abs(plate["m"][:].sum() - 1000 * PLATE_VOLUME) > 1e-3:
+            raise AssertionError("the masses of the plate do not add up")
+
+
+def check_pysph(folder, fppg):
+    module("pysph")
+    module("h5py")
+    case = make_case(folder, fppg, "pysph")
+    # PySPH compiles its arrays when it is first used.
+    script = """if 1:
+        import sys
+        from pysph.solver.utils import load
+        data = load(sys.argv[1])
+        plate, fluid = data["arrays"]["plate"], data["arrays"]["fluid0"]
+        assert fluid.get_number_of_particles() == 567, fluid.get_number_of_particles()
+        assert abs(plate.volume.sum() - 0.23) < 1e-6, plate.volume.sum()
+        assert abs((plate.xn ** 2 + plate.yn ** 2 + plate.zn ** 2).max() - 1) < 1e-6
+        assert abs(fluid.h[0] - 0.05 * 3 ** 0.5) < 1e-12, fluid.h[0]
+        assert data["solver_data"]["t"] == 0
+    """
+    subprocess.run([sys.executable, "-c", script, case + ".hdf5"], check=True)
+
+
+LAMMPS_PERI = """units si
+atom_style peri
+atom_modify map array
+neighbor 0.01 bin
+boundary f f f
+read_data Case_peri.data
+group water type 2
+delete_atoms group water
+compute each all property/atom vfrac
+compute v all reduce sum c_each
+pair_style peri/pmb
+pair_coeff * * 1e14 0.1501 0.001 0.25
+fix 1 all nve
+compute d all displace/atom
+compute far all reduce max c_d[4]
+timestep 1e-6
+thermo 1000
+thermo_style custom step c_far c_v
+run 1000
+variable far equal c_far
+variable volume equal c_v
+print "moved by ${far}, volume ${volume}" file result.txt
+"""
+LAMMPS_SPHERE = """units si
+atom_style sphere
+boundary f f f
+read_data Case_sphere.data
+variable n equal count(all)
+print "${n}" file count.txt
+"""
+
+
+def check_lammps(folder, fppg):
+    lammps = shutil.which("lmp")
+    if lammps is None:
+        raise Skip("no program lmp")
+    case = make_case(folder, fppg, "lammps-peri,lammps-sphere")
+    count = len(reference(case)["Idp"])
+
+    def run(name, text):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+        done = subprocess.run([lammps, "-in", name, "-log", "none"], cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise AssertionError(f"LAMMPS ends with {done.returncode}: {done.stdout[-800:]}{done.stderr[-800:]}")
+
+    run("in.peri", LAMMPS_PERI)
+    with open(os.path.join(folder, "result.txt"), encoding="utf-8") as file:
+        words = file.read().replace(",", "").split()
+    moved, volume = float(words[2]), float(words[4])
+    print(f"1,000 steps: the plate moved by {moved} m, its volume is {volume} m^3")
+    if moved > 1e-9:
+        raise AssertionError(f"the plate moved by {moved} m at rest")
+    if abs(volume - PLATE_VOLUME) > 1e-6:
+        raise AssertionError(f"the plate has the volume {volume}")
+    run("in.sphere", LAMMPS_SPHERE)
+    with open(os.path.join(folder, "count.txt"), encoding="utf-8") as file:
+        if float(file.read()) != count:
+            raise AssertionError("LAMMPS reads another number of spheres")
+
+
+def main():
+    reader, fppg = sys.argv[1:3]
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            globals()["check_" + reader](folder, os.path.abspath(fppg))
+        except Skip as reason:
+            print(f"skipped: {reason}")
+            return SKIPPED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
