@@ -1,6 +1,6 @@
 """What the codes that fppg convert writes for read of its files.
 
-check_readers.py READER FPPG    READER: vtk, meshio, h5py, pysph, lammps; exit code 77 where it is missing
+check_readers.py READER FPPG    READER: vtk, meshio, h5py, pysph, lammps, paraview; exit code 77 where it is missing
 """
 
 import os
@@ -210,6 +210,84 @@ def check_lammps(folder, fppg):
     with open(os.path.join(folder, "count.txt"), encoding="utf-8") as file:
         if float(file.read()) != count:
             raise AssertionError("LAMMPS reads another number of spheres")
+
+
+PARAVIEW = """
+import inspect
+import sys
+if not hasattr(inspect, "getargspec"):  # which ParaView 5.11.0 still imports and Python 3.11 has no more
+    inspect.getargspec = inspect.getfullargspec
+from paraview import servermanager, simple
+plugin, picture, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
+simple.LoadPlugin(plugin, ns=globals())
+series = fppgParticles(FileNames=["data/Part_0001.bi4", "data/Part_0000.bi4"])
+series.UpdatePipelineInformation()
+assert list(series.TimestepValues) == [0.0, 0.5], list(series.TimestepValues)
+series.UpdatePipeline(0.5)
+data = servermanager.Fetch(series)
+arrays = data.GetPointData()
+assert data.GetNumberOfPoints() == data.GetNumberOfCells() == count, data.GetNumberOfPoints()
+assert abs(data.GetPoint(0)[0] - 0.25) < 1e-12, data.GetPoint(0)  # at the second time
+assert arrays.GetArray("Mk").GetRange() == (1.0, 10.0), arrays.GetArray("Mk").GetRange()
+assert arrays.GetArray("Type").GetRange() == (0.0, 3.0)
+assert arrays.GetArray("Vel").GetNumberOfComponents() == 3 and arrays.GetArray("Rhop") is not None
+parts = fppgParticles(FileNames=["Case.bi4"], BlocksOfMk=1)
+parts.UpdatePipeline()
+data = servermanager.Fetch(parts)
+names = [data.GetMetaData(i).Get(data.NAME()) for i in range(data.GetNumberOfBlocks())]
+assert names == ["mkbound 0", "mkfluid 0"], names
+if picture:
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [400, 300]
+    simple.ColorBy(simple.Show(series, view), ("POINTS", "Type"))
+    simple.ResetCamera(view)
+    simple.SaveScreenshot(picture, view)
+print("ParaView reads it")
+"""
+
+
+def write_series(folder):
+    """Two outputs as the solver names them: Case.bi4 at 0 and, moved by 0.25 in x, at 0.5 s."""
+    import numpy
+    from particle_files import read_bi4
+    case = os.path.join(folder, "Case.bi4")
+    os.mkdir(os.path.join(folder, "data"))
+    shutil.copy(case, os.path.join(folder, "data", "Part_0000.bi4"))
+    _, arrays = read_bi4(case)
+    with open(case, "rb") as file:
+        data = file.read()
+    places = numpy.array(arrays["Posd"])
+    at = data.index(places.tobytes())
+    places[:, 0] += 0.25
+    name = b"\x08\0\0\0TimeStep\x0c\0\0\0"
+    time = data.index(name) + len(name)
+    data = data[:at] + places.tobytes() + data[at + places.nbytes:]
+    data = data[:time] + numpy.float64(0.5).tobytes() + data[time + 8:]
+    with open(os.path.join(folder, "data", "Part_0001.bi4"), "wb") as file:
+        file.write(data)
+    return len(places)
+
+
+def check_paraview(folder, fppg):
+    module("numpy")
+    pvpython = os.environ.get("FPPG_PVPYTHON") or shutil.which("pvpython")
+    if pvpython is None:
+        raise Skip("no program pvpython")
+    make_case(folder, fppg, "csv")
+    count = write_series(folder)
+    # Debian's ParaView draws on an X server only.
+    screen = shutil.which("xvfb-run")
+    picture = "picture.png" if screen else ""
+    plugin = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/paraview/fppg_reader.py")
+    with open(os.path.join(folder, "look.py"), "w", encoding="utf-8") as file:
+        file.write(PARAVIEW)
+    words = ([screen, "-a"] if screen else []) + [pvpython, "--force-offscreen-rendering", "look.py"]
+    done = subprocess.run([*words, os.path.normpath(plugin), picture, str(count)], cwd=folder,
+                          capture_output=True, text=True)
+    if done.returncode != 0 or "ParaView reads it" not in done.stdout:
+        raise AssertionError(f"pvpython ends with {done.returncode}: {done.stdout[-1500:]}{done.stderr[-1500:]}")
+    if picture and os.path.getsize(os.path.join(folder, picture)) < 2000:
+        raise AssertionError("the picture is empty")
 
 
 def main():

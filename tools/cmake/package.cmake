@@ -20,6 +20,8 @@ install(FILES tools/package/fppg.bash RENAME fppg COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(FILES tools/paraview/fppg_reader.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg/paraview)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg COMPONENT fppg
     PATTERN "*_out" EXCLUDE)
 
