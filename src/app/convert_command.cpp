@@ -82,13 +82,12 @@ int run_convert(const std::vector<std::string>& arguments)
     const ParticleFeed feed = feed_of_file(call.case_name, call.xml);
     ConvertedFiles written = convert_particles(feed, format, call.output, call.threads);
     ResultFiles files;
-    std::vector<std::string> names;
     for (OutputFile& file : written.files)
     {
         expect_other_file(call, file.path());
-        names.push_back(file.path());
         files.take(std::move(file));
     }
+    const std::vector<std::string> names = files.names();
     files.commit(false);
     for (const std::string& name : names) fmt::print("{}\n", name);
     fmt::print("{} particles as {}\n", feed.count, format.name);

@@ -44,6 +44,14 @@ public:
     /// Whether a file of that name is among them.
     bool has(const std::string& path) const;
 
+    /// Of all, in the order in which they were added.
+    std::vector<std::string> names() const
+    {
+        std::vector<std::string> names;
+        for (const OutputFile& file : files_) names.push_back(file.path());
+        return names;
+    }
+
     /// The last one is left out again.
     void drop_last() { files_.pop_back(); }
 

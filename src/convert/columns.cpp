@@ -118,28 +118,27 @@ void cast_to(ColumnType type, const double* from, std::size_t n, char* out)
     }
 }
 
-/// Room that a thread keeps for its next piece.
-struct ColumnRoom
+/// The bytes of a column of a piece, the first particle of which is number `first` of its array.
+void fill_bytes(const ParticleFeed& feed, const ParticlePiece& piece, std::uint64_t first,
+                const Column& column, char* out)
 {
-    std::vector<double> numbers;
-    std::vector<char> bytes;
-};
+    thread_local std::vector<double> numbers;
+    numbers.resize(piece.size() * (column.is_vector() ? 3 : 1));
+    fill_field(feed, piece, first, column, numbers.data());
+    cast_to(column.type, numbers.data(), numbers.size(), out);
+}
 
 /// Writes the columns of a piece, the first particle of which is number `first` of the arrays.
 void write_piece_columns(OutputFile& file, const ParticleFeed& feed, const ParticlePiece& piece,
                          std::uint64_t first, const std::vector<PlacedColumn>& columns)
 {
-    thread_local ColumnRoom room;
+    thread_local std::vector<char> bytes;
     for (const PlacedColumn& placed : columns)
     {
-        const Column& column = placed.column;
-        const std::size_t n = piece.size() * (column.is_vector() ? 3 : 1);
-        room.numbers.resize(n);
-        room.bytes.resize(n * width_of(column.type));
-        fill_field(feed, piece, first, column, room.numbers.data());
-        cast_to(column.type, room.numbers.data(), n, room.bytes.data());
-        file.write_at(placed.at + first * column.bytes_per_particle(), room.bytes.data(),
-                      room.bytes.size());
+        const std::size_t width = placed.column.bytes_per_particle();
+        bytes.resize(piece.size() * width);
+        fill_bytes(feed, piece, first, placed.column, bytes.data());
+        file.write_at(placed.at + first * width, bytes.data(), bytes.size());
     }
 }
 
@@ -216,6 +215,14 @@ BodyOrder order_by_body(const ParticleFeed& feed, int threads)
             order.counts[part.body] += part.count;
         }
     return order;
+}
+
+void fill_column(const ParticleFeed& feed, const Column& column, char* out, int threads)
+{
+    const std::size_t width = column.bytes_per_particle();
+    for_each_piece(feed, threads,
+                   [&](std::size_t, const ParticlePiece& piece)
+                   { fill_bytes(feed, piece, piece.first, column, out + piece.first * width); });
 }
 
 void write_columns(OutputFile& file, const ParticleFeed& feed,

@@ -91,6 +91,9 @@ double pressure_of(const ParticleFeed& feed, float density);
 void for_each_piece(const ParticleFeed& feed, int threads,
                     const std::function<void(std::size_t, const ParticlePiece&)>& body);
 
+/// Fills an array in memory with a column of all particles.
+void fill_column(const ParticleFeed& feed, const Column& column, char* out, int threads);
+
 /// Writes the columns of all particles at their places.
 void write_columns(OutputFile& file, const ParticleFeed& feed,
                    const std::vector<PlacedColumn>& columns, int threads);

@@ -53,7 +53,7 @@ set(main_may_see app)
 # Public headers with functions of a stage: only who may see its folder includes them.
 set(fit_headers fit one_sheet section exclusion_band)
 set(boolean_headers boolean)
-set(relax_headers relax relax_volume relax_walls)
+set(relax_headers relax relax_volume relax_walls fit_mesh)
 set(balance_headers balance)
 set(compare_headers compare)
 set(render_headers render)

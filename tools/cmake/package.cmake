@@ -53,6 +53,8 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FPPG_PACKAGE_NAME fppg)
+# Of the Python module and the plugin for ParaView.
+set(CPACK_DEBIAN_FPPG_PACKAGE_RECOMMENDS "python3, python3-numpy")
 set(CPACK_COMPONENT_FPPG_DESCRIPTION "${PROJECT_DESCRIPTION}
 The program, its library with headers and CMake package, case templates and cases.")
 find_program(FPPG_SHLIBDEPS dpkg-shlibdeps)
