@@ -48,7 +48,7 @@ py::array view_of(const T* data, std::size_t n, std::size_t width, const py::obj
     if (width > 1) shape.push_back(static_cast<py::ssize_t>(width));
     py::array_t<T> array(shape, data, owner);
     py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-    return std::move(array);
+    return array;
 }
 
 /// The same of a vector, which the array keeps alive.

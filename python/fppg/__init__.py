@@ -211,11 +211,11 @@ def generate(case: Union[Case, Path], fit: Union[bool, str, None] = None, thread
     progress  called with the stage and the share of it that is done, 0 to 1; what it raises ends the work
     raises    CaseError, GeometryError, IoError, KeyboardInterrupt
     """
-    if not isinstance(case, Case):
-        case = read(case)
     choices = {None: "case", True: "on", False: "off", "raw": "raw"}
     if fit not in choices:
         raise UsageError(f"fit={fit!r} is invalid, expected True, False, 'raw' or None")
+    if not isinstance(case, Case):
+        case = read(case)
     return Result(_fppg.generate(case.path, case.given_dp, list(case.vars.items()), choices[fit], threads, strict,
                                  progress))
 
