@@ -19,7 +19,7 @@ import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 
-from . import _fppg
+from ._library import _fppg
 from ._errors import CaseError, Error, GeometryError, IoError, UsageError
 
 if TYPE_CHECKING:

@@ -122,6 +122,12 @@ void cast_to(ColumnType type, const double* from, std::size_t n, char* out)
 void fill_bytes(const ParticleFeed& feed, const ParticlePiece& piece, std::uint64_t first,
                 const Column& column, char* out)
 {
+    if (column.field == Field::Position && column.is_vector() && column.type == ColumnType::Float64)
+    {
+        static_assert(sizeof(Vec3) == 3 * sizeof(double));
+        std::memcpy(out, piece.positions.data(), piece.size() * sizeof(Vec3));
+        return;
+    }
     thread_local std::vector<double> numbers;
     numbers.resize(piece.size() * (column.is_vector() ? 3 : 1));
     fill_field(feed, piece, first, column, numbers.data());
