@@ -248,6 +248,12 @@ void save_conversions(CaseRunState& run, const MadeCase& made)
             convert_particles(feed, format, made.output + format.suffix, run.threads);
         for (OutputFile& file : written.files)
         {
+            // Names of bodies alone would be those of another zone of a case with <vres>.
+            if (run.files.has(file.path()))
+                throw UsageError(
+                    fmt::format("-to:{}: '{}' would be written twice; expected it "
+                                "without <vres>",
+                                name, file.path()));
             run.log.text_line(
                 fmt::format("{}<{}>  (time:{:.3f}s)", file.path(), format.name, time.seconds()));
             run.log.fact("file", {{"path", file.path()}, {"seconds", time.seconds()}});
