@@ -3,6 +3,7 @@
 Used by the scripts of this folder and by tests/cases; the program does not need it.
 """
 
+import mmap
 import os
 import struct
 import sys
@@ -86,11 +87,14 @@ class _Jbd:
 
 
 def read_bi4(path):
-    """Values and arrays of a case file, or of the solver's Part_NNNN.bi4: constants, Idp, Pos or Posd, Vel, Rhop."""
+    """Values and arrays of a case file, or of the solver's Part_NNNN.bi4: constants, Idp, Pos or Posd, Vel, Rhop.
+
+    The arrays are read-only views of the mapped file: what is not looked at is not read.
+    """
     with open(path, "rb") as file:
-        data = file.read()
-    if not data.startswith(b"#FileJBD JPartDataBi4"):
-        raise ValueError(f"{path}: not a particle file of a case")
+        if file.read(21) != b"#FileJBD JPartDataBi4":
+            raise ValueError(f"{path}: not a particle file of a case")
+        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     _, values, _, items = _Jbd(data).item()
     part, = (item for key, item in items.items() if key.startswith("PART_"))
     part_values, arrays, _ = part
@@ -110,6 +114,37 @@ def read_blocks(path):
                            "mk_type": int(mk_type), "begin": int(element.get("begin")),
                            "count": int(element.get("count"))})
     return blocks
+
+
+def find_case_xml(path, case_name):
+    """The Case.xml of a .bi4: beside it, or by the name of the case beside it or one folder above, as for the
+    solver's outputs; None where there is none."""
+    folder = os.path.dirname(os.path.abspath(path))
+    for name in (os.path.splitext(os.path.abspath(path))[0] + ".xml", os.path.join(folder, case_name + ".xml"),
+                 os.path.join(folder, "..", case_name + ".xml")):
+        if os.path.isfile(name):
+            return os.path.normpath(name)
+    return None
+
+
+def find_blocks(ids, blocks):
+    """The index of the block that holds each id (int32, n); -1 where none does.
+
+    blocks  as read_blocks() gives them
+    """
+    out = np.full(len(ids), -1, np.int32)
+    order = sorted(range(len(blocks)), key=lambda b: blocks[b]["begin"])
+    if not order:
+        return out
+    begins = np.array([blocks[b]["begin"] for b in order], np.int64)
+    ends = begins + np.array([blocks[b]["count"] for b in order], np.int64)
+    at_once = 1 << 20  # of many millions, so that memory does not hold all ids as 64-bit numbers
+    for first in range(0, len(ids), at_once):
+        chosen = ids[first:first + at_once].astype(np.int64)
+        place = np.searchsorted(begins, chosen, side="right") - 1
+        is_inside = (place >= 0) & (chosen < ends[place])
+        out[first:first + at_once][is_inside] = np.array(order, np.int32)[place[is_inside]]
+    return out
 
 
 def read_vtk(path):

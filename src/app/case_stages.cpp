@@ -54,12 +54,12 @@ void enter_zone(MadeCase& made)
     clip_to_zone(made.def.vres, made.def.zone, made.field);
 }
 
-LatticeProgress draw_progress()
+LatticeProgress draw_progress(CaseRunState& run)
 {
-    return [](std::size_t done, std::size_t all)
+    return [&run](std::size_t done, std::size_t all)
     {
-        StageBar::show(static_cast<double>(done) / static_cast<double>(all),
-                       fmt::format("{} of {}", done, all));
+        run.progress(static_cast<double>(done) / static_cast<double>(all),
+                     fmt::format("{} of {}", done, all));
     };
 }
 
@@ -143,7 +143,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_metres(made.scene, run.threads);
                   LatticeReport report;
                   made.mesh_files.clear();
-                  made.field = draw_scene(made.scene, run.threads, draw_progress(), report);
+                  made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);
                   enter_zone(made);
                   made.mesh_files = std::move(report.mesh_files);
                   for (const CavityFilled& fill : report.fills) log_fill(fill, run.log);
@@ -236,9 +236,9 @@ void balance(CaseRunState& run, MadeCase& made)
               {
                   const BalanceReport report = balance_fluid(
                       made.def, made.field, made.constants, made.particles, run.threads,
-                      [](const BalanceProgress& p)
+                      [&run](const BalanceProgress& p)
                       {
-                          StageBar::show(
+                          run.progress(
                               static_cast<double>(p.iteration) / p.last_iteration,
                               fmt::format("{} of at most {}, mean acceleration {:.4f} g",
                                           p.iteration, p.last_iteration, p.mean_acceleration));
@@ -246,6 +246,16 @@ void balance(CaseRunState& run, MadeCase& made)
                       });
                   log_balance(report, run.log);
               });
+}
+
+void make_particles_of_case(CaseRunState& run, MadeCase& made)
+{
+    draw(run, made);
+    relax(run, made);
+    add_points(run, made);
+    prepare_particles(run, made);
+    make_normals(run, made);
+    balance(run, made);
 }
 
 } // namespace fppg

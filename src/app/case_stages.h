@@ -36,4 +36,7 @@ void make_normals(CaseRunState& run, MadeCase& made);
 /// Brings fluid beside fitted walls to rest; after the normals, from which mDBC takes pressures.
 void balance(CaseRunState& run, MadeCase& made);
 
+/// All stages behind the definition.
+void make_particles_of_case(CaseRunState& run, MadeCase& made);
+
 } // namespace fppg

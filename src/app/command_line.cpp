@@ -2,6 +2,7 @@
 
 #include "core/nearest_word.h"
 #include "core/text.h"
+#include "fppg/convert.h"
 #include "fppg/error.h"
 #include "fppg/version.h"
 
@@ -63,6 +64,17 @@ void choose_formats(const std::string& list, DropInOptions& options)
     }
 }
 
+/// Formats of other codes; each counts once.
+void choose_conversions(const std::string& list, DropInOptions& options)
+{
+    for (const std::string_view word : split(list, ','))
+    {
+        const std::string name = find_particle_format(std::string(word), "-to").name;
+        if (std::find(options.to.begin(), options.to.end(), name) == options.to.end())
+            options.to.push_back(name);
+    }
+}
+
 FitChoice fit_choice_of(const std::string& value, bool has_value)
 {
     if (!has_value) return FitChoice::On;
@@ -86,7 +98,7 @@ struct OptionForm
     std::string_view example{}; ///< of a value
 };
 
-constexpr std::array<OptionForm, 18> option_forms{{
+constexpr std::array<OptionForm, 19> option_forms{{
     {"h"},
     {"help"},
     {"ver"},
@@ -103,6 +115,7 @@ constexpr std::array<OptionForm, 18> option_forms{{
     {"evars", OptionForm::Value::Needed, "A=1"},
     {"threads", OptionForm::Value::Needed, "4"},
     {"save", OptionForm::Value::Needed, "all"},
+    {"to", OptionForm::Value::Needed, "vtu"},
     {"save3vtk", OptionForm::Value::Needed, "1"},
     {"createdirs", OptionForm::Value::Needed, "1"},
 }};
@@ -210,6 +223,8 @@ void read_option(const std::string& argument, DropInOptions& options)
     }
     else if (name == "-save")
         choose_formats(value, options);
+    else if (name == "-to")
+        choose_conversions(value, options);
     else if (name == "-save3vtk")
         options.save_three_vtk = flag_of(name, value);
     else if (name == "-createdirs")
@@ -293,6 +308,8 @@ std::string help_text()
         "inspect --help\n"
         "  fppg check CASE                      normals, ghost nodes and places, judged as by the "
         "solver\n"
+        "  fppg convert CASE -o FILE            particles for another code or ParaView; fppg "
+        "convert --help\n"
         "  fppg leak CASE PART_FILES            fluid inside solids or outside a housing, in the "
         "solver's output\n"
         "  fppg estimate DEFINITION             particles, memory and time of a case, before it is "
@@ -329,6 +346,9 @@ std::string help_text()
         "                         vtkfluid, vtkfeatures (feature lines of body-fitted walls, "
         "where there are\n"
         "                         any), relaxcsv (history of their relaxation), all\n"
+        "  -to:LIST               particles for other codes too: vtu, xdmf, csv, pysph, "
+        "sphinxsys, ...;\n"
+        "                         fppg convert --help lists all\n"
         "  -save3vtk:0|1          three more copies of every VTK, _r00 to _r02 (default 0)\n"
         "  -createdirs:0|1        create the folders of OUTPUT (default 1)\n"
         "  -debug:N               accepted, changes nothing\n"

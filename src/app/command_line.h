@@ -41,6 +41,7 @@ struct DropInOptions
     bool save_features = false;   ///< where walls are fitted
     bool save_relaxation = false; ///< its history, where something is relaxed
     bool save_three_vtk = false;
+    std::vector<std::string> to; ///< formats of other codes, by name
     bool create_folders = true;
     bool strict = false;    ///< warnings where GenCase is silent are errors
     bool is_quiet = false;  ///< print warnings and errors only

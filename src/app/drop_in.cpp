@@ -54,12 +54,7 @@ void make_case(CaseRunState& run, const VresDef* vres, std::vector<ZoneSummary>&
 {
     read_definition(run, zones.size(), vres, made);
     if (vres != nullptr) take_from_others(zones, *vres, made.def);
-    draw(run, made);
-    relax(run, made);
-    add_points(run, made);
-    prepare_particles(run, made);
-    make_normals(run, made);
-    balance(run, made);
+    make_particles_of_case(run, made);
     save_result(run, made);
     if (made.def.vres.is_active())
         zones.push_back(summary_of_zone(made.def, made.particles, made.constants));

@@ -172,7 +172,7 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
             fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
                         step.particles, step.mean, step.variation, step.largest_step_dp);
         const double rest = left.seconds(step, now);
-        StageBar::show(
+        run.progress(
             now + rest > 0 ? now / (now + rest) : 0,
             fmt::format("{}: {} of at most {}, variation {:.3f}, largest step {:.3f} dp", step.what,
                         step.iteration, step.last_iteration, step.variation, step.largest_step_dp));

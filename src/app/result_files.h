@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -20,6 +21,9 @@ class ResultFiles
 public:
     /// A new file; the reference holds until the next one is made.
     OutputFile& add(const std::string& path) { return files_.emplace_back(path); }
+
+    /// Adds a file that is written already.
+    void take(OutputFile file) { files_.push_back(std::move(file)); }
 
     /// Adds a file, lets body(file) write it, and tells how long it took.
     template <typename Body>
@@ -39,6 +43,14 @@ public:
 
     /// Whether a file of that name is among them.
     bool has(const std::string& path) const;
+
+    /// Of all, in the order in which they were added.
+    std::vector<std::string> names() const
+    {
+        std::vector<std::string> names;
+        for (const OutputFile& file : files_) names.push_back(file.path());
+        return names;
+    }
 
     /// The last one is left out again.
     void drop_last() { files_.pop_back(); }

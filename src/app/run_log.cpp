@@ -53,7 +53,8 @@ void RunLog::fact(std::string_view event, const Json& fields) const
 
 void RunLog::warning(std::string_view text)
 {
-    keep(fmt::format("*** WARNING: {}", text), style_ != LogStyle::Json);
+    keep(fmt::format("*** WARNING: {}", text),
+         style_ == LogStyle::Text || style_ == LogStyle::Quiet);
     if (style_ == LogStyle::Json) print_json({{"event", "warning"}, {"text", std::string(text)}});
 }
 

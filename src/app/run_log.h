@@ -16,6 +16,7 @@ enum class LogStyle : std::uint8_t
 {
     Text,  ///< what GenCase prints
     Quiet, ///< warnings only
+    None,  ///< nothing
     /// A JSON object a line. Its "event" is stage, stage_end, warning, finished, error; domain,
     /// fill, particles, limits, file with the numbers as fields; or log, a line of text.
     Json,

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <utility>
@@ -32,7 +33,17 @@ struct CaseRunState
     std::vector<std::string> warnings;
     std::vector<std::string> diagnostics; ///< those that -strict takes for errors
     std::set<std::uint16_t> mks;          ///< absolute, with particles in any zone
+    /// Told of the stage and the share of it that is done, 0 to 1, by the thread that runs the
+    /// case. What it throws ends the run.
+    std::function<void(const std::string& stage, double share)> on_progress{};
+    std::string stage_name{};
 
+    /// Shows how far the stage is.
+    void progress(double share, std::string text)
+    {
+        StageBar::show(share, std::move(text));
+        if (on_progress) on_progress(stage_name, share);
+    }
     void warn(std::string text)
     {
         log.warning(text);
@@ -51,6 +62,8 @@ struct CaseRunState
     {
         const Stopwatch time;
         log.begin_stage(name);
+        stage_name = name;
+        if (on_progress) on_progress(stage_name, 0);
         {
             const StageBar bar(name, log.style() == LogStyle::Text);
             body();

@@ -1,5 +1,6 @@
 #include "app/save_result.h"
 
+#include "fppg/convert.h"
 #include "fppg/error.h"
 #include "fppg/version.h"
 
@@ -234,6 +235,35 @@ void save_particles(CaseRunState& run, const MadeCase& made, const FileOrigin& o
     picture(run.options.save_fluid, "_Fluid.vtk", VtkSelection::Fluid, particles.n_fluid);
 }
 
+/// The files of other codes that -to asks for; what they do not hold is said.
+void save_conversions(CaseRunState& run, const MadeCase& made)
+{
+    if (run.options.to.empty()) return;
+    const ParticleFeed feed = feed_of_case(made.def, made.particles, made.constants);
+    for (const std::string& name : run.options.to)
+    {
+        const Stopwatch time;
+        const ParticleFormat& format = find_particle_format(name, "");
+        ConvertedFiles written =
+            convert_particles(feed, format, made.output + format.suffix, run.threads);
+        for (OutputFile& file : written.files)
+        {
+            // Names of bodies alone would be those of another zone of a case with <vres>.
+            if (run.files.has(file.path()))
+                throw UsageError(
+                    fmt::format("-to:{}: '{}' would be written twice; expected it "
+                                "without <vres>",
+                                name, file.path()));
+            run.log.text_line(
+                fmt::format("{}<{}>  (time:{:.3f}s)", file.path(), format.name, time.seconds()));
+            run.log.fact("file", {{"path", file.path()}, {"seconds", time.seconds()}});
+            run.files.take(std::move(file));
+        }
+        for (const std::string& loss : written.losses)
+            run.log.text_line(fmt::format("  {}: {}", format.name, loss));
+    }
+}
+
 void log_limits(RunLog& log, const CaseParticles& particles)
 {
     log.text_line();
@@ -271,6 +301,7 @@ void save_result(CaseRunState& run, MadeCase& made)
                   made.field = {};
                   made.particles.off_lattice_points = {};
                   save_particles(run, made, origin);
+                  save_conversions(run, made);
                   keep_overwritten_definition(run, made);
                   write(run, made, ".xml", "",
                         [&](OutputFile& f) {

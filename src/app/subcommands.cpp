@@ -3,6 +3,7 @@
 #include "app/batch_command.h"
 #include "app/check_command.h"
 #include "app/compare_command.h"
+#include "app/convert_command.h"
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
 #include "app/leak_command.h"
@@ -33,10 +34,10 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command}, {"check", run_check},     {"compare", run_compare},
-    {"estimate", run_estimate},   {"inspect", run_inspect}, {"leak", run_leak},
-    {"render", run_render},       {"report", run_report},   {"templates", run_templates},
-    {"upgrade", run_upgrade},
+    {"batch", run_batch_command}, {"check", run_check},       {"compare", run_compare},
+    {"convert", run_convert},     {"estimate", run_estimate}, {"inspect", run_inspect},
+    {"leak", run_leak},           {"render", run_render},     {"report", run_report},
+    {"templates", run_templates}, {"upgrade", run_upgrade},
 };
 
 } // namespace

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 namespace fppg
 {
 
@@ -26,9 +28,21 @@ void expect_length(const std::string& path, const char* name, std::string_view d
                                   name, data.size() / width, n));
 }
 
+/// Case.xml of an output of the solver, which puts it one folder above its parts; empty: not there.
+std::string find_xml_of_output(const std::string& path, const Bi4View& bi4)
+{
+    const BinaryValue* name = find_value(bi4.items, "CaseName");
+    if (name == nullptr) return {};
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const std::string file = std::string(name->data) + ".xml";
+    for (const std::filesystem::path& place : {folder / file, folder / ".." / file})
+        if (is_file(place.string())) return place.lexically_normal().string();
+    return {};
+}
+
 } // namespace
 
-ParticleSource::ParticleSource(const std::string& name)
+ParticleSource::ParticleSource(const std::string& name, const std::string& xml)
 {
     const bool is_bi4_name = name.ends_with(".bi4") || name.ends_with(".xml");
     const bool is_vtk_name = name.ends_with(".vtk");
@@ -38,7 +52,7 @@ ParticleSource::ParticleSource(const std::string& name)
     if (is_vtk_name)
         open_vtk(name);
     else if (is_file(stem + ".bi4"))
-        open_bi4(stem);
+        open_bi4(stem, xml);
     else if (is_file(stem + "_All.vtk"))
         open_vtk(stem + "_All.vtk");
     else
@@ -50,15 +64,18 @@ ParticleSource::ParticleSource(const std::string& name)
             fmt::format("cannot read '{}': {} particles are more than ids", path_, size_));
 }
 
-void ParticleSource::open_bi4(const std::string& stem)
+void ParticleSource::open_bi4(const std::string& stem, const std::string& xml)
 {
     path_ = stem + ".bi4";
-    xml_path_ = stem + ".xml";
+    xml_path_ = xml.empty() ? stem + ".xml" : xml;
+    file_ = std::make_unique<FileMap>(path_);
+    bi4_ = view_bi4(file_->bytes(), path_);
+    if (xml.empty() && !is_file(xml_path_))
+        if (const std::string found = find_xml_of_output(path_, bi4_); !found.empty())
+            xml_path_ = found;
     expect_case_xml({path_, xml_path_});
     xml_ = read_xml(xml_path_);
     facts_ = case_facts(*xml_, xml_path_);
-    file_ = std::make_unique<FileMap>(path_);
-    bi4_ = view_bi4(file_->bytes(), path_);
     expect_one_run({path_, xml_path_}, facts_, bi4_);
     size_ = bi4_.size();
     is_single_ = bi4_.is_single();

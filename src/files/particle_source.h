@@ -24,9 +24,11 @@ class ParticleSource
 {
 public:
     /// name    as read_particles() takes it: a case without extension, or one file
+    /// xml     Case.xml of a .bi4; empty: beside it, or, for an output of the solver, CASE.xml by
+    ///         its CaseName in its folder and the one above
     /// throws  IoError if there is no such file, or it is not whole or not of a known format;
     ///         CaseError if Case.xml cannot be read
-    explicit ParticleSource(const std::string& name);
+    explicit ParticleSource(const std::string& name, const std::string& xml = {});
     ParticleSource(const ParticleSource&) = delete;
     ParticleSource& operator=(const ParticleSource&) = delete;
 
@@ -38,6 +40,7 @@ public:
     const std::string& xml_path() const { return xml_path_; }
     /// Of Case.xml, metres; 0 where it does not say.
     double dp() const { return facts_.dp; }
+    const CaseFacts& facts() const { return facts_; }
     /// Whether positions went through float32.
     bool is_single() const { return is_single_; }
     bool has_ids() const { return is_bi4() || !vtk_->idp.type.empty(); }
@@ -66,6 +69,8 @@ public:
                     big_endian_at(points_.data() + 24 * i + 8 * static_cast<std::size_t>(axis), 8));
         return {p[0], p[1], p[2]};
     }
+    /// Of a .bi4. throws  CaseError if no block of Case.xml holds the id
+    const IdRange& range_of(std::size_t i) const;
     /// The index where the file has no ids.
     std::uint32_t id(std::size_t i) const
     {
@@ -104,9 +109,8 @@ private:
     bool is_single_ = false;
     std::string_view points_, density_, velocity_, normals_;
 
-    void open_bi4(const std::string& stem);
+    void open_bi4(const std::string& stem, const std::string& xml);
     void open_vtk(const std::string& path);
-    const IdRange& range_of(std::size_t i) const;
     std::uint32_t little_endian_id(std::size_t i) const
     {
         std::uint32_t id;

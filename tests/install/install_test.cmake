@@ -29,8 +29,11 @@ endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G Ninja -DCMAKE_BUILD_TYPE=${CONFIG}
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DREADME=${README} ${flags})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/consumer ${CASE})
+run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} build/consumer ${CASE})
 expect_text("21001 particles, 20000 of fluid")
+if(NOT EXISTS ${WORK_DIR}/particles.vtu)
+  message(FATAL_ERROR "The program wrote no particles.vtu")
+endif()
 
 if(HAS_PROGRAM)
   run(${WORK_DIR}/prefix/bin/fppg -h)

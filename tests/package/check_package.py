@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the Debian packages, looks into them, unpacks them and runs what is inside.
 
-    check_package.py CPACK BUILD_FOLDER SOURCE_FOLDER WORK_FOLDER
+    check_package.py CPACK BUILD_FOLDER SOURCE_FOLDER WORK_FOLDER HAS_PYTHON_MODULE(0 or 1)
 """
 
 import glob
@@ -16,7 +16,8 @@ WANTED = ("/usr/bin/fppg", "/usr/share/man/man1/fppg.1.gz", "/usr/share/bash-com
           "/usr/share/doc/fppg/copyright", "/usr/share/fppg/xml-templates/fppg.xsd",
           "/usr/share/fppg/xml-templates/FppgCaseTemplate.xml", "/usr/share/fppg/xml-templates/data/",
           "/usr/share/fppg/cases/dambreak/CaseDambreak_Def.xml", "/usr/include/fppg/version.h",
-          "/usr/include/fppg/compare.h", "cmake/fppg/fppgConfig.cmake", "/libfppg.a")
+          "/usr/share/fppg/paraview/fppg_reader.py", "/usr/share/fppg/paraview/particle_files.py",
+          "/usr/include/fppg/compare.h", "/usr/include/fppg/fppg.h", "cmake/fppg/fppgConfig.cmake", "/libfppg.a")
 
 
 def run(*command, **options):
@@ -65,7 +66,17 @@ def check_help(program, source):
                 assert option in known, f"{command} {option} is not completed"
 
 
-def main(cpack, build, source, work):
+def check_python(root, files):
+    """The Python module is there and works."""
+    assert any(name.startswith("/usr/lib/python3/dist-packages/fppg/_fppg") for name in files), "no Python module"
+    folder = os.path.join(root, "usr/lib/python3/dist-packages")
+    case = os.path.join(root, "usr/share/fppg/cases/dambreak2d/CaseDambreak2D_Def.xml")
+    text = run("/usr/bin/python3", "-B", "-c", f"import fppg; print(len(fppg.generate({case!r})))",
+               env={**os.environ, "PYTHONPATH": folder})
+    assert text.strip() == "21001", text
+
+
+def main(cpack, build, source, work, has_python_module):
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
     run(cpack, "-G", "DEB", "-B", work, "--config", os.path.join(build, "CPackConfig.cmake"))
@@ -93,8 +104,10 @@ def main(cpack, build, source, work):
     with gzip.open(os.path.join(root, "usr/share/man/man1/fppg.1.gz"), "rt") as page:
         assert page.read().startswith(".TH FPPG 1")
     check_completion(root)
+    if has_python_module == "1":
+        check_python(root, files)
     check_help(os.path.join(root, "usr/bin/fppg"), source)
 
 
 if __name__ == "__main__":
-    main(*(os.path.abspath(argument) for argument in sys.argv[1:5]))
+    main(*(os.path.abspath(argument) for argument in sys.argv[1:5]), sys.argv[5])

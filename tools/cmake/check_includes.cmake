@@ -42,20 +42,23 @@ set(batch_may_see report walls lattice scene files casedef shapes meshes particl
 set(leak_may_see walls lattice scene files casedef shapes meshes particles nodes core)
 # A written case, judged as the solver would.
 set(check_may_see report files casedef particles shapes meshes core)
+# Particles in the files of other codes.
+set(convert_may_see files casedef particles shapes meshes core)
 # The text of a definition, in newer forms.
 set(upgrade_may_see core)
-set(app_may_see upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
+set(app_may_see convert upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
     particles nodes core)
 set(main_may_see app)
 
 # Public headers with functions of a stage: only who may see its folder includes them.
 set(fit_headers fit one_sheet section exclusion_band)
 set(boolean_headers boolean)
-set(relax_headers relax relax_volume relax_walls)
+set(relax_headers relax relax_volume relax_walls fit_mesh)
 set(balance_headers balance)
 set(compare_headers compare)
 set(render_headers render)
 set(check_headers check)
+set(convert_headers convert)
 
 # Third parties that few folders wrap for all others.
 set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
@@ -83,7 +86,7 @@ function(check_file file folder)
       endif()
       if(seen STREQUAL "fppg" AND NOT folder STREQUAL "include")
         string(REGEX REPLACE ".*fppg/([a-z_]+)\\.h.*" "\\1" header "${line}")
-        foreach(owner fit boolean relax compare render check)
+        foreach(owner fit boolean relax compare render check convert)
           if(header IN_LIST ${owner}_headers AND NOT folder STREQUAL owner
              AND NOT owner IN_LIST ${folder}_may_see)
             list(APPEND found "${file}: ${folder} may not include fppg/${header}.h of ${owner}")

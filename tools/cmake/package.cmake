@@ -20,6 +20,8 @@ install(FILES tools/package/fppg.bash RENAME fppg COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(FILES tools/paraview/fppg_reader.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg/paraview)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg COMPONENT fppg
     PATTERN "*_out" EXCLUDE)
 
@@ -51,6 +53,8 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FPPG_PACKAGE_NAME fppg)
+# Of the Python module and the plugin for ParaView.
+set(CPACK_DEBIAN_FPPG_PACKAGE_RECOMMENDS "python3, python3-numpy")
 set(CPACK_COMPONENT_FPPG_DESCRIPTION "${PROJECT_DESCRIPTION}
 The program, its library with headers and CMake package, case templates and cases.")
 find_program(FPPG_SHLIBDEPS dpkg-shlibdeps)

@@ -13,6 +13,7 @@ _fppg()
         *:compare)
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
+        *:convert) options="--output --to --case-xml --threads --help" ;;
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
         *:inspect) options="--dp --unit --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
@@ -22,12 +23,12 @@ _fppg()
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
         *:upgrade) options="--output --in-place --help" endings="xml" ;;
-        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -save3vtk: -createdirs: -debug:
+        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -to: -save3vtk: -createdirs: -debug:
                 -quiet -log-json -clean" ;;
     esac
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then
-        COMPREPLY=($(compgen -W "batch check compare estimate inspect leak render report templates upgrade" -- "$word"))
+        COMPREPLY=($(compgen -W "batch check compare convert estimate inspect leak render report templates upgrade" -- "$word"))
     elif [[ $COMP_CWORD -eq 1 ]]; then
         COMPREPLY=($(compgen -W "-h --help -ver --version -info -templates" -- "$word"))
     elif [[ $word == -* ]]; then
