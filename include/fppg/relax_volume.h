@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -76,6 +77,9 @@ struct RelaxVolumeOptions
     /// Particles are removed where they are too many for the space that the walls leave, and
     /// inserted where they are too few.
     bool fit_count = false;
+    /// With `fit_count`: so many particles are wanted in all; empty: as many as fill the space
+    /// evenly.
+    std::optional<double> wanted{};
     /// Called after every iteration; relaxation ends when it returns false. May be empty.
     std::function<bool(const RelaxVolumeProgress&)> on_iteration;
 };

@@ -28,6 +28,8 @@ constexpr double reach_of_cuts_dp = 3;
 /// A sheet with nodes of a region this near on both sides stays as it is, dp.
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int volume_iterations = 30;
+/// Of the nodes in a body that fills gave particles.
+constexpr double nearly_all = 0.98;
 constexpr std::size_t runs_per_chunk = 256;
 
 /// A run of the field and its slab.
@@ -408,7 +410,8 @@ private:
         options.iterations = region.iterations.value_or(volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = region.fits_count;
-        if (is_before_layers) options.behind_wall_dp = 0;
+        if (region.is_solid) options.wanted = wanted_movers(region, runs, movers.size());
+        if (is_before_layers || (region.is_solid && is_inside(region))) options.behind_wall_dp = 0;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations, movers.size(),
@@ -431,18 +434,54 @@ private:
         report_.parts.push_back(part);
     }
 
+    /// Whether the particles of a region fill a body.
+    static bool is_filled(const Region& region, const FittedBody& body)
+    {
+        return region.band[body.mk] > 0 && body.is_solid && body.measures.filled > 0;
+    }
+
+    /// Whether the walls of a region are layers half a dp behind the surface of their bodies.
+    bool is_inside(const Region& region) const
+    {
+        return std::all_of(field_.walls.bodies.begin(), field_.walls.bodies.end(),
+                           [&](const FittedBody& body)
+                           { return body.is_inside || region.band[body.mk] <= 0; });
+    }
+
+    /// So many of the nodes that move must there be for the particles of the bodies of a region to
+    /// stand for their volume. What the domain or later draws left of them has its part of that.
+    std::optional<double> wanted_movers(const Region& region, const std::vector<SlabRun>& runs,
+                                        std::size_t movers) const
+    {
+        double wanted = 0, nodes = 0;
+        for (const FittedBody& body : field_.walls.bodies)
+        {
+            if (!is_filled(region, body) || body.is_layer()) continue;
+            const FitMeasures& measures = body.measures;
+            // Of what a draw left empty in part it is not known how much.
+            if (!(measures.volume > 0) || measures.filled < nearly_all) return std::nullopt;
+            wanted += measures.volume - measures.wall_volume;
+            nodes += measures.node_volume;
+        }
+        if (!(nodes > 0)) return std::nullopt;
+        double there = 0;
+        for (const SlabRun& r : runs)
+            if (region.band[r.run.mk] > 0) there += r.run.z_end - r.run.z_begin;
+        const double dp3 = std::pow(field_.grid.dp, 3);
+        const double more = (wanted - nodes) / dp3 * std::min(1.0, there * dp3 / nodes);
+        return std::max(0.0, static_cast<double>(movers) + more);
+    }
+
     /// The bodies of a region share what its particles became more, by their volume.
     void take_new_nodes(const Region& region, double more)
     {
         const double dp = field_.grid.dp;
-        const auto is_meant = [&](const FittedBody& body)
-        { return region.band[body.mk] > 0 && body.is_solid && body.measures.filled > 0; };
         double volume = 0;
         for (const FittedBody& body : field_.walls.bodies)
-            if (is_meant(body)) volume += body.measures.node_volume;
+            if (is_filled(region, body)) volume += body.measures.node_volume;
         for (FittedBody& body : field_.walls.bodies)
         {
-            if (!is_meant(body) || volume <= 0) continue;
+            if (!is_filled(region, body) || volume <= 0) continue;
             body.measures.node_volume += more * dp * dp * dp * body.measures.node_volume / volume;
             body.settle_share(dp);
         }
