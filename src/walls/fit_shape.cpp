@@ -9,6 +9,7 @@
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
+#include "walls/inside_body.h"
 #include "walls/touching_shells.h"
 #include "walls/wall_layers.h"
 
@@ -271,7 +272,10 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.warnings = out.body.report.warnings;
     add_surface(settings, grid, threads, out);
     find_nodes(settings, grid, out.particles.size(), threads, out);
-    if (!settings.depths_dp.empty()) add_layers(settings, grid, threads, out);
+    if (settings.place == Placement::Inside)
+        fill_inside(settings, grid, threads, out);
+    else if (!settings.depths_dp.empty())
+        add_layers(settings, grid, threads, out);
     for (const ClipPlane& clip : clips)
         parallel_for(grid.n[0], threads,
                      [&](std::size_t x)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -16,8 +17,6 @@ namespace
 constexpr double sample_dp = 0.3;
 /// Sides whose normals turn by more than 120 degrees face away from each other.
 constexpr double facing_away = -0.5;
-/// From sharp edges, dp.
-constexpr double off_edges_dp = 0.45;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
@@ -31,7 +30,9 @@ class Middle
 {
 public:
     Middle(const WallDepth& wall, const Features& features, const MergedSheetOptions& options)
-        : wall_(wall), options_(options), edges_(off_edges_dp * options.dp, 1024)
+        : wall_(wall),
+          options_(options),
+          edges_(std::max(0.1, options.off_edges_dp) * options.dp, 1024)
     {
         const SurfaceMesh& mesh = wall.mesh();
         for (const std::uint32_t e : features.edges)
@@ -74,8 +75,10 @@ public:
         const Vec3 up = centre - other;
         const double size = norm(up);
         if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
-        if (edges_.has_nearer(centre, off_edges_dp * options_.dp)) return std::nullopt;
-        return MiddlePoint{centre, facet};
+        if (options_.off_edges_dp > 0 &&
+            edges_.has_nearer(centre, options_.off_edges_dp * options_.dp))
+            return std::nullopt;
+        return MiddlePoint{centre, facet, 0};
     }
 
     /// A point back on the middle.
@@ -107,22 +110,44 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
     for (int i = 0; i < n; ++i)
         if (const auto at = middle.under(p + ((i + 0.5) / n) * (q - p), mesh.normals[facet],
                                          static_cast<std::uint32_t>(facet)))
+        {
             out.push_back(*at);
+            out.back().weight = 2 * mesh.areas[facet] / n;
+        }
 }
 
-/// Takes candidates that are at least `spacing` from all that is taken.
+/// Takes candidates that are at least `spacing` from all that is taken, up to a number.
 void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
-          double spacing, std::vector<MiddlePoint>& sheet)
+          double spacing, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
     PointGrid grid(spacing, taken.size() + sheet.size());
     for (const Vec3& p : taken) grid.add(p);
     for (const MiddlePoint& p : sheet) grid.add(p.position);
     for (const MiddlePoint& p : candidates)
     {
+        if (sheet.size() >= most) break;
         if (grid.has_nearer(p.position, spacing)) continue;
         grid.add(p.position);
         sheet.push_back(p);
     }
+}
+
+/// Takes a number of candidates as far from one another as may be.
+void take_number(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
+                 double dp, std::size_t wanted, std::vector<MiddlePoint>& sheet)
+{
+    double near = 0.3, far = 2;
+    for (int step = 0; step < 12; ++step)
+    {
+        const double spacing = 0.5 * (near + far);
+        sheet.clear();
+        take(candidates, taken, spacing * dp, wanted + 1, sheet);
+        (sheet.size() > wanted ? near : far) = spacing;
+    }
+    sheet.clear();
+    take(candidates, taken, far * dp, wanted, sheet);
+    for (double spacing = far; sheet.size() < wanted && spacing > 0.3; spacing *= 0.97)
+        take(candidates, taken, spacing * dp, wanted, sheet);
 }
 
 /// One step away from the neighbours, back onto the middle.
@@ -186,7 +211,10 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
                     const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
                     if (const auto at =
                             middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
+                    {
                         of_facet[f].push_back(*at);
+                        of_facet[f].back().weight = mesh.areas[f] * 2 / (n * (n + 1.0));
+                    }
                 }
         },
         16);
@@ -201,13 +229,17 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
                               int threads)
 {
     const Middle middle(wall, features, options);
+    constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
     std::vector<MiddlePoint> sheet;
-    take(points, taken, first_spacing_dp * options.dp, sheet);
+    if (options.wanted)
+        take_number(points, taken, options.dp, *options.wanted, sheet);
+    else
+        take(points, taken, first_spacing_dp * options.dp, no_limit, sheet);
     for (int round = 0; round < rounds; ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);
-        take(points, taken, hole_dp * options.dp, sheet);
+        if (!options.wanted) take(points, taken, hole_dp * options.dp, no_limit, sheet);
     }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)

@@ -15,6 +15,9 @@ struct MergedSheetOptions
     double dp = 0;
     /// Where the middle is nearer to the surface than this, the layers of both sides are one, dp.
     double least_depth_dp = 0.8;
+    double off_edges_dp = 0.45; ///< no point of the middle is nearer to a sharp edge
+    /// So many particles are wanted; empty: as many as there is room for.
+    std::optional<std::size_t> wanted{};
     std::optional<double> plane_y; ///< of 2D cases: the wall is drawn out along y
 };
 
@@ -23,6 +26,7 @@ struct MiddlePoint
 {
     Vec3 position;
     std::uint32_t facet = 0; ///< of the wall, at its foot
+    double weight = 0;       ///< metres squared of the surface that it stands for
 };
 
 /// Points on the middle (the medial axis) of the thin parts of a body, from both sides.
