@@ -29,6 +29,8 @@ constexpr int most_iterations = 100;
 constexpr int first_count_change = 5;
 constexpr int count_change_interval = 5;
 constexpr int last_count_change = 15;
+/// Sliding particles go along tangents for so many iterations.
+constexpr int slides_between = 5;
 
 /// What one chunk of particles adds up to.
 struct ChunkSums
@@ -174,6 +176,12 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
             if (band.is_held[i] != 0) return;
             Vec3 step{band.velocities.x[i], band.velocities.y[i], band.velocities.z[i]};
             if (options.is_2d) step.y = 0;
+            if (band.slides[i] == 1)
+            {
+                const Vec3 normal{band.wall_normals.x[i], band.wall_normals.y[i],
+                                  band.wall_normals.z[i]};
+                step = step - dot(step, normal) * normal;
+            }
             const double length = norm(step);
             if (length > double{longest_step}) step = step * (double{longest_step} / length);
             if (!guard.is_safe(band, i, step))
@@ -198,8 +206,30 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
         });
 }
 
+/// Puts sliding particles back on their surfaces.
+void put_back(Band& band, const VolumeSurroundings& surroundings, int threads)
+{
+    if (surroundings.slides.empty()) return;
+    parallel_for(
+        band.moving, threads,
+        [&](std::size_t i)
+        {
+            if (band.slides[i] != 1 || band.is_held[i] != 0) return;
+            const Vec3 to = surroundings.put_back(band.sources[i], band.place(i));
+            const Vec3 step = (to - band.place(i)) / band.dp;
+            for (auto* of : {&band.points, &band.moved})
+            {
+                of->x[i] += static_cast<float>(step.x);
+                of->y[i] += static_cast<float>(step.y);
+                of->z[i] += static_cast<float>(step.z);
+            }
+        },
+        64);
+}
+
 /// Gives the positions back in the caller's order, inserted ones last.
-void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
+void give_back(const Band& band, const VolumeSurroundings& surroundings,
+               const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
                RelaxVolumeReport& report)
 {
     std::vector<std::uint32_t> order(band.moving);
@@ -215,6 +245,9 @@ void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<
         const Vec3& start = positions[band.sources[i]];
         result[k] = band.is_held[i] != 0 ? start : band.place(i);
         if (options.is_2d) result[k].y = start.y;
+        if (band.slides[i] == 1 && band.is_held[i] == 0)
+            result[k] = surroundings.put_back(band.sources[i], result[k]);
+        if (band.is_inserted[i] == 0) ++report.kept;
         if (options.fit_count) report.sources.push_back(band.sources[i]);
     }
     positions = std::move(result);
@@ -252,7 +285,8 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     Band band = make_band(positions, surroundings, options, threads);
     NeighbourList list(0, 0);
     build_list(list, band, options.h_dp, threads);
-    report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
+    if (options.has_free_surface)
+        report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
 
     const VolumeForces forces(options.h_dp, options.behind_wall_dp, options.is_2d);
     const WallGuard guard(surroundings.closest, options);
@@ -280,6 +314,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (sums.count == 0) break;
         kept = sums.work < 0 ? 0 : volume_momentum;
         const ChunkSums steps = move(band, guard, options, threads);
+        if (iteration % slides_between == 0) put_back(band, surroundings, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;
         const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);
@@ -295,7 +330,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (options.iterations == 0 && has_settled(variations)) break;
     }
     list = NeighbourList(0, 0); // its memory is needed for the result
-    give_back(band, options, positions, report);
+    give_back(band, surroundings, options, positions, report);
     return report;
 }
 

@@ -5,7 +5,9 @@
 #include "relax/all_surfaces.h"
 #include "relax/all_walls.h"
 #include "relax/near_blocks.h"
+#include "relax/region_volume.h"
 #include "relax/regions.h"
+#include "relax/sliding_walls.h"
 
 #include <fmt/format.h>
 
@@ -28,8 +30,8 @@ constexpr double reach_of_cuts_dp = 3;
 /// A sheet with nodes of a region this near on both sides stays as it is, dp.
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int volume_iterations = 30;
-/// Of the nodes in a body that fills gave particles.
-constexpr double nearly_all = 0.98;
+/// Of bodies that are wholly inside, whose outermost particles move as well.
+constexpr int inside_iterations = 80;
 constexpr std::size_t runs_per_chunk = 256;
 
 /// A run of the field and its slab.
@@ -136,7 +138,7 @@ private:
             Region region;
             region.band.assign(65536, 0);
             region.band[mk] = 1;
-            take_new_nodes(region, -count);
+            take_new_nodes(field_.walls, region, -count, field_.grid.dp);
             if (!report_.parts.empty())
                 report_.parts.front().removed += static_cast<std::size_t>(count);
         }
@@ -359,16 +361,26 @@ private:
                            [&](std::uint32_t b) { return walls.bodies[b].is_layer(); });
     }
 
-    /// Wall particles within the reach of forces on those that move.
-    std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers) const
+    /// Wall particles that stay, within the reach of forces on those that move.
+    std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers,
+                                 const SlidingWalls& sliding) const
     {
         const LatticeGrid& grid = field_.grid;
+        const WallParticles& particles = field_.walls.particles;
         const double reach = (2 * region.h_dp + 2) * grid.dp;
         Box3 box;
         for (const Mover& m : movers) box.add(place_of(m.node, grid));
+        for (const std::uint32_t i : sliding.particles) box.add(particles.positions[i]);
         std::vector<Vec3> out;
-        for (const Vec3& p : field_.walls.particles.positions)
+        auto next = sliding.particles.begin();
+        for (std::uint32_t i = 0; i < particles.size(); ++i)
         {
+            if (next != sliding.particles.end() && *next == i)
+            {
+                ++next;
+                continue;
+            }
+            const Vec3& p = particles.positions[i];
             bool is_near = true;
             for (int axis = 0; axis < 3; ++axis)
                 is_near =
@@ -376,6 +388,14 @@ private:
             if (is_near) out.push_back(p);
         }
         return out;
+    }
+
+    static double count_nodes(const Region& region, const std::vector<SlabRun>& runs)
+    {
+        double count = 0;
+        for (const SlabRun& r : runs)
+            if (region.band[r.run.mk] > 0) count += r.run.z_end - r.run.z_begin;
+        return count;
     }
 
     /// runs  of the region, and of what is beside it, in their order in the field
@@ -388,18 +408,28 @@ private:
         // Twice the side reaches from a wall particle over the band and the reach of forces.
         const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
         const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1));
-        if (movers.empty()) return;
+        const bool is_of_inside = region.is_solid && is_inside(field_.walls, region);
+        const SlidingWalls sliding =
+            is_of_inside ? find_sliding(field_.walls, region) : SlidingWalls{};
+        if (movers.empty() && sliding.particles.empty()) return;
         const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
         // Before walls all of whose particles stand behind their surface, a continuum from there on
         // stands for them: it is as smooth as the boundary condition.
         const bool is_before_layers = !region.is_solid && are_layered();
         const std::vector<Vec3> near_walls =
-            is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers);
+            is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers, sliding);
 
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
+        std::vector<char> slides(sliding.particles.empty() ? 0 : movers.size(), 0);
+        slides.insert(slides.end(), sliding.slides.begin(), sliding.slides.end());
+        for (const std::uint32_t i : sliding.particles)
+            positions.push_back(field_.walls.particles.positions[i]);
         VolumeSurroundings surroundings;
+        surroundings.slides = slides;
+        surroundings.put_back = [&](std::size_t i, const Vec3& p)
+        { return put_back(field_.walls, sliding.particles[i - movers.size()], p); };
         surroundings.held = held;
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)
@@ -407,26 +437,33 @@ private:
         RelaxVolumeOptions options;
         options.dp = grid.dp;
         options.h_dp = region.h_dp;
-        options.iterations = region.iterations.value_or(volume_iterations);
+        options.iterations =
+            region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = region.fits_count;
-        if (region.is_solid) options.wanted = wanted_movers(region, runs, movers.size());
-        if (is_before_layers || (region.is_solid && is_inside(region))) options.behind_wall_dp = 0;
+        if (region.is_solid)
+            options.wanted = wanted_number(field_.walls, region, positions.size(),
+                                           count_nodes(region, runs), grid.dp);
+        if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
+        options.has_free_surface = !is_of_inside;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
-            return observe({region.what, p.iteration, options.iterations, movers.size(),
-                            p.shepard_mean, p.shepard_variation, p.largest_step_dp});
+            return observe({region.what, p.iteration, options.iterations,
+                            slides.empty() ? movers.size() : slides.size(), p.shepard_mean,
+                            p.shepard_variation, p.largest_step_dp});
         };
-        const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
+        RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
+        const std::size_t before = movers.size() + sliding.particles.size();
+        const double more = static_cast<double>(positions.size()) - static_cast<double>(before);
+        const std::size_t relaxed = positions.size();
+        if (!sliding.particles.empty()) keep_slid(sliding, movers.size(), positions, done);
         keep_moved(region, all, movers, positions, done.sources);
-        if (region.is_solid)
-            take_new_nodes(
-                region, static_cast<double>(positions.size()) - static_cast<double>(movers.size()));
+        if (region.is_solid) take_new_nodes(field_.walls, region, more, field_.grid.dp);
 
         RelaxedPart part;
         part.what = region.what;
         part.iterations = done.iterations;
-        part.particles = positions.size();
+        part.particles = relaxed;
         part.inserted = done.inserted;
         part.removed = done.removed;
         part.mean = done.shepard_mean;
@@ -434,57 +471,34 @@ private:
         report_.parts.push_back(part);
     }
 
-    /// Whether the particles of a region fill a body.
-    static bool is_filled(const Region& region, const FittedBody& body)
+    /// Wall particles that slid are put to their new places; those of the volume stay in
+    /// `positions`.
+    void keep_slid(const SlidingWalls& sliding, std::size_t nodes, std::vector<Vec3>& positions,
+                   RelaxVolumeReport& done)
     {
-        return region.band[body.mk] > 0 && body.is_solid && body.measures.filled > 0;
-    }
-
-    /// Whether the walls of a region are layers half a dp behind the surface of their bodies.
-    bool is_inside(const Region& region) const
-    {
-        return std::all_of(field_.walls.bodies.begin(), field_.walls.bodies.end(),
-                           [&](const FittedBody& body)
-                           { return body.is_inside || region.band[body.mk] <= 0; });
-    }
-
-    /// So many of the nodes that move must there be for the particles of the bodies of a region to
-    /// stand for their volume. What the domain or later draws left of them has its part of that.
-    std::optional<double> wanted_movers(const Region& region, const std::vector<SlabRun>& runs,
-                                        std::size_t movers) const
-    {
-        double wanted = 0, nodes = 0;
-        for (const FittedBody& body : field_.walls.bodies)
+        WallParticles& particles = field_.walls.particles;
+        VolumeParticles& volume = field_.walls.volume;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i)
         {
-            if (!is_filled(region, body) || body.is_layer()) continue;
-            const FitMeasures& measures = body.measures;
-            // Of what a draw left empty in part it is not known how much.
-            if (!(measures.volume > 0) || measures.filled < nearly_all) return std::nullopt;
-            wanted += measures.volume - measures.wall_volume;
-            nodes += measures.node_volume;
+            const std::uint32_t source = done.sources[i];
+            if (source < nodes)
+            {
+                positions[count] = positions[i];
+                done.sources[count++] = source;
+                continue;
+            }
+            const std::uint32_t wall = sliding.particles[source - nodes];
+            if (i < done.kept)
+                particles.positions[wall] = positions[i];
+            else
+            {
+                volume.positions.push_back(positions[i]);
+                volume.mk.push_back(particles.mk[wall]);
+            }
         }
-        if (!(nodes > 0)) return std::nullopt;
-        double there = 0;
-        for (const SlabRun& r : runs)
-            if (region.band[r.run.mk] > 0) there += r.run.z_end - r.run.z_begin;
-        const double dp3 = std::pow(field_.grid.dp, 3);
-        const double more = (wanted - nodes) / dp3 * std::min(1.0, there * dp3 / nodes);
-        return std::max(0.0, static_cast<double>(movers) + more);
-    }
-
-    /// The bodies of a region share what its particles became more, by their volume.
-    void take_new_nodes(const Region& region, double more)
-    {
-        const double dp = field_.grid.dp;
-        double volume = 0;
-        for (const FittedBody& body : field_.walls.bodies)
-            if (is_filled(region, body)) volume += body.measures.node_volume;
-        for (FittedBody& body : field_.walls.bodies)
-        {
-            if (!is_filled(region, body) || volume <= 0) continue;
-            body.measures.node_volume += more * dp * dp * dp * body.measures.node_volume / volume;
-            body.settle_share(dp);
-        }
+        positions.resize(count);
+        done.sources.resize(count);
     }
 
     /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
@@ -495,7 +509,7 @@ private:
         const LatticeGrid& grid = field_.grid;
         VolumeParticles& volume = field_.walls.volume;
         std::vector<char> stays(movers.size(), 0);
-        const std::size_t first = volume.size();
+        const std::size_t first = volume.distances.size();
         for (std::size_t i = 0; i < positions.size(); ++i)
         {
             const std::uint32_t source =

@@ -39,46 +39,26 @@ constexpr double little_room = 0.1;
 /// The number of particles in layers is met to this, or to half a one.
 constexpr double number_tolerance = 5e-4;
 
+constexpr std::size_t thickness_samples = 600;
+
 struct Thickness
 {
     double middle = 0; ///< median, metres
     double share = 0;  ///< of the surface that has nearly that
 };
 
-/// How thick a body is over its surface, as far as it is thinner than `most_dp`.
-Thickness thickness_of(const WallDepth& wall, const FitSettings& settings, const LatticeGrid& grid,
-                       double most_dp, int threads)
+/// How thick a body is over its surface, as far as it is thinner than `most`, metres.
+Thickness thickness_of(const WallDepth& wall, double most, int threads)
 {
-    MergedSheetOptions options;
-    options.dp = grid.dp;
-    options.least_depth_dp = 0.5 * most_dp;
-    options.off_edges_dp = 0;
-    if (grid.is_2d) options.plane_y = grid.origin.y;
-    const Features sharp = find_features(wall.mesh(), feature_options(settings, grid));
-    const std::vector<MiddlePoint> points = find_middle(wall, sharp, options, threads);
-    std::vector<std::pair<double, double>> found(points.size()); // thickness, weight
-    parallel_for(
-        points.size(), threads,
-        [&](std::size_t i) {
-            found[i] = {2 * wall.at(points[i].position).depth, points[i].weight};
-        },
-        256);
+    std::vector<double> found = sample_thickness(wall, most, thickness_samples, threads);
     std::sort(found.begin(), found.end());
-    double total = 0, all = 0;
-    for (const auto& [thickness, weight] : found) total += weight;
-    for (const double area : wall.mesh().areas) all += area;
+    const auto first = std::upper_bound(found.begin(), found.end(), 0.0);
     Thickness out;
-    if (!(total > 0)) return out;
-    double passed = 0;
-    for (const auto& [thickness, weight] : found)
-    {
-        passed += weight;
-        if (passed < 0.5 * total) continue;
-        out.middle = thickness;
-        break;
-    }
-    for (const auto& [thickness, weight] : found)
-        if (std::abs(thickness / out.middle - 1) < nearly) out.share += weight / all;
+    if (first == found.end()) return out;
+    out.middle = *(first + (found.end() - first) / 2);
+    const auto near = std::count_if(
+        first, found.end(), [&](double t) { return std::abs(t / out.middle - 1) < nearly; });
+    out.share = static_cast<double>(near) / static_cast<double>(thickness_samples);
     return out;
 }
 
@@ -142,13 +122,13 @@ private:
         FittedBody& body = out_.body;
         plan_.depths_dp = {0.5};
         plan_.middle_dp = 0.5 + 0.5 * merge_dp;
+        plan_.parts = 1;
         under_layers_ = grid_.dp;
         const double most_dp =
             settings_.across ? 1.3 * *settings_.across + 1.0 : 1.2 * thickest_plate_dp;
         const double mean = 2 * body.measures.volume / body.measures.area;
         if (!settings_.across && mean > thickest_plate_dp * grid_.dp) return;
-        const Thickness t = thickness_of(*wall_, settings_, grid_,
-                                         std::max(most_dp, 2 * mean / grid_.dp), threads_);
+        const Thickness t = thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), threads_);
         const bool is_plate = t.share >= plate_share && t.middle < bar_ratio * mean &&
                               t.middle <= thickest_plate_dp * grid_.dp;
         if (!is_plate && !settings_.across) return;

@@ -208,8 +208,9 @@ bool LayerBuilder::meets_other_side(const FittedBody& body, const Vec3& p) const
 MergedSheetOptions LayerBuilder::sheet_options() const
 {
     MergedSheetOptions options;
-    options.dp = grid_.dp * plan_.spacing_dp;
-    options.least_depth_dp = plan_.middle_dp / plan_.spacing_dp;
+    options.dp = grid_.dp;
+    options.least_depth_dp = plan_.middle_dp;
+    options.parts = plan_.parts;
     options.off_edges_dp = plan_.off_edges_dp;
     if (plan_.number > 0)
         options.wanted =

@@ -25,7 +25,8 @@ struct LayerPlan
     /// Where the middle of a part is less deep than this, one sheet on it serves both sides, dp; 0:
     /// nowhere.
     double middle_dp = 0;
-    double off_edges_dp = 0.45; ///< the sheet keeps so far from sharp edges, its spacing
+    int parts = 0;              ///< MergedSheetOptions::parts
+    double off_edges_dp = 0.45; ///< the sheet keeps so far from sharp edges, dp
     std::size_t number = 0;     ///< of all particles, for which the sheet makes up; 0: not given
 };
 

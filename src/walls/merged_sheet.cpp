@@ -23,6 +23,9 @@ constexpr double hole_dp = 0.83;
 /// Reach of the forces that even the sheet out, dp, and their step.
 constexpr double reach_dp = 1.6;
 constexpr double step_dp = 0.25;
+/// Of sheets whose particles stand for dp^3, times dp.
+constexpr double closest_spacing = 0.7;
+constexpr double widest_spacing = 2.5;
 constexpr int rounds = 4;
 constexpr int steps_a_round = 12;
 
@@ -78,7 +81,7 @@ public:
         if (options_.off_edges_dp > 0 &&
             edges_.has_nearer(centre, options_.off_edges_dp * options_.dp))
             return std::nullopt;
-        return MiddlePoint{centre, facet, 0};
+        return MiddlePoint{centre, facet, spacing_at(2 * radius)};
     }
 
     /// A point back on the middle.
@@ -89,6 +92,14 @@ public:
     }
 
 private:
+    double spacing_at(double thickness) const
+    {
+        if (options_.parts == 0) return 1;
+        const double area = options_.parts * options_.dp / thickness;
+        return std::clamp(options_.plane_y ? area : std::sqrt(area), closest_spacing,
+                          widest_spacing);
+    }
+
     const WallDepth& wall_;
     const MergedSheetOptions& options_;
     PointGrid edges_;
@@ -110,10 +121,7 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
     for (int i = 0; i < n; ++i)
         if (const auto at = middle.under(p + ((i + 0.5) / n) * (q - p), mesh.normals[facet],
                                          static_cast<std::uint32_t>(facet)))
-        {
             out.push_back(*at);
-            out.back().weight = 2 * mesh.areas[facet] / n;
-        }
 }
 
 /// Takes candidates that are at least `spacing` from all that is taken, up to a number.
@@ -126,7 +134,7 @@ void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& t
     for (const MiddlePoint& p : candidates)
     {
         if (sheet.size() >= most) break;
-        if (grid.has_nearer(p.position, spacing)) continue;
+        if (grid.has_nearer(p.position, spacing * p.spacing)) continue;
         grid.add(p.position);
         sheet.push_back(p);
     }
@@ -164,12 +172,13 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
         [&](std::size_t i)
         {
             Vec3 force;
-            grid.for_each_near(sheet[i].position, reach,
+            const double own = reach * sheet[i].spacing;
+            grid.for_each_near(sheet[i].position, own,
                                [&](std::uint32_t j, double squared)
                                {
                                    if (j == i || !(squared > 0)) return;
                                    const double r = std::sqrt(squared);
-                                   const double s = 1 - r / reach;
+                                   const double s = 1 - r / own;
                                    force = force +
                                            (s * s * s / r) * (sheet[i].position - grid.points()[j]);
                                });
@@ -211,15 +220,51 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
                     const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
                     if (const auto at =
                             middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
-                    {
                         of_facet[f].push_back(*at);
-                        of_facet[f].back().weight = mesh.areas[f] * 2 / (n * (n + 1.0));
-                    }
                 }
         },
         16);
     std::vector<MiddlePoint> out;
     for (const auto& points : of_facet) out.insert(out.end(), points.begin(), points.end());
+    return out;
+}
+
+std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
+                                     int threads)
+{
+    MergedSheetOptions options;
+    options.dp = most;
+    options.least_depth_dp = 0.5;
+    options.off_edges_dp = 0;
+    const Middle middle(wall, {}, options);
+    const SurfaceMesh& mesh = wall.mesh();
+    double area = 0;
+    std::vector<double> up_to(mesh.facets.size());
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
+    std::vector<double> out(count, 0);
+    parallel_for(
+        count, threads,
+        [&](std::size_t i)
+        {
+            const double n = static_cast<double>(i) + 0.5;
+            const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1,
+                                             n / static_cast<double>(count) * area);
+            const auto f = static_cast<std::uint32_t>(at - up_to.begin());
+            // Spread over large facets by the plastic number, as two coordinates of a triangle.
+            double u = std::fmod(0.7548776662466927 * n, 1.0);
+            double v = std::fmod(0.5698402909980532 * n, 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
+                           v * (mesh.vertices[mesh.facets[f][2]] - a);
+            if (const auto found = middle.under(p, mesh.normals[f], f))
+                out[i] = 2 * norm(found->position - p);
+        },
+        16);
     return out;
 }
 
