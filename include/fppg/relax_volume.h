@@ -45,6 +45,15 @@ private:
     std::function<Vec3(const Vec3&, double)> find_;
 };
 
+/// How a particle moves in relax_volume().
+enum class VolumeMotion : std::uint8_t
+{
+    Free,      ///< it may be removed where the count is fitted
+    Lasting,   ///< freely, but it stays whatever the count is
+    AlongWall, ///< along the wall that is nearest to it, and it stays
+    AlongEdge, ///< along the line where the walls nearest to it meet, and it stays
+};
+
 /// What surrounds the volume particles that move. Particles of other regions, beyond a wall, do not
 /// belong here: a continuum stands for them.
 struct VolumeSurroundings
@@ -52,9 +61,8 @@ struct VolumeSurroundings
     std::span<const Vec3> held;  ///< volume particles that stay; those within 2.5 h suffice
     std::span<const Vec3> walls; ///< wall particles, each of the weight of a volume particle
     ClosestWallPoint closest;    ///< empty: there is no wall
-    /// Per moving particle 1 where it slides along the wall that is nearest to it, 2 where it is
-    /// free but stays whatever the count is; empty: 0 for all.
-    std::span<const char> slides{};
+    /// Per moving particle how it moves; empty: all freely.
+    std::span<const VolumeMotion> slides{};
     /// The place on its surface of a sliding one, by its index and where it is; called from several
     /// threads at once.
     std::function<Vec3(std::size_t, const Vec3&)> put_back{};

@@ -228,7 +228,8 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         [&](std::size_t row)
         {
             const std::uint32_t i = list.point(row);
-            if (i >= band.moving || band.is_held[i] != 0 || band.slides[i] != 0) return;
+            if (i >= band.moving || band.is_held[i] != 0 || band.slides[i] != VolumeMotion::Free)
+                return;
             excess[i] =
                 static_cast<float>(excess_at(band, i, list.neighbours(row), wide, cut_off, even));
         },
@@ -291,8 +292,8 @@ void change_count(Band& band, const CountChange& change)
     const std::vector<std::uint32_t> sources = band.sources;
     change_array(band.sources, change, [&](const Inserted& one) { return sources[one.beside]; });
     change_array(band.is_inserted, change, [](const Inserted&) { return char{1}; });
-    for (auto* array : {&band.is_held, &band.slides})
-        change_array(*array, change, [](const Inserted&) { return char{0}; });
+    change_array(band.is_held, change, [](const Inserted&) { return char{0}; });
+    change_array(band.slides, change, [](const Inserted&) { return VolumeMotion::Free; });
     change_array(band.light_looks, change, [](const Inserted&) { return char{0}; });
     change_array(band.meetings, change, [](const Inserted&) { return no_meeting; });
     band.volume_end += band.sources.size() - band.moving;

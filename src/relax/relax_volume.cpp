@@ -167,6 +167,34 @@ private:
     bool is_2d_;
 };
 
+bool slides(VolumeMotion motion)
+{
+    return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
+}
+
+/// The part of a step that leads along the walls on which a particle slides: those no farther from
+/// it than the nearest and a little more.
+Vec3 along_walls(const Band& band, std::size_t i, Vec3 step)
+{
+    constexpr float little_more = 0.3f;
+    std::array<Vec3, 3> across;
+    std::size_t count = 0;
+    const auto take = [&](const BandPlane& plane, float distance)
+    {
+        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == across.size() ||
+                          distance > band.wall_distances[i] + little_more))
+            return;
+        Vec3 normal{plane.x, plane.y, plane.z};
+        for (std::size_t k = 0; k < count; ++k)
+            normal = normal - dot(normal, across[k]) * across[k];
+        const double size = norm(normal);
+        if (size > 0.2) across[count++] = normal / size;
+    };
+    for_each_wall(band, i, take);
+    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, across[k]) * across[k];
+    return count < across.size() ? step : Vec3{};
+}
+
 ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
 {
     return sum_over_chunks(
@@ -176,12 +204,7 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
             if (band.is_held[i] != 0) return;
             Vec3 step{band.velocities.x[i], band.velocities.y[i], band.velocities.z[i]};
             if (options.is_2d) step.y = 0;
-            if (band.slides[i] == 1)
-            {
-                const Vec3 normal{band.wall_normals.x[i], band.wall_normals.y[i],
-                                  band.wall_normals.z[i]};
-                step = step - dot(step, normal) * normal;
-            }
+            if (slides(band.slides[i])) step = along_walls(band, i, step);
             const double length = norm(step);
             if (length > double{longest_step}) step = step * (double{longest_step} / length);
             if (!guard.is_safe(band, i, step))
@@ -214,7 +237,7 @@ void put_back(Band& band, const VolumeSurroundings& surroundings, int threads)
         band.moving, threads,
         [&](std::size_t i)
         {
-            if (band.slides[i] != 1 || band.is_held[i] != 0) return;
+            if (!slides(band.slides[i]) || band.is_held[i] != 0) return;
             const Vec3 to = surroundings.put_back(band.sources[i], band.place(i));
             const Vec3 step = (to - band.place(i)) / band.dp;
             for (auto* of : {&band.points, &band.moved})
@@ -245,7 +268,7 @@ void give_back(const Band& band, const VolumeSurroundings& surroundings,
         const Vec3& start = positions[band.sources[i]];
         result[k] = band.is_held[i] != 0 ? start : band.place(i);
         if (options.is_2d) result[k].y = start.y;
-        if (band.slides[i] == 1 && band.is_held[i] == 0)
+        if (slides(band.slides[i]) && band.is_held[i] == 0)
             result[k] = surroundings.put_back(band.sources[i], result[k]);
         if (band.is_inserted[i] == 0) ++report.kept;
         if (options.fit_count) report.sources.push_back(band.sources[i]);

@@ -256,7 +256,8 @@ private:
         };
         PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
-        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        if (!region.is_solid || !is_inside(walls, region))
+            for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
             const double band = region.band[r.run.mk];
@@ -422,14 +423,18 @@ private:
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
-        std::vector<char> slides(sliding.particles.empty() ? 0 : movers.size(), 0);
-        slides.insert(slides.end(), sliding.slides.begin(), sliding.slides.end());
+        std::vector<VolumeMotion> slides(sliding.particles.empty() ? 0 : movers.size(),
+                                         VolumeMotion::Free);
+        slides.insert(slides.end(), sliding.motions.begin(), sliding.motions.end());
         for (const std::uint32_t i : sliding.particles)
             positions.push_back(field_.walls.particles.positions[i]);
         VolumeSurroundings surroundings;
         surroundings.slides = slides;
         surroundings.put_back = [&](std::size_t i, const Vec3& p)
-        { return put_back(field_.walls, sliding.particles[i - movers.size()], p); };
+        {
+            return put_back(field_.walls, sliding.particles[i - movers.size()], p, grid.dp,
+                            surroundings.closest);
+        };
         surroundings.held = held;
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/fitted_walls.h"
+#include "fppg/relax_volume.h"
 
 #include "relax/regions.h"
 
@@ -14,15 +15,16 @@ namespace fppg
 struct SlidingWalls
 {
     std::vector<std::uint32_t> particles; ///< indices into FittedWalls::particles, ascending
-    /// 1: it slides on its layer; 2: it is on the middle of a thin part and moves freely.
-    std::vector<char> slides;
+    std::vector<VolumeMotion> motions;
 };
 
-/// Those of bodies with Placement::Inside in a region, but for edges, corners and what is held
-/// beside cuts.
+/// Those of bodies with Placement::Inside in a region, but for what is held beside cuts: surface
+/// particles slide on their layer, those of edges and corners along edges; those on the middle of a
+/// thin part are free.
 SlidingWalls find_sliding(const FittedWalls& walls, const Region& region);
 
-/// The place of a particle on its layer that is nearest to p.
-Vec3 put_back(const FittedWalls& walls, std::uint32_t particle, const Vec3& p);
+/// The place of a particle on its layer, or on the edge of it, that is nearest to p.
+Vec3 put_back(const FittedWalls& walls, std::uint32_t particle, const Vec3& p, double dp,
+              const ClosestWallPoint& closest);
 
 } // namespace fppg

@@ -39,6 +39,8 @@ constexpr double little_room = 0.1;
 /// The number of particles in layers is met to this, or to half a one.
 constexpr double number_tolerance = 5e-4;
 
+/// Bodies of this mean thickness or less have layers that turn within dp: finer cells.
+constexpr double thin_dp = 2.5;
 constexpr std::size_t thickness_samples = 600;
 
 struct Thickness
@@ -127,6 +129,7 @@ private:
         const double most_dp =
             settings_.across ? 1.3 * *settings_.across + 1.0 : 1.2 * thickest_plate_dp;
         const double mean = 2 * body.measures.volume / body.measures.area;
+        if (mean < thin_dp * grid_.dp) plan_.cell_dp = 0.5 * offset_cell_dp;
         if (!settings_.across && mean > thickest_plate_dp * grid_.dp) return;
         const Thickness t = thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), threads_);
         const bool is_plate = t.share >= plate_share && t.middle < bar_ratio * mean &&
@@ -160,7 +163,7 @@ private:
         if (!grid_.is_2d)
         {
             const OffsetSurface under = builder_.surface_at(
-                under_layers_ * (1 + 1e-6), WallSide::Behind, true, thickest_plate_dp, wall);
+                under_layers_ * (1 + 1e-6), plan_.cell_dp, WallSide::Behind, true, wall);
             room_ = std::max(0.0, volume_of(under.mesh)) / dp3_;
             return;
         }

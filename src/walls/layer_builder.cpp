@@ -83,13 +83,13 @@ LayerSide LayerBuilder::side_without_fluid() const
     return side;
 }
 
-OffsetSurface LayerBuilder::surface_at(double depth, WallSide side, bool is_closed,
-                                       double deepest_dp, std::shared_ptr<const WallDepth>& wall)
+OffsetSurface LayerBuilder::surface_at(double depth, double cell_dp, WallSide side, bool is_closed,
+                                       std::shared_ptr<const WallDepth>& wall)
 {
     OffsetOptions options;
     options.depth = depth;
     options.dp = grid_.dp;
-    options.cell = offset_cell_dp * grid_.dp;
+    options.cell = cell_dp * grid_.dp;
     options.feature_angle_deg = settings_.feature_angle_deg;
     if (grid_.is_2d) options.plane_y = grid_.origin.y;
     OffsetSurface surface = offset_surface(*wall, options, threads_);
@@ -97,7 +97,7 @@ OffsetSurface LayerBuilder::surface_at(double depth, WallSide side, bool is_clos
     // surface tears; the plain distance has no jumps.
     if (is_closed && !grid_.is_2d && !surface.mesh.facets.empty() && surface.report.open_edges > 0)
     {
-        if (rounded_ == nullptr) rounded_ = wall_of(side, is_closed, no_edge_deg, deepest_dp);
+        if (rounded_ == nullptr) rounded_ = wall_of(side, is_closed, no_edge_deg, depth / grid_.dp);
         wall = rounded_;
         surface = offset_surface(*wall, options, threads_);
     }
@@ -120,7 +120,7 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
         const double depth = plan.depths_dp[k] * grid_.dp;
         if (!(depth > 0)) continue;
         std::shared_ptr<const WallDepth> of_layer = wall_;
-        OffsetSurface surface = surface_at(depth, side, is_closed, deepest, of_layer);
+        OffsetSurface surface = surface_at(depth, plan.cell_dp, side, is_closed, of_layer);
         if (surface.mesh.facets.empty()) break;
         FittedBody body;
         body.name = fmt::format("layer {}{}", k + 1, of_side);

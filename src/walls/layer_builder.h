@@ -25,9 +25,10 @@ struct LayerPlan
     /// Where the middle of a part is less deep than this, one sheet on it serves both sides, dp; 0:
     /// nowhere.
     double middle_dp = 0;
-    int parts = 0;              ///< MergedSheetOptions::parts
-    double off_edges_dp = 0.45; ///< the sheet keeps so far from sharp edges, dp
-    std::size_t number = 0;     ///< of all particles, for which the sheet makes up; 0: not given
+    double cell_dp = offset_cell_dp; ///< of the grid that the surfaces of layers are cut from
+    int parts = 0;                   ///< MergedSheetOptions::parts
+    double off_edges_dp = 0.45;      ///< the sheet keeps so far from sharp edges, dp
+    std::size_t number = 0; ///< of all particles, for which the sheet makes up; 0: not given
 };
 
 /// Layers of two sides that would be nearer than this merge, dp.
@@ -63,7 +64,7 @@ public:
 
     /// The surface at a depth behind the wall, metres; the wall that it was made from may be
     /// another in `wall` then.
-    OffsetSurface surface_at(double depth, WallSide side, bool is_closed, double deepest_dp,
+    OffsetSurface surface_at(double depth, double cell_dp, WallSide side, bool is_closed,
                              std::shared_ptr<const WallDepth>& wall);
 
 private:
