@@ -4,6 +4,7 @@
 #include "meshes/point_grid.h"
 #include "relax/all_surfaces.h"
 #include "relax/all_walls.h"
+#include "relax/fit_moments.h"
 #include "relax/near_blocks.h"
 #include "relax/region_volume.h"
 #include "relax/regions.h"
@@ -171,6 +172,12 @@ private:
             if (settings->relax.iterations)
                 region.iterations = std::min(*settings->relax.iterations, volume_iterations);
             relax_region(region, all, runs[s]);
+        }
+        for (std::size_t b = 0; b < field_.walls.bodies.size() && !report_.is_stopped; ++b)
+        {
+            const FitSettings* settings = settings_of(field_.walls.bodies[b].mk);
+            if (settings != nullptr && settings->relax.is_active)
+                fit_moments(field_, b, all, threads_);
         }
         if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {

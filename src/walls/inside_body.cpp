@@ -201,14 +201,17 @@ private:
                 spacing *= std::pow(std::clamp(laid() / target, 0.25, 4.0), power());
             else // the number jumps here: places nearby are tried
                 spacing = best_spacing * (1 + (attempt % 2 == 0 ? 1 : -1) * 0.0013 * (attempt - 5));
-            builder_.lay_again(spacing);
+            builder_.lay_again(spacing, true);
             if (std::abs(laid() - target) < std::abs(best - target))
             {
                 best = laid();
                 best_spacing = spacing;
             }
         }
-        if (laid() != best) builder_.lay_again(best_spacing);
+        // What is still missing the sheet in the middle of thin parts makes up for.
+        if (plan_.number == 0) builder_.set_number(static_cast<std::size_t>(target));
+        builder_.lay_again(best_spacing, false);
+        if (plan_.number == 0) builder_.merge_sides();
     }
 
     /// Of the nodes inside those stay that are the farthest from the layers, so many as the volume

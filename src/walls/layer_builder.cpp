@@ -142,8 +142,9 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
     if (plan_.number == 0) merge_sides();
 }
 
-void LayerBuilder::lay_again(double spacing_dp)
+void LayerBuilder::lay_again(double spacing_dp, bool is_trial)
 {
+    is_trial_ = is_trial;
     plan_.spacing_dp = spacing_dp;
     out_.particles = {};
     out_.second_sheet = {};
@@ -211,6 +212,7 @@ MergedSheetOptions LayerBuilder::sheet_options() const
     options.dp = grid_.dp;
     options.least_depth_dp = plan_.middle_dp;
     options.parts = plan_.parts;
+    options.evens_out = !is_trial_;
     options.off_edges_dp = plan_.off_edges_dp;
     if (plan_.number > 0)
         options.wanted =

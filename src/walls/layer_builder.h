@@ -55,7 +55,12 @@ public:
     void merge_sides();
 
     /// Takes the particles of all layers out and lays them with another spacing.
-    void lay_again(double spacing_dp);
+    ///
+    /// is_trial  only the number of particles is right
+    void lay_again(double spacing_dp, bool is_trial);
+
+    /// The sheet in the middle makes up for this number of all particles; 0: it has one per dp^2.
+    void set_number(std::size_t number) { plan_.number = number; }
 
     /// The depth of a body, in 2D of its section; null where it has none. Not that of round faces
     /// beyond sharp edges but for sharp_angle_deg.
@@ -81,6 +86,7 @@ private:
     int threads_;
     FittedDraw& out_;
     LayerPlan plan_;
+    bool is_trial_ = false;
     std::shared_ptr<const WallDepth> wall_;
     std::shared_ptr<const WallDepth> rounded_; ///< made where a mitre fails
     Features sharp_;

@@ -280,7 +280,7 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
         take_number(points, taken, options.dp, *options.wanted, sheet);
     else
         take(points, taken, first_spacing_dp * options.dp, no_limit, sheet);
-    for (int round = 0; round < rounds; ++round)
+    for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);

@@ -21,6 +21,7 @@ struct MergedSheetOptions
     int parts = 0;
     /// So many particles are wanted; empty: as many as there is room for.
     std::optional<std::size_t> wanted{};
+    bool evens_out = true;         ///< false: particles stay where they were taken
     std::optional<double> plane_y; ///< of 2D cases: the wall is drawn out along y
 };
 
