@@ -18,7 +18,7 @@ namespace
 using Matrix = std::array<Vec3, 3>;
 
 constexpr int most_rounds = 12;
-constexpr double longest_way_dp = 0.25;
+constexpr double longest_way_dp = 0.5;
 /// Of the centre, dp, and of the second moments where fitting ends.
 constexpr double centre_tolerance = 1e-3;
 constexpr double moment_tolerance = 2e-4;
@@ -261,7 +261,18 @@ private:
             steps[i] = shift + times(stretch, place(i) - now.centre);
             longest = std::max(longest, norm(way_[i] + steps[i]));
         }
-        if (longest > longest_way_dp * dp_) return false;
+        double share = 1;
+        if (longest > longest_way_dp * dp_)
+        {
+            double before = 0, step = 0;
+            for (std::size_t i = 0; i < way_.size(); ++i)
+            {
+                before = std::max(before, norm(way_[i]));
+                step = std::max(step, norm(steps[i]));
+            }
+            share = (longest_way_dp * dp_ - before) / step;
+            if (share < 0.05) return false;
+        }
         const ClosestWallPoint closest = [&](const Vec3& p, double within)
         { return all_.closest_point(p, within); };
         parallel_for(
@@ -270,7 +281,7 @@ private:
             {
                 const Vec3 from = place(i);
                 const Vec3 normal = across(i);
-                Vec3 to = from + (steps[i] - dot(steps[i], normal) * normal);
+                Vec3 to = from + share * (steps[i] - dot(steps[i], normal) * normal);
                 if (i < of_wall_.size()) to = on_layer(of_wall_[i], to, closest);
                 way_[i] = way_[i] + (to - from);
                 place(i) = to;

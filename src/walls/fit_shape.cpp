@@ -22,6 +22,8 @@ namespace
 {
 
 constexpr std::size_t particles_per_chunk = 4096;
+/// Of the distance of particles on lines of bodies with Placement::Inside.
+constexpr double line_room = 0.06;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 {
@@ -224,8 +226,11 @@ SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const
     options.lattice_origin = grid.origin;
     options.density = settings.density;
     FeaturesLeftOut left_out;
-    const std::vector<FeatureParticle> on_features = place_feature_particles(
-        body.mesh, body.features, feature_options(settings, grid), &left_out);
+    FeatureOptions on_lines = feature_options(settings, grid);
+    // A line a little longer than n dp has n parts: its particles stand for dp^3.
+    if (body.is_inside) on_lines.dp *= 1 + line_room;
+    const std::vector<FeatureParticle> on_features =
+        place_feature_particles(body.mesh, body.features, on_lines, &left_out);
     body.left_out[0] += left_out.corners;
     body.left_out[1] += left_out.edges;
     return fit_surface(body.mesh, body.features, on_features, options, threads);
