@@ -39,7 +39,7 @@ std::optional<double> wanted_number(const FittedWalls& walls, const Region& regi
         wanted += measures.volume - measures.wall_volume;
         all += measures.node_volume;
     }
-    if (!(all > 0)) return std::nullopt;
+    if (!(all > 0)) return static_cast<double>(moving); // there is no room for any
     const double part = std::min(1.0, nodes * dp3 / all);
     return std::max(0.0, static_cast<double>(moving) + part * (wanted - all) / dp3);
 }

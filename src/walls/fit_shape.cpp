@@ -23,7 +23,7 @@ namespace
 
 constexpr std::size_t particles_per_chunk = 4096;
 /// Of the distance of particles on lines of bodies with Placement::Inside.
-constexpr double line_room = 0.06;
+constexpr double line_room = 0.02;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 {

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "core/parallel.h"
+#include "meshes/crowded_points.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
 #include "offset/offset_surface.h"
@@ -42,6 +43,9 @@ constexpr double number_tolerance = 5e-4;
 /// Bodies of this mean thickness or less have layers that turn within dp: finer cells.
 constexpr double thin_dp = 2.5;
 constexpr std::size_t thickness_samples = 600;
+
+/// Of particles that are taken out one by one.
+constexpr double most_surplus = 0.05;
 
 struct Thickness
 {
@@ -193,16 +197,19 @@ private:
         if (has_room && std::abs(off) < 0.01 * wanted_) return;
         const double of_layers = laid() / (laid() + room_);
         const double target = std::max(1.0, has_room ? laid() + of_layers * off : wanted_ - room_);
+        // A surplus can be taken out, what is missing cannot be put in evenly.
+        const auto miss = [&](double number)
+        { return number >= target - 0.5 ? number - target : 3 * (target - number); };
         double best = laid(), best_spacing = plan_.spacing_dp, spacing = plan_.spacing_dp;
         const double enough = std::max(0.5, number_tolerance * target);
-        for (int attempt = 0; attempt < 24 && std::abs(best - target) > enough; ++attempt)
+        for (int attempt = 0; attempt < 24 && miss(best) > enough; ++attempt)
         {
             if (attempt < 6)
                 spacing *= std::pow(std::clamp(laid() / target, 0.25, 4.0), power());
             else // the number jumps here: places nearby are tried
                 spacing = best_spacing * (1 + (attempt % 2 == 0 ? 1 : -1) * 0.0013 * (attempt - 5));
             builder_.lay_again(spacing, true);
-            if (std::abs(laid() - target) < std::abs(best - target))
+            if (miss(laid()) < miss(best))
             {
                 best = laid();
                 best_spacing = spacing;
@@ -212,6 +219,33 @@ private:
         if (plan_.number == 0) builder_.set_number(static_cast<std::size_t>(target));
         builder_.lay_again(best_spacing, false);
         if (plan_.number == 0) builder_.merge_sides();
+        drop_surplus(std::round(target));
+    }
+
+    /// Takes the most crowded particles of faces out, 2 dp from one another.
+    void drop_surplus(double target)
+    {
+        WallParticles& particles = out_.particles;
+        auto surplus = laid() > target ? static_cast<std::size_t>(laid() - target) : 0;
+        if (surplus == 0 || static_cast<double>(surplus) > most_surplus * target) return;
+        const double apart = 2 * grid_.dp;
+        const std::vector<double> nearest = nearest_distances(particles.positions, apart, threads_);
+        std::vector<std::uint32_t> order;
+        for (std::uint32_t i = 0; i < particles.size(); ++i)
+            if (particles.kinds[i] == FitKind::Surface) order.push_back(i);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return nearest[a] < nearest[b]; });
+        PointGrid dropped(apart, surplus);
+        std::vector<char> goes(particles.size(), 0);
+        for (std::size_t k = 0; k < order.size() && surplus > 0; ++k)
+        {
+            const Vec3& p = particles.positions[order[k]];
+            if (dropped.has_nearer(p, apart)) continue;
+            dropped.add(p);
+            goes[order[k]] = 1;
+            --surplus;
+        }
+        particles.erase(goes);
     }
 
     /// Of the nodes inside those stay that are the farthest from the layers, so many as the volume
