@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "meshes/crowded_points.h"
 #include "meshes/point_grid.h"
+#include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "offset/offset_surface.h"
 #include "walls/fit_shape.h"
@@ -84,6 +85,37 @@ double volume_of(const SurfaceMesh& mesh)
     return six / 6;
 }
 
+/// What a round body has more than its facets bound, metres cubed. Each facet is split into four
+/// whose new corners are on the true surface; that is three quarters of it, as chords go with the
+/// square of their length.
+double volume_beyond_facets(const FittedBody& body)
+{
+    const SurfaceMesh& mesh = body.mesh;
+    std::vector<Vec3> middles(mesh.edges.size());
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        Vec3 p = 0.5 * (mesh.vertices[mesh.edges[e][0]] + mesh.vertices[mesh.edges[e][1]]);
+        for (std::uint32_t f : mesh.edge_facets[e])
+            if (f != no_index) project_to_round(body, p, f);
+        middles[e] = p;
+    }
+    double six = 0;
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c)
+    { six += dot(a, cross(b, c)); };
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        const auto corner = [&](std::size_t k)
+        { return mesh.vertices[mesh.facets[f][k]] - mesh.vertices[0]; };
+        const auto middle = [&](std::size_t k)
+        { return middles[mesh.facet_edges[f][k]] - mesh.vertices[0]; };
+        add(corner(0), middle(0), middle(2));
+        add(corner(1), middle(1), middle(0));
+        add(corner(2), middle(2), middle(1));
+        add(middle(0), middle(1), middle(2));
+    }
+    return 4.0 / 3 * (six / 6 - volume_of(mesh));
+}
+
 /// A node that may stay.
 struct RoomNode
 {
@@ -112,7 +144,10 @@ public:
         wall_ = builder_.wall_of(WallSide::Behind, true, settings_.feature_angle_deg,
                                  thickest_plate_dp);
         if (wall_ == nullptr) return;
-        wanted_ = std::round(out_.body.measures.volume / dp3_);
+        FitMeasures& measures = out_.body.measures;
+        if (out_.body.round != nullptr && !grid_.is_2d)
+            measures.volume += volume_beyond_facets(out_.body);
+        wanted_ = std::round(measures.volume / dp3_);
         make_plan();
         measure_room();
         builder_.build(WallSide::Behind, true, plan_);
