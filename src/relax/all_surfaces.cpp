@@ -128,10 +128,8 @@ private:
                                     { out = out && all.bodies[i] == body; });
             return out;
         };
-        const bool has_given_number =
-            std::any_of(particles.bodies.begin(), particles.bodies.end(),
-                        [&](std::uint32_t body) { return has_fixed_number(walls.owner_of(body)); });
-        if (!walls.cut.empty() || second.size() > 0 || all.size() > 0 || has_given_number)
+        const bool is_limited = !walls.cut.empty() || second.size() > 0 || all.size() > 0;
+        if (is_limited || has_fixed_numbers(particles))
             options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
             {
                 return !has_fixed_number(walls.owner_of(body)) && is_apart(body, p) &&
@@ -177,6 +175,13 @@ private:
     static bool has_fixed_number(const FittedBody& body)
     {
         return body.is_inside && body.measures.node_volume < 0.1 * body.measures.volume;
+    }
+
+    bool has_fixed_numbers(const WallParticles& particles) const
+    {
+        return std::any_of(particles.bodies.begin(), particles.bodies.end(),
+                           [&](std::uint32_t body)
+                           { return has_fixed_number(field_.walls.owner_of(body)); });
     }
 
     struct Spacing

@@ -214,7 +214,7 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
 
 CountChange find_count_change(const Band& band, const NeighbourList& list,
                               const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
-                              int threads)
+                              bool is_last, int threads)
 {
     constexpr double wider = 1.3;
     const double h = wider * options.h_dp;
@@ -241,7 +241,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
     std::size_t highest = list.rows();
     std::size_t lowest = list.rows();
     std::size_t length = 0;
-    for (std::size_t row = 0; row < list.rows(); ++row)
+    for (std::size_t row = 0; row < list.rows() && !is_last; ++row)
     {
         const std::uint32_t at = list.point(row);
         if (at >= band.moving || excess[at] == 0) continue;

@@ -293,8 +293,9 @@ private:
     Vec3 on_layer(std::uint32_t particle, const Vec3& p, const ClosestWallPoint& closest) const
     {
         const FittedWalls& walls = field_.walls;
-        const bool is_shared = walls.bodies[walls.particles.bodies[particle]].mesh.facets.empty();
-        return is_shared ? p : put_back(walls, particle, p, dp_, closest);
+        const bool is_free = walls.bodies[walls.particles.bodies[particle]].mesh.facets.empty() &&
+                             walls.bodies[body_].sheets == 0;
+        return is_free ? p : put_back(walls, particle, p, dp_, closest);
     }
 
     void put_distances()

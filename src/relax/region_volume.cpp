@@ -41,7 +41,10 @@ std::optional<double> wanted_number(const FittedWalls& walls, const Region& regi
     }
     if (!(all > 0)) return static_cast<double>(moving); // there is no room for any
     const double part = std::min(1.0, nodes * dp3 / all);
-    return std::max(0.0, static_cast<double>(moving) + part * (wanted - all) / dp3);
+    // A few nodes gave way to particles of the walls.
+    const double more =
+        part > nearly_all && part < 1 ? wanted / dp3 - nodes : part * (wanted - all) / dp3;
+    return std::max(0.0, static_cast<double>(moving) + more);
 }
 
 void take_new_nodes(FittedWalls& walls, const Region& region, double more, double dp)

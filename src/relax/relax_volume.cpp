@@ -29,6 +29,7 @@ constexpr int most_iterations = 100;
 constexpr int first_count_change = 5;
 constexpr int count_change_interval = 5;
 constexpr int last_count_change = 15;
+constexpr int last_rest = 25;
 /// Sliding particles go along tangents for so many iterations.
 constexpr int slides_between = 5;
 
@@ -230,7 +231,7 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
 }
 
 /// Puts sliding particles back on their surfaces.
-void put_back(Band& band, const VolumeSurroundings& surroundings, int threads)
+void put_back(Band& band, const VolumeSurroundings& surroundings, bool is_2d, int threads)
 {
     if (surroundings.slides.empty()) return;
     parallel_for(
@@ -239,7 +240,8 @@ void put_back(Band& band, const VolumeSurroundings& surroundings, int threads)
         {
             if (!slides(band.slides[i]) || band.is_held[i] != 0) return;
             const Vec3 to = surroundings.put_back(band.sources[i], band.place(i));
-            const Vec3 step = (to - band.place(i)) / band.dp;
+            Vec3 step = (to - band.place(i)) / band.dp;
+            if (is_2d) step.y = 0;
             for (auto* of : {&band.points, &band.moved})
             {
                 of->x[i] += static_cast<float>(step.x);
@@ -267,9 +269,9 @@ void give_back(const Band& band, const VolumeSurroundings& surroundings,
         const std::uint32_t i = order[k];
         const Vec3& start = positions[band.sources[i]];
         result[k] = band.is_held[i] != 0 ? start : band.place(i);
-        if (options.is_2d) result[k].y = start.y;
         if (slides(band.slides[i]) && band.is_held[i] == 0)
             result[k] = surroundings.put_back(band.sources[i], result[k]);
+        if (options.is_2d) result[k].y = start.y;
         if (band.is_inserted[i] == 0) ++report.kept;
         if (options.fit_count) report.sources.push_back(band.sources[i]);
     }
@@ -287,6 +289,14 @@ bool is_count_due(int iteration)
 {
     return iteration >= first_count_change && iteration <= last_count_change &&
            (iteration - first_count_change) % count_change_interval == 0;
+}
+
+/// Whether the number wanted was not reached when it was fitted.
+bool is_rest_due(const Band& band, const RelaxVolumeOptions& options, int iteration)
+{
+    return options.wanted && iteration > last_count_change && iteration <= last_rest &&
+           iteration % count_change_interval == 0 &&
+           std::abs(static_cast<double>(band.moving) - *options.wanted) > 0.5;
 }
 
 /// Whether the coefficient of variation has fallen by less than 5 per cent over ten iterations.
@@ -322,10 +332,11 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     for (int iteration = 1; iteration <= last; ++iteration)
     {
         if (list.is_outdated(band.points, threads)) build_list(list, band, options.h_dp, threads);
-        if (options.fit_count && is_count_due(iteration))
+        const bool is_due = is_count_due(iteration);
+        if (options.fit_count && (is_due || is_rest_due(band, options, iteration)))
         {
             const CountChange change =
-                find_count_change(band, list, options, surroundings.closest, threads);
+                find_count_change(band, list, options, surroundings.closest, !is_due, threads);
             report.removed += change.removed;
             report.inserted += change.inserted.size();
             change_count(band, change);
@@ -337,7 +348,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (sums.count == 0) break;
         kept = sums.work < 0 ? 0 : volume_momentum;
         const ChunkSums steps = move(band, guard, options, threads);
-        if (iteration % slides_between == 0) put_back(band, surroundings, threads);
+        if (iteration % slides_between == 0) put_back(band, surroundings, options.is_2d, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;
         const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);

@@ -2,6 +2,7 @@
 
 #include "offset/offset_surface.h"
 #include "relax/wall_planes.h"
+#include "walls/merged_sheet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +37,11 @@ SlidingWalls find_sliding(const FittedWalls& walls, const Region& region)
         if (!body.is_inside || !body.is_layer() || region.band[walls.owner_of(b).mk] <= 0) continue;
         if (is_shared(body) ? is_cut[b] != 0 : particles.held[i] != 0) continue;
         out.particles.push_back(i);
-        out.motions.push_back(is_shared(body)                          ? VolumeMotion::Lasting
-                              : particles.kinds[i] == FitKind::Surface ? VolumeMotion::AlongWall
-                                                                       : VolumeMotion::AlongEdge);
+        const bool is_free = is_shared(body) && walls.owner_of(b).sheets == 0;
+        const bool is_on_face = is_shared(body) || particles.kinds[i] == FitKind::Surface;
+        out.motions.push_back(is_free      ? VolumeMotion::Lasting
+                              : is_on_face ? VolumeMotion::AlongWall
+                                           : VolumeMotion::AlongEdge);
     }
     return out;
 }
@@ -47,6 +50,9 @@ Vec3 put_back(const FittedWalls& walls, std::uint32_t particle, const Vec3& p, d
               const ClosestWallPoint& closest)
 {
     const FittedBody& body = walls.bodies[walls.particles.bodies[particle]];
+    if (is_shared(body))
+        return on_middle(*body.wall, p,
+                         0.65 * walls.owner_of(walls.particles.bodies[particle]).thickness);
     if (walls.particles.kinds[particle] == FitKind::Surface)
         return project_to_depth(*body.wall, p, body.depth);
     Vec3 at = p;

@@ -35,7 +35,8 @@ public:
     Middle(const WallDepth& wall, const Features& features, const MergedSheetOptions& options)
         : wall_(wall),
           options_(options),
-          edges_(std::max(0.1, options.off_edges_dp) * options.dp, 1024)
+          edges_(std::max(0.1, options.off_edges_dp) * options.dp,
+                 features.edges.empty() ? 1 : 1024)
     {
         const SurfaceMesh& mesh = wall.mesh();
         for (const std::uint32_t e : features.edges)
@@ -266,6 +267,16 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
         },
         16);
     return out;
+}
+
+Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)
+{
+    MergedSheetOptions options;
+    options.dp = most;
+    options.least_depth_dp = 1;
+    options.off_edges_dp = 0;
+    const auto found = Middle(wall, {}, options).back(p);
+    return found && norm(found->position - p) < most ? found->position : p;
 }
 
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,

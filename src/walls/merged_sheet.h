@@ -49,6 +49,10 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
                                      int threads);
 
+/// The point of the middle that is nearest to p along the way in which the depth grows; p itself
+/// where the body is thicker than twice `most`, metres.
+Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most);
+
 /// The particles that both sides of a thin part share: on its middle (the medial axis), one per
 /// dp^2 and evenly spaced.
 ///
