@@ -1,6 +1,7 @@
 #include "meshes/mesh_query.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,62 @@ void check(RTCDevice device)
 
 } // namespace
 
+/// The parts into which a facet is cut across its longest edge for its boxes: long and oblique, one
+/// box of it would be large and empty, and near everything.
+int parts_of(const Vec3* corners)
+{
+    constexpr double most = 32;
+    Box3 box;
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        box.add(corners[k]);
+        longest = std::max(longest, norm(corners[(k + 1) % 3] - corners[k]));
+    }
+    const Vec3 size = box.max - box.min;
+    const double middle =
+        std::max(std::min(size.x, size.y), std::min(std::max(size.x, size.y), size.z));
+    const double height =
+        norm(cross(corners[1] - corners[0], corners[2] - corners[0])) / std::max(longest, 1e-300);
+    if (middle <= 4 * height) return 1;
+    return static_cast<int>(
+        std::min(most, std::ceil(middle / std::max(2 * height, middle / most))));
+}
+
+/// The box of part k of n of a facet.
+Box3 box_of_part(const Vec3* corners, int k, int n)
+{
+    Box3 box;
+    if (n == 1)
+    {
+        for (int corner = 0; corner < 3; ++corner) box.add(corners[corner]);
+        return box;
+    }
+    int first = 0;
+    for (int edge = 1; edge < 3; ++edge)
+        if (norm(corners[(edge + 1) % 3] - corners[edge]) >
+            norm(corners[(first + 1) % 3] - corners[first]))
+            first = edge;
+    const Vec3& a = corners[first];
+    const Vec3& b = corners[(first + 1) % 3];
+    const Vec3& top = corners[(first + 2) % 3];
+    const Vec3 along = b - a;
+    const double at_top = std::clamp(dot(top - a, along) / dot(along, along), 0.0, 1.0);
+    const double begin = static_cast<double>(k) / n;
+    const double end = static_cast<double>(k + 1) / n;
+    for (const double t : {begin, end})
+    {
+        box.add(a + t * along);
+        // The point of the other two edges above it.
+        if (t < at_top)
+            box.add(a + (t / at_top) * (top - a));
+        else
+            box.add(at_top < 1 ? b + ((1 - t) / (1 - at_top)) * (top - b) : top);
+    }
+    if (begin <= at_top && at_top <= end) box.add(top);
+    return box;
+}
+
 /// Embree works on the mesh moved and scaled into [-1, 1], where float is finest. Facets are given
 /// as boxes with callbacks, because triangles rounded to float would miss what doubles still hit.
 struct MeshQuery::Scene
@@ -45,6 +102,15 @@ struct MeshQuery::Scene
     double scale = 1; ///< half the largest extent of the mesh
     std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
     std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
+    /// Parts of facets, for the search of near points; empty where no facet is cut.
+    struct Part
+    {
+        std::uint32_t facet = 0;
+        std::uint8_t index = 0;
+        std::uint8_t count = 1;
+    };
+    std::vector<Part> parts;
+    std::unique_ptr<RTCSceneTy, ReleaseScene> part_scene;
 
     Scene(TriangleSoup mesh, int threads) : soup(std::move(mesh))
     {
@@ -69,18 +135,38 @@ struct MeshQuery::Scene
         if (!device)
             throw Error(fmt::format("Embree cannot be started: error {}",
                                     static_cast<int>(rtcGetDeviceError(nullptr))));
-        scene.reset(rtcNewScene(device.get()));
-        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+        scene = make_scene(soup.size(), give_bounds);
+        cut_facets();
+        if (!parts.empty()) part_scene = make_scene(parts.size(), give_part_bounds);
+    }
+
+    std::unique_ptr<RTCSceneTy, ReleaseScene> make_scene(std::size_t count,
+                                                         RTCBoundsFunction bounds)
+    {
+        std::unique_ptr<RTCSceneTy, ReleaseScene> out(rtcNewScene(device.get()));
+        rtcSetSceneFlags(out.get(), RTC_SCENE_FLAG_ROBUST);
         const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
-        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(soup.size()));
+        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
         rtcSetGeometryUserData(geometry, this);
-        rtcSetGeometryBoundsFunction(geometry, give_bounds, nullptr);
+        rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
         rtcSetGeometryIntersectFunction(geometry, meet_ray);
         rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene.get(), geometry);
+        rtcAttachGeometry(out.get(), geometry);
         rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene.get());
+        rtcCommitScene(out.get());
         check(device.get());
+        return out;
+    }
+
+    void cut_facets()
+    {
+        std::vector<int> counts(soup.size());
+        for (std::size_t f = 0; f < soup.size(); ++f) counts[f] = parts_of(&soup.vertices[3 * f]);
+        if (std::all_of(counts.begin(), counts.end(), [](int n) { return n == 1; })) return;
+        for (std::size_t f = 0; f < soup.size(); ++f)
+            for (int k = 0; k < counts[f]; ++k)
+                parts.push_back({static_cast<std::uint32_t>(f), static_cast<std::uint8_t>(k),
+                                 static_cast<std::uint8_t>(counts[f])});
     }
 
     Vec3 to_unit(const Vec3& point) const { return (point - centre) / scale; }
@@ -88,16 +174,29 @@ struct MeshQuery::Scene
     static void give_bounds(const RTCBoundsFunctionArguments* arguments)
     {
         const Scene& self = *static_cast<const Scene*>(arguments->geometryUserPtr);
-        Box3 box;
-        for (std::size_t k = 0; k < 3; ++k)
-            box.add(self.to_unit(self.soup.vertices[3 * std::size_t{arguments->primID} + k]));
-        RTCBounds& bounds = *arguments->bounds_o;
-        bounds.lower_x = static_cast<float>(box.min.x - rounding_room);
-        bounds.lower_y = static_cast<float>(box.min.y - rounding_room);
-        bounds.lower_z = static_cast<float>(box.min.z - rounding_room);
-        bounds.upper_x = static_cast<float>(box.max.x + rounding_room);
-        bounds.upper_y = static_cast<float>(box.max.y + rounding_room);
-        bounds.upper_z = static_cast<float>(box.max.z + rounding_room);
+        self.give(box_of_part(&self.soup.vertices[3 * std::size_t{arguments->primID}], 0, 1),
+                  *arguments->bounds_o);
+    }
+
+    static void give_part_bounds(const RTCBoundsFunctionArguments* arguments)
+    {
+        const Scene& self = *static_cast<const Scene*>(arguments->geometryUserPtr);
+        const Part& part = self.parts[arguments->primID];
+        self.give(
+            box_of_part(&self.soup.vertices[3 * std::size_t{part.facet}], part.index, part.count),
+            *arguments->bounds_o);
+    }
+
+    void give(const Box3& box, RTCBounds& bounds) const
+    {
+        const Vec3 low = to_unit(box.min);
+        const Vec3 high = to_unit(box.max);
+        bounds.lower_x = static_cast<float>(low.x - rounding_room);
+        bounds.lower_y = static_cast<float>(low.y - rounding_room);
+        bounds.lower_z = static_cast<float>(low.z - rounding_room);
+        bounds.upper_x = static_cast<float>(high.x + rounding_room);
+        bounds.upper_y = static_cast<float>(high.y + rounding_room);
+        bounds.upper_z = static_cast<float>(high.z + rounding_room);
     }
 
     struct RayContext : EmbreeRayContext
@@ -165,14 +264,16 @@ struct MeshQuery::Scene
     {
         Nearest& nearest = *static_cast<Nearest*>(arguments->userPtr);
         const Scene& self = *nearest.scene;
-        const Vec3 candidate = closest_on_facet(
-            nearest.point, &self.soup.vertices[3 * std::size_t{arguments->primID}]);
+        const std::uint32_t facet =
+            self.parts.empty() ? arguments->primID : self.parts[arguments->primID].facet;
+        if (facet == nearest.best.facet) return false;
+        const Vec3 candidate =
+            closest_on_facet(nearest.point, &self.soup.vertices[3 * std::size_t{facet}]);
         const double distance = norm(candidate - nearest.point);
         const bool is_equal = distance == nearest.best.distance;
-        if (!(distance < nearest.best.distance) &&
-            !(is_equal && arguments->primID < nearest.best.facet))
+        if (!(distance < nearest.best.distance) && !(is_equal && facet < nearest.best.facet))
             return false;
-        nearest.best = {candidate, arguments->primID, distance};
+        nearest.best = {candidate, facet, distance};
         const double unit = distance / self.scale;
         arguments->query->radius = static_cast<float>(unit * (1 + rounding_room) + nearest.reach);
         return true;
@@ -208,7 +309,8 @@ ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
     query.radius = static_cast<float>(within / scene_->scale * (1 + rounding_room) + nearest.reach);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene_->scene.get(), &query, &context, Scene::meet_point, &nearest);
+    rtcPointQuery(scene_->part_scene ? scene_->part_scene.get() : scene_->scene.get(), &query,
+                  &context, Scene::meet_point, &nearest);
     return nearest.best;
 }
 

@@ -1,5 +1,6 @@
 #include "meshes/mesh_query.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -95,6 +96,23 @@ TEST(ClosestPoint, AgreesWithAPlainSearchBesideAHugeFacet)
     TriangleSoup soup = sphere(1);
     test::add_facet(soup, {1e30, 0, 3}, {0, 1e30, 3}, {-1e30, -1e30, 3});
     expect_nearest(soup, random_points(50, 2), 1e-12);
+}
+
+/// Long oblique facets are cut into parts for their boxes, each with its apex anywhere along it.
+TEST(ClosestPoint, AgreesWithAPlainSearchAmongLongObliqueFacets)
+{
+    TriangleSoup soup;
+    for (int k = 0; k < 60; ++k)
+    {
+        const double t = 0.1 * k;
+        const Vec3 across{0.02 * std::cos(t), 0.02 * std::sin(t), 0.01};
+        const Vec3 a{std::sin(t) - 1, std::cos(t) - 1, -1};
+        const Vec3 b{std::sin(t) + 1, std::cos(t) + 0.8, 1.3};
+        test::add_facet(soup, a, b, a + (k % 7) / 6.0 * (b - a) + across);
+        test::add_facet(soup, a + across, b, a);
+    }
+    test::add_facet(soup, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+    expect_nearest(soup, random_points(1000, 2), 1e-11);
 }
 
 TEST(ClosestPoint, GivesTheSmallestFacetOfATie)

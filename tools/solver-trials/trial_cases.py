@@ -1,4 +1,4 @@
-"""Small cases whose answer is known, as definitions and meshes: rest, tank, wedge, cup, pipe, tilted, gear, vessel.
+"""Small cases whose answer is known, as definitions and meshes: rest, tank, wedge, cup, pipe, tilted, gear, vessel, ball.
 
 Each function named like a case takes keyword arguments (dp and what the case varies, in metres, m/s, degrees) and gives
 a Trial. Geometry is in its final place in the meshes; the definitions only draw it. Walls of closed bodies are 4 dp thick
@@ -48,6 +48,7 @@ class Trial:
     density_gradient: int = 2
     parameters: dict = field(default_factory=dict)
     motion: str = ""
+    floating: str = ""
     solver_domain: tuple = ("default", "default", "default", "default", "default", "default")
     facts: dict = field(default_factory=dict)
 
@@ -262,4 +263,21 @@ def vessel(dp=0.01, speed=4.0, sound=10.0, time=0.04):
                  parameters={"DtIni": f"{step / 2:.6g}"}, facts={"water_depth": level, "rim": height, "speed": speed})
 
 
-CASES = {f.__name__: f for f in (rest, tank, wedge, cup, pipe, tilted, gear, vessel)}
+def ball(dp=0.0125, time=1.0, density=500.0):
+    """A ball of 0.06 m radius, as heavy as half of the water that it can displace, laid into still water to its middle."""
+    length, width, height, level, wall, radius = 0.3, 0.3, 0.24, 0.18, 4 * dp, 0.06
+    tank_mesh = placed(make_meshes.trough([(0, 0), (length, 0)], length, width, height, wall), Y_UP)
+    # Not on nodes, as a body that floats never is.
+    middle = np.array((length / 2 + 0.3 * dp, 0.2 * dp, level))
+    sphere = placed(make_meshes.icosphere(radius, 4), ABOUT_Z, middle)
+
+    def depth(p, shift):
+        return np.maximum(box_depth(p, length, width), -p[:, 2])
+
+    low, high = (-wall, -width / 2 - wall, -wall), (length + wall, width / 2 + wall, level + radius + 4 * dp)
+    return Trial("ball", dp, {"tank.stl": tank_mesh, "ball.stl": sphere}, around(low, high, 2 * dp), (0.05, 0, level / 2), level, time,
+                 40, depth, "afloat", floating=f'<floatings><floating mkbound="1" rhopbody="{density:g}" /></floatings>',
+                 facts={"water_depth": level, "radius": radius, "density": density, "middle": middle.tolist()})
+
+
+CASES = {f.__name__: f for f in (rest, tank, wedge, cup, pipe, tilted, gear, vessel, ball)}

@@ -158,7 +158,7 @@ def definition(trial, variant):
         <setmkfluid mk="0" />
         <fillbox {xyz(trial.seed)}><modefill>void</modefill><point {xyz(corner)} /><size {xyz(size)} /></fillbox>
     </mainlist></commands></geometry>
-    {normals}{fppg_block(trial, variant)}{trial.motion}
+    {trial.floating}{normals}{fppg_block(trial, variant)}{trial.motion}
 </casedef><execution><parameters>
 {parameters(trial, variant)}
 </parameters></execution></case>

@@ -186,3 +186,39 @@ def turning_gear(run):
               "deepest_dp": max(o["deepest_dp"] for o in told), "lost": series[-1]["lost"],
               "largest_speed": max(r["largest_speed"] for r in series), "mean_speed": series[-1]["mean_speed"]}
     return result, series
+
+
+def afloat(run):
+    """How far the middle of a ball that should float on the water's surface stands above it, and its mass over the true one.
+
+    The surface is half a dp above the highest particles of columns of dp beyond 1.5 radii from the ball.
+    """
+    facts, dp = run.trial.facts, run.trial.dp
+    radius = facts["radius"]
+    block = next(b for b in run.blocks if b["type"] == "floating")
+    series, start = [], None
+    for path in run.parts:
+        values, arrays = read_bi4(path)
+        order = np.argsort(arrays["Idp"])
+        ids, pos = arrays["Idp"][order], (arrays["Posd"] if "Posd" in arrays else arrays["Pos"])[order].astype(float)
+        body = pos[(ids >= block["begin"]) & (ids < block["begin"] + block["count"])].mean(0)
+        start = body if start is None else start
+        middle = np.array(facts["middle"]) + body - start
+        fluid = pos[ids >= run.first_fluid]
+        speed = np.linalg.norm(arrays["Vel"][order][ids >= run.first_fluid], axis=1)
+        far = fluid[np.hypot(fluid[:, 0] - middle[0], fluid[:, 1] - middle[1]) > 1.5 * radius]
+        _, column = np.unique(np.floor(far[:, :2] / dp).astype(int), axis=0, return_inverse=True)
+        tops = np.full(column.max() + 1, -np.inf)
+        np.maximum.at(tops, column.ravel(), far[:, 2])
+        surface = float(np.median(tops)) + dp / 2
+        series.append({"time": float(values["TimeStep"]), "above_mm": float(1000 * (middle[2] - surface)),
+                       "risen_mm": float(1000 * (middle[2] - facts["middle"][2])),
+                       "aside_mm": float(1000 * np.hypot(*(middle - facts["middle"])[:2])),
+                       "largest_speed": float(speed.max()), "lost": run.fluid_at_start - len(fluid)})
+    last = series[-len(series) // 2:]
+    mass = float(read_xml(os.path.join(run.folder, "Case.xml")).find("case/execution/particles/floating/massbody").get("value"))
+    true = facts["density"] * 4 / 3 * np.pi * radius**3
+    return {"mass": mass / true, "above_mm": float(np.mean([r["above_mm"] for r in last])),
+            "swing_mm": max(r["above_mm"] for r in last) - min(r["above_mm"] for r in last),
+            "aside_mm": series[-1]["aside_mm"], "largest_speed": max(r["largest_speed"] for r in last),
+            "lost": series[-1]["lost"]}, series
