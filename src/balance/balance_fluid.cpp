@@ -1,6 +1,7 @@
 #include "fppg/balance.h"
 
 #include "balance/fluid_at_rest.h"
+#include "balance/pressure_sums.h"
 #include "balance/take_places.h"
 #include "balance/wall_pressure.h"
 #include "core/parallel.h"
@@ -83,7 +84,6 @@ public:
         start_ = rest_.positions;
         velocities_.resize(rest_.size());
         accelerations_.resize(rest_.size());
-        volumes_.resize(rest_.size());
         walls_.resize(rest_.size());
         allowed_.assign(rest_.size(), least_distance_ * rest_.dp);
         renew_lists(true);
@@ -175,47 +175,41 @@ private:
                 rest_.densities[i] = rest_.density(rest_.pressures[i]);
             },
             1024);
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-            volumes_[i] = rest_.masses[i] / rest_.densities[i];
-        const double scale = rest_.alpha() / (rest_.h * rest_.h);
+        set_field();
+        // Of sums in dp and dp^3 to those in metres.
+        const double dp = rest_.dp;
+        const double scale =
+            rest_.alpha() / (rest_.h * rest_.h) * dp * (rest_.is_2d ? dp * dp : dp * dp * dp);
+        const auto h_dp = static_cast<float>(rest_.h / dp);
         parallel_for(
             list_.rows(), threads_,
             [&](std::size_t row)
             {
                 const std::uint32_t i = list_.point(row);
                 if (!moves(i)) return;
-                const Vec3 sum = rest_.is_cubic ? push_on(i, list_.neighbours(row),
-                                                          [&](double q) { return rest_.slope(q); })
-                                                : push_on(i, list_.neighbours(row),
-                                                          [](double q)
-                                                          {
-                                                              const double s = 1 - q / 2;
-                                                              return -5 * s * s * s;
-                                                          });
-                accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * sum;
+                const PressureSums sums =
+                    pressure_sums(field_, i, list_.neighbours(row), h_dp, rest_.is_cubic);
+                const Vec3 push =
+                    rest_.pressures[i] * Vec3{double{sums.x}, double{sums.y}, double{sums.z}} +
+                    Vec3{double{sums.px}, double{sums.py}, double{sums.pz}};
+                accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * push;
             },
             NeighbourList::rows_per_chunk);
     }
 
-    template <typename Slope>
-    Vec3 push_on(std::uint32_t i, std::span<const std::uint32_t> neighbours,
-                 const Slope& slope) const
+    void set_field()
     {
-        const Vec3 at = rest_.positions[i];
-        const double pressure = rest_.pressures[i];
-        const double per_h = 1 / rest_.h;
-        const double reach = 4 * rest_.h * rest_.h;
-        Vec3 sum;
-        for (const std::uint32_t j : neighbours)
+        field_.points = rest_.in_dp(rest_.positions);
+        field_.volumes.resize(rest_.size());
+        field_.pressures.resize(rest_.size());
+        const double dp = rest_.dp;
+        const double unit = rest_.is_2d ? dp * dp : dp * dp * dp;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
         {
-            const Vec3 away = at - rest_.positions[j];
-            const double squared = dot(away, away);
-            if (squared >= reach) continue;
-            const double of_pair =
-                volumes_[j] * (pressure + rest_.pressures[j]) * slope(std::sqrt(squared) * per_h);
-            sum = sum + of_pair * away;
+            const double volume = rest_.masses[i] / rest_.densities[i] / unit;
+            field_.volumes[i] = static_cast<float>(volume);
+            field_.pressures[i] = static_cast<float>(volume * rest_.pressures[i]);
         }
-        return sum;
     }
 
     void step()
@@ -298,7 +292,7 @@ private:
     double least_distance_;        ///< to a wall, dp
     std::vector<Vec3> velocities_; ///< metres a step
     std::vector<Vec3> accelerations_;
-    std::vector<double> volumes_; ///< mass over density
+    PressureField field_;
     std::vector<Vec3> start_;
     std::vector<Vec3> looked_at_; ///< places when walls were looked for
     std::vector<WallPlanes> walls_;
