@@ -51,7 +51,8 @@ struct BalanceReport
 /// pressure of their depth (DBC), 0 above the level; or what mDBC gives them at each step from the
 /// fluid around their ghost nodes (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with
 /// h^2 rho / p, with momentum (heavy ball, factor 0.85); none is longer than 0.05 dp, no particle
-/// moves farther than one dp in all, none comes nearer to a wall than 0.2 dp or than it was.
+/// moves farther than one dp in all, none comes nearer to a wall than 0.5 dp (mDBC: 0.2 dp) or than
+/// it was, none higher than 0.25 dp below its level.
 ///
 /// Fluid of a free face that is not level stays, with all within 2h of it: it is meant to fall, as
 /// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.05 g

@@ -105,6 +105,13 @@ enum class LayerSide : std::uint8_t
 
 /// How the particles of a boundary mk are placed on its true surface: `<fppg><bodyfitted>`, or
 /// -fit.
+/// Where the particles of a fitted body stand.
+enum class Placement : std::uint8_t
+{
+    Surface, ///< the first on its surface, or in layers behind it
+    Inside,  ///< all inside, the outermost half a dp behind its surface; each stands for dp^3
+};
+
 struct FitSettings
 {
     int line = 0;                  ///< of the element; 0: from the command line
@@ -124,6 +131,11 @@ struct FitSettings
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;
+    Placement place = Placement::Surface;
+    /// Of bodies with Placement::Inside: how many sheets of particles through their thickness;
+    /// empty: as many as it is dp, rounded.
+    std::optional<int> across;
+    bool has_exact_volumes = false; ///< each particle has its own volume (CaseParticles::volumes)
     std::vector<Vec3> fluid_places; ///< where fluid is drawn, by which sides of sheets are chosen
     bool operator==(const FitSettings&) const = default;
 };

@@ -76,6 +76,14 @@ struct FittedBody
     /// corners, along edges, on surfaces.
     std::array<std::size_t, 3> left_out{};
 
+    /// All its particles are in it and stand for dp^3 each (Placement::Inside).
+    bool is_inside = false;
+    double spacing_dp = 1; ///< of the particles on its surface or, of a layer, in it
+    /// Of a plate, beam or shell with Placement::Inside: the sheets through its thickness, which is
+    /// in metres; 0: it is thicker.
+    int sheets = 0;
+    double thickness = 0;
+
     /// Of a layer of a wall: the index of the body whose surface it lies behind; else no_index.
     std::uint32_t owner = no_index;
     int layer = 0;    ///< 0, 1, ... from the surface on

@@ -185,6 +185,10 @@ struct CaseParticles
     /// empty: rhop0.
     std::vector<float> bound_rhop;
 
+    /// Metres cubed (2D: squared) that each particle stands for, in id order; empty: no body asks
+    /// for its own (FitSettings::has_exact_volumes).
+    std::vector<double> volumes;
+
     /// From every boundary particle to the boundary's surface, in id order; empty: the case asks
     /// for no normals. Zero: none.
     std::vector<std::array<float, 3>> bound_normals;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -44,6 +45,15 @@ private:
     std::function<Vec3(const Vec3&, double)> find_;
 };
 
+/// How a particle moves in relax_volume().
+enum class VolumeMotion : std::uint8_t
+{
+    Free,      ///< it may be removed where the count is fitted
+    Lasting,   ///< freely, but it stays whatever the count is
+    AlongWall, ///< along the wall that is nearest to it, and it stays
+    AlongEdge, ///< along the line where the walls nearest to it meet, and it stays
+};
+
 /// What surrounds the volume particles that move. Particles of other regions, beyond a wall, do not
 /// belong here: a continuum stands for them.
 struct VolumeSurroundings
@@ -51,6 +61,11 @@ struct VolumeSurroundings
     std::span<const Vec3> held;  ///< volume particles that stay; those within 2.5 h suffice
     std::span<const Vec3> walls; ///< wall particles, each of the weight of a volume particle
     ClosestWallPoint closest;    ///< empty: there is no wall
+    /// Per moving particle how it moves; empty: all freely.
+    std::span<const VolumeMotion> slides{};
+    /// The place on its surface of a sliding one, by its index and where it is; called from several
+    /// threads at once.
+    std::function<Vec3(std::size_t, const Vec3&)> put_back{};
 };
 
 /// What an iteration has reached.
@@ -72,10 +87,14 @@ struct RelaxVolumeOptions
     /// So far behind the walls the continuum begins: half a dp behind particles on their surface, 0
     /// where it stands for all of the wall and surroundings.walls is empty. At least 0.
     double behind_wall_dp = 0.5;
-    double clearance_dp = 1.0; ///< nodes nearer to a wall than this may be missing because of it
+    bool has_free_surface = true; ///< a lattice may end in the open, where it is held
+    double clearance_dp = 1.0;    ///< nodes nearer to a wall than this may be missing because of it
     /// Particles are removed where they are too many for the space that the walls leave, and
     /// inserted where they are too few.
     bool fit_count = false;
+    /// With `fit_count`: so many particles are wanted in all; empty: as many as fill the space
+    /// evenly.
+    std::optional<double> wanted{};
     /// Called after every iteration; relaxation ends when it returns false. May be empty.
     std::function<bool(const RelaxVolumeProgress&)> on_iteration;
 };
@@ -89,6 +108,7 @@ struct RelaxVolumeReport
     double shepard_variation = 0;
     std::size_t removed = 0;
     std::size_t inserted = 0;
+    std::size_t kept = 0; ///< of the result, those that were there
     /// With `fit_count`, for every particle of the result the index that it had, or that of the
     /// particle beside which it was inserted. First those that were there, in their order.
     std::vector<std::uint32_t> sources;

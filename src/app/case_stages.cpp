@@ -8,6 +8,7 @@
 #include "fppg/relax_walls.h"
 
 #include "app/block_check.h"
+#include "app/body_table.h"
 #include "app/fit_check.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
@@ -17,6 +18,7 @@
 #include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
+#include "particles/exact_volumes.h"
 
 #include <fmt/format.h>
 
@@ -103,6 +105,19 @@ std::vector<ShapePolygons> normal_geometry(const CaseRunState& run, const MadeCa
         made.def.file, geometry.line, geometry.file,
         names.empty() ? "none (<shapeout> does)" : fmt::format("{}", fmt::join(names, ", ")),
         in_output.string(), beside.string()));
+}
+
+/// The volumes of particles where `<bodyfitted volume="exact">` asks for them.
+std::vector<double> volumes_of_bodies(const CaseRunState& run, const MadeCase& made)
+{
+    try
+    {
+        return exact_volumes(made.def, made.field.walls, made.particles, run.threads);
+    }
+    catch (const GeometryError& error)
+    {
+        throw GeometryError(fmt::format("{}: {}", made.def.file, error.what()));
+    }
 }
 
 } // namespace
@@ -192,6 +207,7 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   std::vector<std::string> warnings;
                   made.particles =
                       make_particles(made.def, made.field, run.threads, made.constants, warnings);
+                  made.particles.volumes = volumes_of_bodies(run, made);
                   std::vector<std::string> periods;
                   set_period(made.def, made.particles, periods);
                   for (std::string& w : periods) run.diagnose(std::move(w));
@@ -199,6 +215,7 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   const SettledFloatings floatings =
                       settle_floatings(made.scene, made.field.walls, made.particles);
                   log_floatings(floatings, run.log);
+                  log_bodies(made.scene, made.field.walls, made.particles, made.constants, run.log);
                   for (const std::string& w : floatings.warnings) run.warn(w);
                   for (std::string& w : warnings) run.warn(std::move(w));
                   for (const std::string& w : floatings.light_or_heavy) run.diagnose(w);

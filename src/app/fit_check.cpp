@@ -17,14 +17,17 @@ namespace fppg
 namespace
 {
 
-/// With room for rounding.
-constexpr double largest_deviation = 0.02 + 1e-9;
+/// Of volumes and masses, and of the number of particles on a surface; with room for rounding.
+constexpr double largest_deviation = 0.01 + 1e-9;
+constexpr double largest_of_count = 0.02 + 1e-9;
 /// Of the nodes in a body that fills gave particles.
 constexpr double nearly_all = 0.98;
 /// A plate of this mean thickness or less has no room for nodes between the particles of its sides.
 constexpr double thin_dp = 2;
 /// Below this many dp^2 the particles of edges and corners are a share of all that counts.
 constexpr double small_surface = 1000;
+/// Of a body that its wall's particles stand for, so that nodes make up the rest.
+constexpr double room_left = 0.9;
 /// Of the particles of a wall: its edges are close to one another.
 constexpr double many_on_edges = 0.25;
 
@@ -84,7 +87,7 @@ private:
         const double expected = measures.area / (dp_ * dp_);
         if (!(expected > 0) || has_layers(b)) return {};
         const double share = measures.wall_particles / expected - 1;
-        if (is_off(share))
+        if (std::abs(share) > largest_of_count && !body.is_inside)
             counts_[why_count(b, expected, share)].add(
                 body.mk, share,
                 fmt::format("<{}> of line {} has {:.0f} particles on {:.4g} {}, {:.0f} would be "
@@ -127,7 +130,8 @@ private:
             fmt::format("{:.4g} of {:.4g} {}", got / depth_, measures.volume / depth_, size_unit_);
         if (is_off(share))
             volumes_[why_volume(body)].add(
-                body.mk, share, fmt::format("<{}> of line {} has {}", body.name, body.line, both));
+                body.mk, share,
+                fmt::format("<{}> of line {} has {}{}", body.name, body.line, both, finer(body)));
         return fmt::format(" {} ({})", both, percent(share));
     }
 
@@ -145,10 +149,30 @@ private:
                          : "as rows of particles meet with gaps";
     }
 
+    /// The dp with which the particles of a wall leave room for nodes, as words.
+    std::string finer(const FittedBody& body) const
+    {
+        const FitMeasures& measures = body.measures;
+        double length = 0;
+        for (const FeatureLine& line : body.features.lines) length += line.length;
+        const double area = measures.area + measures.second_sheet;
+        const auto corners = static_cast<double>(body.features.singular.size());
+        const auto has_room = [&](double dp)
+        {
+            const double on_surface = std::max(area / (dp * dp), corners + length / dp);
+            return 0.5 * on_surface * dp * dp * dp <= room_left * measures.volume;
+        };
+        double dp = dp_;
+        while (!has_room(dp) && dp > 1e-3 * dp_) dp *= 0.98;
+        if (dp >= 0.97 * dp_ || depth_ != 1) return {};
+        return fmt::format(", for which a dp of {:.2g} m would do", dp);
+    }
+
     std::string why_volume(const FittedBody& body) const
     {
         const FitSettings* settings = fit_settings(settings_, body.mk);
         const FitMeasures& measures = body.measures;
+        if (body.is_inside) return "as they are only a few dp in size";
         if (settings != nullptr && settings->clearance_dp)
             return fmt::format("as clearance=\"{:g}\" is given", *settings->clearance_dp);
         const double thickness =

@@ -34,7 +34,8 @@ private:
     std::string text_of_most_;
 };
 
-/// Whether what came out is farther off than what is told, 2 %.
+/// Whether what came out is farther off than what is told of volumes and
+/// masses, 1 %.
 bool is_off(double share);
 
 /// Compares the particles of every fitted body with its shape, for the whole of it: what the domain
@@ -42,7 +43,8 @@ bool is_off(double share);
 /// surface against one per dp^2 and, of solids, the volume that they and the nodes inside stand for
 /// (half of dp^3 each on the surface) against that of the shape.
 ///
-/// returns  a warning for each reason why bodies are off by more than 2 %, with their mks
+/// returns  a warning for each reason why bodies are off, by more than 2 % in number on the surface
+///          or 1 % in volume, with their mks and the dp that would do
 std::vector<std::string> check_fit(const FitDef& settings, const FittedWalls& walls,
                                    const LatticeGrid& grid, RunLog& log);
 

@@ -7,6 +7,7 @@
 #include "app/stage_bar.h"
 #include "app/stopwatch.h"
 #include "app/thousands.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -101,6 +102,13 @@ std::string layers_text(const FittedWalls& walls, std::size_t body,
     return fmt::format("{}", fmt::join(layers, ", "));
 }
 
+/// Of the particles in the sheets of a plate, dp.
+static double spacing_along(const FittedBody& body, double dp, bool is_2d)
+{
+    const double area = dp * body.sheets / body.thickness;
+    return is_2d ? area : std::sqrt(area);
+}
+
 void log_fitted_walls(const RunField& field, RunLog& log)
 {
     const FittedWalls& walls = field.walls;
@@ -125,6 +133,14 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles{}",
                              body.name, body.line, body.mk, all[0], all[1], all[2],
                              layers.empty() ? "" : ", in layers of " + layers));
+        if (body.sheets > 0)
+            log.line(fmt::format(
+                "    {} through its thickness of {:.4g} dp: {:.4g} dp apart across ({:+.3g} %), "
+                "{:.4g} dp along",
+                counted(static_cast<std::size_t>(body.sheets), "sheet", "sheets"),
+                body.thickness / dp, body.thickness / body.sheets / dp,
+                100 * (body.thickness / body.sheets / dp - 1),
+                spacing_along(body, dp, field.grid.is_2d)));
         if (body.measures.filled > 0)
             log.line(fmt::format(
                 "    volume {:g}, area {:g}, clearance {:.3f} dp inside, {:.3f} dp outside",

@@ -28,7 +28,7 @@ struct SettledFloating
 struct SettledFloatings
 {
     std::vector<SettledFloating> bodies;
-    /// Bodies with fitted walls whose mass by their density is more than 2 % off that of their
+    /// Bodies with fitted walls whose mass by their density is more than 1 % off that of their
     /// shape, as they are hollow or cut.
     std::vector<std::string> warnings;
     /// Bodies on the lattice whose mass by their density is more than 5 % off that of their shape:

@@ -22,7 +22,11 @@ namespace
 constexpr double list_skin = 0.3;
 constexpr double longest_step = 0.05;
 constexpr double farthest = 1.0;
-constexpr double least_wall_distance = 0.2;
+/// To walls whose particles stand on the surface; nearer, fluid is squeezed between these where it
+/// is crowded, as at the inside of a bend.
+constexpr double least_distance_dbc = 0.5;
+/// To walls whose first particles stand half a dp behind the surface.
+constexpr double least_distance_mdbc = 0.2;
 constexpr double reach_of_walls = 2.5;
 /// Below the level of its column; the highest particles start half a dp below it.
 constexpr double least_depth = 0.25;
@@ -68,7 +72,8 @@ public:
           threads_(threads),
           list_(static_cast<float>(rest_reach_dp(rest)), static_cast<float>(list_skin)),
           ghosts_(rest, boundary),
-          has_ghosts_(boundary != RestBoundary::Dbc)
+          has_ghosts_(boundary != RestBoundary::Dbc),
+          least_distance_(has_ghosts_ ? least_distance_mdbc : least_distance_dbc)
     {
     }
 
@@ -80,7 +85,7 @@ public:
         accelerations_.resize(rest_.size());
         volumes_.resize(rest_.size());
         walls_.resize(rest_.size());
-        allowed_.assign(rest_.size(), least_wall_distance * rest_.dp);
+        allowed_.assign(rest_.size(), least_distance_ * rest_.dp);
         renew_lists(true);
         report.held = hold_free_faces(rest_, list_, threads_);
         renew_pressures();
@@ -290,6 +295,7 @@ private:
     NeighbourList list_;
     GhostPressures ghosts_;
     bool has_ghosts_;
+    double least_distance_;        ///< to a wall, dp
     std::vector<Vec3> velocities_; ///< metres a step
     std::vector<Vec3> accelerations_;
     std::vector<double> volumes_; ///< mass over density

@@ -117,7 +117,7 @@ private:
     {
         require_known(e,
                       {"mkbound", "featureangle", "density", "clearance", "plates", "boundary",
-                       "layers", "side"},
+                       "layers", "side", "place", "across", "volume"},
                       {"relax"});
         FitSettings s;
         s.line = e.line;
@@ -137,6 +137,7 @@ private:
                        fmt::format("attribute plates=\"{}\" is invalid, expected auto, both or one",
                                    plates));
         read_layers(e, s);
+        read_place(e, s);
         bool has_relax = false;
         for (const Element& c : e.children)
         {
@@ -184,6 +185,27 @@ private:
             read_.fail(e, fmt::format("attribute side=\"{}\" is invalid, expected behind, front or "
                                       "both",
                                       side));
+    }
+
+    void read_place(const Element& e, FitSettings& s) const
+    {
+        s.has_exact_volumes = !is_first_of(e, "volume", "equal", "exact");
+        if (is_first_of(e, "place", "surface", "inside"))
+        {
+            if (e.find_attribute("across") != nullptr)
+                read_.fail(e, "attribute across is for place=\"inside\" only");
+            return;
+        }
+        s.place = Placement::Inside;
+        for (const char* other : {"clearance", "plates", "layers", "side"})
+            if (e.find_attribute(other) != nullptr)
+                read_.fail(e, fmt::format("attribute {} has no meaning with place=\"inside\", "
+                                          "which puts all particles into the body",
+                                          other));
+        if (e.find_attribute("across") != nullptr && !is_word(e, "across", "auto"))
+            s.across = static_cast<int>(number_or(
+                e, "across", 0, [](double v) { return v >= 1 && v <= 64 && v == std::floor(v); },
+                "auto or a whole number from 1 to 64"));
     }
 
     RelaxSettings relax_of(const Element& e) const

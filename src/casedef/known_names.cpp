@@ -43,6 +43,9 @@ constexpr auto attribute_table = std::to_array<NameRow>({
 "particles setvar setvarstr special uservars vtkout"},
     {"* name",
 "property"},
+    {"across boundary clearance density featureangle layers mkbound place plates side "
+"volume",
+"bodyfitted"},
     {"active",
 "bufferbox norgeometry normals vres"},
     {"active angle anglesunits mkbound mkfluid",
@@ -97,8 +100,6 @@ constexpr auto attribute_table = std::to_array<NameRow>({
 "redrawnear redrawnearbox"},
     {"bound fluid",
 "lattice"},
-    {"boundary clearance density featureangle layers mkbound plates side",
-"bodyfitted"},
     {"boundcount fluidcount",
 "mkconfig"},
     {"closed",

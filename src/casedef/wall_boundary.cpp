@@ -33,6 +33,7 @@ int layers_seen(double kernel_dp)
 
 std::vector<double> layer_depths(const FitSettings& settings, double kernel_dp)
 {
+    if (settings.place == Placement::Inside) return {0.5};
     std::vector<double> out;
     const bool is_mdbc = settings.boundary == WallBoundary::Mdbc;
     const int count = settings.layers.value_or(is_mdbc ? layers_seen(kernel_dp) : 0);

@@ -33,12 +33,13 @@ struct Contents
     bool normals = false; ///< then Mk stands before Type
     bool walls = false;
     std::uint64_t mk_width = 1;
+    bool volumes = false;
 };
 
 struct Layout
 {
     Part points, vertices, idp, vel, rhop, type, mk, normals, sizes, kind, wall_normal, distance,
-        layer;
+        layer, volume;
     Contents has;
     std::uint64_t size = 0;
 };
@@ -59,8 +60,8 @@ Layout lay_out(std::uint64_t n, const Contents& has)
     place(layout.idp,
           fmt::format("\nPOINT_DATA {}\nSCALARS Idp unsigned_int\nLOOKUP_TABLE default\n", n), 4);
     const std::string fields =
-        fmt::format("\nFIELD FieldData {}",
-                    2 + (has.vel_and_rhop ? 2 : 0) + (has.normals ? 2 : 0) + (has.walls ? 4 : 0));
+        fmt::format("\nFIELD FieldData {}", 2 + (has.vel_and_rhop ? 2 : 0) + (has.normals ? 2 : 0) +
+                                                (has.walls ? 4 : 0) + (has.volumes ? 1 : 0));
     const char* const mk_type = has.mk_width == 1 ? "unsigned_char" : "unsigned_short";
     if (has.vel_and_rhop)
     {
@@ -88,6 +89,7 @@ Layout lay_out(std::uint64_t n, const Contents& has)
         place(layout.distance, fmt::format("\nDistance 1 {} float\n", n), 4);
         place(layout.layer, fmt::format("\nLayer 1 {} int\n", n), 4);
     }
+    if (has.volumes) place(layout.volume, fmt::format("\nVolume 1 {} double\n", n), 8);
     layout.size += 1;
     return layout;
 }
@@ -269,6 +271,13 @@ void write_piece(OutputFile& file, const Layout& layout, const ParticleStream& s
     }
     write(layout.type, buffer.type, 1);
     write(layout.mk, buffer.mk8, has.mk_width);
+    if (has.volumes)
+    {
+        std::vector<std::uint64_t> volumes(count);
+        for (std::size_t k = 0; k < count; ++k)
+            volumes[k] = big_endian(particles.volumes[begin + k]);
+        write(layout.volume, volumes.data(), 8);
+    }
     if (!has.walls) return;
     write(layout.kind, buffer.kind, 4);
     write(layout.wall_normal, buffer.wall_normal, 12);
@@ -297,11 +306,13 @@ void write_particles_vtk(OutputFile& file, const CaseParticles& particles,
 
     const Layout layout =
         lay_out(n, {selection != VtkSelection::Bound, has_normals,
-                    particles.has_walls && selection != VtkSelection::Fluid, mk_width});
+                    particles.has_walls && selection != VtkSelection::Fluid, mk_width,
+                    !particles.volumes.empty() && selection != VtkSelection::Fluid});
     file.reserve(layout.size);
-    for (const Part* part : {&layout.points, &layout.vertices, &layout.idp, &layout.vel,
-                             &layout.rhop, &layout.type, &layout.mk, &layout.normals, &layout.sizes,
-                             &layout.kind, &layout.wall_normal, &layout.distance, &layout.layer})
+    for (const Part* part :
+         {&layout.points, &layout.vertices, &layout.idp, &layout.vel, &layout.rhop, &layout.type,
+          &layout.mk, &layout.normals, &layout.sizes, &layout.kind, &layout.wall_normal,
+          &layout.distance, &layout.layer, &layout.volume})
         file.write_at(part->data - part->text.size(), part->text.data(), part->text.size());
     file.write_at(layout.size - 1, "\n", 1);
 

@@ -43,31 +43,39 @@ public:
     /// All bodies whose mks are relaxed alike are one call.
     void relax_surfaces()
     {
-        std::vector<RelaxSettings> kinds;
+        struct Kind
+        {
+            RelaxSettings relax;
+            double spacing_dp = 1;
+            bool operator==(const Kind&) const = default;
+        };
+        std::vector<Kind> kinds;
         std::vector<std::size_t> kind_of_body;
         for (const FittedBody& body : field_.walls.bodies)
         {
             const FitSettings* settings = settings_of(body.mk);
-            const RelaxSettings relax = settings != nullptr ? settings->relax : RelaxSettings{};
-            const auto known = std::find(kinds.begin(), kinds.end(), relax);
+            const Kind own{settings != nullptr ? settings->relax : RelaxSettings{},
+                           body.spacing_dp};
+            const auto known = std::find(kinds.begin(), kinds.end(), own);
             kind_of_body.push_back(static_cast<std::size_t>(known - kinds.begin()));
-            if (known == kinds.end()) kinds.push_back(relax);
+            if (known == kinds.end()) kinds.push_back(own);
         }
         for (std::size_t kind = 0; kind < kinds.size(); ++kind)
         {
-            if (report_.is_stopped || !kinds[kind].is_active) continue;
+            if (report_.is_stopped || !kinds[kind].relax.is_active) continue;
             std::vector<char> is_meant;
             // A layer that two sides share is even as it was made.
             for (std::size_t b = 0; b < kind_of_body.size(); ++b)
                 is_meant.push_back(kind_of_body[b] == kind &&
                                    !field_.walls.bodies[b].mesh.facets.empty());
             if (std::all_of(is_meant.begin(), is_meant.end(), [](char m) { return m != 0; }))
-                relax_surface_of(field_.walls.particles, {}, kinds[kind]);
+                relax_surface_of(field_.walls.particles, {}, kinds[kind].relax,
+                                 kinds[kind].spacing_dp);
             else
             {
                 WallParticles meant = take(is_meant, true);
                 const WallParticles others = take(is_meant, false);
-                relax_surface_of(meant, others, kinds[kind]);
+                relax_surface_of(meant, others, kinds[kind].relax, kinds[kind].spacing_dp);
                 field_.walls.particles = join(meant, others);
             }
         }
@@ -84,12 +92,12 @@ private:
     }
 
     void relax_surface_of(WallParticles& particles, const WallParticles& others,
-                          const RelaxSettings& settings)
+                          const RelaxSettings& settings, double spacing_dp)
     {
         const double dp = field_.grid.dp;
         const FittedWalls& walls = field_.walls;
         RelaxSurfaceOptions options;
-        options.dp = dp;
+        options.dp = dp * spacing_dp;
         options.h = settings.surface_h_dp;
         options.iterations = settings.iterations.value_or(0);
         options.max_iterations = surface_iterations;
@@ -120,9 +128,13 @@ private:
                                     { out = out && all.bodies[i] == body; });
             return out;
         };
-        if (!walls.cut.empty() || second.size() > 0 || all.size() > 0)
+        const bool is_limited = !walls.cut.empty() || second.size() > 0 || all.size() > 0;
+        if (is_limited || has_fixed_numbers(particles))
             options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3& normal)
-            { return is_apart(body, p) && is_free(cut, second_sheets, body, p, normal); };
+            {
+                return !has_fixed_number(walls.owner_of(body)) && is_apart(body, p) &&
+                       is_free(cut, second_sheets, body, p, normal);
+            };
         const std::vector<double> before = count_by_body(particles);
         const double variation_before = spacing_of(particles, others).variation;
         // Layers go on as far as they were laid, so that they stay even where another side takes
@@ -157,6 +169,19 @@ private:
         add_report(done, spacing_of(particles, others), variation_before);
         report_.parts.back().particles = particles.size();
         report_.parts.back().removed += crowded;
+    }
+
+    /// Whether a body has no nodes to make up for particles that come or go.
+    static bool has_fixed_number(const FittedBody& body)
+    {
+        return body.is_inside && body.measures.node_volume < 0.1 * body.measures.volume;
+    }
+
+    bool has_fixed_numbers(const WallParticles& particles) const
+    {
+        return std::any_of(particles.bodies.begin(), particles.bodies.end(),
+                           [&](std::uint32_t body)
+                           { return has_fixed_number(field_.walls.owner_of(body)); });
     }
 
     struct Spacing

@@ -1,11 +1,12 @@
 #include "relax/fit_count.h"
 
 #include "core/parallel.h"
+#include "meshes/point_grid.h"
 #include "relax/kernel.h"
 #include "relax/volume_forces.h"
 
 #include <algorithm>
-
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -136,9 +137,84 @@ void change_array(std::vector<T>& array, const CountChange& change, const Value&
 
 } // namespace
 
+namespace
+{
+
+/// Spreads what the number wanted differs from what fills the space evenly over all particles.
+void add_bias(const Band& band, double wanted, std::vector<float>& excess)
+{
+    double sum = 0;
+    std::size_t count = 0;
+    for (const float e : excess)
+    {
+        if (e == 0) continue;
+        sum += static_cast<double>(e);
+        ++count;
+    }
+    if (count == 0) return;
+    const double too_many = static_cast<double>(band.moving) - wanted;
+    const auto bias = static_cast<float>((too_many - sum) / static_cast<double>(count));
+    for (float& e : excess)
+        if (e != 0) e += bias;
+}
+
+/// Takes or gives what the number is still off, where particles are the most crowded or the most
+/// apart, each 2 dp from the others.
+void make_up_rest(const Band& band, const NeighbourList& list, const std::vector<float>& excess,
+                  const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
+                  CountChange& change)
+{
+    constexpr double apart = 2;
+    const double now = static_cast<double>(band.moving + change.inserted.size()) -
+                       static_cast<double>(change.removed);
+    const double too_many = std::round(now - *options.wanted);
+    if (too_many == 0) return;
+    std::vector<std::size_t> rows;
+    PointGrid changed(apart, change.removed + change.inserted.size());
+    const auto place_of = [&](std::uint32_t i) {
+        return Vec3{band.points.x[i], band.points.y[i], band.points.z[i]};
+    };
+    for (std::size_t row = 0; row < list.rows(); ++row)
+    {
+        const std::uint32_t i = list.point(row);
+        if (i >= band.moving || excess[i] == 0) continue;
+        if (change.is_removed[i] != 0)
+            changed.add(place_of(i));
+        else
+            rows.push_back(row);
+    }
+    for (const CountChange::Inserted& one : change.inserted) changed.add(place_of(one.beside));
+    const float sign = too_many > 0 ? 1.0f : -1.0f;
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b)
+                     { return sign * excess[list.point(a)] > sign * excess[list.point(b)]; });
+    auto left = static_cast<std::size_t>(std::abs(too_many));
+    for (std::size_t k = 0; k < rows.size() && left > 0; ++k)
+    {
+        const std::uint32_t i = list.point(rows[k]);
+        const Vec3 here = place_of(i);
+        if (changed.has_nearer(here, apart)) continue;
+        if (too_many > 0)
+        {
+            change.is_removed[i] = 1;
+            ++change.removed;
+        }
+        else
+        {
+            const Vec3 place = gap_beside(band, i, list.neighbours(rows[k]), options, closest);
+            if (place == band.place(i)) continue;
+            change.inserted.push_back({i, place});
+        }
+        changed.add(here);
+        --left;
+    }
+}
+
+} // namespace
+
 CountChange find_count_change(const Band& band, const NeighbourList& list,
                               const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
-                              int threads)
+                              bool is_last, int threads)
 {
     constexpr double wider = 1.3;
     const double h = wider * options.h_dp;
@@ -152,18 +228,20 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         [&](std::size_t row)
         {
             const std::uint32_t i = list.point(row);
-            if (i >= band.moving || band.is_held[i] != 0) return;
+            if (i >= band.moving || band.is_held[i] != 0 || band.slides[i] != VolumeMotion::Free)
+                return;
             excess[i] =
                 static_cast<float>(excess_at(band, i, list.neighbours(row), wide, cut_off, even));
         },
         NeighbourList::rows_per_chunk);
     CountChange change;
     change.is_removed.assign(band.moving, 0);
+    if (options.wanted) add_bias(band, *options.wanted, excess);
     double sum = 0;
     std::size_t highest = list.rows();
     std::size_t lowest = list.rows();
     std::size_t length = 0;
-    for (std::size_t row = 0; row < list.rows(); ++row)
+    for (std::size_t row = 0; row < list.rows() && !is_last; ++row)
     {
         const std::uint32_t at = list.point(row);
         if (at >= band.moving || excess[at] == 0) continue;
@@ -172,7 +250,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         if (highest == list.rows() || excess[at] > excess[list.point(highest)]) highest = row;
         if (lowest == list.rows() || excess[at] < excess[list.point(lowest)]) lowest = row;
         if (std::abs(sum) < 0.5) continue;
-        if (length > even_stretch)
+        if (length > even_stretch && !options.wanted)
             sum = 0;
         else if (sum > 0)
         {
@@ -190,6 +268,7 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         length = 0;
         highest = lowest = list.rows();
     }
+    if (options.wanted) make_up_rest(band, list, excess, options, closest, change);
     return change;
 }
 
@@ -214,6 +293,7 @@ void change_count(Band& band, const CountChange& change)
     change_array(band.sources, change, [&](const Inserted& one) { return sources[one.beside]; });
     change_array(band.is_inserted, change, [](const Inserted&) { return char{1}; });
     change_array(band.is_held, change, [](const Inserted&) { return char{0}; });
+    change_array(band.slides, change, [](const Inserted&) { return VolumeMotion::Free; });
     change_array(band.light_looks, change, [](const Inserted&) { return char{0}; });
     change_array(band.meetings, change, [](const Inserted&) { return no_meeting; });
     band.volume_end += band.sources.size() - band.moving;

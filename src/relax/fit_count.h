@@ -23,10 +23,12 @@ struct CountChange
 };
 
 /// Adds up along the rows of the lists how far Shepard sums are from 1, and gives or takes a
-/// particle wherever that makes half a one.
+/// particle wherever that makes half a one; and what the number is then off that wanted.
+///
+/// is_last  only what the number is off
 CountChange find_count_change(const Band& band, const NeighbourList& list,
                               const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
-                              int threads);
+                              bool is_last, int threads);
 
 /// Carries a change out; lists must be made anew.
 void change_count(Band& band, const CountChange& change);

@@ -29,6 +29,9 @@ constexpr int most_iterations = 100;
 constexpr int first_count_change = 5;
 constexpr int count_change_interval = 5;
 constexpr int last_count_change = 15;
+constexpr int last_rest = 25;
+/// Sliding particles go along tangents for so many iterations.
+constexpr int slides_between = 5;
 
 /// What one chunk of particles adds up to.
 struct ChunkSums
@@ -165,6 +168,34 @@ private:
     bool is_2d_;
 };
 
+bool slides(VolumeMotion motion)
+{
+    return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
+}
+
+/// The part of a step that leads along the walls on which a particle slides: those no farther from
+/// it than the nearest and a little more.
+Vec3 along_walls(const Band& band, std::size_t i, Vec3 step)
+{
+    constexpr float little_more = 0.3f;
+    std::array<Vec3, 3> across;
+    std::size_t count = 0;
+    const auto take = [&](const BandPlane& plane, float distance)
+    {
+        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == across.size() ||
+                          distance > band.wall_distances[i] + little_more))
+            return;
+        Vec3 normal{plane.x, plane.y, plane.z};
+        for (std::size_t k = 0; k < count; ++k)
+            normal = normal - dot(normal, across[k]) * across[k];
+        const double size = norm(normal);
+        if (size > 0.2) across[count++] = normal / size;
+    };
+    for_each_wall(band, i, take);
+    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, across[k]) * across[k];
+    return count < across.size() ? step : Vec3{};
+}
+
 ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
 {
     return sum_over_chunks(
@@ -174,6 +205,7 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
             if (band.is_held[i] != 0) return;
             Vec3 step{band.velocities.x[i], band.velocities.y[i], band.velocities.z[i]};
             if (options.is_2d) step.y = 0;
+            if (slides(band.slides[i])) step = along_walls(band, i, step);
             const double length = norm(step);
             if (length > double{longest_step}) step = step * (double{longest_step} / length);
             if (!guard.is_safe(band, i, step))
@@ -198,8 +230,31 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
         });
 }
 
+/// Puts sliding particles back on their surfaces.
+void put_back(Band& band, const VolumeSurroundings& surroundings, bool is_2d, int threads)
+{
+    if (surroundings.slides.empty()) return;
+    parallel_for(
+        band.moving, threads,
+        [&](std::size_t i)
+        {
+            if (!slides(band.slides[i]) || band.is_held[i] != 0) return;
+            const Vec3 to = surroundings.put_back(band.sources[i], band.place(i));
+            Vec3 step = (to - band.place(i)) / band.dp;
+            if (is_2d) step.y = 0;
+            for (auto* of : {&band.points, &band.moved})
+            {
+                of->x[i] += static_cast<float>(step.x);
+                of->y[i] += static_cast<float>(step.y);
+                of->z[i] += static_cast<float>(step.z);
+            }
+        },
+        64);
+}
+
 /// Gives the positions back in the caller's order, inserted ones last.
-void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
+void give_back(const Band& band, const VolumeSurroundings& surroundings,
+               const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
                RelaxVolumeReport& report)
 {
     std::vector<std::uint32_t> order(band.moving);
@@ -214,7 +269,10 @@ void give_back(const Band& band, const RelaxVolumeOptions& options, std::vector<
         const std::uint32_t i = order[k];
         const Vec3& start = positions[band.sources[i]];
         result[k] = band.is_held[i] != 0 ? start : band.place(i);
+        if (slides(band.slides[i]) && band.is_held[i] == 0)
+            result[k] = surroundings.put_back(band.sources[i], result[k]);
         if (options.is_2d) result[k].y = start.y;
+        if (band.is_inserted[i] == 0) ++report.kept;
         if (options.fit_count) report.sources.push_back(band.sources[i]);
     }
     positions = std::move(result);
@@ -231,6 +289,14 @@ bool is_count_due(int iteration)
 {
     return iteration >= first_count_change && iteration <= last_count_change &&
            (iteration - first_count_change) % count_change_interval == 0;
+}
+
+/// Whether the number wanted was not reached when it was fitted.
+bool is_rest_due(const Band& band, const RelaxVolumeOptions& options, int iteration)
+{
+    return options.wanted && iteration > last_count_change && iteration <= last_rest &&
+           iteration % count_change_interval == 0 &&
+           std::abs(static_cast<double>(band.moving) - *options.wanted) > 0.5;
 }
 
 /// Whether the coefficient of variation has fallen by less than 5 per cent over ten iterations.
@@ -252,7 +318,8 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     Band band = make_band(positions, surroundings, options, threads);
     NeighbourList list(0, 0);
     build_list(list, band, options.h_dp, threads);
-    report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
+    if (options.has_free_surface)
+        report.held_at_surface = hold_free_surface(band, list, surroundings, options, threads);
 
     const VolumeForces forces(options.h_dp, options.behind_wall_dp, options.is_2d);
     const WallGuard guard(surroundings.closest, options);
@@ -265,10 +332,11 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     for (int iteration = 1; iteration <= last; ++iteration)
     {
         if (list.is_outdated(band.points, threads)) build_list(list, band, options.h_dp, threads);
-        if (options.fit_count && is_count_due(iteration))
+        const bool is_due = is_count_due(iteration);
+        if (options.fit_count && (is_due || is_rest_due(band, options, iteration)))
         {
             const CountChange change =
-                find_count_change(band, list, options, surroundings.closest, threads);
+                find_count_change(band, list, options, surroundings.closest, !is_due, threads);
             report.removed += change.removed;
             report.inserted += change.inserted.size();
             change_count(band, change);
@@ -280,6 +348,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (sums.count == 0) break;
         kept = sums.work < 0 ? 0 : volume_momentum;
         const ChunkSums steps = move(band, guard, options, threads);
+        if (iteration % slides_between == 0) put_back(band, surroundings, options.is_2d, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;
         const double variance = sums.shepard_squared / n - (mean - 1) * (mean - 1);
@@ -295,7 +364,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (options.iterations == 0 && has_settled(variations)) break;
     }
     list = NeighbourList(0, 0); // its memory is needed for the result
-    give_back(band, options, positions, report);
+    give_back(band, surroundings, options, positions, report);
     return report;
 }
 

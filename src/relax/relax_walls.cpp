@@ -4,9 +4,12 @@
 #include "meshes/point_grid.h"
 #include "relax/all_surfaces.h"
 #include "relax/all_walls.h"
+#include "relax/fit_moments.h"
 #include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
+#include "relax/region_volume.h"
 #include "relax/regions.h"
+#include "relax/sliding_walls.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +32,8 @@ constexpr double reach_of_cuts_dp = 3;
 /// A sheet with nodes of a region this near on both sides stays as it is, dp.
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int volume_iterations = 30;
+/// Of bodies that are wholly inside, whose outermost particles move as well.
+constexpr int inside_iterations = 80;
 constexpr std::size_t runs_per_chunk = 256;
 
 /// A run of the field and its slab.
@@ -135,7 +140,7 @@ private:
             Region region;
             region.band.assign(65536, 0);
             region.band[mk] = 1;
-            take_new_nodes(region, -count);
+            take_new_nodes(field_.walls, region, -count, field_.grid.dp);
             if (!report_.parts.empty())
                 report_.parts.front().removed += static_cast<std::size_t>(count);
         }
@@ -168,6 +173,12 @@ private:
             if (settings->relax.iterations)
                 region.iterations = std::min(*settings->relax.iterations, volume_iterations);
             relax_region(region, all, runs[s]);
+        }
+        for (std::size_t b = 0; b < field_.walls.bodies.size() && !report_.is_stopped; ++b)
+        {
+            const FitSettings* settings = settings_of(field_.walls.bodies[b].mk);
+            if (settings != nullptr && settings->relax.is_active)
+                fit_moments(field_, b, all, threads_);
         }
         if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {
@@ -253,7 +264,8 @@ private:
         };
         PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
         for (const Vec3& p : walls.cut) cut.add(p);
-        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        if (!region.is_solid || !is_inside(walls, region))
+            for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
         const std::optional<LatticeStrips> strips =
             region.is_solid ? std::nullopt
                             : std::optional<LatticeStrips>(std::in_place, def_, field_);
@@ -361,16 +373,26 @@ private:
                            [&](std::uint32_t b) { return walls.bodies[b].is_layer(); });
     }
 
-    /// Wall particles within the reach of forces on those that move.
-    std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers) const
+    /// Wall particles that stay, within the reach of forces on those that move.
+    std::vector<Vec3> find_walls(const Region& region, const std::vector<Mover>& movers,
+                                 const SlidingWalls& sliding) const
     {
         const LatticeGrid& grid = field_.grid;
+        const WallParticles& particles = field_.walls.particles;
         const double reach = (2 * region.h_dp + 2) * grid.dp;
         Box3 box;
         for (const Mover& m : movers) box.add(place_of(m.node, grid));
+        for (const std::uint32_t i : sliding.particles) box.add(particles.positions[i]);
         std::vector<Vec3> out;
-        for (const Vec3& p : field_.walls.particles.positions)
+        auto next = sliding.particles.begin();
+        for (std::uint32_t i = 0; i < particles.size(); ++i)
         {
+            if (next != sliding.particles.end() && *next == i)
+            {
+                ++next;
+                continue;
+            }
+            const Vec3& p = particles.positions[i];
             bool is_near = true;
             for (int axis = 0; axis < 3; ++axis)
                 is_near =
@@ -378,6 +400,14 @@ private:
             if (is_near) out.push_back(p);
         }
         return out;
+    }
+
+    static double count_nodes(const Region& region, const std::vector<SlabRun>& runs)
+    {
+        double count = 0;
+        for (const SlabRun& r : runs)
+            if (region.band[r.run.mk] > 0) count += r.run.z_end - r.run.z_begin;
+        return count;
     }
 
     /// runs  of the region, and of what is beside it, in their order in the field
@@ -390,18 +420,32 @@ private:
         // Twice the side reaches from a wall particle over the band and the reach of forces.
         const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
         const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1));
-        if (movers.empty()) return;
+        const bool is_of_inside = region.is_solid && is_inside(field_.walls, region);
+        const SlidingWalls sliding =
+            is_of_inside ? find_sliding(field_.walls, region) : SlidingWalls{};
+        if (movers.empty() && sliding.particles.empty()) return;
         const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
         // Before walls all of whose particles stand behind their surface, a continuum from there on
         // stands for them: it is as smooth as the boundary condition.
         const bool is_before_layers = !region.is_solid && are_layered();
         const std::vector<Vec3> near_walls =
-            is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers);
+            is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers, sliding);
 
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
+        std::vector<VolumeMotion> slides(sliding.particles.empty() ? 0 : movers.size(),
+                                         VolumeMotion::Free);
+        slides.insert(slides.end(), sliding.motions.begin(), sliding.motions.end());
+        for (const std::uint32_t i : sliding.particles)
+            positions.push_back(field_.walls.particles.positions[i]);
         VolumeSurroundings surroundings;
+        surroundings.slides = slides;
+        surroundings.put_back = [&](std::size_t i, const Vec3& p)
+        {
+            return put_back(field_.walls, sliding.particles[i - movers.size()], p, grid.dp,
+                            surroundings.closest);
+        };
         surroundings.held = held;
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)
@@ -409,25 +453,33 @@ private:
         RelaxVolumeOptions options;
         options.dp = grid.dp;
         options.h_dp = region.h_dp;
-        options.iterations = region.iterations.value_or(volume_iterations);
+        options.iterations =
+            region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = region.fits_count;
-        if (is_before_layers) options.behind_wall_dp = 0;
+        if (region.is_solid)
+            options.wanted = wanted_number(field_.walls, region, positions.size(),
+                                           count_nodes(region, runs), grid.dp);
+        if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
+        options.has_free_surface = !is_of_inside;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
-            return observe({region.what, p.iteration, options.iterations, movers.size(),
-                            p.shepard_mean, p.shepard_variation, p.largest_step_dp});
+            return observe({region.what, p.iteration, options.iterations,
+                            slides.empty() ? movers.size() : slides.size(), p.shepard_mean,
+                            p.shepard_variation, p.largest_step_dp});
         };
-        const RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
+        RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
+        const std::size_t before = movers.size() + sliding.particles.size();
+        const double more = static_cast<double>(positions.size()) - static_cast<double>(before);
+        const std::size_t relaxed = positions.size();
+        if (!sliding.particles.empty()) keep_slid(sliding, movers.size(), positions, done);
         keep_moved(region, all, movers, positions, done.sources);
-        if (region.is_solid)
-            take_new_nodes(
-                region, static_cast<double>(positions.size()) - static_cast<double>(movers.size()));
+        if (region.is_solid) take_new_nodes(field_.walls, region, more, field_.grid.dp);
 
         RelaxedPart part;
         part.what = region.what;
         part.iterations = done.iterations;
-        part.particles = positions.size();
+        part.particles = relaxed;
         part.inserted = done.inserted;
         part.removed = done.removed;
         part.mean = done.shepard_mean;
@@ -435,21 +487,34 @@ private:
         report_.parts.push_back(part);
     }
 
-    /// The bodies of a region share what its particles became more, by their volume.
-    void take_new_nodes(const Region& region, double more)
+    /// Wall particles that slid are put to their new places; those of the volume stay in
+    /// `positions`.
+    void keep_slid(const SlidingWalls& sliding, std::size_t nodes, std::vector<Vec3>& positions,
+                   RelaxVolumeReport& done)
     {
-        const double dp = field_.grid.dp;
-        const auto is_meant = [&](const FittedBody& body)
-        { return region.band[body.mk] > 0 && body.is_solid && body.measures.filled > 0; };
-        double volume = 0;
-        for (const FittedBody& body : field_.walls.bodies)
-            if (is_meant(body)) volume += body.measures.node_volume;
-        for (FittedBody& body : field_.walls.bodies)
+        WallParticles& particles = field_.walls.particles;
+        VolumeParticles& volume = field_.walls.volume;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i)
         {
-            if (!is_meant(body) || volume <= 0) continue;
-            body.measures.node_volume += more * dp * dp * dp * body.measures.node_volume / volume;
-            body.settle_share(dp);
+            const std::uint32_t source = done.sources[i];
+            if (source < nodes)
+            {
+                positions[count] = positions[i];
+                done.sources[count++] = source;
+                continue;
+            }
+            const std::uint32_t wall = sliding.particles[source - nodes];
+            if (i < done.kept)
+                particles.positions[wall] = positions[i];
+            else
+            {
+                volume.positions.push_back(positions[i]);
+                volume.mk.push_back(particles.mk[wall]);
+            }
         }
+        positions.resize(count);
+        done.sources.resize(count);
     }
 
     /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
@@ -460,7 +525,7 @@ private:
         const LatticeGrid& grid = field_.grid;
         VolumeParticles& volume = field_.walls.volume;
         std::vector<char> stays(movers.size(), 0);
-        const std::size_t first = volume.size();
+        const std::size_t first = volume.distances.size();
         for (std::size_t i = 0; i < positions.size(); ++i)
         {
             const std::uint32_t source =

@@ -126,6 +126,10 @@ Band make_band(std::span<const Vec3> positions, const VolumeSurroundings& surrou
     for (auto* arrays : {&band.velocities, &band.moved, &band.wall_normals})
         arrays->resize(band.moving);
     band.is_held.assign(band.moving, 0);
+    band.slides.assign(band.moving, VolumeMotion::Free);
+    if (!surroundings.slides.empty())
+        for (std::size_t i = 0; i < band.moving; ++i)
+            band.slides[i] = surroundings.slides[band.sources[i]];
     band.is_inserted.assign(band.moving, 0);
     band.wall_distances.assign(band.moving, std::numeric_limits<float>::infinity());
     band.light_looks.assign(band.moving, 0);

@@ -56,6 +56,7 @@ struct Band
     PointArrays points;
     PointArrays velocities;
     std::vector<char> is_held;
+    std::vector<VolumeMotion> slides; ///< VolumeSurroundings::slides; of those that move
 
     // Walls as of the last look, per particle that may move:
     std::vector<float> wall_distances;   ///< to the nearest

@@ -9,6 +9,7 @@
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
+#include "walls/inside_body.h"
 #include "walls/touching_shells.h"
 #include "walls/wall_layers.h"
 
@@ -21,6 +22,8 @@ namespace
 {
 
 constexpr std::size_t particles_per_chunk = 4096;
+/// Of the distance of particles on lines of bodies with Placement::Inside.
+constexpr double line_room = 0.02;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 {
@@ -223,8 +226,11 @@ SurfaceParticles surface_of(FittedBody& body, const FitSettings& settings, const
     options.lattice_origin = grid.origin;
     options.density = settings.density;
     FeaturesLeftOut left_out;
-    const std::vector<FeatureParticle> on_features = place_feature_particles(
-        body.mesh, body.features, feature_options(settings, grid), &left_out);
+    FeatureOptions on_lines = feature_options(settings, grid);
+    // A line a little longer than n dp has n parts: its particles stand for dp^3.
+    if (body.is_inside) on_lines.dp *= 1 + line_room;
+    const std::vector<FeatureParticle> on_features =
+        place_feature_particles(body.mesh, body.features, on_lines, &left_out);
     body.left_out[0] += left_out.corners;
     body.left_out[1] += left_out.edges;
     return fit_surface(body.mesh, body.features, on_features, options, threads);
@@ -271,7 +277,10 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.warnings = out.body.report.warnings;
     add_surface(settings, grid, threads, out);
     find_nodes(settings, grid, out.particles.size(), threads, out);
-    if (!settings.depths_dp.empty()) add_layers(settings, grid, threads, out);
+    if (settings.place == Placement::Inside)
+        fill_inside(settings, grid, threads, out);
+    else if (!settings.depths_dp.empty())
+        add_layers(settings, grid, threads, out);
     for (const ClipPlane& clip : clips)
         parallel_for(grid.n[0], threads,
                      [&](std::size_t x)

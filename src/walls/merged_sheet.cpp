@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -16,14 +17,15 @@ namespace
 constexpr double sample_dp = 0.3;
 /// Sides whose normals turn by more than 120 degrees face away from each other.
 constexpr double facing_away = -0.5;
-/// From sharp edges, dp.
-constexpr double off_edges_dp = 0.45;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
 /// Reach of the forces that even the sheet out, dp, and their step.
 constexpr double reach_dp = 1.6;
 constexpr double step_dp = 0.25;
+/// Of sheets whose particles stand for dp^3, times dp.
+constexpr double closest_spacing = 0.7;
+constexpr double widest_spacing = 2.5;
 constexpr int rounds = 4;
 constexpr int steps_a_round = 12;
 
@@ -31,7 +33,10 @@ class Middle
 {
 public:
     Middle(const WallDepth& wall, const Features& features, const MergedSheetOptions& options)
-        : wall_(wall), options_(options), edges_(off_edges_dp * options.dp, 1024)
+        : wall_(wall),
+          options_(options),
+          edges_(std::max(0.1, options.off_edges_dp) * options.dp,
+                 features.edges.empty() ? 1 : 1024)
     {
         const SurfaceMesh& mesh = wall.mesh();
         for (const std::uint32_t e : features.edges)
@@ -74,8 +79,10 @@ public:
         const Vec3 up = centre - other;
         const double size = norm(up);
         if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
-        if (edges_.has_nearer(centre, off_edges_dp * options_.dp)) return std::nullopt;
-        return MiddlePoint{centre, facet};
+        if (options_.off_edges_dp > 0 &&
+            edges_.has_nearer(centre, options_.off_edges_dp * options_.dp))
+            return std::nullopt;
+        return MiddlePoint{centre, facet, spacing_at(2 * radius)};
     }
 
     /// A point back on the middle.
@@ -86,6 +93,14 @@ public:
     }
 
 private:
+    double spacing_at(double thickness) const
+    {
+        if (options_.parts == 0) return 1;
+        const double area = options_.parts * options_.dp / thickness;
+        return std::clamp(options_.plane_y ? area : std::sqrt(area), closest_spacing,
+                          widest_spacing);
+    }
+
     const WallDepth& wall_;
     const MergedSheetOptions& options_;
     PointGrid edges_;
@@ -110,19 +125,38 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
             out.push_back(*at);
 }
 
-/// Takes candidates that are at least `spacing` from all that is taken.
+/// Takes candidates that are at least `spacing` from all that is taken, up to a number.
 void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
-          double spacing, std::vector<MiddlePoint>& sheet)
+          double spacing, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
     PointGrid grid(spacing, taken.size() + sheet.size());
     for (const Vec3& p : taken) grid.add(p);
     for (const MiddlePoint& p : sheet) grid.add(p.position);
     for (const MiddlePoint& p : candidates)
     {
-        if (grid.has_nearer(p.position, spacing)) continue;
+        if (sheet.size() >= most) break;
+        if (grid.has_nearer(p.position, spacing * p.spacing)) continue;
         grid.add(p.position);
         sheet.push_back(p);
     }
+}
+
+/// Takes a number of candidates as far from one another as may be.
+void take_number(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
+                 double dp, std::size_t wanted, std::vector<MiddlePoint>& sheet)
+{
+    double near = 0.3, far = 2;
+    for (int step = 0; step < 12; ++step)
+    {
+        const double spacing = 0.5 * (near + far);
+        sheet.clear();
+        take(candidates, taken, spacing * dp, wanted + 1, sheet);
+        (sheet.size() > wanted ? near : far) = spacing;
+    }
+    sheet.clear();
+    take(candidates, taken, far * dp, wanted, sheet);
+    for (double spacing = far; sheet.size() < wanted && spacing > 0.3; spacing *= 0.97)
+        take(candidates, taken, spacing * dp, wanted, sheet);
 }
 
 /// One step away from the neighbours, back onto the middle.
@@ -139,12 +173,13 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
         [&](std::size_t i)
         {
             Vec3 force;
-            grid.for_each_near(sheet[i].position, reach,
+            const double own = reach * sheet[i].spacing;
+            grid.for_each_near(sheet[i].position, own,
                                [&](std::uint32_t j, double squared)
                                {
                                    if (j == i || !(squared > 0)) return;
                                    const double r = std::sqrt(squared);
-                                   const double s = 1 - r / reach;
+                                   const double s = 1 - r / own;
                                    force = force +
                                            (s * s * s / r) * (sheet[i].position - grid.points()[j]);
                                });
@@ -195,19 +230,72 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
     return out;
 }
 
+std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
+                                     int threads)
+{
+    MergedSheetOptions options;
+    options.dp = most;
+    options.least_depth_dp = 0.5;
+    options.off_edges_dp = 0;
+    const Middle middle(wall, {}, options);
+    const SurfaceMesh& mesh = wall.mesh();
+    double area = 0;
+    std::vector<double> up_to(mesh.facets.size());
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
+    std::vector<double> out(count, 0);
+    parallel_for(
+        count, threads,
+        [&](std::size_t i)
+        {
+            const double n = static_cast<double>(i) + 0.5;
+            const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1,
+                                             n / static_cast<double>(count) * area);
+            const auto f = static_cast<std::uint32_t>(at - up_to.begin());
+            // Spread over large facets by the plastic number, as two coordinates of a triangle.
+            double u = std::fmod(0.7548776662466927 * n, 1.0);
+            double v = std::fmod(0.5698402909980532 * n, 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
+                           v * (mesh.vertices[mesh.facets[f][2]] - a);
+            if (const auto found = middle.under(p, mesh.normals[f], f))
+                out[i] = 2 * norm(found->position - p);
+        },
+        16);
+    return out;
+}
+
+Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)
+{
+    MergedSheetOptions options;
+    options.dp = most;
+    options.least_depth_dp = 1;
+    options.off_edges_dp = 0;
+    const auto found = Middle(wall, {}, options).back(p);
+    return found && norm(found->position - p) < most ? found->position : p;
+}
+
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
                               const std::vector<MiddlePoint>& points,
                               const std::vector<Vec3>& taken, const MergedSheetOptions& options,
                               int threads)
 {
     const Middle middle(wall, features, options);
+    constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
     std::vector<MiddlePoint> sheet;
-    take(points, taken, first_spacing_dp * options.dp, sheet);
-    for (int round = 0; round < rounds; ++round)
+    if (options.wanted)
+        take_number(points, taken, options.dp, *options.wanted, sheet);
+    else
+        take(points, taken, first_spacing_dp * options.dp, no_limit, sheet);
+    for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);
-        take(points, taken, hole_dp * options.dp, sheet);
+        if (!options.wanted) take(points, taken, hole_dp * options.dp, no_limit, sheet);
     }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)

@@ -15,6 +15,13 @@ struct MergedSheetOptions
     double dp = 0;
     /// Where the middle is nearer to the surface than this, the layers of both sides are one, dp.
     double least_depth_dp = 0.8;
+    double off_edges_dp = 0.45; ///< no point of the middle is nearer to a sharp edge
+    /// Of so many sheets through the thickness it is one, and each of its particles stands for
+    /// dp^3: where the body is thin they are farther apart. 0: they are dp apart everywhere.
+    int parts = 0;
+    /// So many particles are wanted; empty: as many as there is room for.
+    std::optional<std::size_t> wanted{};
+    bool evens_out = true;         ///< false: particles stay where they were taken
     std::optional<double> plane_y; ///< of 2D cases: the wall is drawn out along y
 };
 
@@ -23,6 +30,7 @@ struct MiddlePoint
 {
     Vec3 position;
     std::uint32_t facet = 0; ///< of the wall, at its foot
+    double spacing = 1;      ///< to the next of the sheet there, of what the sheet asks for
 };
 
 /// Points on the middle (the medial axis) of the thin parts of a body, from both sides.
@@ -35,6 +43,15 @@ struct MiddlePoint
 /// cost  about 15 distances per dp^2 of surface
 std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& features,
                                      const MergedSheetOptions& options, int threads);
+
+/// How thick a body is under points spread evenly over its surface: twice the radius of the ball of
+/// find_middle(), metres; 0 where that is more than `most` or the other side does not face away.
+std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
+                                     int threads);
+
+/// The point of the middle that is nearest to p along the way in which the depth grows; p itself
+/// where the body is thicker than twice `most`, metres.
+Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most);
 
 /// The particles that both sides of a thin part share: on its middle (the medial axis), one per
 /// dp^2 and evenly spaced.

@@ -15,4 +15,7 @@ namespace fppg
 /// out  its body is complete, zone and volume are those of the surface without particles on it
 void add_layers(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out);
 
+/// Settles the measures of a draw by the particles in its layers.
+void measure_layers(const LatticeGrid& grid, FittedDraw& out);
+
 } // namespace fppg

@@ -158,6 +158,43 @@ TEST(FloatingMassIn2D, IsThatOfTheSection)
     EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
 }
 
+TEST(FittedSolids, AndTheirParticlesAreInOneTable)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.after_geometry += R"(<fppg><bodyfitted place="inside" /></fppg>)";
+    const RunResult result = run_case(folder, text, {"-log-json"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::size_t at = result.output.find(R"("event":"body")");
+    ASSERT_NE(at, std::string::npos) << result.output;
+    const std::string line = result.output.substr(at, result.output.find('\n', at) - at);
+    const auto value = [&](const std::string& of, const std::string& name)
+    {
+        const std::size_t from = line.find("\"" + name + "\":", line.find("\"" + of + "\":"));
+        return std::stod(line.substr(from + name.size() + 3));
+    };
+    const double volume = 0.41 * 0.33 * 0.25;
+    EXPECT_NEAR(value("shape", "volume"), volume, 1e-9);
+    EXPECT_NEAR(value("shape", "mass"), rhop_body * volume, 1e-6);
+    EXPECT_NEAR(value("particles", "volume"), volume, 1e-3 * volume);
+    EXPECT_NEAR(static_cast<double>(count(folder)), volume / std::pow(dp, 3), 1);
+}
+
+TEST(FittedSolids, ThatHaveNoRoomAreToldWithADpThatWouldDo)
+{
+    const TemporaryFolder folder;
+    const RunResult result = run_case(folder, floating(box(0.41, 0.33, 0.021)), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string words = "for which a dp of ";
+    const std::size_t at = result.output.find(words);
+    ASSERT_NE(at, std::string::npos) << result.output;
+    CaseText finer = floating(box(0.41, 0.33, 0.021));
+    finer.dp = fmt::format("{}", std::stod(result.output.substr(at + words.size())));
+    const RunResult again = run_case(folder, finer, {"-fit"});
+    EXPECT_EQ(again.code, 0);
+    EXPECT_FALSE(contains(again.output, words)) << again.output;
+}
+
 TEST(FloatingMass, ThatIsGivenStays)
 {
     const TemporaryFolder folder;

@@ -170,6 +170,19 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
 }
 
+TEST(FitBlock, SaysThatAllParticlesAreInside)
+{
+    const CaseDef def = read_block(
+        R"(<bodyfitted place="inside" across="4" volume="exact" /><bodyfitted mkbound="1" />)");
+    EXPECT_EQ(def.fit.all->place, Placement::Inside);
+    EXPECT_EQ(def.fit.all->across, 4);
+    EXPECT_TRUE(def.fit.all->has_exact_volumes);
+    EXPECT_EQ(def.fit.all->depths_dp, std::vector<double>{0.5});
+    ASSERT_EQ(def.fit.of_mk.size(), 1);
+    EXPECT_EQ(def.fit.of_mk[0].second.place, Placement::Surface);
+    EXPECT_FALSE(def.fit.of_mk[0].second.has_exact_volumes);
+}
+
 TEST(FitBlock, WarnsOfOneLayerForMdbcAndHintsAtMore)
 {
     const CaseDef one = read(tank_with_boundary(R"(<bodyfitted layers="1" />)", best_mdbc));
@@ -415,6 +428,16 @@ INSTANTIATE_TEST_SUITE_P(
                 "attribute layers=\"deep\""},
         Mistake{"Side", R"(<fppg><bodyfitted side="inside" /></fppg>)",
                 "attribute side=\"inside\" is invalid, expected behind, front or both"},
+        Mistake{"Place", R"(<fppg><bodyfitted place="within" /></fppg>)",
+                "attribute place=\"within\" is invalid, expected surface or inside"},
+        Mistake{"AcrossASurface", R"(<fppg><bodyfitted across="3" /></fppg>)",
+                "attribute across is for place=\"inside\" only"},
+        Mistake{"NothingAcross", R"(<fppg><bodyfitted place="inside" across="0" /></fppg>)",
+                "across=\"0\" is 0, expected auto or a whole number from 1 to 64"},
+        Mistake{"LayersInside", R"(<fppg><bodyfitted place="inside" layers="2" /></fppg>)",
+                "attribute layers has no meaning with place=\"inside\""},
+        Mistake{"Volume", R"(<fppg><bodyfitted volume="own" /></fppg>)",
+                "attribute volume=\"own\" is invalid, expected equal or exact"},
         Mistake{"NoIterations", R"(<fppg><bodyfitted><relax iterations="0" /></bodyfitted></fppg>)",
                 "iterations=\"0\" is 0, expected auto or a whole number from 1 to 1000000"},
         Mistake{"HalfAnIteration",

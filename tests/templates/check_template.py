@@ -62,6 +62,7 @@ class Result:
         self.dp, self.positions = values["Dp"], self.arrays["Posd"]
         self.mk = np.concatenate([np.full(b["count"], b["mk"]) for b in read_blocks(case + ".xml")])
         picture = read_vtk(case + "_All.vtk")
+        self.volume = np.asarray(picture["Volume"]).ravel() if "Volume" in picture else None
         self.kind = np.asarray(picture["Kind"]).ravel() if "Kind" in picture else None
 
     def mesh(self, file, move):
@@ -139,6 +140,32 @@ def check_FittedLayers(result):
             yield f"mk {mk}: a normal is not the shortest way to the surface"
     if not np.all(is_inside(result.positions[result.mk == 11], ball)):
         yield "a particle of the ball is outside of it"
+
+
+def check_FittedInside(result):
+    ball = result.mesh("ball.stl", (0.83, 0.39, 0.34))
+    cell = result.dp ** 3
+    inner = result.positions[result.mk == 11]
+    shell = result.walls(11)
+    if np.abs(distances(shell, ball) / result.dp - 0.5).max() > 1e-3 or not np.all(is_inside(inner, ball)):
+        yield "a particle on the outside of the ball is not half a dp below its surface"
+    a, b, c = ball[:, 0], ball[:, 1], ball[:, 2]
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    if abs(len(inner) * cell - volume) > cell:
+        yield f"{len(inner)} particles of dp^3 are {len(inner) * cell:.6g} m3, the ball has {volume:.6g}"
+    if np.linalg.norm(inner.mean(axis=0) - (0.83, 0.39, 0.34)) > 0.01 * result.dp:
+        yield "the particles have another centre than the ball"
+    own = result.volume[result.mk == 11]
+    if abs(own.sum() / volume - 1) > 1e-9 or own.min() < 0.3 * cell or own.max() > 2 * cell:
+        yield "the volumes of the particles are not parts of the ball"
+    plate = result.positions[result.mk == 12]
+    if abs(len(plate) * cell - 0.87 * 0.53 * 0.17) > 1.5 * cell:
+        yield f"the plate has {len(plate)} particles, expected {0.87 * 0.53 * 0.17 / cell:.1f}"
+    sheets = np.array([0.61 + (k + 0.5) * 0.17 / 4 for k in range(4)])
+    in_middle = np.all(abs(plate[:, :2] - (0.545, 0.385)) < 0.1, axis=1)
+    off = abs(plate[in_middle][:, 2, None] - sheets).min(axis=1)
+    if len(off) < 20 or off.max() > 1e-3 * result.dp:
+        yield "the particles of the plate do not stand in four sheets"
 
 
 def check_FittedPlates(result):

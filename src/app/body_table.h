@@ -1,0 +1,20 @@
+#pragma once
+
+#include "fppg/fitted_walls.h"
+#include "fppg/particles.h"
+#include "fppg/scene.h"
+
+#include "app/run_log.h"
+
+namespace fppg
+{
+
+/// Writes a table of the fitted solids into the log: volume, mass, centre and inertia of the shape
+/// and of the particles, each by mk. The mass is that of the density of `<floating>`, else of
+/// rhop0. Particles count by the share of dp^3 or the volume that they stand for; those of bodies
+/// with Placement::Inside as cubes of dp, others as points. Bodies of several draws, hollow ones
+/// and those in 2D have no exact centre and inertia, and none of these is shown.
+void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticles& particles,
+                const CaseConstants& constants, RunLog& log);
+
+} // namespace fppg

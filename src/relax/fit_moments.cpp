@@ -1,0 +1,334 @@
+#include "relax/fit_moments.h"
+
+#include "core/parallel.h"
+#include "offset/wall_depth.h"
+#include "relax/sliding_walls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace fppg
+{
+namespace
+{
+
+using Matrix = std::array<Vec3, 3>;
+
+constexpr int most_rounds = 12;
+constexpr double longest_way_dp = 0.5;
+/// Of the centre, dp, and of the second moments where fitting ends.
+constexpr double centre_tolerance = 1e-3;
+constexpr double moment_tolerance = 2e-4;
+/// Bodies whose particles have another volume by more are cut.
+constexpr double whole = 0.03;
+
+/// Centre and second moments about it, per volume.
+struct Moments
+{
+    double volume = 0;
+    Vec3 centre;
+    Matrix second{};
+};
+
+void add_product(Matrix& to, double factor, const Vec3& a, const Vec3& b)
+{
+    for (int i = 0; i < 3; ++i)
+        to[static_cast<std::size_t>(i)] = to[static_cast<std::size_t>(i)] + (factor * a[i]) * b;
+}
+
+/// Of the inside of a closed mesh, by tetrahedra from a point near it.
+Moments moments_of(const SurfaceMesh& mesh)
+{
+    Moments out;
+    const Vec3 origin = mesh.vertices[0];
+    Vec3 sum;
+    Matrix second{};
+    for (const auto& f : mesh.facets)
+    {
+        const Vec3 a = mesh.vertices[f[0]] - origin;
+        const Vec3 b = mesh.vertices[f[1]] - origin;
+        const Vec3 c = mesh.vertices[f[2]] - origin;
+        const double six = dot(a, cross(b, c));
+        const Vec3 all = a + b + c;
+        out.volume += six / 6;
+        sum = sum + (six / 24) * all;
+        for (const Vec3& v : {all, a, b, c}) add_product(second, six / 120, v, v);
+    }
+    const Vec3 mean = sum / out.volume;
+    out.centre = origin + mean;
+    for (Vec3& row : second) row = row / out.volume;
+    add_product(second, -1, mean, mean);
+    out.second = second;
+    return out;
+}
+
+/// The eigenvectors of a symmetric matrix, by Jacobi's rotations; their values are left on the
+/// diagonal.
+Matrix eigenvectors(Matrix& m)
+{
+    Matrix v{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (int p = 0; p < 2; ++p)
+            for (int q = p + 1; q < 3; ++q)
+            {
+                Vec3& row_p = m[static_cast<std::size_t>(p)];
+                Vec3& row_q = m[static_cast<std::size_t>(q)];
+                const double off = row_p[q];
+                if (off == 0) continue;
+                const double theta = 0.5 * std::atan2(2 * off, row_q[q] - row_p[p]);
+                const double c = std::cos(theta), s = std::sin(theta);
+                for (Vec3& row : m)
+                {
+                    const double a = row[p], b = row[q];
+                    row[p] = c * a - s * b;
+                    row[q] = s * a + c * b;
+                }
+                const Vec3 old_p = row_p, old_q = row_q;
+                row_p = c * old_p - s * old_q;
+                row_q = s * old_p + c * old_q;
+                for (Vec3& row : v)
+                {
+                    const double a = row[p], b = row[q];
+                    row[p] = c * a - s * b;
+                    row[q] = s * a + c * b;
+                }
+            }
+    return v;
+}
+
+Vec3 times(const Matrix& m, const Vec3& v)
+{
+    return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
+}
+
+/// The symmetric M with M S + S M = D, but for directions in which S has less than `least`.
+Matrix stretch_for(Matrix s, const Matrix& d, double least)
+{
+    const Matrix v = eigenvectors(s); // columns
+    const auto column = [&](std::size_t k) {
+        return Vec3{v[0][static_cast<int>(k)], v[1][static_cast<int>(k)],
+                    v[2][static_cast<int>(k)]};
+    };
+    Matrix out{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+        {
+            const double si = s[i][static_cast<int>(i)], sj = s[j][static_cast<int>(j)];
+            if (std::min(si, sj) < least) continue;
+            const Vec3 a = column(i), b = column(j);
+            add_product(out, dot(a, times(d, b)) / (si + sj), a, b);
+        }
+    return out;
+}
+
+class MomentFit
+{
+public:
+    MomentFit(RunField& field, std::size_t body, const AllWalls& all, int threads)
+        : field_(field), body_(body), all_(all), threads_(threads), dp_(field.grid.dp)
+    {
+    }
+
+    void run()
+    {
+        const FittedWalls& walls = field_.walls;
+        const FittedBody& body = walls.bodies[body_];
+        if (!body.is_inside || body.is_layer() || field_.grid.is_2d || is_cut()) return;
+        collect();
+        const double dp3 = dp_ * dp_ * dp_;
+        shape_ = moments_of(body.mesh);
+        if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
+            std::abs(shape_.volume / body.measures.volume - 1) > whole)
+            return;
+        for (int round = 0; round < most_rounds && move(); ++round)
+        {
+        }
+        put_distances();
+    }
+
+private:
+    bool is_cut() const
+    {
+        const FittedWalls& walls = field_.walls;
+        if (walls.bodies[body_].measures.kept < 1) return true;
+        return std::any_of(walls.cut_bodies.begin(), walls.cut_bodies.end(),
+                           [&](std::uint32_t b)
+                           { return b == body_ || walls.bodies[b].owner == body_; });
+    }
+
+    void collect()
+    {
+        const FittedWalls& walls = field_.walls;
+        std::vector<char> is_own(65536, 0);
+        is_own[walls.bodies[body_].mk] = 1;
+        for (const std::uint16_t mk : walls.bodies[body_].facet_mk) is_own[mk] = 1;
+        std::size_t alike = 0;
+        for (const FittedBody& other : walls.bodies)
+            if (!other.is_layer() && is_own[other.mk] != 0) ++alike;
+        const auto is_mine = [&](const Vec3& p)
+        { return alike == 1 || all_.closest(p).body == body_; };
+        for (std::uint32_t i = 0; i < walls.particles.size(); ++i)
+        {
+            const std::uint32_t b = walls.particles.bodies[i];
+            if (b == body_ || walls.bodies[b].owner == body_) of_wall_.push_back(i);
+        }
+        for (std::uint32_t i = 0; i < walls.volume.size(); ++i)
+            if (is_own[walls.volume.mk[i]] != 0 && is_mine(walls.volume.positions[i]))
+                of_volume_.push_back(i);
+        for (std::uint32_t x = 0; x < field_.slabs.size(); ++x)
+            for (const Run& run : field_.slabs[x])
+            {
+                if (run.is_covered || is_own[run.mk] == 0) continue;
+                for (std::uint32_t z = run.z_begin; z < run.z_end; ++z)
+                {
+                    const Vec3 p = place_of({x, run.y, z}, field_.grid);
+                    if (is_mine(p)) nodes_.push_back(p);
+                }
+            }
+        way_.resize(of_wall_.size() + of_volume_.size());
+    }
+
+    std::size_t count() const { return of_wall_.size() + of_volume_.size() + nodes_.size(); }
+
+    Vec3& place(std::size_t i)
+    {
+        FittedWalls& walls = field_.walls;
+        return i < of_wall_.size() ? walls.particles.positions[of_wall_[i]]
+                                   : walls.volume.positions[of_volume_[i - of_wall_.size()]];
+    }
+
+    /// The way across the sheets of a plate; zero elsewhere.
+    Vec3 across(std::size_t i)
+    {
+        const FittedWalls& walls = field_.walls;
+        if (walls.bodies[body_].sheets == 0 || i >= of_wall_.size()) return {};
+        const std::uint32_t p = of_wall_[i];
+        return walls.bodies[walls.particles.bodies[p]]
+            .wall->at(walls.particles.positions[p])
+            .direction;
+    }
+
+    Moments moments_of_particles()
+    {
+        Moments out;
+        const std::size_t moving = way_.size();
+        Vec3 sum;
+        for (std::size_t i = 0; i < moving; ++i) sum = sum + (place(i) - shape_.centre);
+        for (const Vec3& p : nodes_) sum = sum + (p - shape_.centre);
+        const auto n = static_cast<double>(count());
+        out.centre = shape_.centre + sum / n;
+        const FittedBody& body = field_.walls.bodies[body_];
+        const double step = body.sheets > 0 ? body.thickness / body.sheets : dp_;
+        const double along = dp_ * dp_ * dp_ / step / 12;
+        for (std::size_t i = 0; i < moving; ++i)
+        {
+            const Vec3 d = place(i) - out.centre;
+            add_product(out.second, 1 / n, d, d);
+            const Vec3 normal = across(i);
+            add_product(out.second, (step * step / 12 - along) / n, normal, normal);
+        }
+        for (const Vec3& p : nodes_)
+        {
+            const Vec3 d = p - out.centre;
+            add_product(out.second, 1 / n, d, d);
+        }
+        for (int i = 0; i < 3; ++i) out.second[static_cast<std::size_t>(i)][i] += along;
+        return out;
+    }
+
+    /// One step; false where it is not needed or leads too far.
+    bool move()
+    {
+        const Moments now = moments_of_particles();
+        const Vec3 shift = shape_.centre - now.centre;
+        Matrix off{};
+        double worst = 0, size = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            off[i] = shape_.second[i] - now.second[i];
+            size = std::max(size, shape_.second[i][static_cast<int>(i)]);
+            for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
+        }
+        if (norm(shift) < centre_tolerance * dp_ && worst < moment_tolerance * size) return false;
+        const Matrix stretch = stretch_for(now.second, off, 0.25 * dp_ * dp_);
+        std::vector<Vec3> steps(way_.size());
+        double longest = 0;
+        for (std::size_t i = 0; i < way_.size(); ++i)
+        {
+            steps[i] = shift + times(stretch, place(i) - now.centre);
+            longest = std::max(longest, norm(way_[i] + steps[i]));
+        }
+        double share = 1;
+        if (longest > longest_way_dp * dp_)
+        {
+            double before = 0, step = 0;
+            for (std::size_t i = 0; i < way_.size(); ++i)
+            {
+                before = std::max(before, norm(way_[i]));
+                step = std::max(step, norm(steps[i]));
+            }
+            share = (longest_way_dp * dp_ - before) / step;
+            if (share < 0.05) return false;
+        }
+        const ClosestWallPoint closest = [&](const Vec3& p, double within)
+        { return all_.closest_point(p, within); };
+        parallel_for(
+            way_.size(), threads_,
+            [&](std::size_t i)
+            {
+                const Vec3 from = place(i);
+                const Vec3 normal = across(i);
+                Vec3 to = from + share * (steps[i] - dot(steps[i], normal) * normal);
+                if (i < of_wall_.size()) to = on_layer(of_wall_[i], to, closest);
+                way_[i] = way_[i] + (to - from);
+                place(i) = to;
+            },
+            64);
+        return true;
+    }
+
+    Vec3 on_layer(std::uint32_t particle, const Vec3& p, const ClosestWallPoint& closest) const
+    {
+        const FittedWalls& walls = field_.walls;
+        const bool is_free = walls.bodies[walls.particles.bodies[particle]].mesh.facets.empty() &&
+                             walls.bodies[body_].sheets == 0;
+        return is_free ? p : put_back(walls, particle, p, dp_, closest);
+    }
+
+    void put_distances()
+    {
+        VolumeParticles& volume = field_.walls.volume;
+        parallel_for(
+            of_volume_.size(), threads_,
+            [&](std::size_t i)
+            {
+                const std::uint32_t v = of_volume_[i];
+                volume.distances[v] =
+                    static_cast<float>(-all_.closest(volume.positions[v]).distance);
+            },
+            256);
+    }
+
+    RunField& field_;
+    std::size_t body_;
+    const AllWalls& all_;
+    int threads_;
+    double dp_;
+    Moments shape_;
+    std::vector<std::uint32_t> of_wall_;
+    std::vector<std::uint32_t> of_volume_;
+    std::vector<Vec3> nodes_;
+    std::vector<Vec3> way_; ///< of walls, then of volume particles
+};
+
+} // namespace
+
+void fit_moments(RunField& field, std::size_t body, const AllWalls& all, int threads)
+{
+    MomentFit(field, body, all, threads).run();
+}
+
+} // namespace fppg
