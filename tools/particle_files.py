@@ -86,15 +86,17 @@ class _Jbd:
         return name, values, arrays, items
 
 
-def read_bi4(path):
+def read_bi4(path, is_mapped=False):
     """Values and arrays of a case file, or of the solver's Part_NNNN.bi4: constants, Idp, Pos or Posd, Vel, Rhop.
 
-    The arrays are read-only views of the mapped file: what is not looked at is not read.
+    is_mapped  the arrays are views of the mapped file, of which only what is looked at is read; nobody may change the
+               file meanwhile
     """
     with open(path, "rb") as file:
         if file.read(21) != b"#FileJBD JPartDataBi4":
             raise ValueError(f"{path}: not a particle file of a case")
-        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        file.seek(0)
+        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if is_mapped else file.read()
     _, values, _, items = _Jbd(data).item()
     part, = (item for key, item in items.items() if key.startswith("PART_"))
     part_values, arrays, _ = part

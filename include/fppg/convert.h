@@ -26,10 +26,19 @@ struct FeedBody
     double mass = 0; ///< of a particle of volume dp^3, kg; in 2-D of dp^2, kg per metre
 };
 
+/// What of a piece is asked for; other arrays may hold anything.
+enum class PieceContent : std::uint8_t
+{
+    All,
+    Positions,
+    Bodies,
+};
+
 /// Some consecutive particles, one entry each in all arrays but those that the feed lacks.
 struct ParticlePiece
 {
-    std::uint64_t first = 0; ///< index of the first one among all
+    PieceContent wanted = PieceContent::All; ///< set by who asks for the piece
+    std::uint64_t first = 0;                 ///< index of the first one among all
     std::vector<Vec3> positions;
     std::vector<std::array<float, 3>> velocities;
     std::vector<float> densities;

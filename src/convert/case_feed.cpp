@@ -66,37 +66,54 @@ void read_bound_normals(const CaseParticles& particles, ParticlePiece& out)
     }
 }
 
+/// All of a segment that stands from `at` on in the piece but its positions and its body.
+void read_segment(const CaseParticles& particles, float rhop0, const ParticleSegment& segment,
+                  std::size_t at, ParticlePiece& out)
+{
+    for_each_density(particles, rhop0, segment,
+                     [&](std::uint32_t k, float value) { out.densities[at + k] = value; });
+    if (!segment.block->initials.empty()) start_particles(segment, at, out);
+    if (out.wanted == PieceContent::All) read_wall_facts(particles, segment, at, out);
+}
+
 void read_case(const CaseParticles& particles, const ParticleFeed& facts,
                const ParticleStream& stream, std::size_t piece, ParticlePiece& out)
 {
     const std::size_t n = stream.end(piece) - stream.begin(piece);
+    const bool is_all = out.wanted == PieceContent::All;
     out.first = stream.begin(piece);
     out.positions.resize(n);
-    out.velocities.assign(n, {});
     out.densities.resize(n);
-    out.volumes.assign(n, facts.unit_volume());
-    out.normals.assign(facts.has_normals ? n : 0, {});
-    out.ids.resize(n);
     out.bodies.resize(n);
-    out.kinds.assign(n, static_cast<std::uint8_t>(FitKind::Volume));
-    for (std::size_t k = 0; k < n; ++k) out.ids[k] = static_cast<std::uint32_t>(out.first + k);
+    out.velocities.resize(n);
+    if (is_all)
+    {
+        std::fill(out.velocities.begin(), out.velocities.end(), std::array<float, 3>{});
+        out.volumes.assign(n, facts.unit_volume());
+        out.normals.assign(facts.has_normals ? n : 0, {});
+        out.ids.resize(n);
+        out.kinds.assign(n, static_cast<std::uint8_t>(FitKind::Volume));
+        for (std::size_t k = 0; k < n; ++k) out.ids[k] = static_cast<std::uint32_t>(out.first + k);
+    }
     stream.for_each_segment(
         piece,
         [&](const ParticleSegment& segment)
         {
             const std::size_t at = segment.id - out.first;
             const auto body = static_cast<std::uint16_t>(segment.block - particles.blocks.data());
-            std::fill_n(out.bodies.begin() + static_cast<std::ptrdiff_t>(at), segment.count, body);
+            if (out.wanted != PieceContent::Positions)
+                std::fill_n(out.bodies.begin() + static_cast<std::ptrdiff_t>(at), segment.count,
+                            body);
+            if (out.wanted == PieceContent::Bodies) return;
             for_each_position(particles, segment,
                               [&](std::int64_t k, double x, double y, double z) {
                                   out.positions[at + static_cast<std::size_t>(k)] = {x, y, z};
                               });
-            for_each_density(particles, static_cast<float>(facts.rhop0), segment,
-                             [&](std::uint32_t k, float value) { out.densities[at + k] = value; });
-            if (!segment.block->initials.empty()) start_particles(segment, at, out);
-            read_wall_facts(particles, segment, at, out);
+            // <initials> may move particles.
+            if (is_all || !segment.block->initials.empty())
+                read_segment(particles, static_cast<float>(facts.rhop0), segment, at, out);
         });
-    if (facts.has_normals) read_bound_normals(particles, out);
+    if (is_all && facts.has_normals) read_bound_normals(particles, out);
 }
 
 /// How many particles of volume dp^3 a body amounts to.

@@ -188,12 +188,14 @@ void select_body(const ParticlePiece& piece, std::uint16_t body, ParticlePiece& 
 }
 
 void for_each_piece(const ParticleFeed& feed, int threads,
-                    const std::function<void(std::size_t, const ParticlePiece&)>& body)
+                    const std::function<void(std::size_t, const ParticlePiece&)>& body,
+                    PieceContent wanted)
 {
     parallel_for(feed.pieces(), threads,
                  [&](std::size_t i)
                  {
                      thread_local ParticlePiece piece;
+                     piece.wanted = wanted;
                      feed.read(i, piece);
                      body(i, piece);
                  });
@@ -226,9 +228,11 @@ BodyOrder order_by_body(const ParticleFeed& feed, int threads)
 void fill_column(const ParticleFeed& feed, const Column& column, char* out, int threads)
 {
     const std::size_t width = column.bytes_per_particle();
-    for_each_piece(feed, threads,
-                   [&](std::size_t, const ParticlePiece& piece)
-                   { fill_bytes(feed, piece, piece.first, column, out + piece.first * width); });
+    for_each_piece(
+        feed, threads,
+        [&](std::size_t, const ParticlePiece& piece)
+        { fill_bytes(feed, piece, piece.first, column, out + piece.first * width); },
+        column.field == Field::Position ? PieceContent::Positions : PieceContent::All);
 }
 
 void write_columns(OutputFile& file, const ParticleFeed& feed,

@@ -89,7 +89,8 @@ double pressure_of(const ParticleFeed& feed, float density);
 
 /// Calls body(piece number, piece) for all pieces, spread over threads.
 void for_each_piece(const ParticleFeed& feed, int threads,
-                    const std::function<void(std::size_t, const ParticlePiece&)>& body);
+                    const std::function<void(std::size_t, const ParticlePiece&)>& body,
+                    PieceContent wanted = PieceContent::All);
 
 /// Fills an array in memory with a column of all particles.
 void fill_column(const ParticleFeed& feed, const Column& column, char* out, int threads);

@@ -120,15 +120,17 @@ Box3 limits_of_feed(const ParticleFeed& feed, int threads)
 {
     Box3 limits;
     std::mutex guard;
-    for_each_piece(feed, threads,
-                   [&](std::size_t, const ParticlePiece& piece)
-                   {
-                       Box3 own;
-                       for (const Vec3& p : piece.positions) own.add(p);
-                       const std::lock_guard lock(guard);
-                       limits.add(own.min);
-                       limits.add(own.max);
-                   });
+    for_each_piece(
+        feed, threads,
+        [&](std::size_t, const ParticlePiece& piece)
+        {
+            Box3 own;
+            for (const Vec3& p : piece.positions) own.add(p);
+            const std::lock_guard lock(guard);
+            limits.add(own.min);
+            limits.add(own.max);
+        },
+        PieceContent::Positions);
     return limits;
 }
 

@@ -18,7 +18,8 @@ struct PysphArray
     const char* type;
 };
 
-/// Walls take V, h and normals under these names (Edac and TVF schemes, get_particle_array_*).
+/// Normals of walls have the names of the EDAC scheme. PySPH's own V is a number density, which its
+/// schemes sum up, so volumes have another name.
 std::vector<PysphArray> arrays_of(const ParticleFeed& feed)
 {
     using enum ColumnType;

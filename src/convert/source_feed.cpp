@@ -118,6 +118,18 @@ void read_bodies(const ParticleSource& source, std::size_t begin, ParticlePiece&
     }
 }
 
+void read_positions(const ParticleSource& source, std::size_t begin, ParticlePiece& out)
+{
+    for (std::size_t k = 0; k < out.size(); ++k)
+    {
+        const Vec3 p = source.position(begin + k);
+        if (!is_finite(p))
+            throw IoError(fmt::format("'{}': particle {} is at ({}, {}, {})", source.path(),
+                                      source.id(begin + k), p.x, p.y, p.z));
+        out.positions[k] = p;
+    }
+}
+
 /// Where a file lacks densities, all are rhop0; where it lacks velocities, all rest.
 void read_source(const ParticleSource& source, const ParticleFeed& facts, std::size_t piece,
                  ParticlePiece& out)
@@ -126,22 +138,22 @@ void read_source(const ParticleSource& source, const ParticleFeed& facts, std::s
     const std::size_t n = std::min(feed_piece, source.size() - begin);
     out.first = begin;
     out.positions.resize(n);
+    out.ids.resize(n);
+    out.bodies.resize(n);
+    if (out.wanted != PieceContent::Bodies) read_positions(source, begin, out);
+    if (out.wanted == PieceContent::Positions) return;
+    read_bodies(source, begin, out);
+    if (out.wanted == PieceContent::Bodies) return;
     out.velocities.resize(facts.has_velocities ? n : 0);
     out.densities.assign(n, static_cast<float>(facts.rhop0));
     out.volumes.assign(n, facts.unit_volume());
-    out.ids.resize(n);
-    out.bodies.resize(n);
     for (std::size_t k = 0; k < n; ++k)
     {
-        const Vec3 p = source.position(begin + k);
-        if (!is_finite(p))
-            throw IoError(fmt::format("'{}': particle {} is at ({}, {}, {})", source.path(),
-                                      source.id(begin + k), p.x, p.y, p.z));
-        out.positions[k] = p;
         if (facts.has_velocities) out.velocities[k] = source.velocity(begin + k);
         if (source.has_density()) out.densities[k] = source.density(begin + k);
     }
-    read_bodies(source, begin, out);
+    out.normals.clear(); // which another feed may have filled
+    out.kinds.clear();
     if (facts.has_normals) read_normals(source, begin, out);
 }
 

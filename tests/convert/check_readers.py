@@ -309,11 +309,12 @@ def check_paraview(folder, fppg):
     plugin = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/paraview/fppg_reader.py")
     with open(os.path.join(folder, "look.py"), "w", encoding="utf-8") as file:
         file.write(PARAVIEW)
-    words = ([screen, "-a"] if screen else []) + [pvpython, "--force-offscreen-rendering", "look.py"]
+    # Between two windows of ParaView the server would start anew, and refuse the second.
+    words = ([screen, "-a", "-s", "-screen 0 640x480x24 -noreset"] if screen else []) + [pvpython, "--force-offscreen-rendering", "look.py"]
     done = subprocess.run([*words, os.path.normpath(plugin), picture, str(count)], cwd=folder,
                           capture_output=True, text=True)
     if done.returncode != 0 or "ParaView reads it" not in done.stdout:
-        raise AssertionError(f"pvpython ends with {done.returncode}: {done.stdout[-1500:]}{done.stderr[-1500:]}")
+        raise AssertionError(f"pvpython ends with {done.returncode}: {done.stdout[-1500:]}{done.stderr[-3000:]}")
     if picture and os.path.getsize(os.path.join(folder, picture)) < 2000:
         raise AssertionError("the picture is empty")
 

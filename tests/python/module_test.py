@@ -106,8 +106,14 @@ class Module(unittest.TestCase):
         self.assertIsNone(loaded.kinds)
         self.assertIsNone(loaded.normals)
         self.assertEqual(fppg.compare(self.path("Case"), self.path("Case"))["findings"], [])
+        made.convert(self.path("made.csv"))
         files, losses = loaded.convert(self.path("p.csv"))
         self.assertEqual(files, [self.path("p.csv")])
+        # Nothing of the other result gets into the file of this one.
+        with open(self.path("made.csv"), encoding="utf-8") as of_made, open(files[0], encoding="utf-8") as of_loaded:
+            last = [file.read().splitlines()[1].split(",") for file in (of_made, of_loaded)]
+        self.assertEqual([line[-1] for line in last], ["corner", ""])
+        self.assertEqual(last[1][9:12], ["", "", ""])
         self.assertTrue(any("no volumes" in loss for loss in losses))
 
     def test_a_mesh_without_a_case_is_fitted(self):

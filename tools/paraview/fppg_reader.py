@@ -31,7 +31,7 @@ TYPES = {"fixed": 0, "moving": 1, "floating": 2, "fluid": 3}
 
 def particle_arrays(path):
     """Positions (n x 3), point data by name, the index of each particle's block or None, and the blocks of a .bi4."""
-    values, arrays = read_bi4(path)
+    values, arrays = read_bi4(path, is_mapped=True)
     if values.get("Npiece", 1) != 1:
         raise ValueError(f"{path}: one of {values['Npiece']} pieces, expected all particles in one file")
     arrays = dict(arrays)
@@ -73,7 +73,7 @@ def poly_data(positions, data):
 
 
 def time_of(path):
-    return float(read_bi4(path)[0].get("TimeStep", 0))
+    return float(read_bi4(path, is_mapped=True)[0].get("TimeStep", 0))
 
 
 @smproxy.reader(name="fppgParticles", label="fppg Particles", extensions="bi4",
