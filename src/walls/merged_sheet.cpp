@@ -106,6 +106,34 @@ private:
     PointGrid edges_;
 };
 
+/// Visits points of a facet that are `apart` from one another.
+template <typename Visit>
+void for_each_sample(const SurfaceMesh& mesh, std::size_t f, double apart, const Visit& visit)
+{
+    constexpr double sliver = 1.0 / 3;
+    const auto corner = [&](std::size_t k) -> const Vec3&
+    { return mesh.vertices[mesh.facets[f][k % 3]]; };
+    std::size_t first = 0; // of the longest edge
+    for (std::size_t k = 1; k < 3; ++k)
+        if (norm(corner(k + 1) - corner(k)) > norm(corner(first + 1) - corner(first))) first = k;
+    const double longest = norm(corner(first + 1) - corner(first));
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / apart)));
+    const double height = 2 * mesh.areas[f] / longest;
+    // As many rows as a sliver is long would be far too many.
+    const bool is_sliver = height < sliver * longest;
+    const int rows = is_sliver ? std::max(1, static_cast<int>(std::ceil(height / apart))) : n;
+    if (!is_sliver) first = 0;
+    const Vec3& a = corner(first);
+    const Vec3 u = corner(first + 1) - a;
+    const Vec3 v = corner(first + 2) - a;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < rows; ++j)
+        {
+            const double s = (i + 1.0 / 3) / n, t = (j + 1.0 / 3) / rows;
+            if (s + t < 1) visit(a + s * u + t * v);
+        }
+}
+
 /// Along a line of the section of a 2D case, which two facets were drawn out of: the first is
 /// asked.
 void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mesh,
@@ -209,20 +237,13 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
                 sample_line(f, middle, mesh, options, of_facet[f]);
                 return;
             }
-            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
-            const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
-            const double longest = std::max({norm(u), norm(v), norm(u - v)});
-            const int n =
-                std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n - i; ++j)
-                {
-                    const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
-                    if (const auto at =
-                            middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
-                        of_facet[f].push_back(*at);
-                }
+            for_each_sample(mesh, f, sample_dp * options.dp,
+                            [&](const Vec3& p)
+                            {
+                                if (const auto at = middle.under(p, mesh.normals[f],
+                                                                 static_cast<std::uint32_t>(f)))
+                                    of_facet[f].push_back(*at);
+                            });
         },
         16);
     std::vector<MiddlePoint> out;
