@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "offset/middle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,6 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
-/// Sides whose normals turn by more than 120 degrees face away from each other.
-constexpr double facing_away = -0.5;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
@@ -57,32 +56,12 @@ public:
     std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& normal,
                                      std::uint32_t facet) const
     {
-        const Vec3 down = -wall_.sign() * normal;
-        double radius = options_.least_depth_dp * options_.dp;
-        Vec3 centre = foot + radius * down;
-        Vec3 other = foot;
-        bool is_thin = false;
-        for (int step = 0; step < 30; ++step)
-        {
-            const DepthPlace place = wall_.at(centre);
-            const double distance = norm(place.nearest - centre);
-            if (!(distance < radius * (1 - 1e-7))) break;
-            const Vec3 way = place.nearest - foot;
-            const double height = dot(way, down);
-            if (!(height > 1e-9 * options_.dp)) return std::nullopt;
-            other = place.nearest;
-            is_thin = true;
-            radius = std::min(radius, dot(way, way) / (2 * height));
-            centre = foot + radius * down;
-        }
-        if (!is_thin) return std::nullopt;
-        const Vec3 up = centre - other;
-        const double size = norm(up);
-        if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
+        const auto ball = inner_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
+        if (!ball) return std::nullopt;
         if (options_.off_edges_dp > 0 &&
-            edges_.has_nearer(centre, options_.off_edges_dp * options_.dp))
+            edges_.has_nearer(ball->centre, options_.off_edges_dp * options_.dp))
             return std::nullopt;
-        return MiddlePoint{centre, facet, spacing_at(2 * radius)};
+        return MiddlePoint{ball->centre, facet, spacing_at(2 * ball->radius)};
     }
 
     /// A point back on the middle.
@@ -254,11 +233,6 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
                                      int threads)
 {
-    MergedSheetOptions options;
-    options.dp = most;
-    options.least_depth_dp = 0.5;
-    options.off_edges_dp = 0;
-    const Middle middle(wall, {}, options);
     const SurfaceMesh& mesh = wall.mesh();
     double area = 0;
     std::vector<double> up_to(mesh.facets.size());
@@ -283,21 +257,11 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
             const Vec3& a = mesh.vertices[mesh.facets[f][0]];
             const Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
                            v * (mesh.vertices[mesh.facets[f][2]] - a);
-            if (const auto found = middle.under(p, mesh.normals[f], f))
-                out[i] = 2 * norm(found->position - p);
+            if (const auto ball = inner_ball(wall, p, mesh.normals[f], 0.5 * most))
+                out[i] = 2 * ball->radius;
         },
         16);
     return out;
-}
-
-Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)
-{
-    MergedSheetOptions options;
-    options.dp = most;
-    options.least_depth_dp = 1;
-    options.off_edges_dp = 0;
-    const auto found = Middle(wall, {}, options).back(p);
-    return found && norm(found->position - p) < most ? found->position : p;
 }
 
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
