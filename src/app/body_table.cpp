@@ -36,7 +36,46 @@ const FittedBody* solid_of(const FittedWalls& walls, const ParticleBlock& block)
     return found;
 }
 
-/// The volume, the centre and the inertia at density 1 of the particles of a block.
+std::vector<std::string> row_of(const std::string& mk, const char* of, const ExactBody& body,
+                                double density)
+{
+    const auto inertia = [&](int i)
+    { return fmt::format("{:.6g}", density * body.inertia[static_cast<std::size_t>(i)][i]); };
+    std::vector<std::string> row{mk, of, fmt::format("{:.6g}", body.volume),
+                                 fmt::format("{:.6g}", density * body.volume)};
+    for (int axis = 0; axis < 3; ++axis) row.push_back(fmt::format("{:.6g}", body.center[axis]));
+    for (int axis = 0; axis < 3; ++axis) row.push_back(inertia(axis));
+    return row;
+}
+
+std::vector<std::string> difference(const ExactBody& particles, const ExactBody& shape, double dp)
+{
+    const std::string volume =
+        fmt::format("{:+.3f} %", 100 * (particles.volume / shape.volume - 1));
+    std::vector<std::string> row{"", "difference", volume, volume};
+    for (int axis = 0; axis < 3; ++axis)
+        row.push_back(
+            fmt::format("{:+.4f} dp", (particles.center[axis] - shape.center[axis]) / dp));
+    for (int i = 0; i < 3; ++i)
+    {
+        const auto k = static_cast<std::size_t>(i);
+        row.push_back(
+            fmt::format("{:+.3f} %", 100 * (particles.inertia[k][i] / shape.inertia[k][i] - 1)));
+    }
+    return row;
+}
+
+double density_of(const CaseDef& def, const ParticleBlock& block, double rhop0)
+{
+    for (const FloatingDef& f : def.floatings)
+        if (f.rhop_body &&
+            std::find(f.mkbound.begin(), f.mkbound.end(), block.mk_type) != f.mkbound.end())
+            return *f.rhop_body;
+    return rhop0;
+}
+
+} // namespace
+
 ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock& block,
                             bool are_cubes)
 {
@@ -80,46 +119,6 @@ ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock&
         });
     return out;
 }
-
-std::vector<std::string> row_of(const std::string& mk, const char* of, const ExactBody& body,
-                                double density)
-{
-    const auto inertia = [&](int i)
-    { return fmt::format("{:.6g}", density * body.inertia[static_cast<std::size_t>(i)][i]); };
-    std::vector<std::string> row{mk, of, fmt::format("{:.6g}", body.volume),
-                                 fmt::format("{:.6g}", density * body.volume)};
-    for (int axis = 0; axis < 3; ++axis) row.push_back(fmt::format("{:.6g}", body.center[axis]));
-    for (int axis = 0; axis < 3; ++axis) row.push_back(inertia(axis));
-    return row;
-}
-
-std::vector<std::string> difference(const ExactBody& particles, const ExactBody& shape, double dp)
-{
-    const std::string volume =
-        fmt::format("{:+.3f} %", 100 * (particles.volume / shape.volume - 1));
-    std::vector<std::string> row{"", "difference", volume, volume};
-    for (int axis = 0; axis < 3; ++axis)
-        row.push_back(
-            fmt::format("{:+.4f} dp", (particles.center[axis] - shape.center[axis]) / dp));
-    for (int i = 0; i < 3; ++i)
-    {
-        const auto k = static_cast<std::size_t>(i);
-        row.push_back(
-            fmt::format("{:+.3f} %", 100 * (particles.inertia[k][i] / shape.inertia[k][i] - 1)));
-    }
-    return row;
-}
-
-double density_of(const CaseDef& def, const ParticleBlock& block, double rhop0)
-{
-    for (const FloatingDef& f : def.floatings)
-        if (f.rhop_body &&
-            std::find(f.mkbound.begin(), f.mkbound.end(), block.mk_type) != f.mkbound.end())
-            return *f.rhop_body;
-    return rhop0;
-}
-
-} // namespace
 
 void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticles& particles,
                 const CaseConstants& constants, RunLog& log)

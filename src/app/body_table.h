@@ -5,9 +5,17 @@
 #include "fppg/scene.h"
 
 #include "app/run_log.h"
+#include "shapes/moments.h"
 
 namespace fppg
 {
+
+/// The volume, the centre and the inertia at density 1 of the particles of a block, by the share of
+/// dp^3 or the volume that each stands for.
+///
+/// are_cubes  each counts as a cube of dp, not as a point
+ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock& block,
+                            bool are_cubes);
 
 /// Writes a table of the fitted solids into the log: volume, mass, centre and inertia of the shape
 /// and of the particles, each by mk. The mass is that of the density of `<floating>`, else of

@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "app/inspect_particles.h"
 #include "core/json.h"
 #include "core/parallel.h"
+#include "core/text_table.h"
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
@@ -26,6 +28,8 @@ constexpr std::size_t open_edges_shown = 5;
 constexpr double most_line_particles = 1e7;
 /// Beyond this, particles on the surface are not placed: it would take longer than a few seconds.
 constexpr double most_fitted_particles = 2e6;
+/// Beyond this, the particles of the body are not made for its table.
+constexpr double most_for_bodies = 2e5;
 constexpr std::size_t thickness_samples = 20000;
 /// From here on a dp is more likely a mistake than meant.
 constexpr double questionable_particles = 1e10;
@@ -300,7 +304,13 @@ Inspection inspect_mesh(const InspectOptions& options)
             found.question = question_of(found);
         }
         describe_features(mesh, found);
-        if (options.dp > 0 && found.question.empty()) find_thin_places(mesh, found);
+        if (options.dp > 0 && found.question.empty())
+        {
+            find_thin_places(mesh, found);
+            if (found.report.is_watertight && found.report.volume > 0 &&
+                found.surface_particles + found.volume_particles < most_for_bodies)
+                found.bodies = inspect_bodies(options, mesh);
+        }
     }
     catch (const GeometryError& error)
     {
@@ -318,6 +328,40 @@ namespace
 {
 
 using Line = std::function<void(const char*, const std::string&)>;
+
+/// Volume, mass, centre and inertia of the shape and of the particles.
+void write_bodies(const Inspection& found, const Line& line)
+{
+    if (found.bodies.empty()) return;
+    const double metre = metres_of_unit(found.unit);
+    constexpr double density = 1000;
+    std::vector<std::vector<std::string>> rows{{"", "particles", "volume m3", "mass kg",
+                                                "centre x m", "y", "z", "inertia xx kg m2", "yy",
+                                                "zz"}};
+    for (const InspectedBody& b : found.bodies)
+    {
+        std::vector<std::string> row{
+            b.of, b.particles > 0 ? fmt::format("{}", b.particles) : std::string(),
+            fmt::format("{:.6g}", b.body.volume * std::pow(metre, 3)),
+            fmt::format("{:.6g}", density * b.body.volume * std::pow(metre, 3))};
+        for (int axis = 0; axis < 3; ++axis)
+            row.push_back(fmt::format("{:.6g}", b.body.center[axis] * metre));
+        for (int axis = 0; axis < 3; ++axis)
+            row.push_back(fmt::format(
+                "{:.6g}", density * b.body.inertia[static_cast<std::size_t>(axis)][axis] *
+                              std::pow(metre, 5)));
+        rows.push_back(std::move(row));
+    }
+    line("Bodies", "at 1000 kg/m3, with -fit (on the surface) and place=\"inside\":");
+    std::string table = text_table(rows, 1, "");
+    while (!table.empty() && table.back() == '\n') table.pop_back();
+    for (std::size_t at = 0; at <= table.size();)
+    {
+        const std::size_t end = std::min(table.find('\n', at), table.size());
+        line("", table.substr(at, end - at));
+        at = end + 1;
+    }
+}
 
 void write_particles(const Inspection& found, const Lengths& in, const Line& line)
 {
@@ -346,6 +390,7 @@ void write_particles(const Inspection& found, const Lengths& in, const Line& lin
                            100 * found.thin_share, in.length(found.thinnest),
                            in.place(found.thinnest_at))
              : "none found");
+    write_bodies(found, line);
     if (!report.is_watertight) return;
     std::size_t least = 0;
     while (least < Inspection::most_layers && !(found.layer_shares[least] > 0)) ++least;
@@ -405,6 +450,25 @@ std::string to_text(const Inspection& found)
     return text;
 }
 
+namespace
+{
+
+/// Lengths in the unit of the file, density 1.
+Json bodies_json(const Inspection& found)
+{
+    Json out = Json::array();
+    for (const InspectedBody& b : found.bodies)
+    {
+        Json body{{"of", b.of}, {"particles", b.particles}, {"volume", b.body.volume}};
+        body["centre"] = as_json(b.body.center);
+        body["inertia"] = {b.body.inertia[0].x, b.body.inertia[1].y, b.body.inertia[2].z};
+        out.push_back(body);
+    }
+    return out;
+}
+
+} // namespace
+
 std::string to_json(const Inspection& found)
 {
     const MeshReport& report = found.report;
@@ -451,6 +515,7 @@ std::string to_json(const Inspection& found)
         json["lines_shorter_than_dp"] = found.short_lines;
         json["thin"] = {{"share_of_area", found.thin_share}, {"least", found.thinnest}};
         if (found.thin_share > 0) json["thin"]["at"] = as_json(found.thinnest_at);
+        if (!found.bodies.empty()) json["bodies"] = bodies_json(found);
         if (report.is_watertight && found.question.empty())
         {
             json["layers"]["share_of_area"] = Json::array();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "shapes/moments.h"
+
 #include <array>
 #include <optional>
 #include <string>
@@ -23,6 +25,14 @@ struct InspectOptions
     std::string unit{};       ///< of the file: "m", "cm", "mm" or "in"; empty: it is guessed
     double weld_distance = 0; ///< 0: corners with equal coordinates only
     int threads = 1;
+};
+
+/// A body as particles stand for it, in the unit of the file, at density 1.
+struct InspectedBody
+{
+    std::string of; ///< "shape", "on the surface" or "inside"
+    std::size_t particles = 0;
+    ExactBody body;
 };
 
 /// A mesh file as `fppg inspect` describes it.
@@ -61,6 +71,9 @@ struct Inspection
     double thin_share = 0; ///< of the area, where the opposite side is nearer than dp
     double thinnest = 0;   ///< the least distance found there; 0 if no place is thin
     Vec3 thinnest_at;
+    /// The shape and what particles of both placements stand for, of closed meshes that make few
+    /// enough particles for a look.
+    std::vector<InspectedBody> bodies;
     /// For how many layers of mDBC there is room through the body, counted from both sides, at most
     /// most_layers: the share of the area for each number.
     static constexpr std::size_t most_layers = 4;

@@ -136,7 +136,8 @@ void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& z
 
 void WallPainter::cut_by(const FittedDraw& draw)
 {
-    const double reach = cut_distance_dp * field_->grid.dp;
+    // The particles of a body that has all inside are half a dp away from what touches it.
+    const double reach = (draw.body.is_inside ? touching_dp : cut_distance_dp) * field_->grid.dp;
     Box3 bounds;
     for (const auto& f : draw.body.mesh.facets)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);

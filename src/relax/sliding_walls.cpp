@@ -1,8 +1,8 @@
 #include "relax/sliding_walls.h"
 
+#include "offset/middle.h"
 #include "offset/offset_surface.h"
 #include "relax/wall_planes.h"
-#include "walls/merged_sheet.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "offset/middle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,6 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
-/// Sides whose normals turn by more than 120 degrees face away from each other.
-constexpr double facing_away = -0.5;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
@@ -57,32 +56,12 @@ public:
     std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& normal,
                                      std::uint32_t facet) const
     {
-        const Vec3 down = -wall_.sign() * normal;
-        double radius = options_.least_depth_dp * options_.dp;
-        Vec3 centre = foot + radius * down;
-        Vec3 other = foot;
-        bool is_thin = false;
-        for (int step = 0; step < 30; ++step)
-        {
-            const DepthPlace place = wall_.at(centre);
-            const double distance = norm(place.nearest - centre);
-            if (!(distance < radius * (1 - 1e-7))) break;
-            const Vec3 way = place.nearest - foot;
-            const double height = dot(way, down);
-            if (!(height > 1e-9 * options_.dp)) return std::nullopt;
-            other = place.nearest;
-            is_thin = true;
-            radius = std::min(radius, dot(way, way) / (2 * height));
-            centre = foot + radius * down;
-        }
-        if (!is_thin) return std::nullopt;
-        const Vec3 up = centre - other;
-        const double size = norm(up);
-        if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
+        const auto ball = inner_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
+        if (!ball) return std::nullopt;
         if (options_.off_edges_dp > 0 &&
-            edges_.has_nearer(centre, options_.off_edges_dp * options_.dp))
+            edges_.has_nearer(ball->centre, options_.off_edges_dp * options_.dp))
             return std::nullopt;
-        return MiddlePoint{centre, facet, spacing_at(2 * radius)};
+        return MiddlePoint{ball->centre, facet, spacing_at(2 * ball->radius)};
     }
 
     /// A point back on the middle.
@@ -105,6 +84,34 @@ private:
     const MergedSheetOptions& options_;
     PointGrid edges_;
 };
+
+/// Visits points of a facet that are `apart` from one another.
+template <typename Visit>
+void for_each_sample(const SurfaceMesh& mesh, std::size_t f, double apart, const Visit& visit)
+{
+    constexpr double sliver = 1.0 / 3;
+    const auto corner = [&](std::size_t k) -> const Vec3&
+    { return mesh.vertices[mesh.facets[f][k % 3]]; };
+    std::size_t first = 0; // of the longest edge
+    for (std::size_t k = 1; k < 3; ++k)
+        if (norm(corner(k + 1) - corner(k)) > norm(corner(first + 1) - corner(first))) first = k;
+    const double longest = norm(corner(first + 1) - corner(first));
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / apart)));
+    const double height = 2 * mesh.areas[f] / longest;
+    // As many rows as a sliver is long would be far too many.
+    const bool is_sliver = height < sliver * longest;
+    const int rows = is_sliver ? std::max(1, static_cast<int>(std::ceil(height / apart))) : n;
+    if (!is_sliver) first = 0;
+    const Vec3& a = corner(first);
+    const Vec3 u = corner(first + 1) - a;
+    const Vec3 v = corner(first + 2) - a;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < rows; ++j)
+        {
+            const double s = (i + 1.0 / 3) / n, t = (j + 1.0 / 3) / rows;
+            if (s + t < 1) visit(a + s * u + t * v);
+        }
+}
 
 /// Along a line of the section of a 2D case, which two facets were drawn out of: the first is
 /// asked.
@@ -209,20 +216,13 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
                 sample_line(f, middle, mesh, options, of_facet[f]);
                 return;
             }
-            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            const Vec3 u = mesh.vertices[mesh.facets[f][1]] - a;
-            const Vec3 v = mesh.vertices[mesh.facets[f][2]] - a;
-            const double longest = std::max({norm(u), norm(v), norm(u - v)});
-            const int n =
-                std::max(1, static_cast<int>(std::ceil(longest / (sample_dp * options.dp))));
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n - i; ++j)
-                {
-                    const Vec3 p = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
-                    if (const auto at =
-                            middle.under(p, mesh.normals[f], static_cast<std::uint32_t>(f)))
-                        of_facet[f].push_back(*at);
-                }
+            for_each_sample(mesh, f, sample_dp * options.dp,
+                            [&](const Vec3& p)
+                            {
+                                if (const auto at = middle.under(p, mesh.normals[f],
+                                                                 static_cast<std::uint32_t>(f)))
+                                    of_facet[f].push_back(*at);
+                            });
         },
         16);
     std::vector<MiddlePoint> out;
@@ -233,11 +233,6 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
                                      int threads)
 {
-    MergedSheetOptions options;
-    options.dp = most;
-    options.least_depth_dp = 0.5;
-    options.off_edges_dp = 0;
-    const Middle middle(wall, {}, options);
     const SurfaceMesh& mesh = wall.mesh();
     double area = 0;
     std::vector<double> up_to(mesh.facets.size());
@@ -262,21 +257,11 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
             const Vec3& a = mesh.vertices[mesh.facets[f][0]];
             const Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
                            v * (mesh.vertices[mesh.facets[f][2]] - a);
-            if (const auto found = middle.under(p, mesh.normals[f], f))
-                out[i] = 2 * norm(found->position - p);
+            if (const auto ball = inner_ball(wall, p, mesh.normals[f], 0.5 * most))
+                out[i] = 2 * ball->radius;
         },
         16);
     return out;
-}
-
-Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)
-{
-    MergedSheetOptions options;
-    options.dp = most;
-    options.least_depth_dp = 1;
-    options.off_edges_dp = 0;
-    const auto found = Middle(wall, {}, options).back(p);
-    return found && norm(found->position - p) < most ? found->position : p;
 }
 
 SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,

@@ -35,8 +35,7 @@ struct MiddlePoint
 
 /// Points on the middle (the medial axis) of the thin parts of a body, from both sides.
 ///
-/// Points of the surface, 0.3 dp apart, are sunk to the centre of the largest ball that touches the
-/// surface there and holds no other point of it (Ma, Bae and Choi, 2012, "shrinking ball"). Those
+/// Points of the surface, 0.3 dp apart, are sunk to the centre of their inner_ball(). Those
 /// less deep than least_depth whose other side faces away by more than 120 degrees are taken, half
 /// a dp off sharp edges; none of a body that is thick everywhere.
 ///
@@ -48,10 +47,6 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 /// find_middle(), metres; 0 where that is more than `most` or the other side does not face away.
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
                                      int threads);
-
-/// The point of the middle that is nearest to p along the way in which the depth grows; p itself
-/// where the body is thicker than twice `most`, metres.
-Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most);
 
 /// The particles that both sides of a thin part share: on its middle (the medial axis), one per
 /// dp^2 and evenly spaced.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "offset/wall_depth.h"
+
+#include <optional>
+
+namespace fppg
+{
+
+/// A ball inside a body that touches both sides of a thin part.
+struct InnerBall
+{
+    Vec3 centre; ///< on the middle of the part, its medial axis
+    double radius = 0;
+};
+
+/// The largest ball that touches the surface at a point and holds no other point of it (Ma, Bae and
+/// Choi, 2012, "shrinking ball").
+///
+/// foot, normal  a point of a facet and the facet's normal
+/// most          metres
+/// returns       nothing where its radius would be more than `most`, or where the other side does
+///               not face away by more than 120 degrees
+std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
+                                    double most);
+
+/// The point of the middle over the surface that is nearest to p; p itself where there is no middle
+/// less deep than `most`, metres.
+Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most);
+
+} // namespace fppg
