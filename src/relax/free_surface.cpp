@@ -29,6 +29,17 @@ unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std:
     return found;
 }
 
+/// Whether a particle is next to another one and as high along an axis.
+bool is_beside(const Band& band, std::uint32_t i, std::uint32_t j, unsigned axis)
+{
+    const std::array<float, 3> d{band.points.x[j] - band.points.x[i],
+                                 band.points.y[j] - band.points.y[i],
+                                 band.points.z[j] - band.points.z[i]};
+    const float across =
+        d[(axis + 1) % 3] * d[(axis + 1) % 3] + d[(axis + 2) % 3] * d[(axis + 2) % 3];
+    return std::abs(d[axis]) < 0.1f && across < 2.2f;
+}
+
 /// A free surface goes on up to the wall that it meets: a particle at the height of a free one,
 /// next to it, that lacks the same neighbour is free too, though a wall, as one that leans over it,
 /// is near enough to be the cause.
@@ -36,14 +47,13 @@ void follow_to_walls(const Band& band, const NeighbourList& list,
                      const std::vector<unsigned char>& lacking,
                      std::vector<unsigned char>& free_sides)
 {
-    const auto is_beside = [&](std::uint32_t i, std::uint32_t j, unsigned axis)
+    const auto sides_of_neighbour = [&](std::uint32_t i, std::uint32_t j)
     {
-        const std::array<float, 3> d{band.points.x[j] - band.points.x[i],
-                                     band.points.y[j] - band.points.y[i],
-                                     band.points.z[j] - band.points.z[i]};
-        const float across =
-            d[(axis + 1) % 3] * d[(axis + 1) % 3] + d[(axis + 2) % 3] * d[(axis + 2) % 3];
-        return std::abs(d[axis]) < 0.1f && across < 2.2f;
+        unsigned out = 0;
+        for (unsigned side = 0; side < 6; ++side)
+            if ((free_sides[j] & lacking[i] & 1u << side) != 0 && is_beside(band, i, j, side / 2))
+                out |= 1u << side;
+        return out;
     };
     for (bool has_changed = true; has_changed;)
     {
@@ -52,17 +62,11 @@ void follow_to_walls(const Band& band, const NeighbourList& list,
         {
             const std::uint32_t i = list.point(row);
             if (i >= band.moving || (lacking[i] & ~free_sides[i]) == 0) continue;
+            unsigned sides = free_sides[i];
             for (const std::uint32_t j : list.neighbours(row))
-            {
-                if (j >= band.moving) continue;
-                unsigned shared = free_sides[j] & lacking[i] & ~unsigned{free_sides[i]};
-                for (unsigned side = 0; shared != 0; ++side, shared >>= 1)
-                    if ((shared & 1) != 0 && is_beside(i, j, side / 2))
-                    {
-                        free_sides[i] = static_cast<unsigned char>(free_sides[i] | 1u << side);
-                        has_changed = true;
-                    }
-            }
+                if (j < band.moving) sides |= sides_of_neighbour(i, j);
+            has_changed = has_changed || sides != free_sides[i];
+            free_sides[i] = static_cast<unsigned char>(sides);
         }
     }
 }
