@@ -30,15 +30,18 @@ std::optional<double> wanted_number(const FittedWalls& walls, const Region& regi
 {
     const double dp3 = dp * dp * dp;
     double wanted = 0, all = 0;
+    bool has_bodies = false;
     for (const FittedBody& body : walls.bodies)
     {
         if (!is_filled(region, body) || body.is_layer()) continue;
         const FitMeasures& measures = body.measures;
         // Of what a draw left empty in part it is not known how much.
         if (!(measures.volume > 0) || measures.filled < nearly_all) return std::nullopt;
+        has_bodies = true;
         wanted += measures.volume - measures.wall_volume;
         all += measures.node_volume;
     }
+    if (!has_bodies) return std::nullopt;
     if (!(all > 0)) return static_cast<double>(moving); // there is no room for any
     const double part = std::min(1.0, nodes * dp3 / all);
     // A few nodes gave way to particles of the walls.

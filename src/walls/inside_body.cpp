@@ -25,7 +25,7 @@ namespace
 {
 
 /// Bodies up to this thick, dp, are looked at for plates; what is thicker has room for nodes.
-constexpr double thickest_plate_dp = 12.6;
+constexpr double thickest_plate_dp = 4.6;
 /// A body is a plate where so much of its surface has nearly its mean thickness over it, ...
 constexpr double plate_share = 0.35;
 constexpr double nearly = 0.22;
