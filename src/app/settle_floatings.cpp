@@ -16,7 +16,7 @@ namespace
 {
 
 /// A shape that may make up a floating body.
-struct Shape
+struct TrueShape
 {
     std::string name;  ///< the command and its line
     double volume = 0; ///< metres cubed, in 2D metres squared; 0: there is none
@@ -35,9 +35,9 @@ public:
     }
 
     /// In 2D, the section that a single fitted body makes.
-    Shape section_of(const ParticleBlock& block) const
+    TrueShape section_of(const ParticleBlock& block) const
     {
-        Shape shape;
+        TrueShape shape;
         if (!def_.grid.is_2d) return shape;
         for (const FittedBody& body : walls_.bodies)
         {
@@ -49,7 +49,7 @@ public:
         return shape;
     }
 
-    void note(const FloatingBody& body, const FloatingDef& f, const Shape& shape)
+    void note(const FloatingBody& body, const FloatingDef& f, const TrueShape& shape)
     {
         const ParticleBlock& block = particles_.blocks[body.block];
         if (!f.rhop_body || f.mass_body || !(shape.volume > 0)) return;
