@@ -35,7 +35,7 @@ public:
           particles_(particles),
           constants_(constants),
           threads_(threads),
-          meter_(field_, type_of_mk_),
+          meter_(field_, type_of_mk_, !raises_roofs()),
           g_(norm(def_.constants.gravity)),
           is_vertical_(def_.constants.gravity.x == 0 && def_.constants.gravity.y == 0),
           by_height_(def_.constants.rhop_gradient == 3),
@@ -49,8 +49,7 @@ public:
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
-        if (def_.balances() && is_vertical_ && !by_height_ && def_.constants.gravity.z < 0)
-            raise_roofed_depths(field_, meter_, top_);
+        if (raises_roofs()) raise_roofed_depths(field_, meter_, top_);
         measure_off_lattice();
         constants_.hswl = hswl();
         set_speeds(def_, g_, constants_);
@@ -90,6 +89,13 @@ private:
         if (def_.balances()) depth += def_.grid.dp / 2;
         return static_cast<float>(c.rhop0 *
                                   std::pow(1 + c.rhop0 * g_ * depth / constants_.b, 1 / c.gamma));
+    }
+
+    bool raises_roofs() const
+    {
+        const ConstantsDef& c = def_.constants;
+        return def_.balances() && c.rhop_gradient != 3 && c.gravity.x == 0 && c.gravity.y == 0 &&
+               c.gravity.z < 0;
     }
 
     /// GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.

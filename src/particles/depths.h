@@ -29,8 +29,10 @@ enum class Medium : std::uint8_t
 class DepthMeter
 {
 public:
-    DepthMeter(const RunField& field, const std::vector<ParticleType>& type_of_mk)
-        : field_(field), type_of_mk_(type_of_mk)
+    /// floatings_are_hosts  whether nodes of floating bodies may be hosts (is_host())
+    DepthMeter(const RunField& field, const std::vector<ParticleType>& type_of_mk,
+               bool floatings_are_hosts)
+        : field_(field), type_of_mk_(type_of_mk), floatings_are_hosts_(floatings_are_hosts)
     {
     }
 
@@ -39,6 +41,15 @@ public:
         const ParticleType type = type_of_mk_[mk];
         return type == ParticleType::Fluid || type == ParticleType::Floating ? Medium::Water
                                                                              : Medium::Wall;
+    }
+
+    bool is_fluid(std::uint16_t mk) const { return type_of_mk_[mk] == ParticleType::Fluid; }
+
+    /// Whether the nearest node of the mk may give a particle off the lattice its depth: those of
+    /// floating bodies do in GenCase, not where depths are raised under roofs.
+    bool is_host(std::uint16_t mk) const
+    {
+        return is_fluid(mk) || (floatings_are_hosts_ && medium(mk) == Medium::Water);
     }
 
     /// For every run of a slab the steps from its highest node to the top of its column.
@@ -60,6 +71,7 @@ public:
 private:
     const RunField& field_;
     const std::vector<ParticleType>& type_of_mk_;
+    bool floatings_are_hosts_;
 };
 
 /// Whether a node counts for hswl: also one that a particle off the lattice hides, as it does in
@@ -129,7 +141,7 @@ private:
         for (; run != runs.end() && run->y == y; ++run)
         {
             if (run->z_begin - q.z > reach) return;
-            if (q.z - run->z_end > reach || meter_.medium(run->mk) != Medium::Water) continue;
+            if (q.z - run->z_end > reach || !meter_.is_host(run->mk)) continue;
             const double node = std::clamp(std::round(q.z), static_cast<double>(run->z_begin),
                                            static_cast<double>(run->z_end - 1));
             const double dz = node - q.z;

@@ -61,7 +61,7 @@ public:
 private:
     bool is_water(std::uint32_t x, std::uint32_t i) const
     {
-        return meter_.medium(field_.slabs[x][i].mk) == Medium::Water;
+        return meter_.is_fluid(field_.slabs[x][i].mk);
     }
     /// The node at the surface above a run.
     std::uint32_t level(std::uint32_t x, std::uint32_t i) const
@@ -75,7 +75,7 @@ private:
         const std::vector<Run>& runs = field_.slabs[x];
         while (i + 1 < runs.size() && runs[i + 1].y == runs[i].y &&
                runs[i + 1].z_begin == runs[i].z_end &&
-               meter_.medium(runs[i + 1].mk) == Medium::Water)
+               is_water(x, static_cast<std::uint32_t>(i + 1)))
             ++i;
         return i;
     }
@@ -87,8 +87,7 @@ private:
         constexpr std::uint32_t reach = 2; // nodes
         const std::uint32_t end = runs[last].z_end;
         if (last + 1 < runs.size() && runs[last + 1].y == runs[last].y &&
-            runs[last + 1].z_begin < end + reach &&
-            meter_.medium(runs[last + 1].mk) == Medium::Wall)
+            runs[last + 1].z_begin < end + reach && !meter_.is_fluid(runs[last + 1].mk))
             return true;
         const double dp = field_.grid.dp;
         const Vec3 at =

@@ -239,6 +239,32 @@ TEST(Balance, WaterUnderARoofHasThePressureOfTheOpenSurface)
     EXPECT_GT(under, 20);
 }
 
+/// GenCase's columns go on through floating bodies: water below one has the density of its deck.
+TEST(Balance, WaterBelowAFloatingBodyHasThePressureOfTheOpenSurface)
+{
+    const TemporaryFolder folder;
+    CaseText text = tank(R"(<bodyfitted layers="3" />)");
+    const std::size_t at = text.mainlist.find(R"(<setmkfluid mk="0" />)");
+    text.mainlist.insert(
+        at,
+        R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.53" y="0.42" z="0.45" /><size x="0.6" y="0.6" z="0.7" /></drawbox>)");
+    text.after_geometry += R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings>)";
+    const Result r = make(folder, text);
+    EXPECT_TRUE(contains(r.output, "Balanced fluid")) << r.output;
+    const double b = b_of(folder);
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < r.cloud.positions.size(); ++i)
+    {
+        if (r.cloud.mk[i] >= first_bound) continue;
+        const Vec3& p = r.cloud.positions[i];
+        const double depth = b * (std::pow(double{r.densities[i]} / 1000, 7) - 1) / (1000 * g);
+        // Half a dp above the highest node of the water, at 0.8 m.
+        EXPECT_NEAR(p.z + depth, 0.85, 0.02 * dp) << p.x << ' ' << p.y << ' ' << p.z;
+        below += p.z < 0.45 && std::abs(p.x - 0.83) < 0.25 && std::abs(p.y - 0.72) < 0.25 ? 1 : 0;
+    }
+    EXPECT_GT(below, 20u);
+}
+
 TEST(Balance, NumberOfFluidStaysWithoutABandAndIsWarnedOfWithOne)
 {
     const TemporaryFolder folder;

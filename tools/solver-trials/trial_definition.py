@@ -47,10 +47,10 @@ VARIANTS = {
     "surface-mdbc": Variant(True, no_slip(1, 0), 0.5, "drawn", 3),
     "surface-mdbc2": Variant(True, no_slip(2, 1), 0.5, "wet", 3),
     # Layers at depths where the boundary condition wants them.
-    "layers": Variant(True, no_slip(2, 1), 0.5, "", 3, {"boundary": "mdbc"}),
-    "layers-slip1": Variant(True, no_slip(1, 0), 0.5, "", 3, {"boundary": "mdbc"}),
-    "layers-slip3": Variant(True, no_slip(3, 1), 0.5, "", 3, {"boundary": "mdbc"}),
-    "layers-dbc": Variant(True, {"Boundary": 1}, 0.0, "", 3, {"boundary": "dbc", "layers": "3"}),
+    "layers": Variant(True, no_slip(2, 1), 0.5, "", 3, attributes={"boundary": "mdbc"}),
+    "layers-slip1": Variant(True, no_slip(1, 0), 0.5, "", 3, attributes={"boundary": "mdbc"}),
+    "layers-slip3": Variant(True, no_slip(3, 1), 0.5, "", 3, attributes={"boundary": "mdbc"}),
+    "layers-dbc": Variant(True, {"Boundary": 1}, 0.0, "", 3, attributes={"boundary": "dbc", "layers": "3"}),
 }
 
 
@@ -126,7 +126,8 @@ def fppg_block(trial, variant):
         return ""
     more = "".join(f' {k}="{v}"' for k, v in variant.attributes.items())
     band = f'<fluidband mkfluid="0" width="{variant.band}" />' if variant.band else ""
-    return f'<fppg><bodyfitted mkbound="0-{len(trial.meshes) - 1}"{more} />{band}</fppg>'
+    exact = '<floatings exact="true" />' if trial.floating else ""
+    return f'<fppg><bodyfitted mkbound="0-{len(trial.meshes) - 1}"{more} />{band}{exact}</fppg>'
 
 
 def definition(trial, variant):
