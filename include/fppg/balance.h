@@ -67,7 +67,8 @@ struct BalanceReport
 /// source     trials in tools/solver-trials; a tank of still water at dp 0.0125 m, largest speed in
 ///            0.2 s: DBC 0.080 m/s on the lattice, 0.013 balanced; mDBC in layers 0.114 m/s with
 ///            fluid that is only even, 0.019 balanced
-/// cost       about 3 microseconds a particle and iteration on one core, 60 to 160 iterations
+/// cost       about 1.2 microseconds a particle and iteration on one core, 60 to 160 iterations; 20
+///            where walls do not hold the fluid
 BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const CaseConstants& constants, CaseParticles& particles, int threads,
                             const std::function<bool(const BalanceProgress&)>& on_iteration);
