@@ -40,6 +40,8 @@ public:
     void commit();
 
     const std::string& path() const { return path_; }
+    /// Where the file is until commit() gives it its name.
+    const std::string& temporary_path() const { return temporary_path_; }
 
 private:
     std::string path_;

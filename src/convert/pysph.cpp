@@ -4,7 +4,7 @@
 
 #include "convert/columns.h"
 #include "convert/formats.h"
-#include "convert/hdf5_layout.h"
+#include "convert/hdf5_file.h"
 
 namespace fppg
 {
@@ -84,11 +84,8 @@ void write_pysph(const ParticleFeed& given, const std::string& path, int threads
                                order.counts[b],
                                0});
     }
-    std::uint64_t size = 0;
-    const std::string head = lay_out_hdf5(objects, size);
     OutputFile& file = out.files.emplace_back(path);
-    file.reserve(size);
-    file.write_at(0, head.data(), head.size());
+    lay_out_hdf5(file, objects);
     std::vector<BodyColumns> bodies(feed.bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b)
     {

@@ -1,6 +1,6 @@
 #include "convert/columns.h"
 #include "convert/formats.h"
-#include "convert/hdf5_layout.h"
+#include "convert/hdf5_file.h"
 
 #include <fmt/format.h>
 
@@ -76,11 +76,8 @@ void write_xdmf(const ParticleFeed& feed, const std::string& path, int threads, 
     std::vector<Hdf5Object> objects{{"", {{"time", feed.time}, {"dp", feed.dp}}, false, {}, 0, 0}};
     for (const Column& column : columns)
         objects.push_back({column.name, {}, true, column, feed.count, 0});
-    std::uint64_t size = 0;
-    const std::string head = lay_out_hdf5(objects, size);
     OutputFile& numbers = out.files.emplace_back(h5.string());
-    numbers.reserve(size);
-    numbers.write_at(0, head.data(), head.size());
+    lay_out_hdf5(numbers, objects);
     std::vector<PlacedColumn> placed;
     for (std::size_t i = 1; i < objects.size(); ++i)
         placed.push_back({objects[i].column, objects[i].at});
