@@ -241,9 +241,10 @@ private:
     }
 
     /// Even particles between two places along the chain, and at the first one if it has none yet.
+    /// Lengths are met to a millionth: those of turned shapes and of offsets are rounded.
     void add_stretch(const Chain& chain, double begin, double end, bool with_begin)
     {
-        double parts = std::max(1.0, std::ceil((end - begin) / options_.dp * (1 - 1e-12)));
+        double parts = std::max(1.0, std::ceil((end - begin) / options_.dp * (1 - 1e-6)));
         if (parts == 2 && end - begin < 2 * least_pair_dp * options_.dp) parts = 1;
         for (double i = with_begin ? 0 : 1; i < parts; ++i)
         {

@@ -7,6 +7,7 @@
 #include "relax/fit_moments.h"
 #include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
+#include "relax/own_lattice.h"
 #include "relax/region_volume.h"
 #include "relax/regions.h"
 #include "relax/sliding_walls.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,6 +37,7 @@ constexpr int volume_iterations = 30;
 /// Of bodies that are wholly inside, whose outermost particles move as well.
 constexpr int inside_iterations = 80;
 constexpr std::size_t runs_per_chunk = 256;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A run of the field and its slab.
 struct SlabRun
@@ -156,6 +159,7 @@ private:
         const AllWalls all(field_.walls.bodies, field_.grid, threads_);
         if (all.is_empty()) return;
         const std::vector<std::vector<SlabRun>> runs = runs_of_solids(solids);
+        own_lattices_ = own_lattices(field_.walls, field_.grid);
         for (std::size_t s = 0; s < solids.size() && !report_.is_stopped; ++s)
         {
             const std::vector<std::uint16_t>& mks = solids[s];
@@ -167,7 +171,10 @@ private:
             // Under layers the inside begins that much deeper.
             const double layers =
                 settings->depths_dp.empty() ? 0 : settings->depths_dp.back() + 0.5;
-            for (const std::uint16_t mk : mks) region.band[mk] = settings->relax.band_dp + layers;
+            for (const std::uint16_t mk : mks)
+                region.band[mk] = has_own_lattice(field_.walls, own_lattices_, mk)
+                                      ? infinity
+                                      : settings->relax.band_dp + layers;
             region.beside.assign(65536, 0);
             region.is_solid = true;
             if (settings->relax.iterations)
@@ -434,6 +441,8 @@ private:
         std::vector<Vec3> positions;
         positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
+        if (is_of_inside)
+            move_to_own_lattices(field_.walls, own_lattices_, all, movers, positions, threads_);
         std::vector<VolumeMotion> slides(sliding.particles.empty() ? 0 : movers.size(),
                                          VolumeMotion::Free);
         slides.insert(slides.end(), sliding.motions.begin(), sliding.motions.end());
@@ -562,6 +571,7 @@ private:
     RelaxReport& report_;
     const RelaxSnapshot& snapshot_;
     std::map<std::pair<std::uint32_t, int>, std::unique_ptr<NearBlocks>> near_blocks_;
+    std::vector<std::optional<OwnLattice>> own_lattices_; ///< of the bodies
 };
 
 } // namespace

@@ -206,10 +206,43 @@ private:
             room_ = std::max(0.0, volume_of(under.mesh)) / dp3_;
             return;
         }
-        for (std::size_t x = 0; x < out_.volume.size(); ++x)
-            for (const Span& span : out_.volume[x])
-                for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
-                    if (wall_->at(place_of(x, span.y, z)).depth > under_layers_) ++room_;
+        // Of each node's square as much as is under the layers.
+        std::vector<double> of_slab(grid_.n[0], 0.0);
+        const double half_diagonal = std::sqrt(0.5) * grid_.dp;
+        Box3 box;
+        for (const Vec3& v : out_.body.mesh.vertices) box.add(v);
+        parallel_for(grid_.n[0], threads_,
+                     [&](std::size_t x)
+                     {
+                         for (std::uint32_t z = 0; z < grid_.n[2]; ++z)
+                         {
+                             const Vec3 p = place_of(x, 0, z);
+                             if (p.x < box.min.x - grid_.dp || p.x > box.max.x + grid_.dp ||
+                                 p.z < box.min.z - grid_.dp || p.z > box.max.z + grid_.dp)
+                                 continue;
+                             const double off = wall_->at(p).depth - under_layers_;
+                             if (off > half_diagonal)
+                                 of_slab[x] += 1;
+                             else if (off > -half_diagonal)
+                                 of_slab[x] += share_under_layers(p);
+                         }
+                     });
+        for (const double count : of_slab) room_ += count;
+    }
+
+    /// How much of a square of dp about a point is under the layers, in 2D.
+    double share_under_layers(const Vec3& p) const
+    {
+        constexpr int parts = 8;
+        int inside = 0;
+        for (int i = 0; i < parts * parts; ++i)
+        {
+            const double x = (i % parts + 0.5) / parts - 0.5;
+            const double z = (i / parts + 0.5) / parts - 0.5;
+            const Vec3 at = p + grid_.dp * Vec3{x, 0, z};
+            if (wall_->at(at).depth > under_layers_) ++inside;
+        }
+        return static_cast<double>(inside) / (parts * parts);
     }
 
     Vec3 place_of(std::size_t x, std::uint32_t y, std::uint32_t z) const

@@ -246,6 +246,7 @@ void LayerBuilder::merge_sides()
     const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
     for (std::size_t i = 0; i < sheet.positions.size(); ++i)
     {
+        if (grid_.is_2d) sheet.positions[i].y = grid_.origin.y;
         body.depth = std::max(body.depth, body.wall->at(sheet.positions[i]).depth);
         out_.particles.positions.push_back(sheet.positions[i]);
         out_.particles.kinds.push_back(FitKind::Surface);

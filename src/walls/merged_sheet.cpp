@@ -16,6 +16,8 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
+/// Of a line in 2D: their number is met by the distance between those that are taken in turn.
+constexpr double sample_of_line_dp = 0.02;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
@@ -125,7 +127,8 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
         if (mesh.vertices[v].x != p.x || mesh.vertices[v].z != p.z) q = mesh.vertices[v];
     p.y = *options.plane_y;
     q.y = *options.plane_y;
-    const int n = std::max(1, static_cast<int>(std::ceil(norm(q - p) / (sample_dp * options.dp))));
+    const int n =
+        std::max(1, static_cast<int>(std::ceil(norm(q - p) / (sample_of_line_dp * options.dp))));
     for (int i = 0; i < n; ++i)
         if (const auto at = middle.under(p + ((i + 0.5) / n) * (q - p), mesh.normals[facet],
                                          static_cast<std::uint32_t>(facet)))

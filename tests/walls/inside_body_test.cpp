@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "core/transforms.h"
 #include "meshes/crowded_points.h"
 #include "walls/layered_drawing.h"
 
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace fppg
 {
@@ -191,6 +193,56 @@ TEST(InsideBody, In2DHasTheAreaOfItsSection)
                   0.499 * dp);
     }
     EXPECT_GT(nearest_pair(particles), 0.7 * dp);
+}
+
+/// The particles of a beam of 2 x 0.5 in the plane that is turned, turned back.
+std::vector<Vec3> beam(double angle, std::optional<int> sheets)
+{
+    Drawing drawing = inside(true);
+    drawing.def.fit.all->across = sheets;
+    const Transform turn = rotation({0, 1, 0}, angle);
+    PolyhedronOp box = make_box({-0.97, -1, -0.23}, {2, 2, 0.5},
+                                {true, true, true, true, true, true}, true, {}, dp)[0];
+    transform_polyhedron(box, turn);
+    drawing.draw(box);
+    std::vector<Vec3> particles = particles_of(relaxed(drawing));
+    const Transform back = rotation({0, 1, 0}, -angle);
+    for (Vec3& p : particles)
+    {
+        EXPECT_EQ(p.y, 0); // the solver makes more of 1e-18
+        p = back(p);
+    }
+    return particles;
+}
+
+TEST(InsideBody, OfABeamIsTheSameLatticeHoweverItIsTurned)
+{
+    for (const double angle : {0.0, 0.3, 1.2})
+    {
+        const std::vector<Vec3> particles = beam(angle, {});
+        ASSERT_EQ(particles.size(), 100U);
+        for (const Vec3& p : particles)
+        {
+            const double x = (p.x + 0.92) / dp, z = (p.z + 0.18) / dp;
+            EXPECT_LT(std::abs(x - std::round(x)), 0.12);
+            EXPECT_LT(std::abs(z - std::round(z)), 0.12);
+        }
+    }
+}
+
+TEST(InsideBody, OfABeamHasAsManyWholeSheetsAsAreAskedFor)
+{
+    for (const double angle : {0.0, 0.5})
+    {
+        const std::vector<Vec3> particles = beam(angle, 5);
+        EXPECT_EQ(particles.size(), 100U);
+        EXPECT_GT(nearest_pair(particles), 0.85 * dp);
+        for (const Vec3& p : particles)
+        {
+            const double z = (p.z + 0.18) / dp;
+            EXPECT_LT(std::abs(z - std::round(z)), 0.15);
+        }
+    }
 }
 
 TEST(InsideBody, IsTheSameWithAnyNumberOfThreads)
