@@ -19,6 +19,8 @@ JBD_TYPES = {3: ("<i1", 1), 4: ("<u1", 1), 5: ("<i2", 1), 6: ("<u2", 1), 7: ("<i
              20: ("<i4", 3), 21: ("<u4", 3), 22: ("<f4", 3), 23: ("<f8", 3)}
 TEXT, BOOL = 1, 2
 
+TYPES = {"fixed": 0, "moving": 1, "floating": 2, "fluid": 3}
+
 VTK_TYPES = {"unsigned_char": ">u1", "char": ">i1", "unsigned_short": ">u2", "short": ">i2",
              "unsigned_int": ">u4", "int": ">i4", "float": ">f4", "double": ">f8"}
 
@@ -147,6 +149,31 @@ def find_blocks(ids, blocks):
         is_inside = (place >= 0) & (chosen < ends[place])
         out[first:first + at_once][is_inside] = np.array(order, np.int32)[place[is_inside]]
     return out
+
+
+def particle_arrays(path):
+    """Positions (n x 3), point data by name, the index of each particle's block or None, and the blocks of a .bi4."""
+    values, arrays = read_bi4(path, is_mapped=True)
+    if values.get("Npiece", 1) != 1:
+        raise ValueError(f"{path}: one of {values['Npiece']} pieces, expected all particles in one file")
+    arrays = dict(arrays)
+    positions = arrays.pop("Pos") if "Pos" in arrays else arrays.pop("Posd")
+    arrays.pop("Posd", None)
+    count = len(positions)
+    data = {}
+    for name, array in arrays.items():
+        if len(array) < count:  # of boundary particles only, which come first
+            array = np.concatenate([array, np.zeros((count - len(array), *array.shape[1:]), array.dtype)])
+        data[name] = array
+    xml = find_case_xml(path, values.get("CaseName", ""))
+    if xml is None:
+        return positions, data, None, []
+    blocks = read_blocks(xml)
+    of_block = find_blocks(data["Idp"], blocks)
+    # Particles that the solver added, as at inlets, belong to no block.
+    data["Mk"] = np.array([b["mk"] for b in blocks] + [-1], np.int32)[of_block]
+    data["Type"] = np.array([TYPES[b["type"]] for b in blocks] + [TYPES["fluid"]], np.uint8)[of_block]
+    return positions, data, of_block, blocks
 
 
 def read_vtk(path):

@@ -110,6 +110,13 @@ def check_meshio(folder, fppg):
         expect_equal(numpy, mesh.point_data["density"].ravel(), arrays["Rhop"], f"the density in .{ending}")
         if sum(len(block.data) for block in mesh.cells) != len(arrays["Idp"]):
             raise AssertionError(f".{ending}: not a vertex a particle")
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/python"))
+    import meshio_bi4  # noqa: F401 (meshio knows .bi4 from here on)
+    mesh = meshio.read(f"{case}.bi4")
+    expect_equal(numpy, mesh.points, arrays["Posd"], "the positions in .bi4")
+    expect_equal(numpy, mesh.point_data["Rhop"], arrays["Rhop"], "the density in .bi4")
+    if set(mesh.point_data["Type"].tolist()) != {0, 3}:
+        raise AssertionError(".bi4: expected walls and fluid")
 
 
 def check_h5py(folder, fppg):

@@ -22,6 +22,8 @@ install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES tools/paraview/fppg_reader.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg/paraview)
+install(FILES tools/python/meshio_bi4.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg/meshio)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg COMPONENT fppg
     PATTERN "*_out" EXCLUDE)
 

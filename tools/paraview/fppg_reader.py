@@ -19,40 +19,12 @@ import numpy as np
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [_HERE, os.path.dirname(_HERE)]
-from particle_files import find_blocks, find_case_xml, read_bi4, read_blocks  # noqa: E402
+from particle_files import particle_arrays, read_bi4  # noqa: E402
 
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData  # noqa: E402
-
-TYPES = {"fixed": 0, "moving": 1, "floating": 2, "fluid": 3}
-
-
-def particle_arrays(path):
-    """Positions (n x 3), point data by name, the index of each particle's block or None, and the blocks of a .bi4."""
-    values, arrays = read_bi4(path, is_mapped=True)
-    if values.get("Npiece", 1) != 1:
-        raise ValueError(f"{path}: one of {values['Npiece']} pieces, expected all particles in one file")
-    arrays = dict(arrays)
-    positions = arrays.pop("Pos") if "Pos" in arrays else arrays.pop("Posd")
-    arrays.pop("Posd", None)
-    count = len(positions)
-    data = {}
-    for name, array in arrays.items():
-        if len(array) < count:  # of boundary particles only, which come first
-            array = np.concatenate([array, np.zeros((count - len(array), *array.shape[1:]), array.dtype)])
-        data[name] = array
-    xml = find_case_xml(path, values.get("CaseName", ""))
-    if xml is None:
-        return positions, data, None, []
-    blocks = read_blocks(xml)
-    of_block = find_blocks(data["Idp"], blocks)
-    # Particles that the solver added, as at inlets, belong to no block.
-    data["Mk"] = np.array([b["mk"] for b in blocks] + [-1], np.int32)[of_block]
-    data["Type"] = np.array([TYPES[b["type"]] for b in blocks] + [TYPES["fluid"]], np.uint8)[of_block]
-    return positions, data, of_block, blocks
-
 
 def poly_data(positions, data):
     """Particles as vertices. Arrays are copied: VTK may share their memory further than Python sees."""
