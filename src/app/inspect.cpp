@@ -8,6 +8,7 @@
 
 #include "app/inspect_particles.h"
 #include "core/json.h"
+#include "core/length_units.h"
 #include "core/parallel.h"
 #include "core/text_table.h"
 #include "fppg/error.h"
@@ -317,11 +318,6 @@ Inspection inspect_mesh(const InspectOptions& options)
         throw GeometryError(fmt::format("{}: {}", options.path, error.what()));
     }
     return found;
-}
-
-double metres_of_unit(std::string_view unit)
-{
-    return unit == "m" ? 1 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : unit == "in" ? 0.0254 : 0;
 }
 
 namespace

@@ -13,9 +13,6 @@
 namespace fppg
 {
 
-/// Metres of a unit of InspectOptions; 0: there is no such unit.
-double metres_of_unit(std::string_view unit);
-
 /// What `fppg inspect` is asked. Lengths are in the unit of the file, which no format says.
 struct InspectOptions
 {
