@@ -66,6 +66,8 @@ struct NewCase
     std::vector<NewCasePart> parts;
     std::vector<Proposal> proposals;
     std::vector<std::string> warnings; ///< whole sentences
+    /// Of the files, whole sentences; making the particles says them again.
+    std::vector<std::string> file_warnings;
 };
 
 /// "tank", "wading", "gearbox", "obstacle", "floating".

@@ -75,7 +75,7 @@ void describe_features(const SurfaceMesh& mesh, Inspection& found)
             found.shortest_line > 0 ? std::min(found.shortest_line, line.length) : line.length;
         found.short_lines += static_cast<std::size_t>(line.length < options.dp);
     }
-    if (!(options.dp > 0) || !found.question.empty()) return;
+    if (!(options.dp > 0) || !found.question.empty() || !found.options.places_particles) return;
     if (found.line_length > most_line_particles * options.dp)
     {
         found.corner_particles = static_cast<double>(found.singular_points);
@@ -308,7 +308,7 @@ Inspection inspect_mesh(const InspectOptions& options)
         if (options.dp > 0 && found.question.empty())
         {
             find_thin_places(mesh, found);
-            if (found.report.is_watertight && found.report.volume > 0 &&
+            if (options.places_particles && found.report.is_watertight && found.report.volume > 0 &&
                 found.surface_particles + found.volume_particles < most_for_bodies)
                 found.bodies = inspect_bodies(options, mesh);
         }

@@ -178,12 +178,14 @@ private:
     fs::path path_;
 };
 
-/// Makes the particles of the case, without relaxation.
+/// Makes the particles of the case, walls one sheet on their surface and without relaxation: layers
+/// take most of the time of a run.
 GeneratedCase try_case(const NewCall& call, const NewCase& made, double dp)
 {
     GenerateOptions options;
     if (dp != made.dp) options.dp = dp;
     options.fit = FitChoice::Raw;
+    options.vars = {{"Boundary", "1"}};
     options.threads = call.options.threads;
     return generate_case(call.options.output, options);
 }
@@ -240,6 +242,7 @@ std::string parts_table(const NewCase& made, int threads)
         options.dp = made.dp / metre;
         options.unit = part.unit;
         options.threads = threads;
+        options.places_particles = false;
         const Inspection found = inspect_mesh(options);
         const Vec3 size = (found.report.bounds.max - found.report.bounds.min) * metre;
         rows.push_back({part.name, std::to_string(part.mkbound), part.role,
@@ -274,6 +277,8 @@ int run_new(const std::vector<std::string>& arguments)
     file.commit();
     fmt::print("{}", call.as_json ? to_json(made) : to_text(made, call.explains));
     if (!call.as_json) fmt::print("{}: the definition is written\n", call.options.output);
+    if (call.has_no_picture && !call.as_json)
+        for (const std::string& warning : made.file_warnings) fmt::print("Warning: {}\n", warning);
     if (call.has_no_picture) return 0;
     bar.emplace("try the case");
     double dp = 0;
@@ -284,7 +289,7 @@ int run_new(const std::vector<std::string>& arguments)
     bar.reset();
     if (call.as_json) return 0;
     for (const std::string& warning : trial.warnings()) fmt::print("Warning: {}\n", warning);
-    fmt::print("{}: {} particles at dp {:.4g} m, without relaxation\n{}", picture,
+    fmt::print("{}: {} particles at dp {:.4g} m, walls as one sheet, without relaxation\n{}", picture,
                trial.particles().np, dp, table);
     return 0;
 }

@@ -255,6 +255,8 @@ private:
             xml_.line("<newvarcte Speed=\"{}\" _rem=\"m/s, of the {}\" />",
                       number(*plan_.options->speed),
                       plan_.kind == CaseKind::Wading ? "vehicle along x" : "stream against x");
+        xml_.line("<newvarcte Boundary=\"2\" _rem=\"Walls 1: dynamic (DBC), 2: modified (mDBC), in "
+                  "layers; -evars:Boundary=1 changes it\" />");
         xml_.line("<newvarcte TimeMax=\"{}\" TimeOut=\"{}\" _rem=\"s\" />", number(plan_.duration),
                   number(plan_.time_out));
         xml_.close("predefinition");
@@ -419,7 +421,7 @@ private:
         xml_.open("execution");
         xml_.open("parameters");
         parameter("SavePosDouble", "0", "Output positions in single precision");
-        parameter("Boundary", "2", "Walls: 1 dynamic (DBC), 2 modified (mDBC)");
+        parameter("Boundary", "#Boundary", "Walls: 1 dynamic (DBC), 2 modified (mDBC)");
         parameter("SlipMode", "2", "mDBC: 1: no velocity at walls, 2: no slip, 3: free slip");
         parameter("NoPenetration", "1", "With SlipMode 2 and 3: keeps fluid out of walls");
         parameter("StepAlgorithm", "2", "1: Verlet, 2: symplectic, steadier beside moving walls");

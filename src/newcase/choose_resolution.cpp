@@ -32,9 +32,14 @@ double moving_speed(const NewPart& part)
     return farthest * std::abs(part.turning->degrees_per_s) * std::numbers::pi / 180;
 }
 
-bool mesh_as_gears(const NewPart& a, const NewPart& b)
+/// Parts that turn into each other are no passage, however narrow it is between them.
+bool mesh_as_gears(const CasePlan& plan, const PartPair& pair)
 {
-    return a.turning && b.turning &&
+    const NewPart& a = plan.parts[pair.first];
+    const NewPart& b = plan.parts[pair.second];
+    const double size =
+        std::min(norm(a.box().max - a.box().min), norm(b.box().max - b.box().min));
+    return pair.gap.distance < 0.05 * size && a.turning && b.turning &&
            !(a.turning->axis.point == b.turning->axis.point &&
              a.turning->axis.direction == b.turning->axis.direction);
 }
@@ -47,7 +52,7 @@ void find_passage(CasePlan& plan)
     {
         if (pair.touches) continue;
         const PartPair*& least =
-            mesh_as_gears(plan.parts[pair.first], plan.parts[pair.second]) ? backlash : thinnest;
+            mesh_as_gears(plan, pair) ? backlash : thinnest;
         if (least == nullptr || pair.gap.distance < least->gap.distance) least = &pair;
     }
     if (thinnest != nullptr)

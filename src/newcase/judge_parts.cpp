@@ -119,7 +119,7 @@ void judge_parts(CasePlan& plan)
     for (const NewPart& part : plan.parts)
     {
         for (const std::string& warning : part.report.warnings)
-            plan.warnings.push_back(fmt::format("{}: {}", part.path, warning));
+            plan.file_warnings.push_back(fmt::format("{}: {}", part.path, warning));
         if (diagonal(part.box()) > 0 && part.report.area > 0) continue;
         throw GeometryError(fmt::format("{}: the part has no extent", part.path));
     }

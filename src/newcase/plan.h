@@ -149,6 +149,7 @@ struct CasePlan
     double visco = 0;       ///< coefficient of the artificial viscosity
     std::vector<Proposal> proposals;
     std::vector<std::string> warnings;
+    std::vector<std::string> file_warnings;
 
     void propose(std::string what, std::string value, std::string reason, std::string more = "")
     {

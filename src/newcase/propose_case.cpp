@@ -56,6 +56,7 @@ NewCase propose_case(const NewCaseOptions& options)
             {part.name, part.path, part.unit, part.mkbound, role_name(part.role)});
     out.proposals = std::move(plan.proposals);
     out.warnings = std::move(plan.warnings);
+    out.file_warnings = std::move(plan.file_warnings);
     return out;
 }
 
@@ -94,6 +95,7 @@ std::string to_json(const NewCase& made)
             {{"what", p.what}, {"value", p.value}, {"reason", p.reason}, {"more", p.more}});
     json["warnings"] = Json::array();
     for (const std::string& warning : made.warnings) json["warnings"].push_back(warning);
+    for (const std::string& warning : made.file_warnings) json["warnings"].push_back(warning);
     return json.text(2) + "\n";
 }
 

@@ -21,8 +21,13 @@ constexpr std::size_t most_judged = 300;
 constexpr int most_times = 120; ///< teeth and the like
 /// Only places whose normal has such a part along the turn tell how far a part has turned.
 constexpr double least_slant = 0.2;
-/// A surface with fewer of them is round, as a cylinder of facets.
+/// A surface with fewer of them, of all places that do not look along the axis, is round, as a
+/// cylinder of facets.
 constexpr double least_share = 0.01;
+/// And so is one with fewer than this that has no other symmetry: a shaft with its keyway.
+constexpr double round_share = 0.12;
+/// Parts are modelled along the axes of coordinates: nearer than 3 degrees, those are tried.
+constexpr double nearly_along = 0.9986;
 /// A part turns onto itself where half of these places are off by less than this share of its
 /// size: keyways and holes may break a symmetry.
 constexpr double half_within = 5e-4;
@@ -60,18 +65,64 @@ std::vector<SurfacePlace> places_on(const SurfaceMesh& mesh)
     return out;
 }
 
-/// The places that tell how far the part has turned about a line.
-std::vector<Vec3> telling_places(const std::vector<SurfacePlace>& places, const AxisLine& line)
+/// What of the surface tells how far the part has turned about a line.
+struct TellingPlaces
 {
-    std::vector<Vec3> out;
+    std::vector<Vec3> places;
+    double share = 0; ///< of all places that do not look along the axis
+};
+
+TellingPlaces telling_places(const std::vector<SurfacePlace>& places, const AxisLine& line)
+{
+    TellingPlaces out;
+    std::size_t sideways = 0;
     for (const SurfacePlace& p : places)
     {
+        if (std::abs(dot(line.direction, p.normal)) > 0.9) continue;
+        ++sideways;
         const Vec3 along = cross(line.direction, p.place - line.point);
         const double length = norm(along);
         if (length > 0 && std::abs(dot(along, p.normal)) > least_slant * length)
-            out.push_back(p.place);
+            out.places.push_back(p.place);
     }
+    out.share = sideways == 0 ? 0
+                              : static_cast<double>(out.places.size()) /
+                                    static_cast<double>(sideways);
     return out;
+}
+
+/// The point through which an axis of this direction passes: normals of round surfaces meet it,
+/// (p - c) . (n x d) = 0. What is far from doing so, such as a keyway, counts less from step to
+/// step.
+Vec3 point_on_axis(const std::vector<SurfacePlace>& places, const Vec3& direction, Vec3 from,
+                   double size)
+{
+    double scale = size;
+    for (int step = 0; step < 30; ++step)
+    {
+        std::array<Vec3, 3> matrix{};
+        Vec3 right;
+        for (const SurfacePlace& p : places)
+        {
+            const Vec3 across = cross(p.normal, direction);
+            const double off = dot(p.place - from, across);
+            const double weight = 1 / (1 + off * off / (scale * scale));
+            for (int i = 0; i < 3; ++i)
+                matrix[static_cast<std::size_t>(i)] =
+                    matrix[static_cast<std::size_t>(i)] + (weight * across[i]) * across;
+            right = right + (weight * off) * across;
+        }
+        const PrincipalAxes found = principal_axes(matrix);
+        const double largest = std::max({found.values.x, found.values.y, found.values.z});
+        for (int i = 0; i < 3; ++i)
+        {
+            const Vec3& way = found.axes[static_cast<std::size_t>(i)];
+            if (found.values[i] > 1e-3 * largest)
+                from = from + (dot(way, right) / found.values[i]) * way;
+        }
+        scale = std::max(scale / 2, 1e-3 * size);
+    }
+    return from;
 }
 
 /// How far half of the places are from the surface at most when it is turned, metres.
@@ -87,16 +138,21 @@ double turned_off(const MeshQuery& query, const std::vector<Vec3>& places, const
     return off[off.size() / 2];
 }
 
-/// Along a coordinate axis where that is nearly so: parts are modelled along them.
-AxisLine tidied(AxisLine line, double size)
+/// The shortest number within a distance of a value.
+double shortest_near(double value, double within)
 {
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(line.direction[axis]) > 1 - 1e-6)
-        {
-            line.direction = {};
-            line.direction[axis] = 1;
-        }
-    // Of parallel axes the one that points to larger coordinates.
+    for (int digits = 1; digits < 12; ++digits)
+    {
+        const double rounded = round_nearest(value, digits);
+        if (std::abs(rounded - value) <= within) return rounded;
+    }
+    return value;
+}
+
+/// The same line, as a person would write it: of parallel ones that which points to larger
+/// coordinates, its numbers rounded.
+AxisLine tidied(AxisLine line, double within)
+{
     for (const int axis : {2, 1, 0})
         if (std::abs(line.direction[axis]) > 0.5)
         {
@@ -104,7 +160,12 @@ AxisLine tidied(AxisLine line, double size)
             break;
         }
     for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(line.point[axis]) < 2e-4 * size) line.point[axis] = 0;
+    {
+        const double value = line.point[axis];
+        line.point[axis] = std::abs(value) <= within || line.direction[axis] == 1
+                               ? 0
+                               : shortest_near(value, within);
+    }
     return line;
 }
 
@@ -118,8 +179,9 @@ AxisTrial try_axis(const NewPart& part, const MeshQuery& query,
                    const std::vector<SurfacePlace>& all, const AxisLine& line)
 {
     const double size = norm(part.box().max - part.box().min);
-    std::vector<Vec3> places = telling_places(all, line);
-    if (static_cast<double>(places.size()) < least_share * sample_count) return {0, 0};
+    TellingPlaces telling = telling_places(all, line);
+    std::vector<Vec3>& places = telling.places;
+    if (telling.share < least_share) return {0, 0};
     const std::size_t step = (places.size() + most_judged - 1) / most_judged;
     for (std::size_t i = 0; i * step < places.size(); ++i) places[i] = places[i * step];
     places.resize((places.size() + step - 1) / step);
@@ -131,6 +193,7 @@ AxisTrial try_axis(const NewPart& part, const MeshQuery& query,
         if (off < half_within * size && (best.times == 1 || off < 3 * best.off + 1e-5 * size))
             best = {times, off};
     }
+    if (best.times == 1 && telling.share < round_share) return {0, 0};
     return best;
 }
 
@@ -143,9 +206,26 @@ std::optional<SymmetryAxis> find_symmetry(const NewPart& part, int threads)
     const double size = norm(part.box().max - part.box().min);
     std::array<AxisTrial, 3> trials;
     std::array<AxisLine, 3> lines;
-    for (std::size_t i = 0; i < 3; ++i) lines[i] = tidied({part.body.center, found.axes[i]}, size);
     parallel_for(3, threads,
-                 [&](std::size_t i) { trials[i] = try_axis(part, query, places, lines[i]); });
+                 [&](std::size_t i)
+                 {
+                     AxisLine line{part.body.center, found.axes[i]};
+                     for (int axis = 0; axis < 3; ++axis)
+                         if (std::abs(line.direction[axis]) > nearly_along)
+                         {
+                             line.direction = {};
+                             line.direction[axis] = 1;
+                         }
+                     // The centre of mass of a part with teeth is on its axis, to rounding; a
+                     // keyway draws it off.
+                     const AxisLine central = tidied(line, 1e-6 * size);
+                     trials[i] = try_axis(part, query, places, central);
+                     lines[i] = central;
+                     if (trials[i].times > 1) return;
+                     line.point = point_on_axis(places, line.direction, line.point, size);
+                     lines[i] = tidied(line, 5e-5 * size);
+                     trials[i] = try_axis(part, query, places, lines[i]);
+                 });
     const auto rank = [](const AxisTrial& t) { return t.times == 0 ? 1000 : t.times; };
     std::size_t best = 0;
     for (std::size_t i = 1; i < 3; ++i)
