@@ -15,6 +15,7 @@
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
+#include "meshes/facing_distance.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_query.h"
 
@@ -99,31 +100,6 @@ struct Thickness
     double value = std::numeric_limits<double>::infinity();
 };
 
-/// How thick the body is behind a point of a facet: along the axis nearest to the normal to the
-/// next facet that looks the other way, times the cosine between both, which is exact for plates.
-/// Infinity where nothing is found within `reach`.
-double thickness_behind(const SurfaceMesh& mesh, const MeshQuery& query, std::uint32_t facet,
-                        const Vec3& p, double reach)
-{
-    const Vec3& n = mesh.normals[facet];
-    int axis = 0;
-    for (const int other : {1, 2})
-        if (std::abs(n[other]) > std::abs(n[axis])) axis = other;
-    const double slant = std::abs(n[axis]);
-    const bool is_upwards = n[axis] < 0;
-    Vec3 origin = p;
-    if (!is_upwards) origin[axis] -= reach / slant;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Crossing& crossing : query.crossings(origin, axis))
-    {
-        if (!is_upwards && crossing.position > p[axis]) break;
-        if (crossing.facet == facet || dot(mesh.normals[crossing.facet], n) > -0.5) continue;
-        const double distance = std::abs(crossing.position - p[axis]) * slant;
-        nearest = std::min(nearest, distance);
-    }
-    return nearest <= reach ? nearest : std::numeric_limits<double>::infinity();
-}
-
 /// Layers of both sides that are nearer than this are one, dp.
 constexpr double merged_layers_dp = 0.6;
 
@@ -166,7 +142,8 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
             const auto& c = mesh.facets[f];
             const Vec3& a = mesh.vertices[c[0]];
             const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-            samples[i] = {p, thickness_behind(mesh, query, f, p, reach)};
+            samples[i] = {
+                p, facing_distance(mesh.normals, query, {f, p}, FacetSide::Behind, reach)};
         },
         64);
     std::size_t thin = 0;

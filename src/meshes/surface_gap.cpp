@@ -133,12 +133,26 @@ private:
             const Facet facet = facet_of(first_.soup_, first_.order_[i]);
             Box3 own;
             for (const Vec3& corner : facet) own.add(corner);
-            if (squared_distance(own, box) < squared_) compare(facet, other);
+            const double apart = squared_distance(own, box);
+            if (apart < squared_) compare(facet, other, apart == 0);
         }
     }
 
-    void compare(const Facet& f, const Facet& g)
+    /// Whether all corners of one are farther from the plane of the other, on one side, than the
+    /// least distance up to now.
+    bool is_beyond_plane(const Facet& f, const Facet& g) const
     {
+        const Vec3 normal = cross(f[1] - f[0], f[2] - f[0]);
+        const double limit = squared_ * dot(normal, normal);
+        const double a = dot(normal, g[0] - f[0]), b = dot(normal, g[1] - f[0]),
+                     c = dot(normal, g[2] - f[0]);
+        const double least = std::min({a, b, c}), most = std::max({a, b, c});
+        return (least > 0 && least * least >= limit) || (most < 0 && most * most >= limit);
+    }
+
+    void compare(const Facet& f, const Facet& g, bool may_cross)
+    {
+        if (is_beyond_plane(f, g) || is_beyond_plane(g, f)) return;
         for (std::size_t s = 0; s < 3; ++s)
         {
             keep(f[s], closest_on_facet(f[s], g.data()));
@@ -150,8 +164,8 @@ private:
                 keep(p, q);
             }
         }
-        // Only facets that are near enough for their boxes to meet can cross.
         Vec3 place;
+        if (!may_cross) return;
         for (std::size_t s = 0; s < 3; ++s)
             if (crossing_place(f[s], f[(s + 1) % 3], g, place) ||
                 crossing_place(g[s], g[(s + 1) % 3], f, place))
