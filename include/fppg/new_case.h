@@ -18,6 +18,7 @@ struct NewCaseOptions
     std::string kind;                ///< a name of new_case_kinds(); empty: found
     std::string unit;                ///< of all files: m, cm, mm or in; empty: found
     std::vector<std::string> units;  ///< NAME=mm: of one part
+    std::string up = "z"; ///< the axis of the files that points upwards: x, y or z
     double dp = 0;                   ///< 0: by the two below
     double particles = 0;            ///< about as many; 0: 500,000 where nothing else is given
     double across = 0;               ///< so many through the thinnest passage between parts

@@ -92,6 +92,9 @@ void add_options(SubcommandLine& app, NewCall& call)
     app.add_option("--unit", call.units,
                    "of the files: m, cm, mm or in, or PART=mm of one; found by sizes otherwise")
         .may_be_repeated();
+    app.add_option("--up", o.up, "the axis of the files that points upwards")
+        .one_of({"x", "y", "z"})
+        .shows_default();
     app.add_option("--dp", o.dp, "particle distance, metres").positive();
     app.add_option("--particles", call.particles, "about as many, such as 500k or 2M");
     app.add_option("--across", o.across, "so many dp across the thinnest passage between parts")

@@ -278,13 +278,18 @@ private:
                             : part.unit == "cm" ? "Cm"
                             : part.unit == "in" ? "Inch"
                                                 : nullptr;
-        if (scale == nullptr)
+        const std::string& up = plan_.options->up;
+        if (scale == nullptr && up == "z")
         {
             xml_.line("<{} />", command);
             return;
         }
         xml_.open("{}", command);
-        xml_.line("<drawscale x=\"#{0}\" y=\"#{0}\" z=\"#{0}\" />", scale);
+        if (up != "z")
+            xml_.line("<drawrotate angx=\"{}\" angy=\"{}\" angz=\"0\" />", up == "y" ? 90 : 0,
+                      up == "x" ? -90 : 0);
+        if (scale != nullptr)
+            xml_.line("<drawscale x=\"#{0}\" y=\"#{0}\" z=\"#{0}\" />", scale);
         xml_.close(fmt::format("drawfile{}", mesh_format_name(part.format)).c_str());
     }
 

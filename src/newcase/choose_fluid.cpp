@@ -122,11 +122,18 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
     const Vec3 size = part.box().max - part.box().min;
     if (room.is_empty() || room.capacity() < 1e-3 * size.x * size.y * size.z)
         throw GeometryError(fmt::format(
-            "{}: the part encloses no room that holds fluid, it is open or solid{}. Expected a "
-            "housing with its inner walls, closed below; --housing PART chooses another one",
+            "{}: the part encloses no room that holds fluid, it is open below or solid{}. Expected a "
+            "housing with its inner walls, closed below along z; --up y where the files have y "
+            "upwards, --housing PART for another one",
             part.path, open_edges_text(part)));
     fill.vessel = vessel;
     measure_fill(plan, fill, room);
+    // The share of a vessel that is open is known here only; <fill> wants litres of it then.
+    if (fill.amount == FluidAmount::Percent && !room.is_closed())
+    {
+        fill.amount = FluidAmount::Litres;
+        fill.value = round_nearest(1000 * fill.volume, 4);
+    }
     fill.seed = room.seed(fill.level);
     for (int axis = 0; axis < 3; ++axis)
         fill.seed[axis] = round_nearest(fill.seed[axis], 4);

@@ -67,6 +67,11 @@ AxisLine axis_wanted(CasePlan& plan, std::size_t p, const std::string& text)
     return found->line;
 }
 
+std::string near_zero(double value)
+{
+    return short_number(std::abs(value) < 1e-9 ? 0 : value);
+}
+
 /// The axis that a part's own shape has. throws UsageError where it has none
 AxisLine axis_found(CasePlan& plan, std::size_t p, std::string& reason)
 {
@@ -74,9 +79,11 @@ AxisLine axis_found(CasePlan& plan, std::size_t p, std::string& reason)
     const auto& found = symmetry_of(part, plan.options->threads);
     if (!found)
         throw UsageError(fmt::format(
-            "--rotate: {} turns onto itself about no axis, or about several, so its axis is not "
-            "known; give it: {}=...@y, @0,1,0, @{:.4g},{:.4g},{:.4g}:0,1,0 or @PART",
-            part.name, part.name, part.body.center.x, part.body.center.y, part.body.center.z));
+            "--rotate: {0} turns onto itself about no axis, or about several, so its axis is not "
+            "known; give it: {0}=...@z (through its middle), @0,1,0, @{1},{2},{3}:0,0,1 (a point of "
+            "it and its direction) or @PART",
+            part.name, near_zero(part.body.center.x), near_zero(part.body.center.y),
+            near_zero(part.body.center.z)));
     reason = "its axis is found from its shape: " + times_text(*found);
     return found->line;
 }

@@ -221,8 +221,9 @@ void choose_constants(CasePlan& plan)
         plan.duration = *plan.options->duration;
     else if (stream > 0)
     {
-        plan.duration = 3 * size.x / stream;
-        reason = "the stream passes the parts three times";
+        const Vec3 channel = plan.water ? plan.water->box.max - plan.water->box.min : size;
+        plan.duration = 2 * channel.x / stream;
+        reason = "the stream passes through the channel twice";
     }
     else if (std::isfinite(slowest) && slowest > 0)
     {

@@ -2,6 +2,7 @@
 
 #include "core/length_units.h"
 #include "core/text.h"
+#include "core/transforms.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -175,6 +177,23 @@ UnitChoice common_unit(const CasePlan& plan)
     return {answer, "answered"};
 }
 
+/// The places of the file with its axis `up` along z; as <drawrotate> turns them.
+Transform turned_up(const std::string& up)
+{
+    if (up == "y") return rotation_about_axis(0, std::numbers::pi / 2);
+    if (up == "x") return rotation_about_axis(1, -std::numbers::pi / 2);
+    return {};
+}
+
+void turn_part(NewPart& part, const std::string& up)
+{
+    if (up == "z") return;
+    const Transform turn = turned_up(up);
+    part.report.bounds = {};
+    for (Vec3& v : part.mesh.vertices) part.report.bounds.add(v = turn(v));
+    for (Vec3& n : part.mesh.normals) n = turn(n);
+}
+
 void scale_part(NewPart& part, const std::string& unit)
 {
     part.unit = unit;
@@ -193,6 +212,7 @@ void scale_part(NewPart& part, const std::string& unit)
 
 void choose_units(CasePlan& plan)
 {
+    for (NewPart& part : plan.parts) turn_part(part, plan.options->up);
     const UnitChoice common = common_unit(plan);
     std::vector<std::string> of_part(plan.parts.size(), common.unit);
     for (const std::string& entry : plan.options->units)

@@ -30,7 +30,7 @@ constexpr double round_share = 0.12;
 constexpr double nearly_along = 0.9986;
 /// A part turns onto itself where half of these places are off by less than this share of its
 /// size: keyways and holes may break a symmetry.
-constexpr double half_within = 5e-4;
+constexpr double half_within = 2e-3;
 
 struct SurfacePlace
 {
