@@ -13,7 +13,7 @@ namespace fppg
 /// What `fppg new` is asked: parts, and what no file says. Lengths in metres, times in seconds.
 struct NewCaseOptions
 {
-    std::vector<std::string> inputs; ///< mesh files, and folders of them
+    std::vector<std::string> inputs; ///< mesh and STEP files, and folders of them
     std::string output;              ///< of the definition, with .xml; the parts are named from there
     std::string kind;                ///< a name of new_case_kinds(); empty: found
     std::string unit;                ///< of all files: m, cm, mm or in; empty: found
@@ -51,10 +51,17 @@ struct Proposal
 struct NewCasePart
 {
     std::string name;
-    std::string path; ///< of its file
+    std::string path; ///< of its mesh
     std::string unit;
     int mkbound = 0;
     std::string role; ///< "housing", "fixed", "moving" or "floating"
+};
+
+/// A file that the definition names, and that is to be written.
+struct NewCaseFile
+{
+    std::string path;
+    std::string bytes;
 };
 
 /// A case that runs as it stands.
@@ -62,6 +69,7 @@ struct NewCase
 {
     std::string kind;
     std::string xml; ///< the definition
+    std::vector<NewCaseFile> files; ///< the parts of STEP files as meshes (PLY)
     double dp = 0;
     double expected_particles = 0;
     std::vector<NewCasePart> parts;

@@ -83,7 +83,7 @@ void add_options(SubcommandLine& app, NewCall& call)
 {
     NewCaseOptions& o = call.options;
     app.add_option("PARTS", o.inputs,
-                   "mesh files, and folders of them: " + mesh_format_list())
+                   "STEP and mesh files, and folders of them: " + mesh_format_list())
         .required()
         .expected(1, -1);
     app.add_option("-o,--output", o.output, "the definition, Case_Def.xml").required();
@@ -231,6 +231,15 @@ std::string picture_name(const NewCall& call)
     return name + ".png";
 }
 
+void write_mesh(const NewCaseFile& mesh)
+{
+    std::error_code error;
+    fs::create_directories(fs::path(mesh.path).parent_path(), error);
+    OutputFile file(mesh.path);
+    file.append(mesh.bytes);
+    file.commit();
+}
+
 /// What inspect says of each part, a line each.
 std::string parts_table(const NewCase& made, int threads)
 {
@@ -276,6 +285,7 @@ int run_new(const std::vector<std::string>& arguments)
     if (call.options.ask) bar.reset();
     const NewCase made = propose_case(call.options);
     bar.reset();
+    for (const NewCaseFile& mesh : made.files) write_mesh(mesh);
     file.append(made.xml);
     file.commit();
     fmt::print("{}", call.as_json ? to_json(made) : to_text(made, call.explains));

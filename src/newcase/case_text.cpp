@@ -341,9 +341,13 @@ private:
         xml_.open("fppg");
         const std::size_t n = plan_.parts.size();
         const int first = plan_.water ? 0 : 1;
-        xml_.line("<bodyfitted mkbound=\"{}\" />",
+        // Facets of smooth CAD faces bend by 6 degrees at most, so less than 30 finds more edges.
+        const bool has_step = std::any_of(plan_.parts.begin(), plan_.parts.end(),
+                                          [](const NewPart& p) { return !p.step.empty(); });
+        xml_.line("<bodyfitted mkbound=\"{}\"{} />",
                   static_cast<int>(n) == first ? std::to_string(first)
-                                               : fmt::format("{}-{}", first, n));
+                                               : fmt::format("{}-{}", first, n),
+                  has_step ? " featureangle=\"15\"" : "");
         for (const std::vector<std::size_t>& body : bodies_)
         {
             xml_.comment("Parts that touch and keep their places are one body; each keeps its mk.");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace fppg
 {
@@ -49,11 +50,18 @@ NewCase propose_case(const NewCaseOptions& options)
     NewCase out;
     out.kind = new_case_kinds()[static_cast<std::size_t>(plan.kind)];
     out.xml = case_text(plan);
+    out.files = step_meshes(plan);
     out.dp = plan.dp;
     out.expected_particles = plan.expected;
+    const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
     for (const NewPart& part : plan.parts)
-        out.parts.push_back(
-            {part.name, part.path, part.unit, part.mkbound, role_name(part.role)});
+    {
+        const std::string mesh = part.step.empty() ? part.path : (folder / part.file).string();
+        out.parts.push_back({part.name, mesh, part.unit, part.mkbound, role_name(part.role)});
+        if (!part.step.empty())
+            plan.propose(part.name, "from " + part.step, part.step_facts,
+                         "Written as facets within 0.01 dp of its surface.");
+    }
     out.proposals = std::move(plan.proposals);
     out.warnings = std::move(plan.warnings);
     out.file_warnings = std::move(plan.file_warnings);

@@ -4,12 +4,15 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 #include "meshes/mesh_formats.h"
+#include "meshes/read_step.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <array>
 #include <fstream>
+#include <map>
 #include <set>
 
 namespace fppg
@@ -25,6 +28,7 @@ bool is_part_file(const fs::path& path)
 {
     const std::string ending = lower_case(path.extension().string());
     if (ending.size() < 2 || ending == ".csv") return false;
+    if (is_step_file(path.string())) return true;
     return ending == ".stl" || mesh_format_of(path.string()) != MeshFormat::Stl;
 }
 
@@ -41,7 +45,8 @@ void add_folder(const fs::path& folder, std::vector<fs::path>& files, CasePlan& 
             others.push_back(entry.path().filename().string());
     }
     if (found.empty())
-        throw UsageError(fmt::format("{}: holds no part, expected mesh files: {}", folder.string(),
+        throw UsageError(fmt::format("{}: holds no part, expected STEP or mesh files: {}",
+                                     folder.string(),
                                      mesh_format_list()));
     std::sort(found.begin(), found.end());
     std::sort(others.begin(), others.end());
@@ -104,6 +109,18 @@ std::vector<std::string> comments_of(const fs::path& path)
     return out;
 }
 
+void take_in(NewPart& part, const TriangleSoup& soup, int threads)
+{
+    try
+    {
+        part.mesh = repair_mesh(soup, {}, threads, part.report);
+    }
+    catch (const GeometryError& error)
+    {
+        throw GeometryError(fmt::format("{}: {}", part.path, error.what()));
+    }
+}
+
 NewPart read_part(const fs::path& path, const NewCaseOptions& options)
 {
     NewPart part;
@@ -117,16 +134,81 @@ NewPart read_part(const fs::path& path, const NewCaseOptions& options)
         throw GeometryError(
             fmt::format("{}: has no surface, only points or lines; expected the facets of a part",
                         part.path));
-    try
-    {
-        part.mesh = repair_mesh(file.soup, {}, options.threads, part.report);
-    }
-    catch (const GeometryError& error)
-    {
-        throw GeometryError(fmt::format("{}: {}", part.path, error.what()));
-    }
+    take_in(part, file.soup, options.threads);
     part.comments = comments_of(path);
     return part;
+}
+
+/// Gives a part a name that no other one has.
+void name_part(NewPart& part, const std::string& stem, std::set<std::string>& names)
+{
+    part.name = stem;
+    for (int n = 2; !names.insert(lower_case(part.name)).second; ++n)
+        part.name = fmt::format("{}_{}", stem, n);
+}
+
+/// Angles between facets of smooth faces, radians: well below a feature angle.
+constexpr double step_angle = 0.1;
+/// For a first look, before dp is known; mm.
+constexpr double first_deflection = 0.05;
+
+/// CASE_parts, the folder of the meshes of STEP files.
+std::string parts_folder(const std::string& definition)
+{
+    std::string stem = fs::path(definition).stem().string();
+    if (stem.ends_with("_Def")) stem.resize(stem.size() - 4);
+    return stem + "_parts";
+}
+
+void add_step_parts(const fs::path& path, CasePlan& plan, std::set<std::string>& names)
+{
+    std::vector<StepPart> parts = read_step(path.string(), first_deflection, step_angle);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+        NewPart part;
+        const StepPart& one = parts[i];
+        name_part(part, clean_name(one.name.empty() ? path.stem().string() : one.name), names);
+        part.path = fmt::format("{} ({})", path.string(), part.name);
+        part.step = path.string();
+        part.step_index = i;
+        part.format = MeshFormat::Ply;
+        part.file = parts_folder(plan.options->output) + "/" + part.name + ".ply";
+        part.comments = {"unit mm"}; // the reader turns every unit into it
+        part.step_facts = fmt::format(
+            "{} CAD edges that bend, {} tangent ones; exact area {:.9g} mm2{}", one.sharp_edges,
+            one.smooth_edges, one.area,
+            one.volume > 0 ? fmt::format(", volume {:.9g} mm3", one.volume) : "");
+        take_in(part, one.soup, plan.options->threads);
+        plan.parts.push_back(std::move(part));
+    }
+}
+
+void append_number(std::string& out, double value)
+{
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// A PLY file in double: STL would round the corners to float32.
+std::string ply_bytes(const TriangleSoup& soup)
+{
+    std::map<std::array<double, 3>, std::uint32_t> index;
+    std::string points, facets;
+    for (std::size_t c = 0; c < soup.vertices.size(); ++c)
+    {
+        const Vec3& v = soup.vertices[c];
+        const auto next = static_cast<std::uint32_t>(index.size());
+        const auto [at, is_new] = index.try_emplace({v.x, v.y, v.z}, next);
+        if (is_new)
+            for (int axis = 0; axis < 3; ++axis) append_number(points, v[axis]);
+        if (c % 3 == 0) facets += '\3';
+        facets.append(reinterpret_cast<const char*>(&at->second), sizeof at->second);
+    }
+    return fmt::format(
+               "ply\nformat binary_little_endian 1.0\ncomment unit mm\nelement vertex {}\n"
+               "property double x\nproperty double y\nproperty double z\nelement face {}\n"
+               "property list uchar int vertex_indices\nend_header\n",
+               index.size(), soup.size()) +
+           points + facets;
 }
 
 } // namespace
@@ -136,21 +218,40 @@ void read_parts(CasePlan& plan)
     const std::vector<fs::path> files = part_paths(plan);
     if (files.empty()) throw UsageError("fppg new: expected mesh files or folders of them");
     constexpr std::size_t most_parts = 200;
-    if (files.size() > most_parts)
-        throw UsageError(fmt::format("{} parts, expected at most {}: each has an mk of its own",
-                                     files.size(), most_parts));
     std::set<std::string> names;
     for (const fs::path& path : files)
     {
+        if (is_step_file(path.string()))
+        {
+            add_step_parts(path, plan, names);
+            continue;
+        }
         NewPart part = read_part(path, *plan.options);
-        const std::string stem = clean_name(path.stem().string());
-        part.name = stem;
-        for (int n = 2; !names.insert(lower_case(part.name)).second; ++n)
-            part.name = fmt::format("{}_{}", stem, n);
+        name_part(part, clean_name(path.stem().string()), names);
         plan.parts.push_back(std::move(part));
     }
+    if (plan.parts.size() > most_parts)
+        throw UsageError(fmt::format("{} parts, expected at most {}: each has an mk of its own",
+                                     plan.parts.size(), most_parts));
     for (std::size_t i = 0; i < plan.parts.size(); ++i)
         plan.parts[i].mkbound = static_cast<int>(i) + 1;
+}
+
+std::vector<NewCaseFile> step_meshes(const CasePlan& plan)
+{
+    std::vector<NewCaseFile> out;
+    const double deflection = std::min(0.01 * plan.dp * 1000, first_deflection);
+    std::map<std::string, std::vector<StepPart>> files;
+    for (const NewPart& part : plan.parts)
+    {
+        if (part.step.empty()) continue;
+        if (!files.contains(part.step))
+            files[part.step] = read_step(part.step, deflection, step_angle);
+        const fs::path folder = fs::path(plan.options->output).parent_path();
+        out.push_back({(folder / part.file).string(),
+                       ply_bytes(files[part.step].at(part.step_index).soup)});
+    }
+    return out;
 }
 
 } // namespace fppg
