@@ -13,12 +13,13 @@ namespace fppg
 
 struct MotionGapOptions
 {
-    double dp = 0; ///< metres; 0: that of the definition
+    double dp = 0;                                          ///< metres; 0: that of the definition
     std::vector<std::pair<std::string, std::string>> evars; ///< as -evars: of the generation
-    double end = 0; ///< seconds; 0: TimeMax of the case
+    double end = 0;                                         ///< seconds; 0: TimeMax of the case
     /// The parts of no pair move farther against each other between two looks, dp.
     double step_dp = 0.25;
-    int most_steps = 20000; ///< of a pair; longer motions are looked at in larger steps, which is said
+    int most_steps =
+        20000; ///< of a pair; longer motions are looked at in larger steps, which is said
     bool finds_passages = true;
     int threads = 1;
 };
@@ -39,7 +40,8 @@ struct MkGap
     // Where surfaces cross, or one part is in the solid of the other.
     int overlapping = 0;     ///< looks
     double overlap_time = 0; ///< seconds, of the first
-    double depth_dp = 0;     ///< the deepest corner found below the other's surface, dp
+    double depth_dp =
+        0; ///< of the deepest corner or middle of a facet below the other's surface, dp
     Vec3 overlap_place;
 };
 
@@ -56,13 +58,13 @@ struct MotionGaps
 {
     std::string definition;
     double dp = 0;
-    double end = 0; ///< seconds
+    double end = 0;           ///< seconds
     std::vector<MkGap> pairs; ///< by mkbound
     static constexpr std::array<double, 3> widths_dp{2, 3, 4};
-    double area = 0;                      ///< of all surfaces that fluid can reach, m2
-    std::array<double, 3> narrow_area{};  ///< of it, in front of less than widths_dp, m2
-    std::vector<NarrowPlace> places;      ///< in front of less than the last of widths_dp
-    double narrowest_dp = 0;              ///< of these; 0: there is none
+    double area = 0;                     ///< of all surfaces that fluid can reach, m2
+    std::array<double, 3> narrow_area{}; ///< of it, in front of less than widths_dp, m2
+    std::vector<NarrowPlace> places;     ///< in front of less than the last of widths_dp
+    double narrowest_dp = 0;             ///< of these; 0: there is none
     Vec3 narrowest_at;
     double resolving_dp = 0; ///< metres: with it 4 particles stand across nine in ten of them
     std::vector<std::string> notes; ///< what could not be judged, whole sentences
@@ -72,9 +74,9 @@ struct MotionGaps
 /// particle is placed; distances between them are exact to rounding at every look, and the least of
 /// a pair is refined between looks to 0.001 dp. Of parts with a <boolean> each counts whole.
 ///
-/// Passages are looked for at the start, a place a dp^2, along the normals of closed surfaces and on
-/// both sides of sheets, as far as 4 dp, where fluid of the case could flow to through openings of
-/// about two dp.
+/// Passages are looked for at the start, a place a dp^2, along the normals of closed surfaces and
+/// on both sides of sheets, as far as 4 dp, where fluid of the case could flow to through openings
+/// of about two dp.
 ///
 /// definition  Case_Def.xml or Case.xml, its meshes beside it or where it names them
 /// throws      CaseError, GeometryError, IoError as the readers

@@ -14,15 +14,15 @@ namespace fppg
 struct NewCaseOptions
 {
     std::vector<std::string> inputs; ///< mesh and STEP files, and folders of them
-    std::string output;              ///< of the definition, with .xml; the parts are named from there
-    std::string kind;                ///< a name of new_case_kinds(); empty: found
-    std::string unit;                ///< of all files: m, cm, mm or in; empty: found
-    std::vector<std::string> units;  ///< NAME=mm: of one part
-    std::string up = "z"; ///< the axis of the files that points upwards: x, y or z
-    double dp = 0;                   ///< 0: by the two below
-    double particles = 0;            ///< about as many; 0: 500,000 where nothing else is given
-    double across = 0;               ///< so many through the thinnest passage between parts
-    std::string housing;             ///< the part that holds the fluid; empty: found
+    std::string output; ///< of the definition, with .xml; the parts are named from there
+    std::string kind;   ///< a name of new_case_kinds(); empty: found
+    std::string unit;   ///< of all files: m, cm, mm or in; empty: found
+    std::vector<std::string> units;     ///< NAME=mm: of one part
+    std::string up = "z";               ///< the axis of the files that points upwards: x, y or z
+    double dp = 0;                      ///< 0: by the two below
+    double particles = 0;               ///< about as many; 0: 500,000 where nothing else is given
+    double across = 0;                  ///< so many through the thinnest passage between parts
+    std::string housing;                ///< the part that holds the fluid; empty: found
     std::vector<std::string> rotations; ///< NAME[,NAME...]=3000deg/s[@AXIS], rad/s, rpm
     std::vector<std::string> fixed;     ///< parts that stand still, whatever their shape
     std::vector<std::string> floatings; ///< NAME=400 (kg/m3) or NAME=12kg
@@ -68,7 +68,7 @@ struct NewCaseFile
 struct NewCase
 {
     std::string kind;
-    std::string xml; ///< the definition
+    std::string xml;                ///< the definition
     std::vector<NewCaseFile> files; ///< the parts of STEP files as meshes (PLY)
     double dp = 0;
     double expected_particles = 0;

@@ -94,7 +94,7 @@ MotionGaps gaps_of(const CheckCall& call)
     return measure_motion_gaps(definition, call.gaps);
 }
 
-void write_file(const std::string& path, const std::string& text)
+void write_text_file(const std::string& path, const std::string& text)
 {
     OutputFile file(path);
     file.append(text);
@@ -104,7 +104,8 @@ void write_file(const std::string& path, const std::string& text)
 /// What overlaps or is nearer than 2 dp while it moves.
 bool are_clear(const MotionGaps& gaps)
 {
-    return std::none_of(gaps.pairs.begin(), gaps.pairs.end(), [](const MkGap& pair)
+    return std::none_of(gaps.pairs.begin(), gaps.pairs.end(),
+                        [](const MkGap& pair)
                         { return pair.moves && (pair.overlapping > 0 || pair.least_dp < 2); });
 }
 
@@ -119,12 +120,12 @@ int run_check(const std::vector<std::string>& arguments)
         if (!call.vtk.empty())
             throw UsageError("--vtk: there are no particles; --passages is for narrow passages");
         const MotionGaps gaps = gaps_of(call);
-        if (!call.json.empty()) write_file(call.json, to_json(gaps));
-        if (!call.passages.empty()) write_file(call.passages, to_vtk(gaps));
+        if (!call.json.empty()) write_text_file(call.json, to_json(gaps));
+        if (!call.passages.empty()) write_text_file(call.passages, to_vtk(gaps));
         fmt::print("{}", to_text(gaps));
         if (call.strict && !are_clear(gaps))
-            throw CaseError(fmt::format("--strict: '{}' has findings, which are errors",
-                                        call.case_name));
+            throw CaseError(
+                fmt::format("--strict: '{}' has findings, which are errors", call.case_name));
         return 0;
     }
     // The files are made first: a folder that cannot be written is found before the work.
@@ -148,7 +149,7 @@ int run_check(const std::vector<std::string>& arguments)
     if (call.follows_motion)
     {
         const MotionGaps gaps = gaps_of(call);
-        if (!call.passages.empty()) write_file(call.passages, to_vtk(gaps));
+        if (!call.passages.empty()) write_text_file(call.passages, to_vtk(gaps));
         fmt::print("{}", to_text(gaps));
         is_clean = is_clean && are_clear(gaps);
     }

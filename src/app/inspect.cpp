@@ -142,8 +142,8 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
             const auto& c = mesh.facets[f];
             const Vec3& a = mesh.vertices[c[0]];
             const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-            samples[i] = {
-                p, facing_distance(mesh.normals, query, {f, p}, FacetSide::Behind, reach)};
+            samples[i] = {p,
+                          facing_distance(mesh.normals, query, {f, p}, FacetSide::Behind, reach)};
         },
         64);
     std::size_t thin = 0;

@@ -50,7 +50,7 @@ struct NewCall
 };
 
 /// "2M", "500k" or a number.
-double count_of(const std::string& text)
+double particle_count_of(const std::string& text)
 {
     if (text.empty()) return 0;
     std::string digits = text;
@@ -147,7 +147,7 @@ bool read_arguments(const std::vector<std::string>& arguments, NewCall& call)
             throw UsageError(
                 fmt::format("--unit: \"{}\" is invalid, expected m, cm, mm, in or PART=mm", unit));
     }
-    o.particles = count_of(call.particles);
+    o.particles = particle_count_of(call.particles);
     if ((o.dp > 0) + (o.particles > 0) + (o.across > 0) > 1)
         throw UsageError("--dp, --particles and --across: expected one of them");
     if (!o.output.ends_with(".xml")) o.output += ".xml";
@@ -302,8 +302,8 @@ int run_new(const std::vector<std::string>& arguments)
     bar.reset();
     if (call.as_json) return 0;
     for (const std::string& warning : trial.warnings()) fmt::print("Warning: {}\n", warning);
-    fmt::print("{}: {} particles at dp {:.4g} m, walls as one sheet, without relaxation\n{}", picture,
-               trial.particles().np, dp, table);
+    fmt::print("{}: {} particles at dp {:.4g} m, walls as one sheet, without relaxation\n{}",
+               picture, trial.particles().np, dp, table);
     return 0;
 }
 

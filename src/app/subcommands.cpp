@@ -35,10 +35,12 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command}, {"check", run_check},       {"compare", run_compare},
-    {"convert", run_convert},     {"estimate", run_estimate}, {"inspect", run_inspect},
-    {"leak", run_leak},           {"new", run_new},           {"render", run_render},
-    {"report", run_report},       {"templates", run_templates}, {"upgrade", run_upgrade},
+    {"batch", run_batch_command}, {"check", run_check},
+    {"compare", run_compare},     {"convert", run_convert},
+    {"estimate", run_estimate},   {"inspect", run_inspect},
+    {"leak", run_leak},           {"new", run_new},
+    {"render", run_render},       {"report", run_report},
+    {"templates", run_templates}, {"upgrade", run_upgrade},
 };
 
 } // namespace

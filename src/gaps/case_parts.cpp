@@ -43,8 +43,8 @@ std::vector<CasePart> case_parts(const CaseDef& def, const CaseSolids& solids,
     for (const FloatingDef& floating : def.floatings)
         for (const std::uint16_t mk : floating.mkbound)
             if (parts.contains(mk))
-                notes.push_back(fmt::format(
-                    "mkbound {} floats: it is judged where it starts.", mk));
+                notes.push_back(
+                    fmt::format("mkbound {} floats: it is judged where it starts.", mk));
     std::vector<CasePart> out;
     for (auto& [mkbound, part] : parts)
     {

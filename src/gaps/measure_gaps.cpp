@@ -77,15 +77,15 @@ double way_of(const std::vector<Vec3>& places, const std::function<Transform(dou
 
 bool is_in_solid(const CasePart& part, const Vec3& p)
 {
-    return std::any_of(part.shapes.begin(), part.shapes.end(), [&](const CaseShape* shape)
+    return std::any_of(part.shapes.begin(), part.shapes.end(),
+                       [&](const CaseShape* shape)
                        { return shape->is_closed && shape->solid->is_inside(p); });
 }
 
 double distance_to(const CasePart& part, const Vec3& p)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const CaseShape* shape : part.shapes)
-        least = std::min(least, shape->solid->distance(p));
+    for (const CaseShape* shape : part.shapes) least = std::min(least, shape->solid->distance(p));
     return least;
 }
 
@@ -138,18 +138,22 @@ private:
         const std::vector<Vec3> of_first = extremes_of(first_.tree->soup());
         const std::vector<Vec3> of_second = extremes_of(second_.tree->soup());
         const double size = norm(second_.tree->bounds().max - second_.tree->bounds().min);
-        if (!(way_of(of_second, [this](double t) { return relative(t); }, end_) > 1e-6 * size))
+        if (!(way_of(
+                  of_second, [this](double t) { return relative(t); }, end_) > 1e-6 * size))
             return 0;
         const auto own_way = [this](const std::vector<Vec3>& places, const CasePart& part)
-        { return part.motion ? way_of(places, [&](double t) { return part.place(t); }, end_) : 0; };
+        {
+            return part.motion ? way_of(
+                                     places, [&](double t) { return part.place(t); }, end_)
+                               : 0;
+        };
         return own_way(of_first, first_) + own_way(of_second, second_);
     }
 
     /// The distance at a time, and what it tells of the least; infinite beyond the least and 8 dp.
     double look(double time)
     {
-        const SurfaceGap gap =
-            first_.tree->gap_to(*second_.tree, relative(time), least_ + 8 * dp_);
+        const SurfaceGap gap = first_.tree->gap_to(*second_.tree, relative(time), least_ + 8 * dp_);
         if (gap.crosses) overlap(time, first_.place(time)(gap.on_first));
         if (gap.distance < least_)
         {
@@ -240,20 +244,24 @@ private:
                  const Transform& to_case)
     {
         const std::vector<Vec3>& corners = part.tree->soup().vertices;
-        const std::size_t step = corners.size() / most_corners + 1;
         const Box3& box = other.tree->bounds();
-        for (std::size_t i = 0; i < corners.size(); i += step)
+        const auto look = [&](const Vec3& corner)
         {
-            const Vec3 p = place(corners[i]);
+            const Vec3 p = place(corner);
             bool is_near = true;
             for (int axis = 0; axis < 3; ++axis)
                 is_near &= p[axis] >= box.min[axis] && p[axis] <= box.max[axis];
-            if (!is_near || !is_in_solid(other, p)) continue;
+            if (!is_near || !is_in_solid(other, p)) return;
             const double depth = distance_to(other, p) / dp_;
-            if (depth <= out_.depth_dp || depth < 1e-6) continue;
+            if (depth <= out_.depth_dp || depth < 1e-6) return;
             out_.depth_dp = depth;
             out_.overlap_place = to_case(p);
-        }
+        };
+        // Corners may all lie in the other one's faces, as those of gears of one width.
+        const std::size_t step = corners.size() / most_corners + 1;
+        for (std::size_t i = 0; i < corners.size(); i += step) look(corners[i]);
+        for (std::size_t f = 0; f < corners.size() / 3; f += step)
+            look((corners[3 * f] + corners[3 * f + 1] + corners[3 * f + 2]) / 3);
     }
 
     const CasePart& first_;
@@ -302,13 +310,12 @@ MotionGaps measure_motion_gaps(const std::string& definition, const MotionGapOpt
     for (std::size_t a = 0; a < parts.size(); ++a)
         for (std::size_t b = a + 1; b < parts.size(); ++b) pairs.emplace_back(a, b);
     out.pairs.resize(pairs.size());
-    parallel_for(pairs.size(), options.threads,
-                 [&](std::size_t k)
-                 {
-                     out.pairs[k] = PairWatch(parts[pairs[k].first], parts[pairs[k].second], out,
-                                              options)
-                                        .run();
-                 });
+    parallel_for(
+        pairs.size(), options.threads,
+        [&](std::size_t k) {
+            out.pairs[k] =
+                PairWatch(parts[pairs[k].first], parts[pairs[k].second], out, options).run();
+        });
     if (options.finds_passages) find_passages(def, solids, options.threads, out);
     return out;
 }

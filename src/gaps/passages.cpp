@@ -143,9 +143,9 @@ BoundaryFacets boundary_facets(const CaseSolids& solids)
 }
 
 /// A place a dp^2, or more apart where they would be too many.
-std::vector<FacetPlace> spread_places(const BoundaryFacets& facets, double area_of_each)
+std::vector<FacetSpot> spread_places(const BoundaryFacets& facets, double area_of_each)
 {
-    std::vector<FacetPlace> out;
+    std::vector<FacetSpot> out;
     double left = 0.5 * area_of_each;
     for (std::uint32_t f = 0; f < facets.areas.size(); ++f)
     {
@@ -177,7 +177,10 @@ class PassageSearch
 {
 public:
     PassageSearch(const CaseSolids& solids, const FluidReach& reach, double dp, int threads)
-        : solids_(solids), reach_(reach), dp_(dp), facets_(boundary_facets(solids)),
+        : solids_(solids),
+          reach_(reach),
+          dp_(dp),
+          facets_(boundary_facets(solids)),
           query_(facets_.soup, threads)
     {
     }
@@ -187,7 +190,7 @@ public:
         double all = 0;
         for (const double area : facets_.areas) all += area;
         const double each = std::max(dp_ * dp_, all / most_places);
-        const std::vector<FacetPlace> places = spread_places(facets_, each);
+        const std::vector<FacetSpot> places = spread_places(facets_, each);
         std::vector<std::array<Front, 2>> fronts(places.size());
         parallel_for(
             places.size(), threads,
@@ -203,11 +206,10 @@ public:
     }
 
 private:
-    Front look(const FacetPlace& from, FacetSide side) const
+    Front look(const FacetSpot& from, FacetSide side) const
     {
         constexpr double reach_dp = MotionGaps::widths_dp.back();
-        const Vec3 way =
-            facets_.normals[from.facet] * (side == FacetSide::Before ? 1.0 : -1.0);
+        const Vec3 way = facets_.normals[from.facet] * (side == FacetSide::Before ? 1.0 : -1.0);
         const double found =
             facing_distance(facets_.normals, query_, from, side, reach_dp * dp_) / dp_;
         const double gap = std::isfinite(found) ? found : 0;
@@ -219,7 +221,7 @@ private:
         return out;
     }
 
-    void count(const FacetPlace& at, const Front& front, double area, MotionGaps& out) const
+    void count(const FacetSpot& at, const Front& front, double area, MotionGaps& out) const
     {
         if (!front.is_wet) return;
         out.area += area;

@@ -8,7 +8,7 @@ namespace fppg
 {
 
 double facing_distance(const std::vector<Vec3>& normals, const MeshQuery& query,
-                       const FacetPlace& from, FacetSide side, double reach)
+                       const FacetSpot& from, FacetSide side, double reach)
 {
     const Vec3& n = normals[from.facet];
     const Vec3& p = from.place;

@@ -16,7 +16,7 @@ enum class FacetSide
 };
 
 /// A place on a facet.
-struct FacetPlace
+struct FacetSpot
 {
     std::uint32_t facet = 0;
     Vec3 place;
@@ -29,6 +29,6 @@ struct FacetPlace
 /// normals  of length 1, one a facet of the query's soup
 /// reach    metres; infinite where nothing is found within
 double facing_distance(const std::vector<Vec3>& normals, const MeshQuery& query,
-                       const FacetPlace& from, FacetSide side, double reach);
+                       const FacetSpot& from, FacetSide side, double reach);
 
 } // namespace fppg

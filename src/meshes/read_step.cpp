@@ -89,8 +89,7 @@ std::vector<StepPart> read_step(const std::string& path, double deflection_mm, d
     std::vector<StepPart> out;
     const std::string fault = read(path.c_str(), deflection_mm, angle_rad, &out, take_part);
     if (!fault.empty()) throw GeometryError(fmt::format("{}: {}", path, fault));
-    if (out.empty())
-        throw GeometryError(fmt::format("{}: holds no solid and no shell", path));
+    if (out.empty()) throw GeometryError(fmt::format("{}: holds no solid and no shell", path));
     return out;
 }
 

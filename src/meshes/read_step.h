@@ -13,8 +13,8 @@ struct StepPart
 {
     std::string name; ///< of the instance or of the part; may be empty
     TriangleSoup soup;
-    double volume = 0; ///< of the exact solid, mm3; 0: it is a shell
-    double area = 0;   ///< of the exact faces, mm2
+    double volume = 0;            ///< of the exact solid, mm3; 0: it is a shell
+    double area = 0;              ///< of the exact faces, mm2
     std::size_t sharp_edges = 0;  ///< CAD edges that bend by more than a degree
     std::size_t smooth_edges = 0; ///< tangent ones
 };

@@ -58,8 +58,7 @@ double squared_distance(const Box3& a, const Box3& b)
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis)
     {
-        const double away =
-            std::max({a.min[axis] - b.max[axis], b.min[axis] - a.max[axis], 0.0});
+        const double away = std::max({a.min[axis] - b.max[axis], b.min[axis] - a.max[axis], 0.0});
         sum += away * away;
     }
     return sum;
@@ -93,7 +92,8 @@ public:
 
     SurfaceGap run()
     {
-        visit(0, 0, squared_distance(first_.nodes_[0].box, moved_box(second_.nodes_[0].box, place_)));
+        visit(0, 0,
+              squared_distance(first_.nodes_[0].box, moved_box(second_.nodes_[0].box, place_)));
         return found_;
     }
 
@@ -159,8 +159,7 @@ private:
             keep(closest_on_facet(g[s], f.data()), g[s]);
             for (std::size_t t = 0; t < 3; ++t)
             {
-                const auto [p, q] =
-                    closest_on_segments(f[s], f[(s + 1) % 3], g[t], g[(t + 1) % 3]);
+                const auto [p, q] = closest_on_segments(f[s], f[(s + 1) % 3], g[t], g[(t + 1) % 3]);
                 keep(p, q);
             }
         }

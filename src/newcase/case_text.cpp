@@ -89,8 +89,8 @@ std::vector<std::vector<std::size_t>> bodies_of(const CasePlan& plan)
         const NewPart& a = plan.parts[pair.first];
         const NewPart& b = plan.parts[pair.second];
         const bool have_inside = a.report.is_watertight && b.report.is_watertight;
-        if (!pair.touches || !have_inside || !move_alike(a, b) ||
-            a.role == PartRole::Floating || b.role == PartRole::Floating)
+        if (!pair.touches || !have_inside || !move_alike(a, b) || a.role == PartRole::Floating ||
+            b.role == PartRole::Floating)
             continue;
         const std::size_t one = root(pair.first), other = root(pair.second);
         group[std::max(one, other)] = std::min(one, other);
@@ -113,8 +113,7 @@ void add_swept(Box3& box, const NewPart& part)
         const Vec3 middle = axis.point + along * axis.direction;
         Vec3 reach;
         for (int a = 0; a < 3; ++a)
-            reach[a] =
-                radius * std::sqrt(std::max(0.0, 1 - axis.direction[a] * axis.direction[a]));
+            reach[a] = radius * std::sqrt(std::max(0.0, 1 - axis.direction[a] * axis.direction[a]));
         box.add(middle - reach);
         box.add(middle + reach);
     }
@@ -161,21 +160,27 @@ private:
         xml_.line("<gravity x=\"0\" y=\"0\" z=\"-9.81\" units_comment=\"m/s^2\" />");
         xml_.line("<rhop0 value=\"{}\" comment=\"Density: {}\" units_comment=\"kg/m^3\" />",
                   number(plan_.liquid.rhop0), plan_.liquid.about);
-        xml_.line("<rhopgradient value=\"2\" comment=\"Density under the weight of the fluid above "
-                  "each particle\" />");
-        xml_.line("<hswl value=\"0\" auto=\"true\" comment=\"Depth of the fluid, found from the "
-                  "particles\" units_comment=\"m\" />");
+        xml_.line(
+            "<rhopgradient value=\"2\" comment=\"Density under the weight of the fluid above "
+            "each particle\" />");
+        xml_.line(
+            "<hswl value=\"0\" auto=\"true\" comment=\"Depth of the fluid, found from the "
+            "particles\" units_comment=\"m\" />");
         xml_.line("<gamma value=\"7\" comment=\"Exponent of the equation of state\" />");
-        xml_.line("<speedsystem value=\"{}\" auto=\"false\" comment=\"The largest speed: of parts, "
-                  "of the stream, or of fluid that falls by its depth\" units_comment=\"m/s\" />",
-                  number(round_nearest(plan_.fastest, 3)));
-        xml_.line("<coefsound value=\"10\" comment=\"Speed of sound over that speed: densities "
-                  "change by 1 % at most\" />");
-        xml_.line("<speedsound value=\"{}\" auto=\"false\" comment=\"Ten times the largest speed; "
-                  "a higher one makes time steps shorter\" units_comment=\"m/s\" />",
-                  number(plan_.speed_sound));
-        xml_.line("<coefh value=\"1\" comment=\"Smoothing length: h = coefh*sqrt(3*dp^2); walls "
-                  "get 3 layers\" />");
+        xml_.line(
+            "<speedsystem value=\"{}\" auto=\"false\" comment=\"The largest speed: of parts, "
+            "of the stream, or of fluid that falls by its depth\" units_comment=\"m/s\" />",
+            number(round_nearest(plan_.fastest, 3)));
+        xml_.line(
+            "<coefsound value=\"10\" comment=\"Speed of sound over that speed: densities "
+            "change by 1 % at most\" />");
+        xml_.line(
+            "<speedsound value=\"{}\" auto=\"false\" comment=\"Ten times the largest speed; "
+            "a higher one makes time steps shorter\" units_comment=\"m/s\" />",
+            number(plan_.speed_sound));
+        xml_.line(
+            "<coefh value=\"1\" comment=\"Smoothing length: h = coefh*sqrt(3*dp^2); walls "
+            "get 3 layers\" />");
         xml_.line("<cflnumber value=\"0.2\" comment=\"Factor of the time step\" />");
         xml_.close("constantsdef");
         xml_.line("<mkconfig boundcount=\"240\" fluidcount=\"9\" />");
@@ -218,8 +223,8 @@ private:
             xml_.comment("The box of all parts in all their places, and 6 dp for layers of walls.");
             xml_.line("<pointmin x=\"{}\" y=\"{}\" z=\"{}\" />", dp_down(box.min.x),
                       dp_down(box.min.y), dp_down(box.min.z));
-            xml_.line("<pointmax x=\"{}\" y=\"{}\" z=\"{}\" />", dp_up(box.max.x),
-                      dp_up(box.max.y), dp_up(box.max.z));
+            xml_.line("<pointmax x=\"{}\" y=\"{}\" z=\"{}\" />", dp_up(box.max.x), dp_up(box.max.y),
+                      dp_up(box.max.z));
         }
         xml_.close("definition");
         xml_.open("commands");
@@ -228,7 +233,8 @@ private:
         {
             // Tyres keep a dp clear of the road, so that no particle is squeezed in between.
             if (plan_.kind == CaseKind::Wading)
-                xml_.comment("The bed is a dp below the wheels: no particle is squeezed in between.");
+                xml_.comment(
+                    "The bed is a dp below the wheels: no particle is squeezed in between.");
             xml_.line("<newvarcte Ground=\"{}{}\" />", number(plan_.water->box.min.z),
                       plan_.kind == CaseKind::Wading ? "-Dp" : "");
         }
@@ -255,8 +261,9 @@ private:
             xml_.line("<newvarcte Speed=\"{}\" _rem=\"m/s, of the {}\" />",
                       number(*plan_.options->speed),
                       plan_.kind == CaseKind::Wading ? "vehicle along x" : "stream against x");
-        xml_.line("<newvarcte Boundary=\"2\" _rem=\"Walls 1: dynamic (DBC), 2: modified (mDBC), in "
-                  "layers; -evars:Boundary=1 changes it\" />");
+        xml_.line(
+            "<newvarcte Boundary=\"2\" _rem=\"Walls 1: dynamic (DBC), 2: modified (mDBC), in "
+            "layers; -evars:Boundary=1 changes it\" />");
         xml_.line("<newvarcte TimeMax=\"{}\" TimeOut=\"{}\" _rem=\"s\" />", number(plan_.duration),
                   number(plan_.time_out));
         xml_.close("predefinition");
@@ -288,8 +295,7 @@ private:
         if (up != "z")
             xml_.line("<drawrotate angx=\"{}\" angy=\"{}\" angz=\"0\" />", up == "y" ? 90 : 0,
                       up == "x" ? -90 : 0);
-        if (scale != nullptr)
-            xml_.line("<drawscale x=\"#{0}\" y=\"#{0}\" z=\"#{0}\" />", scale);
+        if (scale != nullptr) xml_.line("<drawscale x=\"#{0}\" y=\"#{0}\" z=\"#{0}\" />", scale);
         xml_.close(fmt::format("drawfile{}", mesh_format_name(part.format)).c_str());
     }
 
@@ -336,31 +342,32 @@ private:
 
     void fitted()
     {
-        xml_.comment("Read by fppg only. Walls stand in layers behind their true surface, with "
-                     "normals for mDBC.");
+        xml_.comment(
+            "Read by fppg only. Walls stand in layers behind their true surface, with "
+            "normals for mDBC.");
         xml_.open("fppg");
         const std::size_t n = plan_.parts.size();
         const int first = plan_.water ? 0 : 1;
         // Facets of smooth CAD faces bend by 6 degrees at most, so less than 30 finds more edges.
         const bool has_step = std::any_of(plan_.parts.begin(), plan_.parts.end(),
                                           [](const NewPart& p) { return !p.step.empty(); });
-        xml_.line("<bodyfitted mkbound=\"{}\"{} />",
-                  static_cast<int>(n) == first ? std::to_string(first)
-                                               : fmt::format("{}-{}", first, n),
-                  has_step ? " featureangle=\"15\"" : "");
+        xml_.line(
+            "<bodyfitted mkbound=\"{}\"{} />",
+            static_cast<int>(n) == first ? std::to_string(first) : fmt::format("{}-{}", first, n),
+            has_step ? " featureangle=\"15\"" : "");
         for (const std::vector<std::size_t>& body : bodies_)
         {
             xml_.comment("Parts that touch and keep their places are one body; each keeps its mk.");
             xml_.open("boolean op=\"union\"");
-            for (const std::size_t i : body)
-                xml_.line("<part ref=\"{}\" />", plan_.parts[i].name);
+            for (const std::size_t i : body) xml_.line("<part ref=\"{}\" />", plan_.parts[i].name);
             xml_.close("boolean");
         }
         if (plan_.fill) fill();
         if (std::any_of(plan_.parts.begin(), plan_.parts.end(),
                         [](const NewPart& p) { return p.role == PartRole::Floating; }))
-            xml_.line("<floatings exact=\"true\" comment=\"Mass, centre and inertia of the shape\" "
-                      "/>");
+            xml_.line(
+                "<floatings exact=\"true\" comment=\"Mass, centre and inertia of the shape\" "
+                "/>");
         xml_.close("fppg");
     }
 
@@ -396,8 +403,9 @@ private:
         const bool moves = std::any_of(plan_.parts.begin(), plan_.parts.end(),
                                        [](const NewPart& p) { return p.turning.has_value(); });
         if (!moves) return;
-        xml_.comment("The solver turns clockwise seen from axisp2, so counter-clockwise seen from "
-                     "axisp1.");
+        xml_.comment(
+            "The solver turns clockwise seen from axisp2, so counter-clockwise seen from "
+            "axisp1.");
         xml_.open("motion");
         for (const NewPart& part : plan_.parts)
         {
@@ -436,12 +444,12 @@ private:
         parameter("StepAlgorithm", "2", "1: Verlet, 2: symplectic, steadier beside moving walls");
         parameter("Kernel", "2", "1: cubic spline, 2: Wendland");
         parameter("ViscoTreatment", "1", "1: artificial, 2: laminar and SPS, 3: laminar");
-        parameter("Visco", number(plan_.visco),
-                  fmt::format("Of the artificial viscosity: stands for {} m2/s at this dp, {} has {}",
-                              short_number(plan_.visco * std::sqrt(3.0) * plan_.dp *
-                                               plan_.speed_sound / 10,
-                                           2),
-                              plan_.liquid.name, plan_.liquid.viscosity));
+        parameter(
+            "Visco", number(plan_.visco),
+            fmt::format(
+                "Of the artificial viscosity: stands for {} m2/s at this dp, {} has {}",
+                short_number(plan_.visco * std::sqrt(3.0) * plan_.dp * plan_.speed_sound / 10, 2),
+                plan_.liquid.name, plan_.liquid.viscosity));
         parameter("ViscoBoundFactor", "1", "Viscosity at walls over that in the fluid");
         parameter("DensityDT", "2", "Density diffusion of Fourtakas et al.");
         parameter("DensityDTvalue", "0.1", "Its coefficient");

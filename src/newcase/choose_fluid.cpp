@@ -57,8 +57,8 @@ void read_fill(CasePlan& plan, const std::string& text, VesselFill& fill)
     if (equal == std::string::npos)
         throw UsageError(fmt::format("--fill: \"{}\" is invalid, expected {}", text, expected));
     plan.liquid = liquid_named(text.substr(0, equal));
-    const Quantity q = split_quantity(text.substr(equal + 1, text.find('@') - equal - 1), "--fill",
-                                      expected);
+    const Quantity q =
+        split_quantity(text.substr(equal + 1, text.find('@') - equal - 1), "--fill", expected);
     const std::string unit = lower_case(q.unit);
     if (unit == "l" || unit == "ml")
         fill.amount = FluidAmount::Litres;
@@ -102,8 +102,8 @@ void measure_fill(CasePlan& plan, VesselFill& fill, const VesselSpace& room)
             "m; levels are heights along z",
             short_number(fill.level), vessel.name, short_number(room.bottom()),
             short_number(room.rim())));
-    const bool is_over = fill.volume > 1.02 * all ||
-                         (fill.amount == FluidAmount::Level && fill.level > room.rim() + room.spacing());
+    const bool is_over = fill.volume > 1.02 * all || (fill.amount == FluidAmount::Level &&
+                                                      fill.level > room.rim() + room.spacing());
     if (!is_over) return;
     if (room.is_closed())
         throw UsageError(fmt::format("{} holds {} at most, {} l are asked for", vessel.name, holds,
@@ -122,7 +122,8 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
     const Vec3 size = part.box().max - part.box().min;
     if (room.is_empty() || room.capacity() < 1e-3 * size.x * size.y * size.z)
         throw GeometryError(fmt::format(
-            "{}: the part encloses no room that holds fluid, it is open below or solid{}. Expected a "
+            "{}: the part encloses no room that holds fluid, it is open below or solid{}. Expected "
+            "a "
             "housing with its inner walls, closed below along z; --up y where the files have y "
             "upwards, --housing PART for another one",
             part.path, open_edges_text(part)));
@@ -135,8 +136,7 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
         fill.value = round_nearest(1000 * fill.volume, 4);
     }
     fill.seed = room.seed(fill.level);
-    for (int axis = 0; axis < 3; ++axis)
-        fill.seed[axis] = round_nearest(fill.seed[axis], 4);
+    for (int axis = 0; axis < 3; ++axis) fill.seed[axis] = round_nearest(fill.seed[axis], 4);
     plan.fill = fill;
     plan.depth = fill.level - fill.bottom;
     plan.propose(
@@ -153,9 +153,9 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
                     short_number(1000 * room.spacing(), 3), plan.liquid.name,
                     short_number(fill.level, 3)));
     if (!room.is_closed())
-        plan.warnings.push_back(fmt::format(
-            "{} is open above z = {} m, near {}: fluid that splashes gets out there.", part.name,
-            short_number(room.rim()), place_text(room.rim_place())));
+        plan.warnings.push_back(
+            fmt::format("{} is open above z = {} m, near {}: fluid that splashes gets out there.",
+                        part.name, short_number(room.rim()), place_text(room.rim_place())));
     if (!part.report.is_watertight)
         plan.warnings.push_back(fmt::format(
             "{}: the mesh is not closed{}: its walls are sheets, whose particles stand on the side "
@@ -229,18 +229,19 @@ void place_water_box(CasePlan& plan)
                 ground + 0.5 * plan.depth};
     for (int axis = 0; axis < 3; ++axis) out.seed[axis] = round_nearest(out.seed[axis], 4);
     plan.water = out;
-    plan.propose(plan.liquid.name,
-                 fmt::format("{} m deep, up to z = {} m", short_number(plan.depth),
-                             short_number(out.level)),
-                 plan.options->water ? "given" : "answered",
-                 fmt::format("{}: {} kg/m3, {} m2/s.", plan.liquid.about, plan.liquid.rhop0,
-                             plan.liquid.viscosity));
+    plan.propose(
+        plan.liquid.name,
+        fmt::format("{} m deep, up to z = {} m", short_number(plan.depth), short_number(out.level)),
+        plan.options->water ? "given" : "answered",
+        fmt::format("{}: {} kg/m3, {} m2/s.", plan.liquid.about, plan.liquid.rhop0,
+                    plan.liquid.viscosity));
     plan.propose(flows ? "channel" : "basin",
                  fmt::format("{} x {} m, walls up to z = {} m", short_number(inner.x),
                              short_number(inner.y), short_number(out.box.max.z)),
-                 flows ? "no part holds the water: a bed with two walls along x, its ends are joined"
-                       : "no part holds the water: walls round the parts, three quarters of their "
-                         "size away",
+                 flows
+                     ? "no part holds the water: a bed with two walls along x, its ends are joined"
+                     : "no part holds the water: walls round the parts, three quarters of their "
+                       "size away",
                  "Edit the box in the definition to move its walls; --housing PART takes a part in "
                  "its place.");
 }

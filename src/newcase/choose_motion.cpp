@@ -48,8 +48,8 @@ AxisLine axis_wanted(CasePlan& plan, std::size_t p, const std::string& text)
     const std::size_t colon = text.find(':');
     if (text.find(',') != std::string::npos)
     {
-        out.point = colon == std::string::npos ? own_point()
-                                               : vector_of(text.substr(0, colon), "--rotate");
+        out.point =
+            colon == std::string::npos ? own_point() : vector_of(text.substr(0, colon), "--rotate");
         out.direction =
             vector_of(colon == std::string::npos ? text : text.substr(colon + 1), "--rotate");
         const double length = norm(out.direction);
@@ -58,8 +58,9 @@ AxisLine axis_wanted(CasePlan& plan, std::size_t p, const std::string& text)
         out.direction = out.direction / length;
         return out;
     }
-    const std::size_t other = part_named(plan, text, "--rotate: axis (x, y, z, 0,1,0, "
-                                                     "POINT:DIRECTION or a part)");
+    const std::size_t other = part_named(plan, text,
+                                         "--rotate: axis (x, y, z, 0,1,0, "
+                                         "POINT:DIRECTION or a part)");
     const auto& found = symmetry_of(plan.parts[other], threads);
     if (!found)
         throw UsageError(fmt::format("--rotate: {} has no axis of symmetry to turn about",
@@ -80,7 +81,8 @@ AxisLine axis_found(CasePlan& plan, std::size_t p, std::string& reason)
     if (!found)
         throw UsageError(fmt::format(
             "--rotate: {0} turns onto itself about no axis, or about several, so its axis is not "
-            "known; give it: {0}=...@z (through its middle), @0,1,0, @{1},{2},{3}:0,0,1 (a point of "
+            "known; give it: {0}=...@z (through its middle), @0,1,0, @{1},{2},{3}:0,0,1 (a point "
+            "of "
             "it and its direction) or @PART",
             part.name, near_zero(part.body.center.x), near_zero(part.body.center.y),
             near_zero(part.body.center.z)));
@@ -95,8 +97,8 @@ double degrees_per_s(const std::string& text)
     if (q.unit == "deg/s" || q.unit.empty()) return q.value;
     if (q.unit == "rad/s") return q.value * 180 / std::numbers::pi;
     if (q.unit == "rpm") return q.value * 6;
-    throw UsageError(fmt::format("--rotate: \"{}\" is in an unknown unit, expected {}", text,
-                                 expected));
+    throw UsageError(
+        fmt::format("--rotate: \"{}\" is in an unknown unit, expected {}", text, expected));
 }
 
 void turn(CasePlan& plan, std::size_t p, const Turning& turning, const std::string& reason)
@@ -106,13 +108,13 @@ void turn(CasePlan& plan, std::size_t p, const Turning& turning, const std::stri
         throw UsageError(fmt::format("{} cannot float and turn at a given speed", part.name));
     part.role = PartRole::Moving;
     part.turning = turning;
-    plan.propose(part.name,
-                 fmt::format("turns at {} deg/s ({} rpm) about {}",
-                             short_number(turning.degrees_per_s, 6),
-                             short_number(turning.degrees_per_s / 6, 4), axis_text(turning.axis)),
-                 reason,
-                 "Above 0 is counter-clockwise seen from the end of the axis. --rotate "
-                 "PART=3000deg/s@AXIS decides, --fix PART lets it stand.");
+    plan.propose(
+        part.name,
+        fmt::format("turns at {} deg/s ({} rpm) about {}", short_number(turning.degrees_per_s, 6),
+                    short_number(turning.degrees_per_s / 6, 4), axis_text(turning.axis)),
+        reason,
+        "Above 0 is counter-clockwise seen from the end of the axis. --rotate "
+        "PART=3000deg/s@AXIS decides, --fix PART lets it stand.");
 }
 
 void apply_rotations(CasePlan& plan)
@@ -126,8 +128,8 @@ void apply_rotations(CasePlan& plan)
                 entry));
         const std::size_t at = entry.find('@', equal);
         Turning turning;
-        turning.degrees_per_s = degrees_per_s(entry.substr(
-            equal + 1, at == std::string::npos ? std::string::npos : at - equal - 1));
+        turning.degrees_per_s = degrees_per_s(
+            entry.substr(equal + 1, at == std::string::npos ? std::string::npos : at - equal - 1));
         const std::vector<std::string> names = names_of_list(entry.substr(0, equal));
         std::string reason = "given";
         const std::string axis = at == std::string::npos ? "" : entry.substr(at + 1);
@@ -135,9 +137,8 @@ void apply_rotations(CasePlan& plan)
         {
             const std::size_t p = part_named(plan, names[k], "--rotate");
             if (k == 0)
-                turning.axis = axis.empty() || axis == "axis"
-                                   ? axis_found(plan, p, reason)
-                                   : axis_wanted(plan, p, axis);
+                turning.axis = axis.empty() || axis == "axis" ? axis_found(plan, p, reason)
+                                                              : axis_wanted(plan, p, axis);
             if (plan.parts[p].role == PartRole::Housing)
                 throw UsageError(fmt::format(
                     "--rotate: {} holds the fluid and stands; --housing chooses another part",
@@ -174,8 +175,7 @@ bool follow_on_axis(CasePlan& plan, std::size_t p, std::size_t mover)
     const auto& symmetry = symmetry_of(part, plan.options->threads);
     if (!symmetry || !is_same_line(symmetry->line, other.turning->axis, 2e-3 * size_of(part)))
         return false;
-    turn(plan, p, *other.turning,
-         fmt::format("it touches {} and lies on its axis", other.name));
+    turn(plan, p, *other.turning, fmt::format("it touches {} and lies on its axis", other.name));
     return true;
 }
 
@@ -256,8 +256,8 @@ void list_fixed(CasePlan& plan)
             plan.propose(part.name, "holds the fluid, stands", part.role_reason,
                          "--housing PART chooses another one.");
         else if (part.role == PartRole::Fixed)
-            plan.propose(part.name, "stands",
-                         "nothing moves it", "--rotate PART=3000deg/s or --float PART=400 does.");
+            plan.propose(part.name, "stands", "nothing moves it",
+                         "--rotate PART=3000deg/s or --float PART=400 does.");
     }
 }
 

@@ -16,8 +16,8 @@ namespace fppg
 namespace
 {
 
-constexpr double wall_layers = 3;             // of mDBC with coefh 1
-constexpr double usual_particles = 5e5;       // minutes on a graphics card
+constexpr double wall_layers = 3;       // of mDBC with coefh 1
+constexpr double usual_particles = 5e5; // minutes on a graphics card
 constexpr double most_of_a_case = 2e9;
 
 double moving_speed(const NewPart& part)
@@ -37,8 +37,7 @@ bool mesh_as_gears(const CasePlan& plan, const PartPair& pair)
 {
     const NewPart& a = plan.parts[pair.first];
     const NewPart& b = plan.parts[pair.second];
-    const double size =
-        std::min(norm(a.box().max - a.box().min), norm(b.box().max - b.box().min));
+    const double size = std::min(norm(a.box().max - a.box().min), norm(b.box().max - b.box().min));
     return pair.gap.distance < 0.05 * size && a.turning && b.turning &&
            !(a.turning->axis.point == b.turning->axis.point &&
              a.turning->axis.direction == b.turning->axis.direction);
@@ -51,32 +50,30 @@ void find_passage(CasePlan& plan)
     for (const PartPair& pair : plan.pairs)
     {
         if (pair.touches) continue;
-        const PartPair*& least =
-            mesh_as_gears(plan, pair) ? backlash : thinnest;
+        const PartPair*& least = mesh_as_gears(plan, pair) ? backlash : thinnest;
         if (least == nullptr || pair.gap.distance < least->gap.distance) least = &pair;
     }
     if (thinnest != nullptr)
     {
         plan.passage = thinnest->gap.distance;
         plan.passage_at = (thinnest->gap.on_first + thinnest->gap.on_second) * 0.5;
-        plan.propose("passage",
-                     fmt::format("{} mm between {} and {}", short_number(1000 * plan.passage, 3),
-                                 plan.parts[thinnest->first].name,
-                                 plan.parts[thinnest->second].name),
-                     fmt::format("the thinnest between parts that do not touch, at {}",
-                                 place_text(plan.passage_at)),
-                     "--across N makes it N dp wide. `fppg check CASE --motion` measures all "
-                     "gaps while the parts move.");
+        plan.propose(
+            "passage",
+            fmt::format("{} mm between {} and {}", short_number(1000 * plan.passage, 3),
+                        plan.parts[thinnest->first].name, plan.parts[thinnest->second].name),
+            fmt::format("the thinnest between parts that do not touch, at {}",
+                        place_text(plan.passage_at)),
+            "--across N makes it N dp wide. `fppg check CASE --motion` measures all "
+            "gaps while the parts move.");
     }
     if (backlash != nullptr)
-        plan.propose("backlash",
-                     fmt::format("{} mm between {} and {}",
-                                 short_number(1000 * backlash->gap.distance, 3),
-                                 plan.parts[backlash->first].name,
-                                 plan.parts[backlash->second].name),
-                     "parts that turn into each other, as the files have them",
-                     "Fluid cannot flow through less than 2 dp; where teeth mesh it is pushed out "
-                     "sideways.");
+        plan.propose(
+            "backlash",
+            fmt::format("{} mm between {} and {}", short_number(1000 * backlash->gap.distance, 3),
+                        plan.parts[backlash->first].name, plan.parts[backlash->second].name),
+            "parts that turn into each other, as the files have them",
+            "Fluid cannot flow through less than 2 dp; where teeth mesh it is pushed out "
+            "sideways.");
 }
 
 struct Counted
@@ -89,7 +86,9 @@ struct Counted
 Counted particles_at(const CasePlan& plan, double dp)
 {
     Counted out;
-    out.fluid = (plan.fill ? plan.fill->volume : plan.water ? plan.water->volume : 0) /
+    out.fluid = (plan.fill    ? plan.fill->volume
+                 : plan.water ? plan.water->volume
+                              : 0) /
                 (dp * dp * dp);
     for (const NewPart& part : plan.parts)
     {
@@ -133,8 +132,9 @@ void choose_resolution(CasePlan& plan)
     else if (o.across > 0)
     {
         if (!(plan.passage > 0))
-            throw UsageError("--across: no two parts have a passage between them; give --dp or "
-                             "--particles");
+            throw UsageError(
+                "--across: no two parts have a passage between them; give --dp or "
+                "--particles");
         plan.dp = round_nearest(plan.passage / o.across, 3);
         reason = fmt::format("{} particles across the thinnest passage", short_number(o.across));
     }
@@ -143,9 +143,10 @@ void choose_resolution(CasePlan& plan)
         const double wanted = o.particles > 0 ? o.particles : usual_particles;
         plan.dp = round_nearest(dp_for(plan, wanted), 3);
         reason = o.particles > 0 ? fmt::format("for about {:.0f} particles", wanted)
-                                 : fmt::format("for about {:.0f} particles, as neither --dp, "
-                                               "--particles nor --across is given",
-                                               wanted);
+                                 : fmt::format(
+                                       "for about {:.0f} particles, as neither --dp, "
+                                       "--particles nor --across is given",
+                                       wanted);
     }
     const Counted counted = particles_at(plan, plan.dp);
     plan.expected = counted.all();
@@ -188,14 +189,14 @@ void choose_constants(CasePlan& plan)
     const double stream = std::abs(plan.options->speed.value_or(0));
     plan.fastest = std::max({by_depth, by_parts, stream});
     plan.speed_sound = round_up(10 * plan.fastest, 2);
-    const std::string of = plan.fastest == stream      ? "the stream"
+    const std::string of = plan.fastest == stream     ? "the stream"
                            : plan.fastest == by_parts ? "the outermost places of " + fastest_part
                                                       : "fluid that falls by its depth";
-    plan.propose("speed of sound", fmt::format("{} m/s", plan.speed_sound),
-                 fmt::format("ten times the largest speed, {} m/s of {}",
-                             short_number(plan.fastest, 3), of),
-                 "So densities change by about 1 %; that of the real liquid would cost a time "
-                 "step a hundred times smaller.");
+    plan.propose(
+        "speed of sound", fmt::format("{} m/s", plan.speed_sound),
+        fmt::format("ten times the largest speed, {} m/s of {}", short_number(plan.fastest, 3), of),
+        "So densities change by about 1 %; that of the real liquid would cost a time "
+        "step a hundred times smaller.");
     const double h = std::sqrt(3.0) * plan.dp;
     const double for_liquid = 10 * plan.liquid.viscosity / (h * plan.speed_sound);
     plan.visco = std::max(0.01, round_nearest(for_liquid, 2));
@@ -237,9 +238,9 @@ void choose_constants(CasePlan& plan)
     }
     if (!plan.options->duration) plan.duration = round_nearest(plan.duration, 2);
     plan.time_out = round_nearest(plan.duration / 100, 2);
-    plan.propose("duration", fmt::format("{} s", plan.duration), reason,
-                 fmt::format("An output every {} s: a hundred of them. --time decides.",
-                             plan.time_out));
+    plan.propose(
+        "duration", fmt::format("{} s", plan.duration), reason,
+        fmt::format("An output every {} s: a hundred of them. --time decides.", plan.time_out));
 }
 
 } // namespace fppg

@@ -20,7 +20,8 @@ namespace
 
 constexpr std::array<std::pair<const char*, const char*>, 5> kinds{{
     {"tank", "fluid at rest in a vessel, or in a basin round the parts"},
-    {"wading", "a vehicle that drives through water: its wheels roll, the water comes from the front"},
+    {"wading",
+     "a vehicle that drives through water: its wheels roll, the water comes from the front"},
     {"gearbox", "parts that turn in the oil of a housing"},
     {"obstacle", "a stream past parts that stand"},
     {"floating", "bodies afloat in a basin"},
@@ -38,8 +39,10 @@ CaseKind kind_named(const std::string& name)
 
 bool has_vehicle_names(const CasePlan& plan)
 {
-    return std::any_of(plan.parts.begin(), plan.parts.end(), [](const NewPart& p)
-                       { return has_word(p.name, {"wheel", "tyre", "tire", "vehicle", "car_"}); });
+    return std::any_of(plan.parts.begin(), plan.parts.end(),
+                       [](const NewPart& p) {
+                           return has_word(p.name, {"wheel", "tyre", "tire", "vehicle", "car_"});
+                       });
 }
 
 /// The kind and why, from what else is given.
@@ -51,8 +54,7 @@ std::pair<CaseKind, std::string> kind_by_options(const CasePlan& plan)
         return {CaseKind::Wading, "there is a speed, and parts are called wheels or tyres"};
     if (o.speed) return {CaseKind::Obstacle, "there is a speed, and no part is called a wheel"};
     if (!o.rotations.empty()) return {CaseKind::Gearbox, "parts turn, and there is no --speed"};
-    if (o.water || !o.fill.empty())
-        return {CaseKind::Tank, "there is fluid, and nothing moves"};
+    if (o.water || !o.fill.empty()) return {CaseKind::Tank, "there is fluid, and nothing moves"};
     std::string list;
     for (const auto& [name, what] : kinds) list += fmt::format("\n    {:<9} {}", name, what);
     if (o.ask)
@@ -61,9 +63,10 @@ std::pair<CaseKind, std::string> kind_by_options(const CasePlan& plan)
             o.ask(fmt::format("What kind of case is it?{}\n  kind", list), "tank");
         return {kind_named(answer), "answered"};
     }
-    throw UsageError(fmt::format("--kind is missing, and no other option says what happens in the "
-                                 "case; expected one of{}",
-                                 list));
+    throw UsageError(
+        fmt::format("--kind is missing, and no other option says what happens in the "
+                    "case; expected one of{}",
+                    list));
 }
 
 struct FloatingWish
@@ -92,8 +95,7 @@ FloatingWish floating_wish(const CasePlan& plan, const std::string& entry)
     const char* expected = "PART=400 (kg/m3) or PART=12kg";
     const Quantity q = split_quantity(entry.substr(at + 1), "--float", expected);
     if (!(q.value > 0) || (q.unit != "" && q.unit != "kg" && q.unit != "kg/m3"))
-        throw UsageError(
-            fmt::format("--float: \"{}\" is invalid, expected {}", entry, expected));
+        throw UsageError(fmt::format("--float: \"{}\" is invalid, expected {}", entry, expected));
     out.rhop = q.unit == "kg" ? q.value / part.body.volume : q.value;
     out.reason = fmt::format("given; its volume is {} l", short_number(1000 * part.body.volume));
     return out;
@@ -174,8 +176,9 @@ void choose_housing(CasePlan& plan)
         if (!is_needed) return;
         for (std::size_t i = 1; i < plan.parts.size(); ++i)
             if (housing_rank(plan, i) > housing_rank(plan, housing)) housing = i;
-        reason = plan.parts.size() == 1 ? "the only part"
-                                        : "its box holds most of the other parts, or its name says so";
+        reason = plan.parts.size() == 1
+                     ? "the only part"
+                     : "its box holds most of the other parts, or its name says so";
     }
     NewPart& part = plan.parts[housing];
     if (part.role == PartRole::Floating)

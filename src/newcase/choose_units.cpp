@@ -35,21 +35,20 @@ std::pair<double, double> usual_sizes(const std::string& kind)
 /// The unit that a comment of the file names, as exporters write it: "units=mm", "unit: inch".
 std::string unit_in_comments(const NewPart& part)
 {
-    constexpr std::array<std::pair<std::string_view, const char*>, 14> words{
-        {{"mm", "mm"},
-         {"millimeter", "mm"},
-         {"millimeters", "mm"},
-         {"millimetre", "mm"},
-         {"millimetres", "mm"},
-         {"cm", "cm"},
-         {"centimeters", "cm"},
-         {"m", "m"},
-         {"meter", "m"},
-         {"meters", "m"},
-         {"metres", "m"},
-         {"inch", "in"},
-         {"inches", "in"},
-         {"in", "in"}}};
+    constexpr std::array<std::pair<std::string_view, const char*>, 14> words{{{"mm", "mm"},
+                                                                              {"millimeter", "mm"},
+                                                                              {"millimeters", "mm"},
+                                                                              {"millimetre", "mm"},
+                                                                              {"millimetres", "mm"},
+                                                                              {"cm", "cm"},
+                                                                              {"centimeters", "cm"},
+                                                                              {"m", "m"},
+                                                                              {"meter", "m"},
+                                                                              {"meters", "m"},
+                                                                              {"metres", "m"},
+                                                                              {"inch", "in"},
+                                                                              {"inches", "in"},
+                                                                              {"in", "in"}}};
     for (const std::string& line : part.comments)
     {
         std::size_t at = line.find("unit");
@@ -105,7 +104,8 @@ std::string doubt(const CasePlan& plan, const Box3& box, double metre)
         const double wanted = std::atof(number.c_str());
         const Vec3 extent = box.max - box.min;
         const double room = 1000 * extent.x * extent.y * extent.z * std::pow(metre, 3);
-        if (wanted > 0 && (room < wanted || room > 300 * wanted))
+        // More than fits is told later: only what is off by far speaks against a unit.
+        if (wanted > 0 && (20 * room < wanted || room > 1000 * wanted))
             return fmt::format("its box would hold {} l, and {} l are asked for",
                                short_number(room), number);
     }
@@ -136,16 +136,16 @@ UnitChoice unit_by_size(const CasePlan& plan)
     const auto fitting = [&](const char* unit)
     { return std::find(fits.begin(), fits.end(), unit) != fits.end(); };
     if (fits.size() == 1)
-        return {fits[0], fmt::format("all parts together are {} long: {} m in {}; {}",
-                                     short_number(size),
-                                     short_number(size * metres_of_unit(fits[0])), fits[0],
-                                     fmt::join(not_so, ", "))};
+        return {fits[0],
+                fmt::format("all parts together are {} long: {} m in {}; {}", short_number(size),
+                            short_number(size * metres_of_unit(fits[0])), fits[0],
+                            fmt::join(not_so, ", "))};
     // Inches are rare: without a word of the file they are taken only where nothing else fits.
-    const std::string unit = fits.empty()      ? (size > 200 ? "mm" : "m")
-                             : !fitting("mm")  ? "m"
-                             : !fitting("m")   ? "mm"
-                             : size > 20       ? "mm"
-                                               : "m";
+    const std::string unit = fits.empty()     ? (size > 200 ? "mm" : "m")
+                             : !fitting("mm") ? "m"
+                             : !fitting("m")  ? "mm"
+                             : size > 20      ? "mm"
+                                              : "m";
     const bool is_sure = !fits.empty() && !(fitting("mm") && fitting("m"));
     return {unit,
             fmt::format("all parts together are {} long, which is {} m in {}", short_number(size),
@@ -168,12 +168,10 @@ UnitChoice common_unit(const CasePlan& plan)
     if (!out.unit.empty()) return out;
     out = unit_by_size(plan);
     if (out.is_sure || !options.ask) return out;
-    const std::string answer =
-        options.ask(fmt::format("A length in the files is a m, cm, mm or in? ({})", out.reason),
-                    out.unit);
+    const std::string answer = options.ask(
+        fmt::format("A length in the files is a m, cm, mm or in? ({})", out.reason), out.unit);
     if (metres_of_unit(answer) == 0)
-        throw UsageError(
-            fmt::format("unit: \"{}\" is invalid, expected m, cm, mm or in", answer));
+        throw UsageError(fmt::format("unit: \"{}\" is invalid, expected m, cm, mm or in", answer));
     return {answer, "answered"};
 }
 
@@ -245,9 +243,9 @@ void choose_units(CasePlan& plan)
                              "files, --unit PART=mm for one.",
                              short_number(size.x), short_number(size.y), short_number(size.z)));
     if (!common.is_sure)
-        plan.warnings.push_back(fmt::format(
-            "The unit of the files is not sure: {}. --unit m, cm, mm or in decides.",
-            common.reason));
+        plan.warnings.push_back(
+            fmt::format("The unit of the files is not sure: {}. --unit m, cm, mm or in decides.",
+                        common.reason));
 }
 
 } // namespace fppg

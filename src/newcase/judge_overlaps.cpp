@@ -21,7 +21,7 @@ namespace
 constexpr double rounding_share = 3e-3;
 constexpr int turned_places = 12;
 
-/// Corners of one part inside another.
+/// Corners and middles of facets of one part inside another.
 struct Overlap
 {
     std::size_t corners = 0;
@@ -34,23 +34,26 @@ struct Overlap
 Overlap overlap_of(const NewPart& part, const NewPart& other, const InsideTest& inside)
 {
     Overlap out;
-    out.all = part.mesh.vertices.size();
     const Box3& box = other.box();
-    for (const Vec3& v : part.mesh.vertices)
+    const auto look = [&](const Vec3& p)
     {
+        ++out.all;
         bool is_near = true;
         for (int axis = 0; axis < 3; ++axis)
-            is_near &= v[axis] >= box.min[axis] && v[axis] <= box.max[axis];
-        if (!is_near || !inside.is_inside(v)) continue;
+            is_near &= p[axis] >= box.min[axis] && p[axis] <= box.max[axis];
+        if (!is_near || !inside.is_inside(p)) return;
         ++out.corners;
-        const double depth = inside.query().closest_point(v).distance;
-        if (out.places.size() < 200) out.places.push_back(v);
-        if (depth > out.depth)
-        {
-            out.depth = depth;
-            out.at = v;
-        }
-    }
+        const double depth = inside.query().closest_point(p).distance;
+        if (out.places.size() < 200) out.places.push_back(p);
+        if (depth <= out.depth) return;
+        out.depth = depth;
+        out.at = p;
+    };
+    // Corners may all lie in the other one's faces, as those of gears of one width.
+    const std::vector<Vec3>& vertices = part.mesh.vertices;
+    for (const Vec3& v : vertices) look(v);
+    for (const auto& f : part.mesh.facets)
+        look((vertices[f[0]] + vertices[f[1]] + vertices[f[2]]) / 3);
     return out;
 }
 
@@ -90,15 +93,16 @@ void judge_pair(CasePlan& plan, const PartPair& pair)
         if (!is_whole && is_one && stays_when_turned(overlap, mover.turning->axis, inside))
             continue;
         const std::string what =
-            is_whole
-                ? fmt::format("{}: the part lies in the solid of {}: its cavity is missing. Export "
-                              "{} with its inner walls",
-                              part.path, other.path, other.name)
-                : fmt::format("{}: the part overlaps {}, up to {} m deep at {}, and moves against "
-                              "it. Move one of them, turn it by part of a tooth, or export it "
-                              "smaller",
-                              part.path, other.path, short_number(overlap.depth, 3),
-                              place_text(overlap.at));
+            is_whole ? fmt::format(
+                           "{}: the part lies in the solid of {}: its cavity is missing. Export "
+                           "{} with its inner walls",
+                           part.path, other.path, other.name)
+                     : fmt::format(
+                           "{}: the part overlaps {}, up to {} m deep at {}, and moves against "
+                           "it. Move one of them, turn it by part of a tooth, or export it "
+                           "smaller",
+                           part.path, other.path, short_number(overlap.depth, 3),
+                           place_text(overlap.at));
         if (!plan.options->allows_overlap)
             throw GeometryError(what + "; --allow-overlap takes them as they are");
         plan.warnings.push_back(what + ".");

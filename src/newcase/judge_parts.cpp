@@ -75,9 +75,8 @@ void refuse_other_units(const CasePlan& plan)
             const Box3 box{part.box().min * by, part.box().max * by};
             const Box3 others = box_of_others(plan, i);
             if (distance_between(box, others) > diagonal(others)) continue;
-            fit = fmt::format(
-                "; in {0} it would be {1} and stand among the others: --unit {2}={0}", unit,
-                size_text(box.max - box.min), part.name);
+            fit = fmt::format("; in {0} it would be {1} and stand among the others: --unit {2}={0}",
+                              unit, size_text(box.max - box.min), part.name);
             break;
         }
         throw GeometryError(fmt::format(

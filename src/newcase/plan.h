@@ -43,7 +43,7 @@ struct AxisLine
 struct SymmetryAxis
 {
     AxisLine line;
-    int times = 0; ///< a turn; 0: at any angle
+    int times = 0;  ///< a turn; 0: at any angle
     double off = 0; ///< metres, from its surface to the turned one: of half of the places at most
 };
 
@@ -61,7 +61,7 @@ struct NewPart
     std::string step; ///< the STEP file that it is of; empty: it is a mesh file
     std::size_t step_index = 0;
     std::string step_facts; ///< what its CAD model says: edges, exact volume
-    std::string name; ///< no two parts have the same
+    std::string name;       ///< no two parts have the same
     std::string unit;
     double metre = 0; ///< metres of its unit
     MeshFormat format = MeshFormat::Stl;
@@ -147,9 +147,9 @@ struct CasePlan
     double duration = 0;
     double time_out = 0;
     double depth = 0;
-    double fastest = 0;     ///< of parts and stream, m/s
+    double fastest = 0; ///< of parts and stream, m/s
     double speed_sound = 0;
-    double visco = 0;       ///< coefficient of the artificial viscosity
+    double visco = 0; ///< coefficient of the artificial viscosity
     std::vector<Proposal> proposals;
     std::vector<std::string> warnings;
     std::vector<std::string> file_warnings;

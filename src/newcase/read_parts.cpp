@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -46,8 +46,7 @@ void add_folder(const fs::path& folder, std::vector<fs::path>& files, CasePlan& 
     }
     if (found.empty())
         throw UsageError(fmt::format("{}: holds no part, expected STEP or mesh files: {}",
-                                     folder.string(),
-                                     mesh_format_list()));
+                                     folder.string(), mesh_format_list()));
     std::sort(found.begin(), found.end());
     std::sort(others.begin(), others.end());
     files.insert(files.end(), found.begin(), found.end());
@@ -87,8 +86,8 @@ std::string clean_name(const std::string& stem)
 std::string relative_name(const fs::path& file, const std::string& definition)
 {
     const fs::path folder = fs::absolute(definition).parent_path();
-    const fs::path near = fs::absolute(file).lexically_normal().lexically_relative(
-        folder.lexically_normal());
+    const fs::path near =
+        fs::absolute(file).lexically_normal().lexically_relative(folder.lexically_normal());
     return near.empty() ? fs::absolute(file).string() : near.generic_string();
 }
 
@@ -131,9 +130,8 @@ NewPart read_part(const fs::path& path, const NewCaseOptions& options)
     reading.format = part.format;
     const MeshFile file = read_mesh_file(part.path, reading, options.threads);
     if (file.soup.size() == 0)
-        throw GeometryError(
-            fmt::format("{}: has no surface, only points or lines; expected the facets of a part",
-                        part.path));
+        throw GeometryError(fmt::format(
+            "{}: has no surface, only points or lines; expected the facets of a part", part.path));
     take_in(part, file.soup, options.threads);
     part.comments = comments_of(path);
     return part;
@@ -174,10 +172,10 @@ void add_step_parts(const fs::path& path, CasePlan& plan, std::set<std::string>&
         part.format = MeshFormat::Ply;
         part.file = parts_folder(plan.options->output) + "/" + part.name + ".ply";
         part.comments = {"unit mm"}; // the reader turns every unit into it
-        part.step_facts = fmt::format(
-            "{} CAD edges that bend, {} tangent ones; exact area {:.9g} mm2{}", one.sharp_edges,
-            one.smooth_edges, one.area,
-            one.volume > 0 ? fmt::format(", volume {:.9g} mm3", one.volume) : "");
+        part.step_facts =
+            fmt::format("{} CAD edges that bend, {} tangent ones; exact area {:.9g} mm2{}",
+                        one.sharp_edges, one.smooth_edges, one.area,
+                        one.volume > 0 ? fmt::format(", volume {:.9g} mm3", one.volume) : "");
         take_in(part, one.soup, plan.options->threads);
         plan.parts.push_back(std::move(part));
     }
@@ -248,8 +246,8 @@ std::vector<NewCaseFile> step_meshes(const CasePlan& plan)
         if (!files.contains(part.step))
             files[part.step] = read_step(part.step, deflection, step_angle);
         const fs::path folder = fs::path(plan.options->output).parent_path();
-        out.push_back({(folder / part.file).string(),
-                       ply_bytes(files[part.step].at(part.step_index).soup)});
+        out.push_back(
+            {(folder / part.file).string(), ply_bytes(files[part.step].at(part.step_index).soup)});
     }
     return out;
 }

@@ -69,7 +69,8 @@ std::vector<SurfacePlace> places_on(const SurfaceMesh& mesh)
 struct TellingPlaces
 {
     std::vector<Vec3> places;
-    double share = 0; ///< of all places that do not look along the axis
+    std::vector<Vec3> others; ///< of what does not look along the axis
+    double share = 0;         ///< of all places that do not look along the axis
 };
 
 TellingPlaces telling_places(const std::vector<SurfacePlace>& places, const AxisLine& line)
@@ -84,10 +85,11 @@ TellingPlaces telling_places(const std::vector<SurfacePlace>& places, const Axis
         const double length = norm(along);
         if (length > 0 && std::abs(dot(along, p.normal)) > least_slant * length)
             out.places.push_back(p.place);
+        else
+            out.others.push_back(p.place);
     }
-    out.share = sideways == 0 ? 0
-                              : static_cast<double>(out.places.size()) /
-                                    static_cast<double>(sideways);
+    out.share =
+        sideways == 0 ? 0 : static_cast<double>(out.places.size()) / static_cast<double>(sideways);
     return out;
 }
 
@@ -175,16 +177,29 @@ struct AxisTrial
     double off = 0;
 };
 
+/// Some hundreds of places, evenly.
+std::vector<Vec3> some_of(const std::vector<Vec3>& places)
+{
+    std::vector<Vec3> out;
+    const std::size_t step = (places.size() + most_judged - 1) / most_judged;
+    for (std::size_t i = 0; i < places.size(); i += step) out.push_back(places[i]);
+    return out;
+}
+
 AxisTrial try_axis(const NewPart& part, const MeshQuery& query,
                    const std::vector<SurfacePlace>& all, const AxisLine& line)
 {
     const double size = norm(part.box().max - part.box().min);
-    TellingPlaces telling = telling_places(all, line);
-    std::vector<Vec3>& places = telling.places;
-    if (telling.share < least_share) return {0, 0};
-    const std::size_t step = (places.size() + most_judged - 1) / most_judged;
-    for (std::size_t i = 0; i * step < places.size(); ++i) places[i] = places[i * step];
-    places.resize((places.size() + step - 1) / step);
+    const TellingPlaces telling = telling_places(all, line);
+    // A golden part of a turn is near no other one.
+    constexpr double golden = 2 * std::numbers::pi * 0.3819660112501051;
+    const auto round = [&]() -> AxisTrial
+    {
+        if (telling.others.empty()) return {0, 0};
+        return {0, turned_off(query, some_of(telling.others), line, golden)};
+    };
+    if (telling.share < least_share) return round();
+    const std::vector<Vec3> places = some_of(telling.places);
     AxisTrial best;
     for (int times = 2; times <= most_times; ++times)
     {
@@ -193,7 +208,7 @@ AxisTrial try_axis(const NewPart& part, const MeshQuery& query,
         if (off < half_within * size && (best.times == 1 || off < 3 * best.off + 1e-5 * size))
             best = {times, off};
     }
-    if (best.times == 1 && telling.share < round_share) return {0, 0};
+    if (best.times == 1 && telling.share < round_share) return round();
     return best;
 }
 
@@ -223,8 +238,11 @@ std::optional<SymmetryAxis> find_symmetry(const NewPart& part, int threads)
                      lines[i] = central;
                      if (trials[i].times > 1) return;
                      line.point = point_on_axis(places, line.direction, line.point, size);
-                     lines[i] = tidied(line, 5e-5 * size);
-                     trials[i] = try_axis(part, query, places, lines[i]);
+                     const AxisLine fitted = tidied(line, 5e-5 * size);
+                     const AxisTrial trial = try_axis(part, query, places, fitted);
+                     if (trials[i].times == 0 && !(2 * trial.off < trials[i].off)) return;
+                     lines[i] = fitted;
+                     trials[i] = trial;
                  });
     const auto rank = [](const AxisTrial& t) { return t.times == 0 ? 1000 : t.times; };
     std::size_t best = 0;

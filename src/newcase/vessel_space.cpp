@@ -134,8 +134,7 @@ void VesselSpace::find_spills()
     }
     for (std::size_t height = 0; height < nz; ++height)
         for (std::size_t k = 0; k < waiting[height].size(); ++k)
-            for_each_beside(waiting[height][k],
-                            [&](std::size_t beside) { reach(beside, height); });
+            for_each_beside(waiting[height][k], [&](std::size_t beside) { reach(beside, height); });
 }
 
 /// The largest set of joined nodes from which the way out leads over higher ones.
@@ -181,7 +180,9 @@ void VesselSpace::find_largest()
         rim = std::max(rim, spill_[node]);
         for_each_beside(node,
                         [&](std::size_t beside)
-                        { if (state_[beside] == at_surface) add(beside); });
+                        {
+                            if (state_[beside] == at_surface) add(beside);
+                        });
     }
     is_closed_ = rim == never;
     bottom_ = grid_.origin.z + (static_cast<double>(low) - 0.5) * grid_.dp;

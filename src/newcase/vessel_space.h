@@ -20,7 +20,7 @@ public:
     /// Nothing runs out, however much is filled in.
     bool is_closed() const { return is_closed_; }
     double capacity() const { return volume_below(rim_); } ///< m3, up to the rim
-    double rim() const { return rim_; }                   ///< z; of a closed one its highest place
+    double rim() const { return rim_; }                    ///< z; of a closed one its highest place
     double bottom() const { return bottom_; }
     Vec3 rim_place() const { return rim_place_; } ///< where it runs out
     double spacing() const { return grid_.dp; }
@@ -43,7 +43,7 @@ private:
     std::vector<std::uint8_t> state_; ///< bit 0: in a solid, bit 1: a surface passes
     /// For each node that is free the lowest height over which a way leads out, in nodes.
     std::vector<std::uint16_t> spill_;
-    std::vector<std::uint32_t> nodes_; ///< of the room
+    std::vector<std::uint32_t> nodes_;     ///< of the room
     std::vector<std::uint32_t> at_height_; ///< nodes of the room and its rim, by their z
     bool is_closed_ = false;
     double rim_ = 0;

@@ -140,8 +140,8 @@ void count_edges(const TopoDS_Shape& shape, FppgStepPart& part)
         const gp_Dir a = normal_at(edge, TopoDS::Face(beside.First()), knows_a);
         const gp_Dir b = normal_at(edge, TopoDS::Face(beside.Last()), knows_b);
         // A seam, where a face meets itself, is smooth.
-        const bool is_smooth = beside.First().IsSame(beside.Last()) ||
-                               (knows_a && knows_b && a.Angle(b) < M_PI / 180);
+        const bool is_smooth =
+            beside.First().IsSame(beside.Last()) || (knows_a && knows_b && a.Angle(b) < M_PI / 180);
         ++(is_smooth ? part.smooth_edges : part.sharp_edges);
     }
 }
@@ -184,8 +184,7 @@ void walk(const Handle(XCAFDoc_ShapeTool) & tool, const TDF_Label& label,
     if (tool->IsReference(label)) tool->GetReferredShape(label, part);
     const std::string own = name_of(part);
     // What writers call an instance that has no name of its own.
-    const bool is_unnamed =
-        name.empty() || name.rfind("NAUO", 0) == 0 || name.rfind("=>[", 0) == 0;
+    const bool is_unnamed = name.empty() || name.rfind("NAUO", 0) == 0 || name.rfind("=>[", 0) == 0;
     const std::string called = is_unnamed ? own : name;
     if (tool->IsAssembly(part))
     {
@@ -218,8 +217,10 @@ std::string read(const char* path, const Call& call)
 
 } // namespace
 
-extern "C" __attribute__((visibility("default"))) const char* fppg_read_step(
-    const char* path, double deflection, double angle, void* to, FppgTakeStepPart take)
+extern "C" __attribute__((visibility("default"))) const char* fppg_read_step(const char* path,
+                                                                             double deflection,
+                                                                             double angle, void* to,
+                                                                             FppgTakeStepPart take)
 {
     static std::string fault;
     try

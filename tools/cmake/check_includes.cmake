@@ -48,6 +48,8 @@ set(convert_may_see files casedef particles shapes meshes core)
 set(upgrade_may_see core)
 # How near parts come to each other, by their true shapes.
 set(gaps_may_see leak walls lattice scene files casedef particles shapes meshes nodes core)
+# The plugin that reads STEP files sees only what the program and it agree on.
+set(step_may_see meshes)
 # From parts to a definition.
 set(newcase_may_see shapes meshes nodes core)
 set(app_may_see newcase gaps convert upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
