@@ -20,7 +20,9 @@ constexpr double listed_dp = 4;
 
 std::string place_of(const Vec3& p)
 {
-    return fmt::format("({:.5g}, {:.5g}, {:.5g})", p.x, p.y, p.z);
+    // What is rounding beside the others is 0.
+    const auto tidy = [least = 1e-9 * norm(p)](double v) { return std::abs(v) < least ? 0 : v; };
+    return fmt::format("({:.5g}, {:.5g}, {:.5g})", tidy(p.x), tidy(p.y), tidy(p.z));
 }
 
 std::string cut(const std::string& name)

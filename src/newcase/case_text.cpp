@@ -410,9 +410,9 @@ private:
         for (const NewPart& part : plan_.parts)
         {
             if (!part.turning) continue;
-            const double size = norm(part.box().max - part.box().min);
+            // The same for all parts of one axis: their motions are told to be one by their text.
             const AxisLine& axis = part.turning->axis;
-            const Vec3 other = axis.point - axis.direction * round_up(size, 1);
+            const Vec3 other = axis.point - axis.direction * 0.1;
             xml_.comment(part.name);
             xml_.open("objreal ref=\"{}\"", part.mkbound);
             xml_.line("<begin mov=\"1\" start=\"0\" />");

@@ -22,7 +22,7 @@ constexpr std::array<std::pair<const char*, const char*>, 5> kinds{{
     {"tank", "fluid at rest in a vessel, or in a basin round the parts"},
     {"wading",
      "a vehicle that drives through water: its wheels roll, the water comes from the front"},
-    {"gearbox", "parts that turn in the oil of a housing"},
+    {"gearbox", "parts that turn in the fluid of a housing"},
     {"obstacle", "a stream past parts that stand"},
     {"floating", "bodies afloat in a basin"},
 }};

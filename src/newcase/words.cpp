@@ -33,7 +33,10 @@ std::string short_number(double value, int digits)
 
 std::string place_text(const Vec3& p)
 {
-    return fmt::format("({}, {}, {}) m", short_number(p.x), short_number(p.y), short_number(p.z));
+    // What is rounding beside the others is 0.
+    const auto text = [least = 1e-9 * norm(p)](double v)
+    { return short_number(std::abs(v) < least ? 0 : v); };
+    return fmt::format("({}, {}, {}) m", text(p.x), text(p.y), text(p.z));
 }
 
 double round_nearest(double value, int digits)
