@@ -20,22 +20,34 @@ struct MotionRef
 {
     int mkbound = 0;
     int line = 0;
+    std::string movements; ///< its own and those of the objects around it
 };
 
-void collect_motions(const Element& e, std::vector<MotionRef>& out)
+std::string movements_of(const Element& object)
+{
+    std::string out;
+    for (const Element& c : object.children)
+        if (c.kind == Element::Kind::Tag && c.name != "objreal" && c.name != "obj")
+            out += print_element(c, 0);
+    return out;
+}
+
+void collect_motions(const Element& e, const std::string& around, std::vector<MotionRef>& out)
 {
     for (const Element& c : e.children)
     {
         if (c.name != "objreal" && c.name != "obj") continue;
-        if (c.name == "objreal") out.push_back({std::stoi(*c.find_attribute("ref")), c.line});
-        collect_motions(c, out);
+        const std::string movements = around + movements_of(c);
+        if (c.name == "objreal")
+            out.push_back({std::stoi(*c.find_attribute("ref")), c.line, movements});
+        collect_motions(c, movements, out);
     }
 }
 
 std::vector<MotionRef> motions_of(const CaseDef& def)
 {
     std::vector<MotionRef> out;
-    collect_motions(def.motion, out);
+    collect_motions(def.motion, "", out);
     return out;
 }
 
@@ -53,14 +65,18 @@ std::string mks_that_are(const CaseDef& def, const std::set<std::uint16_t>& mks)
 struct Role
 {
     char kind = 'f';
-    int which = 0; ///< of a motion or a floating body its mkbound
+    int which = 0; ///< of a motion the first mkbound that moves so; of a floating body its mkbound
     bool operator==(const Role&) const = default;
 };
 
 Role role_of(const CaseDef& def, const std::vector<MotionRef>& motions, int mkbound)
 {
     for (const MotionRef& m : motions)
-        if (m.mkbound == mkbound) return {'m', mkbound};
+    {
+        if (m.mkbound != mkbound) continue;
+        for (const MotionRef& first : motions)
+            if (first.movements == m.movements) return {'m', first.mkbound};
+    }
     for (const FloatingDef& f : def.floatings)
         if (std::find(f.mkbound.begin(), f.mkbound.end(), mkbound) != f.mkbound.end())
             return {'b', mkbound};

@@ -5,9 +5,11 @@
 #include "fppg/check.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "fppg/motion_gaps.h"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
 namespace fppg
@@ -23,6 +25,10 @@ struct CheckCall
     std::string vtk;
     bool strict = false;
     int threads = 0;
+    bool follows_motion = false;
+    std::string definition; ///< of the motion
+    std::string passages;   ///< a VTK file
+    MotionGapOptions gaps;
 };
 
 /// Reads the arguments; false when only the help was asked for.
@@ -35,6 +41,7 @@ bool read_arguments(std::vector<std::string> arguments, CheckCall& call)
         "stand too close, particles outside the domain. Exit code: 0, or 3 with --strict where "
         "there are findings.",
         "fppg check");
+    std::string evars;
     app.add_option("CASE", call.case_name,
                    "without extension: Case.xml and Case.bi4; of vres one zone, as Case_vres01")
         .required();
@@ -43,13 +50,63 @@ bool read_arguments(std::vector<std::string> arguments, CheckCall& call)
                    "the faulty particles; their array Fault says which fault, in the order of the "
                    "table from 0 on");
     app.add_flag("--strict", call.strict, "findings are errors");
+    app.add_flag("--motion", call.follows_motion,
+                 "the least gap of every two mks through the motion, and narrow passages, by the "
+                 "true shapes; CASE may be a definition, of which no particles are there yet");
+    app.add_option("--definition", call.definition,
+                   "of --motion: Case_Def.xml, where the meshes are not beside Case.xml");
+    app.add_option("--evars", evars, "of --motion: as -evars: of the generation, A=1:B=2");
+    app.add_option("--dp", call.gaps.dp, "of --motion: in place of the case's, metres").positive();
+    app.add_option("--end", call.gaps.end, "of --motion: in place of TimeMax, seconds").positive();
+    app.add_option("--step", call.gaps.step_dp,
+                   "of --motion: how far parts move between two looks, dp")
+        .positive()
+        .shows_default();
+    app.add_option("--passages", call.passages, "of --motion: narrow places as points, .vtk");
     app.add_option("--threads", call.threads, "default 0: what the machine or its scheduler allows")
         .range(0, 4096);
     for (std::string& argument : arguments)
         if (argument == "-strict") argument = "--strict";
     if (!app.read(arguments)) return false;
     if (call.threads == 0) call.threads = default_threads();
+    call.gaps.evars = read_evars(evars);
+    call.gaps.threads = call.threads;
+    const bool is_of_motion = !call.definition.empty() || !evars.empty() || call.gaps.dp > 0 ||
+                              call.gaps.end > 0 || !call.passages.empty();
+    if (is_of_motion && !call.follows_motion)
+        throw UsageError(
+            "--definition, --evars, --dp, --end and --passages are for --motion; expected it too");
     return true;
+}
+
+/// Whether particles of the case are there: else its name is that of a definition.
+bool has_particles(const std::string& name)
+{
+    std::error_code ignored;
+    return !name.ends_with(".xml") && std::filesystem::exists(name + ".bi4", ignored);
+}
+
+/// Gaps through the motion of the case.
+MotionGaps gaps_of(const CheckCall& call)
+{
+    std::string definition = call.definition.empty() ? call.case_name : call.definition;
+    if (!definition.ends_with(".xml")) definition += ".xml";
+    return measure_motion_gaps(definition, call.gaps);
+}
+
+void write_text_file(const std::string& path, const std::string& text)
+{
+    OutputFile file(path);
+    file.append(text);
+    file.commit();
+}
+
+/// What overlaps or is nearer than 2 dp while it moves.
+bool are_clear(const MotionGaps& gaps)
+{
+    return std::none_of(gaps.pairs.begin(), gaps.pairs.end(),
+                        [](const MkGap& pair)
+                        { return pair.moves && (pair.overlapping > 0 || pair.least_dp < 2); });
 }
 
 } // namespace
@@ -58,6 +115,19 @@ int run_check(const std::vector<std::string>& arguments)
 {
     CheckCall call;
     if (!read_arguments(arguments, call)) return 0;
+    if (call.follows_motion && !has_particles(call.case_name))
+    {
+        if (!call.vtk.empty())
+            throw UsageError("--vtk: there are no particles; --passages is for narrow passages");
+        const MotionGaps gaps = gaps_of(call);
+        if (!call.json.empty()) write_text_file(call.json, to_json(gaps));
+        if (!call.passages.empty()) write_text_file(call.passages, to_vtk(gaps));
+        fmt::print("{}", to_text(gaps));
+        if (call.strict && !are_clear(gaps))
+            throw CaseError(
+                fmt::format("--strict: '{}' has findings, which are errors", call.case_name));
+        return 0;
+    }
     // The files are made first: a folder that cannot be written is found before the work.
     std::optional<OutputFile> json;
     std::optional<OutputFile> vtk;
@@ -75,7 +145,15 @@ int run_check(const std::vector<std::string>& arguments)
         vtk->commit();
     }
     fmt::print("{}", to_text(report));
-    if (call.strict && !report.is_clean())
+    bool is_clean = report.is_clean();
+    if (call.follows_motion)
+    {
+        const MotionGaps gaps = gaps_of(call);
+        if (!call.passages.empty()) write_text_file(call.passages, to_vtk(gaps));
+        fmt::print("{}", to_text(gaps));
+        is_clean = is_clean && are_clear(gaps);
+    }
+    if (call.strict && !is_clean)
         throw CaseError(
             fmt::format("--strict: '{}' has findings, which are errors", call.case_name));
     return 0;

@@ -8,12 +8,14 @@
 
 #include "app/inspect_particles.h"
 #include "core/json.h"
+#include "core/length_units.h"
 #include "core/parallel.h"
 #include "core/text_table.h"
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
+#include "meshes/facing_distance.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_query.h"
 
@@ -74,7 +76,7 @@ void describe_features(const SurfaceMesh& mesh, Inspection& found)
             found.shortest_line > 0 ? std::min(found.shortest_line, line.length) : line.length;
         found.short_lines += static_cast<std::size_t>(line.length < options.dp);
     }
-    if (!(options.dp > 0) || !found.question.empty()) return;
+    if (!(options.dp > 0) || !found.question.empty() || !found.options.places_particles) return;
     if (found.line_length > most_line_particles * options.dp)
     {
         found.corner_particles = static_cast<double>(found.singular_points);
@@ -97,31 +99,6 @@ struct Thickness
     Vec3 at;
     double value = std::numeric_limits<double>::infinity();
 };
-
-/// How thick the body is behind a point of a facet: along the axis nearest to the normal to the
-/// next facet that looks the other way, times the cosine between both, which is exact for plates.
-/// Infinity where nothing is found within `reach`.
-double thickness_behind(const SurfaceMesh& mesh, const MeshQuery& query, std::uint32_t facet,
-                        const Vec3& p, double reach)
-{
-    const Vec3& n = mesh.normals[facet];
-    int axis = 0;
-    for (const int other : {1, 2})
-        if (std::abs(n[other]) > std::abs(n[axis])) axis = other;
-    const double slant = std::abs(n[axis]);
-    const bool is_upwards = n[axis] < 0;
-    Vec3 origin = p;
-    if (!is_upwards) origin[axis] -= reach / slant;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Crossing& crossing : query.crossings(origin, axis))
-    {
-        if (!is_upwards && crossing.position > p[axis]) break;
-        if (crossing.facet == facet || dot(mesh.normals[crossing.facet], n) > -0.5) continue;
-        const double distance = std::abs(crossing.position - p[axis]) * slant;
-        nearest = std::min(nearest, distance);
-    }
-    return nearest <= reach ? nearest : std::numeric_limits<double>::infinity();
-}
 
 /// Layers of both sides that are nearer than this are one, dp.
 constexpr double merged_layers_dp = 0.6;
@@ -165,7 +142,8 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
             const auto& c = mesh.facets[f];
             const Vec3& a = mesh.vertices[c[0]];
             const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-            samples[i] = {p, thickness_behind(mesh, query, f, p, reach)};
+            samples[i] = {p,
+                          facing_distance(mesh.normals, query, {f, p}, FacetSide::Behind, reach)};
         },
         64);
     std::size_t thin = 0;
@@ -307,7 +285,7 @@ Inspection inspect_mesh(const InspectOptions& options)
         if (options.dp > 0 && found.question.empty())
         {
             find_thin_places(mesh, found);
-            if (found.report.is_watertight && found.report.volume > 0 &&
+            if (options.places_particles && found.report.is_watertight && found.report.volume > 0 &&
                 found.surface_particles + found.volume_particles < most_for_bodies)
                 found.bodies = inspect_bodies(options, mesh);
         }
@@ -317,11 +295,6 @@ Inspection inspect_mesh(const InspectOptions& options)
         throw GeometryError(fmt::format("{}: {}", options.path, error.what()));
     }
     return found;
-}
-
-double metres_of_unit(std::string_view unit)
-{
-    return unit == "m" ? 1 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : unit == "in" ? 0.0254 : 0;
 }
 
 namespace

@@ -13,9 +13,6 @@
 namespace fppg
 {
 
-/// Metres of a unit of InspectOptions; 0: there is no such unit.
-double metres_of_unit(std::string_view unit);
-
 /// What `fppg inspect` is asked. Lengths are in the unit of the file, which no format says.
 struct InspectOptions
 {
@@ -25,6 +22,8 @@ struct InspectOptions
     std::string unit{};       ///< of the file: "m", "cm", "mm" or "in"; empty: it is guessed
     double weld_distance = 0; ///< 0: corners with equal coordinates only
     int threads = 1;
+    /// Particles are laid out to count them; without, areas and volumes estimate them.
+    bool places_particles = true;
 };
 
 /// A body as particles stand for it, in the unit of the file, at density 1.

@@ -24,26 +24,6 @@ struct LeakCall
     LeakOptions options;
 };
 
-/// A=1:B=2, as -evars takes it.
-std::vector<std::pair<std::string, std::string>> read_evars(const std::string& text)
-{
-    std::vector<std::pair<std::string, std::string>> out;
-    for (std::size_t begin = 0; begin < text.size();)
-    {
-        const std::size_t end = std::min(text.find(':', begin), text.size());
-        const std::string one = text.substr(begin, end - begin);
-        const std::size_t equals = one.find('=');
-        if (equals == std::string::npos || equals == 0)
-            throw UsageError(
-                fmt::format("--evars: \"{}\" is invalid, expected NAME=VALUE, several of them "
-                            "with colons between",
-                            text));
-        out.emplace_back(one.substr(0, equals), one.substr(equals + 1));
-        begin = end + 1;
-    }
-    return out;
-}
-
 /// Reads the arguments; false when only the help was asked for.
 bool read_arguments(const std::vector<std::string>& arguments, LeakCall& call)
 {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI
@@ -71,5 +72,10 @@ public:
 private:
     std::unique_ptr<CLI::App> app_;
 };
+
+/// The variables of an option --evars, A=1:B=2, as -evars takes them.
+///
+/// throws  UsageError
+std::vector<std::pair<std::string, std::string>> read_evars(const std::string& text);
 
 } // namespace fppg

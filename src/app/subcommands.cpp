@@ -7,6 +7,7 @@
 #include "app/estimate_command.h"
 #include "app/inspect_command.h"
 #include "app/leak_command.h"
+#include "app/new_command.h"
 #include "app/render_command.h"
 #include "app/report_command.h"
 #include "app/templates_command.h"
@@ -34,9 +35,11 @@ struct Entry
 };
 
 constexpr Entry entries[] = {
-    {"batch", run_batch_command}, {"check", run_check},       {"compare", run_compare},
-    {"convert", run_convert},     {"estimate", run_estimate}, {"inspect", run_inspect},
-    {"leak", run_leak},           {"render", run_render},     {"report", run_report},
+    {"batch", run_batch_command}, {"check", run_check},
+    {"compare", run_compare},     {"convert", run_convert},
+    {"estimate", run_estimate},   {"inspect", run_inspect},
+    {"leak", run_leak},           {"new", run_new},
+    {"render", run_render},       {"report", run_report},
     {"templates", run_templates}, {"upgrade", run_upgrade},
 };
 

@@ -23,6 +23,7 @@ public:
     double distance(const Vec3& p) const { return inside_.query().closest_point(p).distance; }
     bool is_nearer(const Vec3& p, double distance) const;
     const Box3& bounds() const { return bounds_; }
+    const TriangleSoup& soup() const { return inside_.query().soup(); }
 
 private:
     InsideTest inside_;

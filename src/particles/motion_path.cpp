@@ -46,7 +46,7 @@ Transform moved(const Element& m, double t)
     {
         const Vec3 p1 = vector(m, "axisp1");
         const Vec3 along = vector(m, "axisp2") - p1;
-        return norm(along) > 0 ? around(p1, rotation(along, by * angle)) : Transform{};
+        return norm(along) > 0 ? around(p1, rotation(along, -by * angle)) : Transform{};
     };
     const auto circle = [&](double by)
     {

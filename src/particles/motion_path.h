@@ -18,7 +18,8 @@ using MotionChain = std::vector<const Element*>;
 
 /// Where an object of `<motion>` is at a time, as a map of the places at the start: each `<begin>`
 /// of an object starts a chain of movements at its time, the one after it begins where that one
-/// left the object; an object moves with those around it. Nothing: a file moves it, or, with
+/// left the object; an object moves with those around it. Rotations are clockwise seen from axisp2,
+/// as in the solver v5.4. Nothing: a file moves it, or, with
 /// mvnull, what stands elsewhere for the solver, such as <wavepaddles>.
 ///
 /// time  seconds

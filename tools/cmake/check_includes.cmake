@@ -46,7 +46,13 @@ set(check_may_see report files casedef particles shapes meshes core)
 set(convert_may_see files casedef particles shapes meshes core)
 # The text of a definition, in newer forms.
 set(upgrade_may_see core)
-set(app_may_see convert upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
+# How near parts come to each other, by their true shapes.
+set(gaps_may_see leak walls lattice scene files casedef particles shapes meshes nodes core)
+# The plugin that reads STEP files sees only what the program and it agree on.
+set(step_may_see meshes)
+# From parts to a definition.
+set(newcase_may_see shapes meshes nodes core)
+set(app_may_see newcase gaps convert upgrade check leak batch report compare render walls lattice fit boolean relax balance normals files scene casedef shapes meshes
     particles nodes core)
 set(main_may_see app)
 
@@ -59,6 +65,8 @@ set(compare_headers compare)
 set(render_headers render)
 set(check_headers check)
 set(convert_headers convert)
+set(newcase_headers new_case)
+set(gaps_headers motion_gaps)
 
 # Third parties that few folders wrap for all others.
 set(wrapped_libraries tinyxml2 embree png zlib CLI nlohmann)
@@ -86,7 +94,7 @@ function(check_file file folder)
       endif()
       if(seen STREQUAL "fppg" AND NOT folder STREQUAL "include")
         string(REGEX REPLACE ".*fppg/([a-z_]+)\\.h.*" "\\1" header "${line}")
-        foreach(owner fit boolean relax compare render check convert)
+        foreach(owner fit boolean relax compare render check convert newcase gaps)
           if(header IN_LIST ${owner}_headers AND NOT folder STREQUAL owner
              AND NOT owner IN_LIST ${folder}_may_see)
             list(APPEND found "${file}: ${folder} may not include fppg/${header}.h of ${owner}")

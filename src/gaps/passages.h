@@ -1,0 +1,14 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/motion_gaps.h"
+#include "leak/case_solids.h"
+
+namespace fppg
+{
+
+/// Looks for narrow passages in front of the boundaries of a case, as measure_motion_gaps() says,
+/// and adds what it finds to `out`.
+void find_passages(const CaseDef& def, const CaseSolids& solids, int threads, MotionGaps& out);
+
+} // namespace fppg

@@ -1,0 +1,255 @@
+#include "newcase/plan.h"
+
+#include "core/text.h"
+#include "fppg/error.h"
+#include "fppg/shapes.h"
+#include "meshes/mesh_formats.h"
+#include "meshes/read_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace fppg
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// What meshes of parts end with; tables of heights are none.
+bool is_part_file(const fs::path& path)
+{
+    const std::string ending = lower_case(path.extension().string());
+    if (ending.size() < 2 || ending == ".csv") return false;
+    if (is_step_file(path.string())) return true;
+    return ending == ".stl" || mesh_format_of(path.string()) != MeshFormat::Stl;
+}
+
+void add_folder(const fs::path& folder, std::vector<fs::path>& files, CasePlan& plan)
+{
+    std::vector<fs::path> found;
+    std::vector<std::string> others;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    {
+        if (!entry.is_regular_file() || entry.path().filename().string().starts_with('.')) continue;
+        if (is_part_file(entry.path()))
+            found.push_back(entry.path());
+        else
+            others.push_back(entry.path().filename().string());
+    }
+    if (found.empty())
+        throw UsageError(fmt::format("{}: holds no part, expected STEP or mesh files: {}",
+                                     folder.string(), mesh_format_list()));
+    std::sort(found.begin(), found.end());
+    std::sort(others.begin(), others.end());
+    files.insert(files.end(), found.begin(), found.end());
+    if (!others.empty())
+        plan.warnings.push_back(fmt::format("{}: these files are no parts and are left out: {}.",
+                                            folder.string(), fmt::join(others, ", ")));
+}
+
+std::vector<fs::path> part_paths(CasePlan& plan)
+{
+    std::vector<fs::path> files;
+    for (const std::string& input : plan.options->inputs)
+    {
+        std::error_code error;
+        if (fs::is_directory(input, error))
+            add_folder(input, files, plan);
+        else
+            files.emplace_back(input);
+    }
+    return files;
+}
+
+/// A name for commands and comments: letters, digits, _ and -.
+std::string clean_name(const std::string& stem)
+{
+    std::string out;
+    for (const char c : stem)
+    {
+        const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                              (c >= 'A' && c <= 'Z') || c == '_' || c == '-';
+        out += is_plain ? c : '_';
+    }
+    while (out.find("--") != std::string::npos) out.replace(out.find("--"), 2, "-");
+    return out.empty() ? "part" : out;
+}
+
+std::string relative_name(const fs::path& file, const std::string& definition)
+{
+    const fs::path folder = fs::absolute(definition).parent_path();
+    const fs::path near =
+        fs::absolute(file).lexically_normal().lexically_relative(folder.lexically_normal());
+    return near.empty() ? fs::absolute(file).string() : near.generic_string();
+}
+
+/// The beginning of the file, in small letters: where exporters write what they are and in which
+/// unit.
+std::vector<std::string> comments_of(const fs::path& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    std::string text(2048, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+    // A binary file has only its title.
+    const std::size_t end = text.find('\0');
+    if (end != std::string::npos) text.resize(std::min<std::size_t>(end, 80));
+    std::vector<std::string> out;
+    for (const std::string_view line : split(lower_case(text), '\n'))
+        if (out.size() < 20) out.emplace_back(trimmed(line));
+    return out;
+}
+
+void take_in(NewPart& part, const TriangleSoup& soup, int threads)
+{
+    try
+    {
+        part.mesh = repair_mesh(soup, {}, threads, part.report);
+    }
+    catch (const GeometryError& error)
+    {
+        throw GeometryError(fmt::format("{}: {}", part.path, error.what()));
+    }
+}
+
+NewPart read_part(const fs::path& path, const NewCaseOptions& options)
+{
+    NewPart part;
+    part.path = path.string();
+    part.file = relative_name(path, options.output);
+    part.format = mesh_format_of(part.path);
+    MeshReading reading;
+    reading.format = part.format;
+    const MeshFile file = read_mesh_file(part.path, reading, options.threads);
+    if (file.soup.size() == 0)
+        throw GeometryError(fmt::format(
+            "{}: has no surface, only points or lines; expected the facets of a part", part.path));
+    take_in(part, file.soup, options.threads);
+    part.comments = comments_of(path);
+    return part;
+}
+
+/// Gives a part a name that no other one has.
+void name_part(NewPart& part, const std::string& stem, std::set<std::string>& names)
+{
+    part.name = stem;
+    for (int n = 2; !names.insert(lower_case(part.name)).second; ++n)
+        part.name = fmt::format("{}_{}", stem, n);
+}
+
+/// Angles between facets of smooth faces, radians: well below a feature angle.
+constexpr double step_angle = 0.1;
+/// For a first look, before dp is known; mm.
+constexpr double first_deflection = 0.05;
+
+/// CASE_parts, the folder of the meshes of STEP files.
+std::string parts_folder(const std::string& definition)
+{
+    std::string stem = fs::path(definition).stem().string();
+    if (stem.ends_with("_Def")) stem.resize(stem.size() - 4);
+    return stem + "_parts";
+}
+
+void add_step_parts(const fs::path& path, CasePlan& plan, std::set<std::string>& names)
+{
+    std::vector<StepPart> parts = read_step(path.string(), first_deflection, step_angle);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+        NewPart part;
+        const StepPart& one = parts[i];
+        name_part(part, clean_name(one.name.empty() ? path.stem().string() : one.name), names);
+        part.path = fmt::format("{} ({})", path.string(), part.name);
+        part.step = path.string();
+        part.step_index = i;
+        part.format = MeshFormat::Ply;
+        part.file = parts_folder(plan.options->output) + "/" + part.name + ".ply";
+        part.comments = {"unit mm"}; // the reader turns every unit into it
+        part.step_facts =
+            fmt::format("{} CAD edges that bend, {} tangent ones; exact area {:.9g} mm2{}",
+                        one.sharp_edges, one.smooth_edges, one.area,
+                        one.volume > 0 ? fmt::format(", volume {:.9g} mm3", one.volume) : "");
+        take_in(part, one.soup, plan.options->threads);
+        plan.parts.push_back(std::move(part));
+    }
+}
+
+void append_number(std::string& out, double value)
+{
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// A PLY file in double: STL would round the corners to float32.
+std::string ply_bytes(const TriangleSoup& soup)
+{
+    std::map<std::array<double, 3>, std::uint32_t> index;
+    std::string points, facets;
+    for (std::size_t c = 0; c < soup.vertices.size(); ++c)
+    {
+        const Vec3& v = soup.vertices[c];
+        const auto next = static_cast<std::uint32_t>(index.size());
+        const auto [at, is_new] = index.try_emplace({v.x, v.y, v.z}, next);
+        if (is_new)
+            for (int axis = 0; axis < 3; ++axis) append_number(points, v[axis]);
+        if (c % 3 == 0) facets += '\3';
+        facets.append(reinterpret_cast<const char*>(&at->second), sizeof at->second);
+    }
+    return fmt::format(
+               "ply\nformat binary_little_endian 1.0\ncomment unit mm\nelement vertex {}\n"
+               "property double x\nproperty double y\nproperty double z\nelement face {}\n"
+               "property list uchar int vertex_indices\nend_header\n",
+               index.size(), soup.size()) +
+           points + facets;
+}
+
+} // namespace
+
+void read_parts(CasePlan& plan)
+{
+    const std::vector<fs::path> files = part_paths(plan);
+    if (files.empty()) throw UsageError("fppg new: expected mesh files or folders of them");
+    constexpr std::size_t most_parts = 200;
+    std::set<std::string> names;
+    for (const fs::path& path : files)
+    {
+        if (is_step_file(path.string()))
+        {
+            add_step_parts(path, plan, names);
+            continue;
+        }
+        NewPart part = read_part(path, *plan.options);
+        name_part(part, clean_name(path.stem().string()), names);
+        plan.parts.push_back(std::move(part));
+    }
+    if (plan.parts.size() > most_parts)
+        throw UsageError(fmt::format("{} parts, expected at most {}: each has an mk of its own",
+                                     plan.parts.size(), most_parts));
+    for (std::size_t i = 0; i < plan.parts.size(); ++i)
+        plan.parts[i].mkbound = static_cast<int>(i) + 1;
+}
+
+std::vector<NewCaseFile> step_meshes(const CasePlan& plan)
+{
+    std::vector<NewCaseFile> out;
+    const double deflection = std::min(0.01 * plan.dp * 1000, first_deflection);
+    std::map<std::string, std::vector<StepPart>> files;
+    for (const NewPart& part : plan.parts)
+    {
+        if (part.step.empty()) continue;
+        if (!files.contains(part.step))
+            files[part.step] = read_step(part.step, deflection, step_angle);
+        const fs::path folder = fs::path(plan.options->output).parent_path();
+        out.push_back(
+            {(folder / part.file).string(), ply_bytes(files[part.step].at(part.step_index).soup)});
+    }
+    return out;
+}
+
+} // namespace fppg
