@@ -30,15 +30,15 @@ struct Hdf5Object
 };
 
 /// Makes `file` an HDF5 file of these objects with room for all numbers, which threads then write
-/// at their places. The HDF5 library does it, in a module that is loaded at the first call: linked
+/// at their places. The HDF5 library does it, in a plugin that is opened at the first call: linked
 /// with the program it would double the time of a start (7.7 ms for libcurl and what else it
 /// needs).
 ///
 /// objects  the first is the root, "", and every group stands before what is in it; `at` is filled
-/// throws   IoError if the module cannot be loaded, or the file cannot be written
+/// throws   IoError if the plugin cannot be opened, or the file cannot be written
 void lay_out_hdf5(OutputFile& file, std::vector<Hdf5Object>& objects);
 
-/// The entry of the module: makes the file at `path` and fills `at`.
+/// The entry of the plugin: makes the file at `path` and fills `at`.
 ///
 /// returns  what went wrong, empty where nothing did
 using LayOutHdf5 = std::string(const std::string& path, std::vector<Hdf5Object>& objects);

@@ -1,6 +1,7 @@
 #include "relax/fit_moments.h"
 
 #include "core/parallel.h"
+#include "core/principal_axes.h"
 #include "offset/wall_depth.h"
 #include "relax/sliding_walls.h"
 
@@ -65,60 +66,23 @@ Moments moments_of(const SurfaceMesh& mesh)
     return out;
 }
 
-/// The eigenvectors of a symmetric matrix, by Jacobi's rotations; their values are left on the
-/// diagonal.
-Matrix eigenvectors(Matrix& m)
-{
-    Matrix v{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    for (int sweep = 0; sweep < 12; ++sweep)
-        for (int p = 0; p < 2; ++p)
-            for (int q = p + 1; q < 3; ++q)
-            {
-                Vec3& row_p = m[static_cast<std::size_t>(p)];
-                Vec3& row_q = m[static_cast<std::size_t>(q)];
-                const double off = row_p[q];
-                if (off == 0) continue;
-                const double theta = 0.5 * std::atan2(2 * off, row_q[q] - row_p[p]);
-                const double c = std::cos(theta), s = std::sin(theta);
-                for (Vec3& row : m)
-                {
-                    const double a = row[p], b = row[q];
-                    row[p] = c * a - s * b;
-                    row[q] = s * a + c * b;
-                }
-                const Vec3 old_p = row_p, old_q = row_q;
-                row_p = c * old_p - s * old_q;
-                row_q = s * old_p + c * old_q;
-                for (Vec3& row : v)
-                {
-                    const double a = row[p], b = row[q];
-                    row[p] = c * a - s * b;
-                    row[q] = s * a + c * b;
-                }
-            }
-    return v;
-}
-
 Vec3 times(const Matrix& m, const Vec3& v)
 {
     return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
 }
 
 /// The symmetric M with M S + S M = D, but for directions in which S has less than `least`.
-Matrix stretch_for(Matrix s, const Matrix& d, double least)
+Matrix stretch_for(const Matrix& s, const Matrix& d, double least)
 {
-    const Matrix v = eigenvectors(s); // columns
-    const auto column = [&](std::size_t k) {
-        return Vec3{v[0][static_cast<int>(k)], v[1][static_cast<int>(k)],
-                    v[2][static_cast<int>(k)]};
-    };
+    const PrincipalAxes of = principal_axes(s);
     Matrix out{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
         {
-            const double si = s[i][static_cast<int>(i)], sj = s[j][static_cast<int>(j)];
+            const double si = of.values[i], sj = of.values[j];
             if (std::min(si, sj) < least) continue;
-            const Vec3 a = column(i), b = column(j);
+            const Vec3& a = of.axes[static_cast<std::size_t>(i)];
+            const Vec3& b = of.axes[static_cast<std::size_t>(j)];
             add_product(out, dot(a, times(d, b)) / (si + sj), a, b);
         }
     return out;

@@ -10,6 +10,7 @@
 #include <map>
 #include <span>
 #include <tuple>
+#include <utility>
 
 namespace fppg
 {
@@ -139,7 +140,8 @@ std::vector<Place> places_inside(const OwnLattice& lattice, std::size_t body, co
                            (static_cast<double>(row % n[1]) * lattice.steps[1]) * lattice.axes[1] +
                            (static_cast<double>(k) * lattice.steps[2]) * lattice.axes[2];
                 const AllWalls::Closest near = all.closest(place.at);
-                if (near.is_outside || near.body != body || near.distance < least_depth_dp * dp) continue;
+                if (near.is_outside || near.body != body || near.distance < least_depth_dp * dp)
+                    continue;
                 const double reach = far_place_dp * dp;
                 double squared = reach * reach;
                 layers.for_each_near(place.at, reach,
@@ -205,11 +207,12 @@ std::optional<OwnLattice> own_lattice(const FittedBody& body, const LatticeGrid&
     return out;
 }
 
-/// Moves the nodes of one body.
-void move_body(const FittedWalls& walls, std::size_t body, const OwnLattice& lattice,
+/// Moves the nodes of one body, `movers`.
+void move_body(const FittedWalls& walls, const std::pair<std::size_t, OwnLattice>& of_body,
                const AllWalls& all, std::span<const std::uint32_t> movers,
                std::vector<Vec3>& positions, int threads)
 {
+    const auto& [body, lattice] = of_body;
     const double dp = lattice.dp;
     PointGrid layers(far_place_dp * dp, walls.particles.size());
     for (std::size_t i = 0; i < walls.particles.size(); ++i)
@@ -271,7 +274,7 @@ void move_to_own_lattices(const FittedWalls& walls,
         if (lattices[body] && walls.bodies[body].mk == movers[m].mk) of_body[body].push_back(m);
     }
     for (const auto& [body, moving] : of_body)
-        move_body(walls, body, *lattices[body], all, moving, positions, threads);
+        move_body(walls, {body, *lattices[body]}, all, moving, positions, threads);
 }
 
 } // namespace fppg

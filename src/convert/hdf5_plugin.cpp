@@ -1,4 +1,4 @@
-// The module fppg_hdf5.so: all that calls the HDF5 library.
+// The plugin libfppg_hdf5.so: all that calls the HDF5 library.
 //
 // Datasets are contiguous, allocated when they are made and never filled, so that their places are
 // known and nothing is written twice. Times are left out: the same input gives the same bytes.

@@ -1,0 +1,63 @@
+#include "core/plugin.h"
+
+#include "fppg/error.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+namespace fppg
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+fs::path own_folder()
+{
+    Dl_info image = {};
+    if (dladdr(reinterpret_cast<void*>(&own_folder), &image) == 0 || !image.dli_fname) return {};
+    std::error_code failed;
+    return fs::canonical(image.dli_fname, failed).parent_path();
+}
+
+std::vector<fs::path> plugin_folders()
+{
+    std::vector<fs::path> folders;
+    if (const char* named = std::getenv("FPPG_PLUGINS")) folders.emplace_back(named);
+    // The program is in bin, the Python module in lib/python3/dist-packages/fppg.
+    if (const fs::path own = own_folder(); !own.empty())
+        for (const char* way : {".", "../" FPPG_LIBRARIES, "../../../../" FPPG_LIBRARIES})
+            folders.push_back((own / way).lexically_normal());
+    folders.emplace_back(FPPG_PLUGIN_FOLDER);
+    return folders;
+}
+
+} // namespace
+
+void* plugin_function(const std::string& file, const char* symbol, const std::string& purpose)
+{
+    std::vector<std::string> looked_at;
+    for (const fs::path& folder : plugin_folders())
+    {
+        const fs::path path = folder / file;
+        std::error_code failed;
+        if (!fs::exists(path, failed))
+        {
+            looked_at.push_back(folder.string());
+            continue;
+        }
+        void* const plugin = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+        void* const entry = plugin ? ::dlsym(plugin, symbol) : nullptr;
+        if (entry) return entry;
+        throw IoError(fmt::format("cannot open the plugin {}: {}", path.string(), ::dlerror()));
+    }
+    throw IoError(fmt::format("there is no plugin {} in {}: {}", file, fmt::join(looked_at, " or "),
+                              purpose));
+}
+
+} // namespace fppg
