@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/principal_axes.h"
+#include "meshes/crowded_points.h"
 #include "offset/wall_depth.h"
 #include "relax/sliding_walls.h"
 
@@ -20,6 +21,7 @@ using Matrix = std::array<Vec3, 3>;
 
 constexpr int most_rounds = 12;
 constexpr double longest_way_dp = 0.5;
+constexpr double most_jump_dp = 0.02;
 /// Of the centre, dp, and of the second moments where fitting ends.
 constexpr double centre_tolerance = 1e-3;
 constexpr double moment_tolerance = 2e-4;
@@ -203,6 +205,64 @@ private:
         return out;
     }
 
+    /// The distance of each particle that moves to the nearest other one, at most dp.
+    std::vector<double> nearest()
+    {
+        std::vector<Vec3> all;
+        for (std::size_t i = 0; i < way_.size(); ++i) all.push_back(place(i));
+        all.insert(all.end(), nodes_.begin(), nodes_.end());
+        std::vector<double> distances = nearest_distances(all, dp_, threads_);
+        distances.resize(way_.size());
+        return distances;
+    }
+
+    /// Puts particles back that came nearer to others than least_pair_dp, until there are none.
+    void part(const std::vector<double>& distances, const std::vector<Vec3>& before)
+    {
+        for (int round = 0; round < most_rounds; ++round)
+        {
+            const std::vector<double> now = nearest();
+            bool is_near = false;
+            for (std::size_t i = 0; i < way_.size(); ++i)
+            {
+                if (now[i] >= std::min(distances[i], least_pair_dp * dp_) * (1 - 1e-9)) continue;
+                is_near = true;
+                place(i) = before[i];
+            }
+            if (!is_near) return;
+        }
+        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = before[i];
+    }
+
+    /// Moves all by `steps`, those of layers along these.
+    void take(const std::vector<Vec3>& steps)
+    {
+        const std::vector<double> distances = nearest();
+        const ClosestWallPoint closest = [&](const Vec3& p, double within)
+        { return all_.closest_point(p, within); };
+        std::vector<Vec3> before(way_.size());
+        parallel_for(
+            way_.size(), threads_,
+            [&](std::size_t i)
+            {
+                before[i] = place(i);
+                const Vec3 normal = across(i);
+                Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
+                if (i < of_wall_.size())
+                {
+                    const Vec3 on = on_layer(of_wall_[i], to, closest);
+                    // Where layers bend within dp the nearest place may be on another face.
+                    const bool jumps =
+                        norm(on - before[i]) > 2 * norm(to - before[i]) + most_jump_dp * dp_;
+                    to = jumps ? before[i] : on;
+                }
+                place(i) = to;
+            },
+            64);
+        part(distances, before);
+        for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = way_[i] + (place(i) - before[i]);
+    }
+
     /// One step; false where it is not needed or leads too far.
     bool move()
     {
@@ -237,20 +297,8 @@ private:
             share = (longest_way_dp * dp_ - before) / step;
             if (share < 0.05) return false;
         }
-        const ClosestWallPoint closest = [&](const Vec3& p, double within)
-        { return all_.closest_point(p, within); };
-        parallel_for(
-            way_.size(), threads_,
-            [&](std::size_t i)
-            {
-                const Vec3 from = place(i);
-                const Vec3 normal = across(i);
-                Vec3 to = from + share * (steps[i] - dot(steps[i], normal) * normal);
-                if (i < of_wall_.size()) to = on_layer(of_wall_[i], to, closest);
-                way_[i] = way_[i] + (to - from);
-                place(i) = to;
-            },
-            64);
+        for (Vec3& step : steps) step = share * step;
+        take(steps);
         return true;
     }
 
