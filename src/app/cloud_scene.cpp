@@ -24,6 +24,7 @@ SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
         {
             part.colour = hex_of(
                 colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]));
+            part.mk = cloud.mk[i];
             part.label = fmt::format("mk {}", cloud.mk[i]);
             if (!cloud.type.empty())
                 part.label += fmt::format(" {}", particle_type_name(cloud.type[i]));
@@ -35,6 +36,20 @@ SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
     set.dp = cloud.dp;
     for (auto& [mk, part] : parts) set.parts.push_back(std::move(part));
     return set;
+}
+
+void add_motion(SceneSet& set, const std::vector<MovingBlock>& moving)
+{
+    constexpr std::size_t most_frames = 250;
+    for (const MovingBlock& block : moving)
+        for (ScenePart& part : set.parts)
+        {
+            if (part.mk != block.mk || block.places.size() < 2) continue;
+            const std::size_t last = block.places.size() - 1;
+            const std::size_t step = (last + most_frames - 1) / most_frames;
+            for (std::size_t i = 0; i <= last; i += step) part.frames.push_back(block.places[i]);
+            set.end = block.step * static_cast<double>((part.frames.size() - 1) * step);
+        }
 }
 
 } // namespace fppg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/check.h"
 #include "fppg/read_particles.h"
 #include "fppg/render.h"
 #include "report/scene.h"
@@ -20,5 +21,8 @@ std::string hex_of(const Rgb& colour);
 
 /// The particles of a cloud as a set of the 3-D view, a part an mk, by mk.
 SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name);
+
+/// Gives the parts that move in a case their places over its motion, which the page plays.
+void add_motion(SceneSet& set, const std::vector<MovingBlock>& moving);
 
 } // namespace fppg

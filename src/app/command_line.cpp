@@ -300,6 +300,7 @@ std::string help_text()
         "Usage:\n"
         "  fppg DEFINITION OUTPUT [options]     fppg CaseDambreak_Def out/CaseDambreak -save:all\n"
         "  fppg DEFINITION 'a*b' [options]      the star stands for the definition's name\n"
+        "  fppg new PARTS -o Case_Def.xml       a case from CAD parts; fppg new --help\n"
         "  fppg render CASE -o picture.png      draws particles; fppg render --help\n"
         "  fppg compare A B [--html page.html]   what differs between two results; fppg compare "
         "--help\n"

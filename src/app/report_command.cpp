@@ -5,6 +5,7 @@
 #include "app/stage_bar.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "check/read_setup.h"
 #include "compare/measure.h"
 #include "compare/measure_result.h"
 #include "compare/report_words.h"
@@ -23,6 +24,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 namespace fppg
@@ -162,6 +164,22 @@ std::string checked_html(const std::string& name, const ParticleSource& source, 
     }
 }
 
+/// The motion of a case; of an output of the solver, whose parts have moved already, none.
+std::vector<MovingBlock> motion_of_case(const ParticleSource& source, const Box3& bounds)
+{
+    namespace fs = std::filesystem;
+    if (!source.xml() || fs::path(source.path()).stem() != fs::path(source.xml_path()).stem())
+        return {};
+    try
+    {
+        return read_setup(*source.xml(), source.xml_path(), bounds).moving;
+    }
+    catch (const CaseError&)
+    {
+        return {}; // the section of the check says what is wrong with the case
+    }
+}
+
 ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const ReportCall& call)
 {
     const MeasuredResult result = measure_result(name, geometry, particles_at_once, call.threads);
@@ -179,11 +197,13 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
         options.opens_walls = options.has_scale_bar = options.has_legend = true;
         if (result.is_2d) options.view = parse_view("front");
         look.picture = png_bytes(render_particles({picture}, options, call.threads), true);
-        look.set = to_json(
+        SceneSet set =
             scene_by_mk(picture.positions.size() <= call.particles
                             ? picture
                             : thinned_cloud(source, result.bounds.min, result.dp, call.particles),
-                        look.name));
+                        look.name);
+        add_motion(set, motion_of_case(source, result.bounds));
+        look.set = to_json(set);
     }
     look.details = table_of(result) + histograms_of(result);
     look.details += checked_html(name, source, call.threads);

@@ -15,9 +15,9 @@ namespace
 
 constexpr std::uint32_t facets_of_a_leaf = 4;
 
-using Facet = std::array<Vec3, 3>;
+using GapFacet = std::array<Vec3, 3>;
 
-Facet facet_of(const TriangleSoup& soup, std::uint32_t f)
+GapFacet gap_facet(const TriangleSoup& soup, std::uint32_t f)
 {
     const std::size_t at = 3 * std::size_t{f};
     return {soup.vertices[at], soup.vertices[at + 1], soup.vertices[at + 2]};
@@ -42,7 +42,7 @@ std::pair<Vec3, Vec3> closest_on_segments(const Vec3& a, const Vec3& b, const Ve
 }
 
 /// Where a segment passes through a facet; false where it does not, or lies in its plane.
-bool crossing_place(const Vec3& a, const Vec3& b, const Facet& f, Vec3& place)
+bool crossing_place(const Vec3& a, const Vec3& b, const GapFacet& f, Vec3& place)
 {
     const Vec3 normal = cross(f[1] - f[0], f[2] - f[0]);
     const double from = dot(normal, a - f[0]), to = dot(normal, b - f[0]);
@@ -125,12 +125,12 @@ private:
 
     void take(const GapTree::Node& one, std::uint32_t g)
     {
-        Facet other = facet_of(second_.soup_, g);
+        GapFacet other = gap_facet(second_.soup_, g);
         Box3 box;
         for (Vec3& corner : other) box.add(corner = place_(corner));
         for (std::uint32_t i = one.begin; i < one.end && !found_.crosses; ++i)
         {
-            const Facet facet = facet_of(first_.soup_, first_.order_[i]);
+            const GapFacet facet = gap_facet(first_.soup_, first_.order_[i]);
             Box3 own;
             for (const Vec3& corner : facet) own.add(corner);
             const double apart = squared_distance(own, box);
@@ -140,7 +140,7 @@ private:
 
     /// Whether all corners of one are farther from the plane of the other, on one side, than the
     /// least distance up to now.
-    bool is_beyond_plane(const Facet& f, const Facet& g) const
+    bool is_beyond_plane(const GapFacet& f, const GapFacet& g) const
     {
         const Vec3 normal = cross(f[1] - f[0], f[2] - f[0]);
         const double limit = squared_ * dot(normal, normal);
@@ -150,7 +150,7 @@ private:
         return (least > 0 && least * least >= limit) || (most < 0 && most * most >= limit);
     }
 
-    void compare(const Facet& f, const Facet& g, bool may_cross)
+    void compare(const GapFacet& f, const GapFacet& g, bool may_cross)
     {
         if (is_beyond_plane(f, g) || is_beyond_plane(g, f)) return;
         for (std::size_t s = 0; s < 3; ++s)
@@ -198,7 +198,7 @@ GapTree::GapTree(TriangleSoup soup) : soup_(std::move(soup))
     order_.resize(n);
     for (std::uint32_t f = 0; f < n; ++f)
     {
-        const Facet facet = facet_of(soup_, f);
+        const GapFacet facet = gap_facet(soup_, f);
         Box3 box;
         for (const Vec3& corner : facet) box.add(corner);
         middles_[f] = (box.min + box.max) * 0.5;
@@ -216,7 +216,7 @@ std::uint32_t GapTree::build(std::uint32_t begin, std::uint32_t end)
     Box3 spread;
     for (std::uint32_t i = begin; i < end; ++i)
     {
-        for (const Vec3& corner : facet_of(soup_, order_[i])) box.add(corner);
+        for (const Vec3& corner : gap_facet(soup_, order_[i])) box.add(corner);
         spread.add(middles_[order_[i]]);
     }
     nodes_[at].box = box;

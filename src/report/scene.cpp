@@ -25,6 +25,29 @@ std::string text_of(const Json& json)
 
 } // namespace
 
+namespace
+{
+
+/// Rows of rotations and moves, to a micrometre a metre.
+Json frames_json(const std::vector<Transform>& frames)
+{
+    Json out = Json::array();
+    for (const Transform& t : frames)
+    {
+        Json one = Json::array();
+        for (int i = 0; i < 3; ++i)
+        {
+            const Vec3& row = t.linear[static_cast<std::size_t>(i)];
+            for (const double v : {row.x, row.y, row.z, t.offset[i]})
+                one.push_back(std::round(v * 1e6) / 1e6);
+        }
+        out.push_back(one);
+    }
+    return out;
+}
+
+} // namespace
+
 std::string to_json(const SceneSet& set)
 {
     Box3 box;
@@ -35,8 +58,9 @@ std::string to_json(const SceneSet& set)
     Json parts = Json::array();
     for (const ScenePart& part : set.parts)
     {
-        parts.push_back(
-            {{"label", part.label}, {"colour", part.colour}, {"count", part.positions.size()}});
+        Json one{{"label", part.label}, {"colour", part.colour}, {"count", part.positions.size()}};
+        if (!part.frames.empty()) one["frames"] = frames_json(part.frames);
+        parts.push_back(one);
         for (const Vec3& p : part.positions)
             for (int axis = 0; axis < 3; ++axis)
             {
@@ -51,6 +75,7 @@ std::string to_json(const SceneSet& set)
     return text_of({{"name", set.name},
                     {"dp", set.dp},
                     {"box", {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}},
+                    {"end", set.end},
                     {"parts", parts},
                     {"positions", base64(bytes)}});
 }

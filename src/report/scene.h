@@ -18,6 +18,10 @@ struct ScenePart
     std::string label;
     std::string colour; ///< "#rrggbb"
     std::vector<Vec3> positions;
+    std::uint16_t mk = 0; ///< absolute; of parts by mk
+    /// Where the part is, as maps of its places, at times evenly from 0 to SceneSet::end; empty: it
+    /// stands.
+    std::vector<Transform> frames{};
 };
 
 struct SceneSet
@@ -25,6 +29,7 @@ struct SceneSet
     std::string name;
     double dp = 0; ///< diameter of a particle, metres
     std::vector<ScenePart> parts;
+    double end = 0; ///< seconds, of the motion; 0: nothing moves
 };
 
 /// A set as JSON: coordinates of 16 bits in the box of the set, base64, the parts behind one

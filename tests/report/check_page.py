@@ -64,6 +64,22 @@ def check_choice(page, work, name):
         assert page.picture(canvas) == first, f"{name}: a picture does not show its run"
 
 
+def check_motion(page, work, name):
+    """The slider of time moves the parts that move, and takes them back."""
+    canvas = "#fppg-view .canvas"
+    page.open(os.path.join(work, name + ".html"))
+    page.drawn()
+    start = page.picture(canvas, os.path.join(work, name + "_start.png"))
+    pictures = []
+    for time in (0.1, 0):
+        page.evaluate("""(() => { const s = document.querySelector('[aria-label="time of the motion"]');
+            s.value = %g; s.dispatchEvent(new Event('input')); })()""" % time)
+        page.drawn()
+        pictures.append(page.picture(canvas, os.path.join(work, f"{name}_at_{time:g}.png")))
+    assert pictures[0] != start, f"{name}: the slider of time moves nothing"
+    assert pictures[1] == start, f"{name}: the slider of time does not go back to the start"
+
+
 def main(program, cases, work, bundle):
     chromium = browser.find()
     if not chromium:
@@ -71,7 +87,7 @@ def main(program, cases, work, bundle):
         return 77
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
-    for case in ("dambreak", "dambreak2d"):
+    for case in ("dambreak", "dambreak2d", "gear"):
         shutil.copytree(os.path.join(cases, case), os.path.join(work, case))
     for dp in ("0.03", "0.035"):
         run(program, work, "dambreak/CaseDambreak_Def", f"out{dp}/Case", f"-dp:{dp}")
@@ -79,6 +95,8 @@ def main(program, cases, work, bundle):
     run(program, work, "batch", "dambreak", "--set", "Dp=0.03,0.04", "--out", "batch")
     shutil.copy(os.path.join(work, "batch/report.html"), os.path.join(work, "batch.html"))
     run(program, work, "report", "out0.03/Case", "--definition", "dambreak/CaseDambreak_Def", "--", "-dp:0.03")
+    run(program, work, "gear/CaseGear_Def", "gear/Case", "-dp:0.02", "-fit:off")
+    run(program, work, "report", "gear/Case", "-o", "motion.html")
     pages = ("compare", "batch", "report")
     with browser.Browser(chromium) as page:
         for name in pages:
@@ -89,6 +107,7 @@ def main(program, cases, work, bundle):
                 check_view(page, work, name)
             for name in pages[:2]:
                 check_choice(page, work, name)
+            check_motion(page, work, "motion")
         else:
             assert "no 3-D view" in page.evaluate("document.body.textContent")
         assert not page.errors, "\n".join(page.errors)

@@ -27,6 +27,20 @@ TEST(SceneSet, OfParticlesInAPlaneHasNoNumberThatIsNone)
     EXPECT_EQ(nlohmann::json::parse(to_json(set)).at("positions"), "AAAAAAAA//8AAAAA");
 }
 
+TEST(SceneSet, HoldsWhereItsPartsAreOverTime)
+{
+    Transform moved;
+    moved.offset = {0.5, 0, 0};
+    SceneSet set{"A", 0.5, {{"mk 1", "#ff0000", {{0, 0, 0}}, 1, {{}, moved}}}};
+    set.end = 2;
+    const auto json = nlohmann::json::parse(to_json(set));
+    EXPECT_EQ(json.at("end"), 2.0);
+    const auto& frames = json.at("parts").at(0).at("frames");
+    ASSERT_EQ(frames.size(), 2u);
+    EXPECT_EQ(frames.at(1),
+              nlohmann::json({1.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}));
+}
+
 TEST(SceneSet, DoesNotEndTheScriptThatItStandsIn)
 {
     const SceneSet set{"</script><b>", 1, {}};

@@ -11,8 +11,8 @@ uniform vec3 cutAxis;
 uniform float cutAt;
 uniform float pixels;
 void main() {
-  vec3 at = low + extent * position;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+  vec3 at = (modelMatrix * vec4(low + extent * position, 1.0)).xyz;
+  gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
   gl_PointSize = max(pixels, 1.0);
   if (dot(at, cutAxis) > cutAt) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
@@ -90,10 +90,52 @@ class View {
     };
     axis.addEventListener('change', update);
     this.slider.addEventListener('input', update);
+    this.buildTime(bar);
     this.canvasHome = element(home, 'div', undefined, { class: 'canvas' });
     this.canvasHome.appendChild(this.renderer.domElement);
     this.titles = element(this.canvasHome, 'div', undefined, { class: 'titles' });
     this.legend = element(home, 'div', undefined, { class: 'legend' });
+  }
+
+  // Where sets have a motion: a slider of its time, and a button that plays it.
+  buildTime(bar) {
+    this.end = Math.max(0, ...this.sets.map((set) => set.end || 0));
+    this.time = 0;
+    if (!(this.end > 0)) return;
+    const label = element(bar, 'label', 'time ');
+    const slider = element(label, 'input', undefined,
+      { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'time of the motion' });
+    const text = element(label, 'span', '0 s');
+    const button = element(bar, 'button', 'play', { type: 'button' });
+    const go = (share) => {
+      this.time = share;
+      slider.value = String(share);
+      text.textContent = `${(share * this.end).toPrecision(3)} s`;
+      this.draw();
+    };
+    slider.addEventListener('input', () => go(Number(slider.value)));
+    let playing = false;
+    const step = () => {
+      if (!playing) return;
+      go(this.time >= 1 ? 0 : Math.min(1, this.time + 0.004));
+      window.requestAnimationFrame(step);
+    };
+    button.addEventListener('click', () => {
+      playing = !playing;
+      button.textContent = playing ? 'stop' : 'play';
+      step();
+    });
+  }
+
+  // Puts a part where it is at the time of the slider.
+  place(points) {
+    const frames = points.userData.frames;
+    if (!frames) return;
+    const share = Math.min(1, this.time * this.end / points.userData.end);
+    const f = frames[Math.round(share * (frames.length - 1))];
+    points.matrix.set(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], f[10], f[11],
+      0, 0, 0, 1);
+    points.matrixWorldNeedsUpdate = true;
   }
 
   // Particles of one set, an object a part, so that a part can be hidden.
@@ -122,7 +164,8 @@ class View {
       });
       const points = new THREE.Points(geometry, material);
       points.frustumCulled = false;
-      points.userData = { label: part.label, dp: set.dp };
+      points.matrixAutoUpdate = false;
+      points.userData = { label: part.label, dp: set.dp, frames: part.frames, end: set.end };
       set.group.add(points);
     }
     return set.group;
@@ -237,6 +280,7 @@ class View {
         uniforms.cutAxis.value.copy(cutAxis);
         uniforms.cutAt.value = cutAt;
         points.visible = !this.hidden.has(points.userData.label);
+        this.place(points);
       }
       this.renderer.setViewport(i * width, 0, width, height);
       this.renderer.setScissor(i * width, 0, width, height);
