@@ -26,6 +26,7 @@ struct NewCaseOptions
     std::vector<std::string> rotations; ///< NAME[,NAME...]=3000deg/s[@AXIS], rad/s, rpm
     std::vector<std::string> fixed;     ///< parts that stand still, whatever their shape
     std::vector<std::string> floatings; ///< NAME=400 (kg/m3) or NAME=12kg
+    std::vector<std::string> inlets;    ///< PART=2m/s of a flat sheet, PART:-x=3l/min of a face
     std::string fill;                   ///< LIQUID=2.5l[@HOUSING], LIQUID=60%, LIQUID=0.12m
     std::optional<double> water;        ///< its level along z
     std::optional<double> speed;        ///< of the vehicle, or of the stream; m/s
@@ -54,7 +55,7 @@ struct NewCasePart
     std::string path; ///< of its mesh
     std::string unit;
     int mkbound = 0;
-    std::string role; ///< "housing", "fixed", "moving" or "floating"
+    std::string role; ///< "housing", "fixed", "moving", "floating" or "inlet"
 };
 
 /// A file that the definition names, and that is to be written.

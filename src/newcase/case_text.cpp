@@ -89,7 +89,8 @@ std::vector<std::vector<std::size_t>> bodies_of(const CasePlan& plan)
         const NewPart& a = plan.parts[pair.first];
         const NewPart& b = plan.parts[pair.second];
         const bool have_inside = a.report.is_watertight && b.report.is_watertight;
-        if (!pair.touches || !have_inside || !move_alike(a, b) || a.role == PartRole::Floating ||
+        if (!pair.touches || !have_inside || a.role == PartRole::Inlet ||
+            b.role == PartRole::Inlet || !move_alike(a, b) || a.role == PartRole::Floating ||
             b.role == PartRole::Floating)
             continue;
         const std::size_t one = root(pair.first), other = root(pair.second);
@@ -239,7 +240,8 @@ private:
                       plan_.kind == CaseKind::Wading ? "-Dp" : "");
         }
         xml_.line("<setdrawmode mode=\"full\" />");
-        for (const NewPart& part : plan_.parts) draw(part);
+        for (const NewPart& part : plan_.parts)
+            if (part.role != PartRole::Inlet) draw(part);
         if (plan_.water) draw_water_box();
         xml_.close("mainlist");
         xml_.close("commands");
@@ -346,15 +348,15 @@ private:
             "Read by fppg only. Walls stand in layers behind their true surface, with "
             "normals for mDBC.");
         xml_.open("fppg");
-        const std::size_t n = plan_.parts.size();
+        int n = 0;
+        for (const NewPart& part : plan_.parts) n = std::max(n, part.mkbound);
         const int first = plan_.water ? 0 : 1;
         // Facets of smooth CAD faces bend by 6 degrees at most, so less than 30 finds more edges.
         const bool has_step = std::any_of(plan_.parts.begin(), plan_.parts.end(),
                                           [](const NewPart& p) { return !p.step.empty(); });
-        xml_.line(
-            "<bodyfitted mkbound=\"{}\"{} />",
-            static_cast<int>(n) == first ? std::to_string(first) : fmt::format("{}-{}", first, n),
-            has_step ? " featureangle=\"15\"" : "");
+        xml_.line("<bodyfitted mkbound=\"{}\"{} />",
+                  n == first ? std::to_string(first) : fmt::format("{}-{}", first, n),
+                  has_step ? " featureangle=\"15\"" : "");
         for (const std::vector<std::size_t>& body : bodies_)
         {
             xml_.comment("Parts that touch and keep their places are one body; each keeps its mk.");
@@ -428,6 +430,45 @@ private:
         xml_.close("motion");
     }
 
+    /// Zones of the solver where fluid comes in.
+    void special()
+    {
+        if (plan_.inlets.empty()) return;
+        xml_.open("special");
+        xml_.open("inout");
+        for (const FluidInlet& inlet : plan_.inlets)
+        {
+            // Its particles reach back from the zone, and walls stand behind the face. The
+            // outermost stand half a dp within its rim, so that their number times dp^2 is the
+            // area.
+            const Vec3 place = inlet.place + inlet.direction * (5 * plan_.dp);
+            xml_.comment(fmt::format("{}: 5 dp before its face.", inlet.name));
+            xml_.open("inoutzone");
+            xml_.line(
+                "<refilling value=\"0\" comment=\"0: full, 1: below the surface, 2: advanced\" />");
+            xml_.line(
+                "<inputtreatment value=\"0\" comment=\"0: particles that come in stay as they "
+                "are\" />");
+            xml_.line("<layers value=\"4\" comment=\"Of particles that are pushed in\" />");
+            xml_.open("zone3d");
+            xml_.open("circle");
+            xml_.line("<point {} />", xyz(place));
+            xml_.line("<radius v=\"{}\" />",
+                      number(std::max(inlet.radius - plan_.dp / 2, plan_.dp / 2)));
+            xml_.line("<direction {} />", xyz(inlet.direction));
+            xml_.close("circle");
+            xml_.close("zone3d");
+            xml_.open("imposevelocity mode=\"0\" comment=\"0: fixed\"");
+            xml_.line("<velocity v=\"{}\" units_comment=\"m/s\" />",
+                      number(round_nearest(inlet.speed, 4)));
+            xml_.close("imposevelocity");
+            xml_.line("<imposerhop mode=\"0\" comment=\"0: rhop0\" />");
+            xml_.close("inoutzone");
+        }
+        xml_.close("inout");
+        xml_.close("special");
+    }
+
     void parameter(const char* key, const std::string& value, const std::string& comment)
     {
         xml_.line("<parameter key=\"{}\" value=\"{}\" comment=\"{}\" />", key, value, comment);
@@ -436,6 +477,7 @@ private:
     void execution()
     {
         xml_.open("execution");
+        special();
         xml_.open("parameters");
         parameter("SavePosDouble", "0", "Output positions in single precision");
         parameter("Boundary", "#Boundary", "Walls: 1 dynamic (DBC), 2 modified (mDBC)");

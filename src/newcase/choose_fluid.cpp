@@ -158,8 +158,8 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
                         part.name, short_number(room.rim()), place_text(room.rim_place())));
     if (!part.report.is_watertight)
         plan.warnings.push_back(fmt::format(
-            "{}: the mesh is not closed{}: its walls are sheets, whose particles stand on the side "
-            "away from the fluid.",
+            "{}: the part is no closed solid{}: its walls are sheets, whose particles stand on the "
+            "side away from the fluid.",
             part.path, open_edges_text(part)));
 }
 

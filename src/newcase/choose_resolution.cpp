@@ -49,7 +49,9 @@ void find_passage(CasePlan& plan)
     const PartPair* backlash = nullptr;
     for (const PartPair& pair : plan.pairs)
     {
-        if (pair.touches) continue;
+        if (pair.touches || plan.parts[pair.first].role == PartRole::Inlet ||
+            plan.parts[pair.second].role == PartRole::Inlet)
+            continue;
         const PartPair*& least = mesh_as_gears(plan, pair) ? backlash : thinnest;
         if (least == nullptr || pair.gap.distance < least->gap.distance) least = &pair;
     }
@@ -92,6 +94,7 @@ Counted particles_at(const CasePlan& plan, double dp)
                 (dp * dp * dp);
     for (const NewPart& part : plan.parts)
     {
+        if (part.role == PartRole::Inlet) continue;
         const double layers = wall_layers * part.report.area / (dp * dp);
         const double solid = std::abs(part.report.volume) / (dp * dp * dp);
         // Floating parts are full; layers of a thin wall are all that fits into it.
@@ -187,7 +190,9 @@ void choose_constants(CasePlan& plan)
             fastest_part = part.name;
         }
     const double stream = std::abs(plan.options->speed.value_or(0));
-    plan.fastest = std::max({by_depth, by_parts, stream});
+    double by_inlets = 0;
+    for (const FluidInlet& inlet : plan.inlets) by_inlets = std::max(by_inlets, inlet.speed);
+    plan.fastest = std::max({by_depth, by_parts, stream, by_inlets});
     plan.speed_sound = round_up(10 * plan.fastest, 2);
     const std::string of = plan.fastest == stream     ? "the stream"
                            : plan.fastest == by_parts ? "the outermost places of " + fastest_part

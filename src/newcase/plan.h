@@ -30,6 +30,7 @@ enum class PartRole
     Housing, ///< fixed, and holds the fluid
     Moving,
     Floating,
+    Inlet, ///< a sheet through which fluid comes in; no wall
 };
 
 /// A line through a point.
@@ -119,6 +120,16 @@ struct VesselFill
     double bottom = 0;
 };
 
+/// A round place through which fluid comes in.
+struct FluidInlet
+{
+    std::string name;
+    Vec3 place; ///< the middle of its face
+    Vec3 direction;
+    double radius = 0;
+    double speed = 0; ///< m/s
+};
+
 /// Fluid and walls around the parts where none of them holds it: a basin, or a channel whose ends
 /// are joined.
 struct WaterBox
@@ -140,6 +151,7 @@ struct CasePlan
     Liquid liquid;
     std::optional<VesselFill> fill;
     std::optional<WaterBox> water;
+    std::vector<FluidInlet> inlets;
     double passage = 0; ///< the thinnest between parts that do not touch, metres; 0: there is none
     Vec3 passage_at;
     double dp = 0;
@@ -193,6 +205,8 @@ void judge_parts(CasePlan& plan);
 void measure_pairs(CasePlan& plan);
 /// Kind, housing, and what floats.
 void choose_roles(CasePlan& plan);
+/// Where fluid comes in; numbers the parts that are walls.
+void choose_inlets(CasePlan& plan);
 /// What turns, about which axes, and what turns with it.
 void choose_motion(CasePlan& plan);
 /// Parts that move through each other are refused.

@@ -25,6 +25,8 @@ const char* role_name(PartRole role)
             return "moving";
         case PartRole::Floating:
             return "floating";
+        case PartRole::Inlet:
+            return "inlet";
         case PartRole::Fixed:
             break;
     }
@@ -42,6 +44,7 @@ NewCase propose_case(const NewCaseOptions& options)
     judge_parts(plan);
     measure_pairs(plan);
     choose_roles(plan);
+    choose_inlets(plan);
     choose_motion(plan);
     judge_overlaps(plan);
     choose_fluid(plan);

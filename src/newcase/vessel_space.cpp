@@ -68,7 +68,7 @@ void VesselSpace::mark_parts(const CasePlan& plan)
 {
     for (const NewPart& part : plan.parts)
     {
-        if (part.role == PartRole::Floating) continue;
+        if (part.role == PartRole::Floating || part.role == PartRole::Inlet) continue;
         mark_surface(part.tree->soup());
         if (!part.report.is_watertight) continue;
         const SpanSet inside = inside_spans(part.tree->soup(), grid_, plan.options->threads);

@@ -227,6 +227,37 @@ TEST(NewCase, NamesWhatIsMissingAndWhatIsMistyped)
     EXPECT_THAT(fault_of(options), HasSubstr("holds the fluid"));
 }
 
+TEST(NewCase, LetsFluidInThroughARoundFace)
+{
+    const GearboxParts parts;
+    TriangleSoup nozzle;
+    const Vec3 below{0.02, 0.02, 0.01}, above{0.02, 0.02, 0.014};
+    constexpr int sides = 64;
+    for (int i = 0; i < sides; ++i)
+    {
+        const auto rim = [](int k, const Vec3& middle) -> Vec3
+        {
+            const double angle = 2 * std::numbers::pi * k / sides;
+            return middle + Vec3{0.003 * std::cos(angle), 0.003 * std::sin(angle), 0};
+        };
+        test::add_facet(nozzle, below, rim(i + 1, below), rim(i, below));
+        test::add_facet(nozzle, above, rim(i, above), rim(i + 1, above));
+        test::add_quad(nozzle, rim(i, below), rim(i + 1, below), rim(i + 1, above), rim(i, above));
+    }
+    write_stl(parts.folder / "nozzle.stl", nozzle, 1000);
+    NewCaseOptions options = parts.options;
+    options.inlets = {"nozzle:-z=2m/s"};
+    const NewCase made = propose_case(options);
+    EXPECT_THAT(made.xml, HasSubstr("<direction x=\"0\" y=\"0\" z=\"-1\" />"));
+    EXPECT_THAT(made.xml, HasSubstr("<velocity v=\"2\""));
+    // pi (3 mm)^2 times 2 m/s.
+    EXPECT_THAT(proposal(made, "inlet nozzle:-z").reason, HasSubstr("3.38"));
+    options.inlets = {"housing:x=2m/s"};
+    EXPECT_THAT(fault_of(options), HasSubstr("is no disc"));
+    options.inlets = {"pinion=2m/s"};
+    EXPECT_THAT(fault_of(options), HasSubstr("is no flat sheet"));
+}
+
 TEST(NewCase, AsksAtATerminalForWhatIsMissing)
 {
     const GearboxParts parts;
