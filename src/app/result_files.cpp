@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 namespace fppg
@@ -56,9 +55,21 @@ void ResultFiles::remove_old_xml() const
     }
 }
 
+/// Copies are files of the result as all others: they come with it or not at all.
+void ResultFiles::copy_pictures()
+{
+    std::vector<std::pair<std::string, std::string>> pictures;
+    for (const OutputFile& file : files_)
+        if (file.path().ends_with(".vtk"))
+            pictures.emplace_back(file.temporary_path(), file.path());
+    for (const auto& [source, path] : pictures)
+        for (const char* number : {"_r00", "_r01", "_r02"})
+            copy(source, path.substr(0, path.size() - 4) + number + ".vtk");
+}
+
 void ResultFiles::commit(bool three_vtk)
 {
-    std::vector<std::string> pictures;
+    if (three_vtk) copy_pictures();
     const StopSignalsIgnored ignored;
     for (OutputFile& file : files_) file.finish();
     std::stable_sort(files_.begin(), files_.end(),
@@ -72,14 +83,8 @@ void ResultFiles::commit(bool three_vtk)
             has_old_xml = false;
         }
         file.commit();
-        if (file.path().ends_with(".vtk")) pictures.push_back(file.path());
     }
     files_.clear();
-    if (!three_vtk) return;
-    for (const std::string& path : pictures)
-        for (const char* copy : {"_r00", "_r01", "_r02"})
-            std::filesystem::copy_file(path, path.substr(0, path.size() - 4) + copy + ".vtk",
-                                       std::filesystem::copy_options::overwrite_existing);
 }
 
 } // namespace fppg

@@ -66,6 +66,7 @@ public:
 private:
     std::vector<OutputFile> files_;
 
+    void copy_pictures();
     void remove_old_xml() const;
 };
 

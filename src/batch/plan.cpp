@@ -36,6 +36,24 @@ void write_script(const fs::path& path, const std::string& text)
                     fs::perm_options::add, ignored);
 }
 
+/// Scripts for Slurm and lines for GNU parallel end where a line ends, also between quotes.
+void expect_one_line(const std::string& name)
+{
+    if (name.find_first_of("\r\n") != std::string::npos)
+        throw UsageError(
+            fmt::format("'{}' has a line break in its name, which no script for a "
+                        "scheduler can hold; expected another name",
+                        name));
+}
+
+/// A path behind `#SBATCH --output=`, where '%' begins a pattern.
+std::string slurm_log(const fs::path& folder, const std::string& pattern)
+{
+    std::string path;
+    for (const char c : (folder / "slurm/").string()) path.append(c == '%' ? 2 : 1, c);
+    return shell_word(path + pattern);
+}
+
 } // namespace
 
 std::string shell_word(const std::string& text)
@@ -117,6 +135,8 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
         seconds = std::max(seconds, r.estimated_seconds);
     }
     const fs::path at(folder);
+    expect_one_line(folder);
+    expect_one_line(program_path());
     const std::string program = shell_word(program_path());
     const std::string place = shell_word(folder);
     std::error_code error;
@@ -139,8 +159,7 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
                     "#SBATCH --output={}\n"
                     "exec {} batch --task \"$SLURM_ARRAY_TASK_ID\" {}\n",
                     plan.runs.size(), std::ceil(seconds), plan.runs.size(), plan.jobs, plan.threads,
-                    std::ceil(bytes / 1048576), shell_word((at / "slurm/task_%a.log").string()),
-                    program, place));
+                    std::ceil(bytes / 1048576), slurm_log(at, "task_%a.log"), program, place));
     write_script(
         at / "summary.sbatch",
         fmt::format("#!/bin/sh\n"
@@ -152,7 +171,7 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
                     "#SBATCH --mem=256M\n"
                     "#SBATCH --output={}\n"
                     "exec {} batch --summary {}\n",
-                    shell_word((at / "slurm/summary.log").string()), program, place));
+                    slurm_log(at, "summary.log"), program, place));
     write_script(
         at / "submit.sh",
         fmt::format("#!/bin/sh\n"
@@ -170,6 +189,8 @@ std::string write_slurm_scripts(const std::string& folder, const Plan& plan,
 
 std::string task_lines(const std::string& folder, const Plan& plan)
 {
+    expect_one_line(folder);
+    expect_one_line(program_path());
     std::string text;
     for (std::size_t i = 1; i <= plan.runs.size(); ++i)
         text += fmt::format("{} batch --task {} {}\n", shell_word(program_path()), i,

@@ -230,13 +230,16 @@ private:
     {
         const fs::path definition(job.run->definition);
         const std::string folder = definition.parent_path().string();
+        std::string name = definition.filename().string();
+        // Else it would be an option.
+        if (name.starts_with('-')) name.insert(0, "./");
         const std::string threads = fmt::format("{}", options_.threads);
         job.reserved_bytes = needed_bytes(job);
         std::vector<std::string> words;
         std::string log = job.log();
         if (job.step == Step::Estimate)
         {
-            words = {"estimate", definition.filename().string(), "--json", "-threads:" + threads};
+            words = {"estimate", name, "--json", "-threads:" + threads};
             words.insert(words.end(), job.run->options.begin(), job.run->options.end());
             log = job.estimate_file();
         }
@@ -245,7 +248,7 @@ private:
             note_inputs(job);
             job.record.state = RunState::Stopped;
             write_record(*job.run, job.record);
-            words = {definition.filename().string(), job.run->output, "-threads:" + threads};
+            words = {name, job.run->output, "-threads:" + threads};
             words.insert(words.end(), job.run->options.begin(), job.run->options.end());
             progress_.started(*job.run);
         }
@@ -253,19 +256,11 @@ private:
         {
             const std::size_t particles =
                 std::clamp<std::size_t>(view_particles / jobs_.size(), 2000, 200000);
-            words = {"report",
-                     job.run->output,
-                     "--picture",
-                     job.run->output + ".png",
-                     "--data",
-                     look_path(*job.run),
-                     "--definition",
-                     definition.filename().string(),
-                     "--particles",
-                     std::to_string(particles),
-                     "--threads",
-                     threads,
-                     "--"};
+            words = {
+                "report",      job.run->output,           "--picture",    job.run->output + ".png",
+                "--data",      look_path(*job.run),       "--definition", name,
+                "--particles", std::to_string(particles), "--threads",    threads,
+                "--"};
             words.insert(words.end(), job.run->options.begin(), job.run->options.end());
         }
         job.child = std::make_unique<ChildProcess>(words, folder, log);

@@ -32,13 +32,19 @@ bool is_dp(const std::string& name)
     return lower_case(name) == "dp";
 }
 
-/// Without ".xml" and "_Def".
+/// Without ".xml" and "_Def". A star would stand for the name of the definition.
 std::string case_name(const fs::path& file)
 {
     std::string name = file.filename().string();
     for (const std::string_view tail : {std::string_view(".xml"), std::string_view("_Def")})
         if (name.size() > tail.size() && name.ends_with(tail))
             name.resize(name.size() - tail.size());
+    std::replace(name.begin(), name.end(), '*', '_');
+    // It names the folder of the results.
+    if (name == "." || name == "..")
+        throw CaseError(
+            file.string(), 0,
+            fmt::format("a case cannot be called '{}', which no new folder can be", name));
     return name;
 }
 

@@ -5,15 +5,34 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 
 namespace fppg::commands
 {
+namespace
+{
+
+/// The part that a command gives to the name of a file of the result. Parts of a name are folders;
+/// ".." among them would lead out of that of the result.
+std::string name_beside_result(const Program& p, const Element& e)
+{
+    const std::string name = p.read.text(e, "file");
+    for (const std::string_view folder : split(name, '/'))
+        if (folder == "..")
+            p.read.fail(e,
+                        fmt::format("file=\"{}\" leads out of the folder of the result, expected "
+                                    "a name without \"..\"",
+                                    name));
+    return name;
+}
+
+} // namespace
 
 void cells_out(Program& p, const Element& e)
 {
     CellsOutOp op;
-    op.file = p.read.text(e, "file");
+    op.file = name_beside_result(p, e);
     for (const char* name : {"mkbound", "mkfluid"})
     {
         if (e.find_attribute(name) == nullptr) continue;
@@ -31,7 +50,7 @@ void shape_out(Program& p, const Element& e)
 {
     const std::string format = lower_case(p.read.text_or(e, "format", "vtk"));
     ShapeOutOp op;
-    op.file = p.read.text(e, "file");
+    op.file = name_beside_result(p, e);
     if (format == "vtp")
         op.format = ShapeFormat::Vtp;
     else if (format == "vtu")
@@ -48,7 +67,7 @@ void shape_out(Program& p, const Element& e)
 
 void points_mk_out(Program& p, const Element& e)
 {
-    p.add_whole(e, PointsMkOutOp{p.read.text(e, "file")});
+    p.add_whole(e, PointsMkOutOp{name_beside_result(p, e)});
 }
 
 } // namespace fppg::commands
