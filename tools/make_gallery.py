@@ -58,8 +58,9 @@ def vehicle():
 
 
 def pump():
-    a = m.gear(module=0.075, teeth=12, width=0.4, bore=0, backlash=0.02)
-    b = placed(m.gear(module=0.075, teeth=12, width=0.4, bore=0, backlash=0.02, turned=15), 0.9)
+    # The housing's cavity is from z = 0 to 0.5.
+    a = placed(m.gear(module=0.075, teeth=12, width=0.4, bore=0, backlash=0.02), 0, 0, 0.25)
+    b = placed(m.gear(module=0.075, teeth=12, width=0.4, bore=0, backlash=0.02, turned=15), 0.9, 0, 0.25)
     return {"housing": m.housing(radius_b=0.6, height=0.5), "gear_left": a, "gear_right": b}
 
 

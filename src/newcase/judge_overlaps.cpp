@@ -19,6 +19,8 @@ namespace
 /// Depths below this share of the smaller part's size are those of facets that stand for round
 /// surfaces.
 constexpr double rounding_share = 3e-3;
+/// Shafts overlap their bores by less than this share of it.
+constexpr double deep_share = 0.03;
 constexpr int turned_places = 12;
 
 /// Corners and middles of facets of one part inside another.
@@ -91,7 +93,14 @@ void judge_pair(CasePlan& plan, const PartPair& pair)
         const NewPart& mover = part.turning ? part : other;
         const bool is_one = part.turning.has_value() != other.turning.has_value();
         if (!is_whole && is_one && stays_when_turned(overlap, mover.turning->axis, inside))
+        {
+            if (overlap.depth > deep_share / rounding_share * rounding)
+                plan.warnings.push_back(fmt::format(
+                    "{} overlaps {}, up to {} m deep at {}, all round its axis: meant is a shaft "
+                    "in its bore. Expected parts that do not lie in one another.",
+                    part.path, other.path, short_number(overlap.depth, 3), place_text(overlap.at)));
             continue;
+        }
         const std::string what =
             is_whole ? fmt::format(
                            "{}: the part lies in the solid of {}: its cavity is missing. Export "

@@ -9,7 +9,8 @@ _fppg()
         *:batch)
             options="--out --set --jobs --threads --memory --resume --no-pictures --quiet --log-json --slurm --submit
                 --plan --task --summary --dry-run --help" ;;
-        *:check) options="--json --vtk --strict --threads --help" ;;
+        *:check)
+            options="--json --vtk --strict --motion --definition --evars --dp --end --step --passages --threads --help" ;;
         *:compare)
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
@@ -17,6 +18,10 @@ _fppg()
         *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
         *:inspect) options="--dp --unit --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
+        *:new)
+            options="--output --kind --unit --up --dp --particles --across --housing --rotate --fix --float --fill --inlet --water
+                --speed --time --picture --no-picture --allow-far --allow-overlap --explain --json --no-questions --threads --help"
+            endings="stl ply vtk vtp vtu obj off step stp" ;;
         *:render)
             options="--output --view --color --colour --mk --cut --zoom --center --size --radius --samples --palette --closed --bare
                 --threads --help" ;;
@@ -28,7 +33,7 @@ _fppg()
     esac
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then
-        COMPREPLY=($(compgen -W "batch check compare convert estimate inspect leak render report templates upgrade" -- "$word"))
+        COMPREPLY=($(compgen -W "batch check compare convert estimate inspect leak new render report templates upgrade" -- "$word"))
     elif [[ $COMP_CWORD -eq 1 ]]; then
         COMPREPLY=($(compgen -W "-h --help -ver --version -info -templates" -- "$word"))
     elif [[ $word == -* ]]; then
