@@ -36,6 +36,10 @@ endif()
 if(TARGET fppg_python)
   list(APPEND materials "pybind11|${pybind11_VERSION}|BSD-3-Clause|CONTAINS|headers, in the Python module")
 endif()
+file(READ ${PROJECT_SOURCE_DIR}/src/report/web/package-lock.json lock)
+string(JSON three_version GET "${lock}" packages node_modules/three version)
+list(APPEND materials
+    "three.js|${three_version}|MIT|CONTAINS|in the script of report pages, where npm was there (else the system's libjs-three, or none)")
 
 # A package of the bill; with a relationship to the program.
 set(bill_packages "")
