@@ -5,7 +5,6 @@
 #include "app/run_log.h"
 #include "app/stop_signals.h"
 #include "app/subcommands.h"
-#include "core/temporary_files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -53,7 +52,7 @@ bool ends_itself = false;
 void tell_foreign_end()
 {
     if (ends_itself) return;
-    fppg::remove_temporary_files();
+    fppg::drop_unfinished_files();
     const int code = fail(
         "memory or threads ran out and the OpenMP runtime gave up; a larger dp, a "
         "smaller domain or fewer -threads need less",

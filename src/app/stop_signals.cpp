@@ -108,6 +108,11 @@ void catch_stop_signals()
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
+void drop_unfinished_files()
+{
+    remove_temporary_files();
+}
+
 StopSignalsIgnored::StopSignalsIgnored()
 {
     is_ignored.store(true);
