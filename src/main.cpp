@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <string>
 #include <vector>
@@ -45,6 +46,21 @@ int fail(const char* text, int code)
     return code;
 }
 
+bool ends_itself = false;
+
+/// GCC's OpenMP runtime ends the program where it gets no memory or no thread, with exit code 1.
+void tell_foreign_end()
+{
+    if (ends_itself) return;
+    fppg::drop_unfinished_files();
+    const int code = fail(
+        "memory or threads ran out and the OpenMP runtime gave up; a larger dp, a "
+        "smaller domain or fewer -threads need less",
+        4);
+    std::fflush(stderr);
+    _exit(code);
+}
+
 /// A file that the program opens must not become its standard output because the caller closed
 /// that.
 void open_missing_streams()
@@ -64,12 +80,8 @@ int run(const std::vector<std::string>& arguments)
     return fppg::run_drop_in(fppg::parse_command_line(arguments));
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+int run_and_tell(int argc, char** argv)
 {
-    open_missing_streams();
-    fppg::catch_stop_signals();
     try
     {
         const std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -96,4 +108,16 @@ int main(int argc, char** argv)
         if (std::ferror(stdout) != 0) return fail("standard output cannot be written", 4);
         return fail(error.what(), 5);
     }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    open_missing_streams();
+    fppg::catch_stop_signals();
+    std::atexit(tell_foreign_end);
+    const int code = run_and_tell(argc, argv);
+    ends_itself = true;
+    return code;
 }

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 #include "fppg/version.h"
 
+#include "app/build_facts.h"
 #include "app/case_stages.h"
 #include "app/particle_log.h"
 #include "app/save_result.h"
@@ -180,7 +181,7 @@ int run_drop_in(const DropInOptions& options)
             fmt::print("{}", help_text());
             return 0;
         case DropInOptions::Action::Version:
-            fmt::print("{}\n", full_name());
+            fmt::print("{}\n{}", full_name(), build_facts());
             return 0;
         case DropInOptions::Action::Info:
             print_info();

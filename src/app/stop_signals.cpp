@@ -21,13 +21,12 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not 
 
 constexpr std::array stops{SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGXCPU,
                            SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM};
-constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
+constexpr std::array crashes{SIGSEGV, SIGFPE, SIGILL, SIGABRT, SIGSYS};
 
-void print_stop(const char* who)
+void print_end(const char* before, const char* what)
 {
-    constexpr const char* before = "\n*** Stopped by ";
     constexpr const char* after = "; no output file was changed.\n";
-    for (const char* text : {before, who, after})
+    for (const char* text : {before, what, after})
     {
         const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
         static_cast<void>(written);
@@ -59,7 +58,7 @@ extern "C" void stop(int signal)
     int none = 0;
     if (asks_first.load() && asked_by.compare_exchange_strong(none, signal)) return;
     remove_temporary_files();
-    print_stop(name_of_stop(signal));
+    print_end("\n*** Stopped by ", name_of_stop(signal));
     _exit(128 + signal);
 }
 
@@ -68,6 +67,20 @@ extern "C" void clean_up(int signal)
     remove_temporary_files();
     // SA_RESETHAND: this ends the program as if nobody had caught it.
     raise(signal);
+}
+
+/// Of files that are read as memory: the part that another program cuts off meanwhile is gone.
+extern "C" void lose_input(int signal, siginfo_t* info, void* /*context*/)
+{
+    remove_temporary_files();
+    if (info->si_code != BUS_ADRERR)
+    {
+        std::signal(signal, SIG_DFL);
+        raise(signal);
+        return;
+    }
+    print_end("*** Error: ", "a file became shorter while it was read, or its disk failed");
+    _exit(4);
 }
 
 } // namespace
@@ -86,7 +99,18 @@ void catch_stop_signals()
     };
     for (const int signal : stops) set(signal, stop, SA_RESTART);
     for (const int signal : crashes) set(signal, clean_up, static_cast<int>(SA_RESETHAND));
+    struct sigaction action = {};
+    action.sa_sigaction = lose_input;
+    // Several threads may meet it at once.
+    action.sa_flags = SA_SIGINFO;
+    sigfillset(&action.sa_mask);
+    sigaction(SIGBUS, &action, nullptr);
     std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void drop_unfinished_files()
+{
+    remove_temporary_files();
 }
 
 StopSignalsIgnored::StopSignalsIgnored()

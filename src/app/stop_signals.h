@@ -9,6 +9,9 @@ namespace fppg
 /// the temporary files go too. A file size limit is left to the write that meets it.
 void catch_stop_signals();
 
+/// For an end that nobody caught: the temporary files go.
+void drop_unfinished_files();
+
 /// While one exists, signals that ask to stop are ignored: the renames at the end of a run take no
 /// time, and stopping between two of them would leave a mixture of old and new files. Blocking the
 /// signals in one thread would not do, another thread of the pool would take them.

@@ -7,12 +7,14 @@
 #include "batch/rates.h"
 #include "core/file_map.h"
 #include "core/json.h"
+#include "core/most_particles.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -314,10 +316,21 @@ private:
         job.record.state = RunState::Refused;
         job.record.error = fmt::format(
             "needs about {:.2f} GB of memory, more than the {:.2f} GB that the batch may use; "
-            "--memory allows more, a larger dp needs less",
-            job.record.estimated_memory_bytes / 1e9, options_.memory_bytes / 1e9);
+            "--memory allows more, {}",
+            job.record.estimated_memory_bytes / 1e9, options_.memory_bytes / 1e9,
+            what_fits(text, job.record.estimated_memory_bytes));
         note_inputs(job);
         finish(job);
+    }
+
+    /// The dp of an estimate with which memory would do: what grows are surfaces.
+    std::string what_fits(const std::string& estimate, double needed) const
+    {
+        const double fixed = rates.base_bytes + rates.bytes_per_thread * options_.threads;
+        if (options_.memory_bytes <= fixed) return "a larger dp needs less";
+        const double dp = Json::parse(estimate).at("dp").get<double>();
+        const double finer = std::sqrt((needed - fixed) / (options_.memory_bytes - fixed));
+        return fmt::format("dp={:g} and larger ones fit", dp_rounded_up(dp * finer));
     }
 
     void take_run(Job& job, const ChildProcess& child)

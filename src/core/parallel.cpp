@@ -1,10 +1,19 @@
 #include "core/parallel.h"
 
 #include "core/signals_blocked.h"
+#include "fppg/error.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <latch>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -31,6 +40,37 @@ void acquire_from_others([[maybe_unused]] const ChunkedLoop& loop)
 #endif
 }
 
+/// GCC's runtime ends the program where it cannot start a thread. So others are started first, all
+/// at a time; the team takes their place.
+///
+/// throws  IoError that says how many there can be
+void expect_threads(int threads)
+{
+    std::vector<std::thread> others;
+    std::latch all_tried(1);
+    int why = 0;
+    try
+    {
+        others.reserve(static_cast<std::size_t>(threads - 1));
+        for (int i = 1; i < threads; ++i) others.emplace_back([&all_tried] { all_tried.wait(); });
+    }
+    catch (const std::system_error& error)
+    {
+        why = error.code().value();
+    }
+    catch (const std::bad_alloc&)
+    {
+        why = ENOMEM;
+    }
+    all_tried.count_down();
+    for (std::thread& other : others) other.join();
+    if (why != 0)
+        throw IoError(
+            fmt::format("only {} of {} threads can be started here ({}), as processes or "
+                        "memory are limited; -threads:{} needs no more",
+                        others.size() + 1, threads, std::strerror(why), others.size() + 1));
+}
+
 /// OpenMP keeps the threads of a team for the next loop of the same caller.
 void start_team(int threads)
 {
@@ -38,6 +78,7 @@ void start_team(int threads)
     if (threads <= started) return;
     // Signals are for the threads of the program, which may wait for them.
     const SignalsBlocked blocked;
+    expect_threads(threads);
     // GCC leaves an empty region out, and the team would start later, with signals.
 #pragma omp parallel num_threads(threads)
     {

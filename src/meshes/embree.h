@@ -9,8 +9,35 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "fppg/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+
 namespace fppg
 {
+
+/// throws  std::bad_alloc, or Error, where Embree failed at what was asked of it last
+inline void expect_embree_worked(RTCDevice device)
+{
+    const RTCError why = rtcGetDeviceError(device);
+    if (why == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (why != RTC_ERROR_NONE)
+        throw Error(fmt::format("Embree failed with error {}", static_cast<int>(why)));
+}
+
+/// Embree with so many threads.
+///
+/// throws  as expect_embree_worked()
+inline RTCDevice new_embree_device(int threads)
+{
+    const RTCDevice device = rtcNewDevice(fmt::format("threads={}", std::max(threads, 1)).c_str());
+    if (device != nullptr) return device;
+    expect_embree_worked(nullptr);
+    throw Error("Embree cannot be started");
+}
 
 #if RTC_VERSION_MAJOR >= 4
 

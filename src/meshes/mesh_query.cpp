@@ -19,13 +19,6 @@ namespace
 /// Room for what float rounds away in coordinates between -1 and 1 and in Embree's own arithmetic.
 constexpr double rounding_room = 1.0 / (1 << 20);
 
-void check(RTCDevice device)
-{
-    const RTCError code = rtcGetDeviceError(device);
-    if (code != RTC_ERROR_NONE)
-        throw Error(fmt::format("Embree failed with error {}", static_cast<int>(code)));
-}
-
 } // namespace
 
 /// The parts into which a facet is cut across its longest edge for its boxes: long and oblique, one
@@ -131,10 +124,7 @@ struct MeshQuery::Scene
 
     void build(int threads)
     {
-        device.reset(rtcNewDevice(fmt::format("threads={}", std::max(threads, 1)).c_str()));
-        if (!device)
-            throw Error(fmt::format("Embree cannot be started: error {}",
-                                    static_cast<int>(rtcGetDeviceError(nullptr))));
+        device.reset(new_embree_device(threads));
         scene = make_scene(soup.size(), give_bounds);
         cut_facets();
         if (!parts.empty()) part_scene = make_scene(parts.size(), give_part_bounds);
@@ -154,7 +144,7 @@ struct MeshQuery::Scene
         rtcAttachGeometry(out.get(), geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(out.get());
-        check(device.get());
+        expect_embree_worked(device.get());
         return out;
     }
 

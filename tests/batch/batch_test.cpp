@@ -225,8 +225,14 @@ TEST(Batch, KeepsRunsWithinItsMemory)
     EXPECT_EQ(batch(folder, ".", {"--jobs", "2", "--memory", "0.02", "--no-pictures"}).code, 1);
     const auto runs = runs_of(folder);
     EXPECT_EQ(runs.at("Large").at("state"), "refused");
-    EXPECT_THAT(std::string(runs.at("Large").at("error")), HasSubstr("--memory allows more"));
+    const std::string error = runs.at("Large").at("error");
+    EXPECT_THAT(error, HasSubstr("--memory allows more, dp="));
     EXPECT_EQ(runs.at("Small").at("state"), "done");
+    const std::size_t begin = error.find("dp=") + 3;
+    const std::string dp = error.substr(begin, error.find(' ', begin) - begin);
+    EXPECT_EQ(batch(folder, ".", {"--set", "Dp=" + dp, "--memory", "0.02", "--no-pictures"}).code,
+              0)
+        << error;
 }
 
 TEST(Batch, DoesNotRunSideBySideWhatNeedsMoreMemoryTogether)

@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 WANTED = ("/usr/bin/fppg", "/usr/share/man/man1/fppg.1.gz", "/usr/share/bash-completion/completions/fppg",
-          "/usr/share/doc/fppg/copyright", "/usr/share/fppg/xml-templates/fppg.xsd",
+          "/usr/share/doc/fppg/copyright", "/usr/share/doc/fppg/fppg.spdx.json", "/usr/share/fppg/xml-templates/fppg.xsd",
           "/usr/share/fppg/xml-templates/FppgCaseTemplate.xml", "/usr/share/fppg/xml-templates/data/",
           "/usr/share/fppg/cases/dambreak/CaseDambreak_Def.xml", "/usr/include/fppg/version.h",
           "/usr/share/fppg/paraview/fppg_reader.py", "/usr/share/fppg/paraview/particle_files.py",
@@ -76,6 +76,18 @@ def check_python(root, files):
     assert text.strip() == "21001", text
 
 
+def check_lintian(packages):
+    """Debian's own check finds no error; its warnings are printed."""
+    if not shutil.which("lintian"):
+        print("lintian is not installed: what it says is not checked")
+        return
+    done = subprocess.run(["lintian", "--allow-root", "--tag-display-limit", "0", *packages], check=False, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    print(done.stdout)
+    errors = [line for line in done.stdout.splitlines() if line.startswith("E:")]
+    assert not errors, "\n".join(errors)
+
+
 def main(cpack, build, source, work, has_python_module):
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
@@ -107,6 +119,7 @@ def main(cpack, build, source, work, has_python_module):
     if has_python_module == "1":
         check_python(root, files)
     check_help(os.path.join(root, "usr/bin/fppg"), source)
+    check_lintian(packages.values())
 
 
 if __name__ == "__main__":

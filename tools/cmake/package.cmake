@@ -18,7 +18,8 @@ endif()
 install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT fppg)
 install(FILES tools/package/fppg.bash RENAME fppg COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(FILES tools/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+install(FILES SECURITY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES tools/paraview/fppg_reader.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fppg/paraview)
@@ -33,8 +34,34 @@ file(CREATE_LINK fppg ${link} SYMBOLIC)
 install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fppg-gencase-link
     EXCLUDE_FROM_ALL)
 # A package has a folder of its own for its licence.
-install(FILES LICENSE RENAME copyright COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
+install(FILES tools/package/copyright COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg-gencase-link)
+
+# What Debian asks of a package: a changelog of its own form, and a word on what its checks say that
+# stays: there is no address to write to.
+if(FPPG_GZIP)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog CONTENT "fppg (@PROJECT_VERSION@) unstable; urgency=medium
+
+  * CHANGELOG.md has all changes.
+
+ -- The authors of fppg <fppg@localhost>  Thu, 01 Jan 2026 00:00:00 +0000
+" @ONLY)
+  execute_process(COMMAND ${FPPG_GZIP} -9nc ${PROJECT_BINARY_DIR}/changelog
+      OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg-gencase-link)
+endif()
+foreach(package fppg fppg-gencase-link)
+  file(WRITE ${PROJECT_BINARY_DIR}/lintian/${package} "# There is no list to write to.
+${package}: bogus-mail-host *
+${package}: bogus-mail-host-in-debian-changelog *
+")
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/lintian/fppg DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
+    COMPONENT fppg)
+install(FILES ${PROJECT_BINARY_DIR}/lintian/fppg-gencase-link COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides)
 
 # Archives are not stripped with the programs; with debug information the library has 400 MB.
 install(CODE "if(CMAKE_INSTALL_DO_STRIP)
@@ -57,8 +84,9 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FPPG_PACKAGE_NAME fppg)
 # Of the Python module and the plugin for ParaView.
 set(CPACK_DEBIAN_FPPG_PACKAGE_RECOMMENDS "python3, python3-numpy")
-set(CPACK_COMPONENT_FPPG_DESCRIPTION "${PROJECT_DESCRIPTION}
-The program, its library with headers and CMake package, case templates and cases.")
+set(CPACK_COMPONENT_FPPG_DESCRIPTION "SPH particles on the lattice or body-fitted
+The program, its library with headers and CMake package, case templates
+and cases. It reads the case definitions of DualSPHysics' GenCase.")
 find_program(FPPG_SHLIBDEPS dpkg-shlibdeps)
 if(FPPG_SHLIBDEPS)
   set(CPACK_DEBIAN_FPPG_PACKAGE_SHLIBDEPS ON)
