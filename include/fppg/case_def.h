@@ -77,7 +77,7 @@ struct RelaxSettings
     /// 1 and more; empty: on the surface until `tolerance` is met
     std::optional<int> iterations;
     /// The particles on the surface are even when the coefficient of variation of their spacing
-    /// falls by less than this in 30 iterations; above 0, up to 1.
+    /// falls by less than this in 3 iterations (few particles: 12); above 0, up to 1.
     double tolerance = 0.001;
     double surface_h_dp = 0.8; ///< smoothing length on the surface in dp, 0.5 to 2
     /// Particles inside the solid up to this far from its surface move, in dp; 0: none; may be

@@ -16,8 +16,9 @@ namespace fppg
 {
 
 /// The point of all walls that is nearest to a given one; metres. Called from several threads at
-/// once. Made from f(point), or from f(point, within), which may rely on a wall being no farther
-/// than `within`, metres, and so has less to search. Empty unless made from one of these.
+/// once. Made from f(point), or from f(point, within), which need not look farther than
+/// `within`, metres: where no wall is so near it may return one that is farther, or a point at
+/// infinity. Empty unless made from one of these.
 class ClosestWallPoint
 {
 public:

@@ -152,7 +152,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
             const double band = reach.band_dp[fluid[i].block->mk] * rest.dp;
             if (band <= 0) return;
             const Vec3& p = fluid[i].position;
-            moves[i] = norm(reach.closest(p) - p) <= band && !strips.has(p);
+            moves[i] = norm(reach.closest(p, band) - p) <= band && !strips.has(p);
         },
         256);
     const auto moving = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), 1));

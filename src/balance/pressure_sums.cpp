@@ -34,9 +34,9 @@ FPPG_LANES PressureSums sum_up(const PressureField& field, std::uint32_t i,
     const Lanes per_h = lanes_of(1 / h_dp);
     const std::uint32_t* at = near.data();
     const PointArrays& p = field.points;
-    NeighbourLanes(p.x.data(), p.y.data(), p.z.data(), i)
+    NeighbourLanes(AxesGather{p.x.data(), p.y.data(), p.z.data()}, i)
         .for_each(near.data(), near.size(),
-                  [&](const NeighbourLanes::Offsets& o)
+                  [&](const LaneOffsets& o)
                   {
                       const Lanes s = slope(square_root(o.squared) * per_h);
                       const Lanes of_volume = s * gathered(field.volumes.data(), at);

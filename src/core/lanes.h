@@ -67,16 +67,34 @@ FPPG_LANES Lanes square_root(const Lanes& squared)
 #endif
 }
 
+/// Four numbers, half of the lanes.
+using HalfLanes = float __attribute__((vector_size(16)));
+
+FPPG_LANES HalfLanes low_half(const Lanes& v)
+{
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+
+FPPG_LANES HalfLanes high_half(const Lanes& v)
+{
+    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+
 FPPG_LANES float sum_of(const Lanes& v)
 {
-    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+    const HalfLanes four = low_half(v) + high_half(v);
+    const HalfLanes two = four + __builtin_shufflevector(four, four, 2, 3, 2, 3);
+    return two[0] + two[1];
 }
 
 FPPG_LANES float smallest_of(const Lanes& v)
 {
-    float least = v[0];
-    for (std::size_t l = 1; l < lane_count; ++l) least = v[l] < least ? v[l] : least;
-    return least;
+    const HalfLanes low = low_half(v);
+    const HalfLanes high = high_half(v);
+    const HalfLanes four = high < low ? high : low;
+    const HalfLanes turned = __builtin_shufflevector(four, four, 2, 3, 2, 3);
+    const HalfLanes two = turned < four ? turned : four;
+    return two[1] < two[0] ? two[1] : two[0];
 }
 
 /// values[indices[0..7]].
@@ -101,24 +119,75 @@ struct LaneOrders
 };
 inline constexpr LaneOrders lane_orders;
 
+struct LanePoints
+{
+    Lanes x, y, z;
+};
+
+/// From a point's neighbours to it.
+struct LaneOffsets
+{
+    Lanes x, y, z, squared;
+};
+
+/// Points by index, out of one array an axis.
+struct AxesGather
+{
+    const float* x;
+    const float* y;
+    const float* z;
+
+    FPPG_LANES LanePoints one(std::uint32_t i) const
+    {
+        return {lanes_of(x[i]), lanes_of(y[i]), lanes_of(z[i])};
+    }
+    FPPG_LANES LanePoints eight(const std::uint32_t* i) const
+    {
+        return {gathered(x, i), gathered(y, i), gathered(z, i)};
+    }
+};
+
+/// Points by index, out of one array of points: a third of the loads.
+struct PackedGather
+{
+    const HalfLanes* points;
+
+    FPPG_LANES LanePoints one(std::uint32_t i) const
+    {
+        return {lanes_of(points[i][0]), lanes_of(points[i][1]), lanes_of(points[i][2])};
+    }
+    FPPG_LANES LanePoints eight(const std::uint32_t* i) const
+    {
+        const Lanes a = pair(points[i[0]], points[i[4]]);
+        const Lanes b = pair(points[i[1]], points[i[5]]);
+        const Lanes c = pair(points[i[2]], points[i[6]]);
+        const Lanes d = pair(points[i[3]], points[i[7]]);
+        const Lanes ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+        const Lanes cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+        const Lanes ab_z = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+        const Lanes cd_z = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+        return {__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
+                __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+                __builtin_shufflevector(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13)};
+    }
+
+private:
+    FPPG_LANES static Lanes pair(const HalfLanes& low, const HalfLanes& high)
+    {
+        return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+};
+
 /// Neighbours of one point by eights. The last eight are filled up with what comes after them in
 /// the list, whose distances are replaced by a large one.
+///
+/// Gather  AxesGather or PackedGather
+template <typename Gather>
 class NeighbourLanes
 {
 public:
-    struct Offsets
-    {
-        Lanes x, y, z, squared;
-    };
-
-    FPPG_LANES NeighbourLanes(const float* xs, const float* ys, const float* zs,
-                              std::uint32_t point)
-        : xs_(xs),
-          ys_(ys),
-          zs_(zs),
-          x_(lanes_of(xs[point])),
-          y_(lanes_of(ys[point])),
-          z_(lanes_of(zs[point]))
+    FPPG_LANES NeighbourLanes(const Gather& gather, std::uint32_t point)
+        : gather_(gather), at_(gather.one(point))
     {
     }
 
@@ -132,7 +201,7 @@ public:
         for (; k + lane_count <= n; k += lane_count) visit(offsets(indices + k));
         if (k == n) return;
         const auto left = static_cast<std::int32_t>(n - k);
-        Offsets o = offsets(indices + k);
+        LaneOffsets o = offsets(indices + k);
         o.squared = LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < left ? o.squared : lanes_of(far_away);
         visit(o);
     }
@@ -140,20 +209,16 @@ public:
 private:
     static constexpr float far_away = 1e30f;
 
-    FPPG_LANES Offsets offsets(const std::uint32_t* indices) const
+    FPPG_LANES LaneOffsets offsets(const std::uint32_t* indices) const
     {
-        Offsets o;
-        o.x = x_ - gathered(xs_, indices);
-        o.y = y_ - gathered(ys_, indices);
-        o.z = z_ - gathered(zs_, indices);
+        const LanePoints p = gather_.eight(indices);
+        LaneOffsets o{at_.x - p.x, at_.y - p.y, at_.z - p.z, Lanes{}};
         o.squared = o.x * o.x + o.y * o.y + o.z * o.z;
         return o;
     }
 
-    const float* xs_;
-    const float* ys_;
-    const float* zs_;
-    Lanes x_, y_, z_;
+    Gather gather_;
+    LanePoints at_;
 };
 
 } // namespace fppg

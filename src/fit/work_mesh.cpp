@@ -254,6 +254,54 @@ private:
     std::vector<std::array<std::uint32_t, 3>> midpoints_;
 };
 
+bool has_side_longer(const SurfaceMesh& mesh, double longest)
+{
+    return std::any_of(mesh.edges.begin(), mesh.edges.end(),
+                       [&](const std::array<std::uint32_t, 2>& edge)
+                       {
+                           const Vec3 d = mesh.vertices[edge[1]] - mesh.vertices[edge[0]];
+                           return dot(d, d) > longest * longest;
+                       });
+}
+
+/// Whether two facets at an edge look the same way: they run along it in opposite directions.
+bool agree(const SurfaceMesh& mesh, std::uint32_t f, std::uint32_t g, std::uint32_t edge)
+{
+    const auto runs_up = [&](std::uint32_t facet)
+    {
+        std::size_t s = 0;
+        while (s < 2 && mesh.facet_edges[facet][s] != edge) ++s;
+        return mesh.facets[facet][s] == mesh.edges[edge][0];
+    };
+    return runs_up(f) != runs_up(g);
+}
+
+WorkMesh whole_facets(const SurfaceMesh& mesh, const Features& features)
+{
+    WorkMesh work;
+    work.facets.resize(mesh.facets.size());
+    work.first_piece.resize(mesh.facets.size() + 1);
+    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        WorkFacet& facet = work.facets[f];
+        for (std::size_t s = 0; s < 3; ++s)
+        {
+            const std::uint32_t edge = mesh.facet_edges[f][s];
+            const std::uint32_t next = mesh.neighbours[f][s];
+            facet.corners[s] = mesh.vertices[mesh.facets[f][s]];
+            const bool is_border = next == no_index || features.is_feature_edge[edge] ||
+                                   !mesh.is_manifold[edge] || !agree(mesh, f, next, edge);
+            facet.neighbours[s] = is_border ? no_index : next;
+        }
+        facet.normal = mesh.normals[f];
+        facet.vertices = mesh.facets[f];
+        facet.parent = f;
+        work.first_piece[f] = f;
+    }
+    work.first_piece.back() = static_cast<std::uint32_t>(mesh.facets.size());
+    return work;
+}
+
 } // namespace
 
 std::uint32_t WorkMesh::locate(std::uint32_t parent, const Vec3& point) const
@@ -288,6 +336,7 @@ double WorkMesh::area(std::uint32_t facet) const
 
 WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest)
 {
+    if (!has_side_longer(mesh, longest)) return whole_facets(mesh, features);
     Cutter cutter(mesh, features, longest);
     while (cutter.halve())
     {

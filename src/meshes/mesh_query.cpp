@@ -248,7 +248,28 @@ struct MeshQuery::Scene
         Vec3 point;
         double reach; ///< what float rounding can change in a distance, in units of the box
         ClosestPoint best;
+        Vec3 towards{}; ///< unit, to the best
     };
+
+    /// Whether a facet is farther than the nearest point for sure: by how far its corners reach
+    /// towards the point, along the line to the nearest one, and how far it is off that line. Of
+    /// many facets around that are smaller than the distance all but a few are told so.
+    static bool is_farther(const Vec3* corners, const Nearest& nearest)
+    {
+        const double best = nearest.best.distance;
+        if (!(best > 0) || best == std::numeric_limits<double>::infinity()) return false;
+        const Vec3& towards = nearest.towards;
+        const Vec3 first = corners[0] - nearest.point;
+        const double along = dot(first, towards);
+        const Vec3 one = corners[1] - corners[0];
+        const Vec3 two = corners[2] - corners[0];
+        const double least =
+            std::max(along + std::min({dot(one, towards), dot(two, towards), 0.0}), 0.0);
+        const double off = std::sqrt(std::max(dot(first, first) - along * along, 0.0)) -
+                           std::sqrt(std::max(dot(one, one), dot(two, two)));
+        constexpr double room_for_rounding = 1 + 1e-9;
+        return least * least + (off > 0 ? off * off : 0) > best * best * room_for_rounding;
+    }
 
     static bool meet_point(RTCPointQueryFunctionArguments* arguments)
     {
@@ -257,13 +278,15 @@ struct MeshQuery::Scene
         const std::uint32_t facet =
             self.parts.empty() ? arguments->primID : self.parts[arguments->primID].facet;
         if (facet == nearest.best.facet) return false;
-        const Vec3 candidate =
-            closest_on_facet(nearest.point, &self.soup.vertices[3 * std::size_t{facet}]);
+        const Vec3* corners = &self.soup.vertices[3 * std::size_t{facet}];
+        if (is_farther(corners, nearest)) return false;
+        const Vec3 candidate = closest_on_facet(nearest.point, corners);
         const double distance = norm(candidate - nearest.point);
         const bool is_equal = distance == nearest.best.distance;
         if (!(distance < nearest.best.distance) && !(is_equal && facet < nearest.best.facet))
             return false;
         nearest.best = {candidate, facet, distance};
+        nearest.towards = (candidate - nearest.point) / distance;
         const double unit = distance / self.scale;
         arguments->query->radius = static_cast<float>(unit * (1 + rounding_room) + nearest.reach);
         return true;
@@ -288,7 +311,9 @@ ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
 {
     const Vec3 unit = scene_->to_unit(point);
     Scene::Nearest nearest{scene_.get(), point, (1 + norm(unit)) * rounding_room, {}};
-    nearest.best.distance = std::numeric_limits<double>::infinity();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    nearest.best.point = {infinity, infinity, infinity};
+    nearest.best.distance = infinity;
     nearest.best.facet = std::numeric_limits<std::uint32_t>::max();
 
     RTCPointQuery query;

@@ -52,8 +52,9 @@ public:
     /// The nearest point of all facets. A point on an edge has the same bits whichever of the
     /// facets at that edge it is computed from.
     ///
-    /// within  metres; a point of the mesh is known to be so near, which saves half of the search.
-    ///         Where none is, the facet is the largest number and the distance infinite
+    /// within  metres; how far to look, which saves half of the search or more. Where no point of
+    ///         the mesh is so near, the facet is the largest number, point and distance are
+    ///         infinite
     ClosestPoint closest_point(const Vec3& point,
                                double within = std::numeric_limits<double>::infinity()) const;
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -46,9 +47,13 @@ public:
     }
 
     bool is_empty() const { return !query_; }
-    Closest closest(const Vec3& p) const
+    /// within  metres; how far to look. Where no wall is so near, the distance is infinite, and the
+    ///         rest does not count
+    Closest closest(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const
     {
-        const ClosestPoint near = query_->closest_point(p);
+        const ClosestPoint near = query_->closest_point(p, within);
+        if (near.distance == std::numeric_limits<double>::infinity())
+            return {near.point, near.distance, 0, false};
         const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
         return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
                 dot(p - near.point, normals_[near.facet]) > 0};

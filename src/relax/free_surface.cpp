@@ -86,7 +86,8 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
         if (!around.closest) return false;
         Vec3 node = band.place(i);
         node[static_cast<int>(side / 2)] += side % 2 == 1 ? band.dp : -band.dp;
-        return norm(around.closest(node) - node) <= (options.clearance_dp + 1e-4) * band.dp;
+        const double within = (options.clearance_dp + 1e-4) * band.dp;
+        return norm(around.closest(node, within) - node) <= within;
     };
     parallel_for(
         list.rows(), threads,

@@ -49,6 +49,13 @@ std::uint64_t morton_key(std::int64_t i, std::int64_t j, std::int64_t k)
            interleaved(static_cast<std::uint64_t>(k)) << 2;
 }
 
+/// The last six bits of morton_key().
+unsigned place_in_block(std::int64_t i, std::int64_t j, std::int64_t k)
+{
+    constexpr std::array<unsigned, 4> spread{0, 1, 8, 9};
+    return spread[i & 3] | spread[j & 3] << 1 | spread[k & 3] << 2;
+}
+
 /// Where the cells along one axis begin, and how many a unit of length there are.
 struct CellAxis
 {
@@ -391,7 +398,7 @@ void NeighbourList::gather(std::size_t cell, Scratch& scratch) const
                 for (std::int64_t i = std::max(low[0], 4 * bi); i <= std::min(high[0], 4 * bi + 3);
                      ++i)
                 {
-                    const std::uint64_t bit = std::uint64_t{1} << (morton_key(i, j, k) & 63);
+                    const std::uint64_t bit = std::uint64_t{1} << place_in_block(i, j, k);
                     if ((block->mask & bit) == 0) continue;
                     const std::size_t c =
                         block->first_cell +

@@ -26,6 +26,9 @@ struct PointArrays
     }
 };
 
+/// A point as one register of four, the last of them 0.
+using PackedPoint = float __attribute__((vector_size(16)));
+
 /// The points along a Z-shaped (Morton) curve over cells of side `cell`: entry k is the index of
 /// the k-th point. Points of one cell keep their order.
 ///

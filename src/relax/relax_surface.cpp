@@ -16,24 +16,35 @@ namespace fppg
 namespace
 {
 
-/// Iterations after which holes are filled and particles that are too near taken out: relaxation
-/// closes most holes by itself, so the first come late.
-constexpr std::array<int, 6> renewals{10, 25, 40, 55, 70, 85};
+/// After these iterations particles that are too near another are taken out and holes filled.
+/// Relaxation closes most holes by itself, so the first come late, and only the widest of them are
+/// filled at first.
+struct Renewal
+{
+    int iteration;
+    SurfaceLayer::Limits limits;
+};
+constexpr SurfaceLayer::Limits first_limits{0.70, 0.76, true};
+constexpr SurfaceLayer::Limits limits{0.70, 0.735, false};
+constexpr std::array<Renewal, 2> renewals{{{7, first_limits}, {14, limits}}};
+/// For few_particles, which take longer to find their places where they crowd.
+constexpr std::array<Renewal, 2> late_renewals{
+    {{30, {0.62, 0.76, false}}, {45, {0.62, 0.75, false}}}};
 /// No renewal this few iterations before the end, where the last one is.
-constexpr int quiet_end = 8;
+constexpr int quiet_end = 6;
+/// The last renewal, after which only particles near what has changed move, and what remains then.
+constexpr SurfaceLayer::Limits last_limits{0.62, 0.735, false};
+constexpr int last_iterations = 5;
 
-// Lengths in dp.
-constexpr double hole_radius = 0.74;
-constexpr double last_hole_radius = 0.735;
-constexpr double least_distance = 0.70;
-constexpr double last_least_distance = 0.62;
-
-/// Iterations over which an improvement is judged: two renewals and what follows them.
-constexpr int judged_iterations = 30;
-/// Before this the first renewals, which fill most holes, hide what the rest improves.
-constexpr int first_judged = 60;
-/// Iterations in which the spacing recovers from a renewal.
-constexpr int recovery = 14;
+/// Iterations over which an improvement is judged, and before which it is not: the spacing recovers
+/// from the renewals. The spacing of few particles jumps, and their iterations cost little.
+struct Judgement
+{
+    int iterations;
+    int first;
+};
+constexpr Judgement of_many{3, 18};
+constexpr Judgement of_few{12, 58};
 
 std::vector<std::vector<std::uint32_t>> split_by_body(const WallParticles& particles,
                                                       std::size_t bodies)
@@ -76,35 +87,31 @@ public:
 
     void run(const WallParticles& given, const std::vector<char>& held)
     {
-        LayerState state = look_around();
-        report_.before = progress(0, state, 0);
+        report_.before = progress(0, look_around(), 0);
         report_.after = report_.before;
         const int count = options_.iterations > 0 ? options_.iterations : options_.max_iterations;
+        const int last_part = count > quiet_end ? last_iterations : 0;
         std::vector<double> variations{report_.before.spacing_variation};
-        for (int iteration = 1; iteration <= count; ++iteration)
+        bool goes_on = true;
+        for (int iteration = 1; goes_on && iteration <= count - last_part; ++iteration)
         {
-            const bool is_restart = iteration == 1 || state.power < 0;
-            double largest = 0;
-            for (SurfaceLayer& layer : layers_) largest = std::max(largest, layer.step(is_restart));
-            if (std::find(renewals.begin(), renewals.end(), iteration) != renewals.end() &&
-                iteration + quiet_end <= count)
-                renew(least_distance, hole_radius);
-            state = look_around();
-            report_.after = progress(iteration, state, largest);
-            if (options_.snapshot_interval > 0 && iteration % options_.snapshot_interval == 0)
-            {
-                std::vector<char> held_now;
-                WallParticles now = gather(given, held, held_now);
-                now.held = std::move(held_now);
-                options_.on_snapshot(iteration, now);
-            }
-            if (options_.on_progress && !options_.on_progress(report_.after)) break;
+            goes_on = iterate(iteration, given, held);
             variations.push_back(report_.after.spacing_variation);
             if (options_.iterations == 0 && is_settled(variations)) break;
+            if (iteration + quiet_end > count - last_part) continue;
+            for (const Renewal& renewal : renewals)
+                if (renewal.iteration == iteration) renew(renewal.limits, false);
+            if (report_.after.particles >= few_particles) continue;
+            for (const Renewal& renewal : late_renewals)
+                if (renewal.iteration == iteration) renew(renewal.limits, false);
         }
-        if (report_.after.iteration > 0) renew(last_least_distance, last_hole_radius);
+        if (report_.after.iteration == 0) return;
+        LayerState renewed = renew(last_limits, true);
+        for (int n = 0; goes_on && n < last_part; ++n)
+            goes_on = iterate(report_.after.iteration + 1, given, held);
+        if (last_part > 0) renewed = renew(last_limits, true);
         const int iteration = report_.after.iteration;
-        report_.after = progress(iteration, look_around(), report_.after.largest_displacement);
+        report_.after = progress(iteration, renewed, report_.after.largest_displacement);
         for (const SurfaceLayer& layer : layers_)
         {
             report_.projected += layer.projected();
@@ -171,16 +178,31 @@ private:
         return key(a) < key(b);
     }
 
-    /// Judged when the last renewal is well past: each makes the spacing worse for a while.
+    /// Moves all particles once; returns whether to go on.
+    bool iterate(int iteration, const WallParticles& given, const std::vector<char>& held)
+    {
+        const bool is_restart = iteration == 1 || power_ < 0;
+        double largest = 0;
+        for (SurfaceLayer& layer : layers_) largest = std::max(largest, layer.step(is_restart));
+        report_.after = progress(iteration, look_around(), largest);
+        if (options_.snapshot_interval > 0 && iteration % options_.snapshot_interval == 0)
+        {
+            for (SurfaceLayer& layer : layers_) layer.settle();
+            std::vector<char> held_now;
+            WallParticles now = gather(given, held, held_now);
+            now.held = std::move(held_now);
+            options_.on_snapshot(iteration, now);
+        }
+        return !options_.on_progress || options_.on_progress(report_.after);
+    }
+
     bool is_settled(const std::vector<double>& variations) const
     {
+        const auto [iterations, first] = report_.after.particles < few_particles ? of_few : of_many;
         const auto now = static_cast<int>(variations.size()) - 1;
-        if (now < first_judged) return false;
-        const bool is_recovering =
-            std::any_of(renewals.begin(), renewals.end(),
-                        [&](int r) { return now >= r && now < r + recovery; });
-        const double before = variations[variations.size() - 1 - judged_iterations];
-        return !is_recovering && before - variations.back() < options_.tolerance;
+        if (now < first) return false;
+        const double before = variations[static_cast<std::size_t>(now - iterations)];
+        return before - variations.back() < options_.tolerance;
     }
 
     LayerState look_around()
@@ -194,6 +216,7 @@ private:
             sum.spacing_square_sum += state.spacing_square_sum;
             sum.power += state.power;
         }
+        power_ = sum.power;
         return sum;
     }
 
@@ -212,17 +235,20 @@ private:
         return result;
     }
 
-    void renew(double least, double radius)
+    /// Returns the state after it.
+    LayerState renew(const SurfaceLayer::Limits& of_holes, bool is_local)
     {
         for (std::size_t l = 0; l < layers_.size(); ++l)
         {
-            report_.removed += layers_[l].thin(least);
             std::function<bool(const Vec3&, const Vec3&)> may_fill;
             if (options_.may_insert)
                 may_fill = [&, body = body_of_layer_[l]](const Vec3& p, const Vec3& normal)
                 { return options_.may_insert(body, p, normal); };
-            report_.inserted += layers_[l].fill(radius, may_fill);
+            const LayerChange change = layers_[l].renew(of_holes, is_local, may_fill);
+            report_.inserted += change.inserted;
+            report_.removed += change.removed;
         }
+        return look_around();
     }
 
     const std::vector<FittedBody>& bodies_;
@@ -231,6 +257,7 @@ private:
     std::vector<SurfaceLayer> layers_;
     std::vector<std::size_t> body_of_layer_;
     RelaxSurfaceReport report_;
+    double power_ = 0; ///< LayerState::power as of the last look
 };
 
 } // namespace

@@ -287,7 +287,7 @@ private:
                     Candidate c;
                     c.mover = {{r.x, r.run.y, z}, r.run.mk};
                     const Vec3 p = place_of(c.mover.node, grid);
-                    const AllWalls::Closest near = all.closest(p);
+                    const AllWalls::Closest near = all.closest(p, band * grid.dp);
                     if (near.distance > band * grid.dp ||
                         cut.has_nearer(p, reach_of_cuts_dp * grid.dp) || (strips && strips->has(p)))
                         continue;

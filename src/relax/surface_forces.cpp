@@ -11,45 +11,41 @@ namespace fppg
 namespace
 {
 
+constexpr float spread_reach = 1.05f;
+constexpr float spread_strength = 0.8f;
 constexpr float push_reach = 0.8f;
 constexpr float push_strength = 4;
+/// Of the six around a particle this many are within reach of the wider push where it is crowded.
+constexpr double neighbours_in_push = 4;
 /// Keeps the direction of the push finite where two particles coincide.
 constexpr float least_distance = 1e-4f;
 constexpr float no_neighbour = 1e30f;
 
-/// Rows [begin, end) of a list.
-struct Rows
+FPPG_LANES void compute_rows(const SurfaceForces::Rows& rows, const PackedPoint* points,
+                             const SurfaceForces& of, PointArrays& forces,
+                             std::vector<float>& nearest_squared)
 {
-    const NeighbourList& list;
-    std::size_t begin;
-    std::size_t end;
-};
-
-FPPG_LANES void compute_rows(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
-                             PointArrays& forces, std::vector<float>& nearest_squared)
-{
-    const NeighbourList& list = rows.list;
-    const float* xs = points.x.data();
-    const float* ys = points.y.data();
-    const float* zs = points.z.data();
     const float half_inverse_h = of.half_inverse_h();
     const float factor = of.factor();
     const Lanes none{};
     for (std::size_t row = rows.begin; row < rows.end; ++row)
     {
-        const auto neighbours = list.neighbours(row);
-        const std::uint32_t i = list.point(row);
+        const auto neighbours = rows.list.neighbours(row);
+        if (neighbours.empty()) continue;
+        const std::uint32_t i = rows.list.point(row);
         Lanes x{}, y{}, z{};
         Lanes nearest = lanes_of(no_neighbour);
-        NeighbourLanes(xs, ys, zs, i)
+        NeighbourLanes(PackedGather{points}, i)
             .for_each(neighbours.data(), neighbours.size(),
-                      [&](const NeighbourLanes::Offsets& o)
+                      [&](const LaneOffsets& o)
                       {
                           const Lanes r = square_root(o.squared);
                           const Lanes s = larger(none, 1 - r * half_inverse_h);
                           const Lanes t = larger(none, 1 - r * (1 / push_reach));
-                          const Lanes f = factor * (s * s * s) +
-                                          push_strength * t / larger(r, lanes_of(least_distance));
+                          const Lanes u = larger(none, 1 - r * (1 / spread_reach));
+                          const Lanes f =
+                              factor * (s * s * s) + (push_strength * t + spread_strength * u) /
+                                                         larger(r, lanes_of(least_distance));
                           x += f * o.x;
                           y += f * o.y;
                           z += f * o.z;
@@ -62,28 +58,33 @@ FPPG_LANES void compute_rows(const Rows& rows, const PointArrays& points, const 
     }
 }
 
-void compute_plain(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
-                   PointArrays& forces, std::vector<float>& nearest_squared)
+void compute_plain(const SurfaceForces::Rows& rows, const PackedPoint* points,
+                   const SurfaceForces& of, PointArrays& forces,
+                   std::vector<float>& nearest_squared)
 {
     compute_rows(rows, points, of, forces, nearest_squared);
 }
 
-FPPG_AVX2 void compute_avx2(const Rows& rows, const PointArrays& points, const SurfaceForces& of,
-                            PointArrays& forces, std::vector<float>& nearest_squared)
+FPPG_AVX2 void compute_avx2(const SurfaceForces::Rows& rows, const PackedPoint* points,
+                            const SurfaceForces& of, PointArrays& forces,
+                            std::vector<float>& nearest_squared)
 {
     compute_rows(rows, points, of, forces, nearest_squared);
 }
 
 } // namespace
 
+double SurfaceForces::stiffness_of_push()
+{
+    return neighbours_in_push * double{spread_strength} / double{spread_reach};
+}
+
 SurfaceForces::SurfaceForces(float h) : half_inverse_h_(0.5f / h), factor_(5 / (h * h)) {}
 
-void SurfaceForces::compute(const NeighbourList& list, std::size_t begin, std::size_t end,
-                            const PointArrays& points, PointArrays& forces,
+void SurfaceForces::compute(const Rows& rows, const PackedPoint* points, PointArrays& forces,
                             std::vector<float>& nearest_squared) const
 {
-    (is_avx2_there() ? compute_avx2 : compute_plain)({list, begin, end}, points, *this, forces,
-                                                     nearest_squared);
+    (is_avx2_there() ? compute_avx2 : compute_plain)(rows, points, *this, forces, nearest_squared);
 }
 
 double stiffest_mode(double h)

@@ -5,22 +5,31 @@
 namespace fppg
 {
 
-/// Pair forces with lengths in dp: the negative gradient of the sum of w(r / h), and a short push
-/// 4 (1 - r / 0.8) below 0.8 dp, without which particles that come too near stay there: the
-/// kernel's force vanishes at no distance.
+/// Pair forces with lengths in dp: the negative gradient of the sum of w(r / h), two
+/// pushes. One of 0.8 (1 - r / 1.05) below 1.05 dp, just less than the spacing of a hexagonal layer
+/// of one particle a dp^2, spreads the nearest neighbours evenly; one of 4 (1 - r / 0.8) below 0.8
+/// dp parts particles that come too near, as the kernel's force vanishes at no distance.
 class SurfaceForces
 {
 public:
     /// h  smoothing length, dp
     explicit SurfaceForces(float h);
 
-    /// For the rows [begin, end) of a list: the force on their particles, and the squared distance
-    /// to the nearest neighbour (large where there is none).
-    void compute(const NeighbourList& list, std::size_t begin, std::size_t end,
-                 const PointArrays& points, PointArrays& forces,
+    /// The rows [begin, end) of a list.
+    struct Rows
+    {
+        const NeighbourList& list;
+        std::size_t begin;
+        std::size_t end;
+    };
+    /// The forces on the particles of some rows, and the squared distances to their nearest
+    /// neighbours. Both stay as they are where there is no neighbour.
+    void compute(const Rows& rows, const PackedPoint* points, PointArrays& forces,
                  std::vector<float>& nearest_squared) const;
 
     float half_inverse_h() const { return half_inverse_h_; }
+    /// What the push adds to stiffest_mode().
+    static double stiffness_of_push();
     /// Of the kernel's force.
     float factor() const { return factor_; }
 

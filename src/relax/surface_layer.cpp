@@ -2,8 +2,8 @@
 
 #include "core/parallel.h"
 #include "core/raw_array.h"
-#include "fit/for_each_chart.h"
 #include "meshes/mesh_query.h"
+#include "relax/surface_holes.h"
 
 #include <algorithm>
 #include <memory>
@@ -14,12 +14,35 @@ namespace fppg
 namespace
 {
 
-constexpr float skin = 0.4f; // dp
-constexpr double layer_momentum = 0.9;
-constexpr double largest_step = 0.1; // dp
+/// Lists reach 2 h + 0.4 and are made anew when a particle has moved by 0.4, half of the skin. A
+/// pair that comes from beyond that to below 2 h - 0.4 in between, which takes two of the fastest
+/// on course for one another, is missed; at 1.2 dp it is no nearest neighbour.
+constexpr float skin = 0.8f;          // dp
+constexpr double beyond_kernel = 0.4; // dp
+/// Holes are looked for among the neighbours so far away, whatever h is.
+constexpr double least_list_radius = 1.6; // dp
+constexpr double layer_momentum = 0.85;
+constexpr float largest_step = 0.1f; // dp
+/// How steps are made.
+struct Pace
+{
+    double share; ///< of the step that the stiffest mode of an even layer bears
+    int steps;    ///< in the plane of a facet before a particle is taken back to the surface
+    double worth; ///< dp; what has moved less in them stays off a while longer
+};
+constexpr Pace quick{1.6, 4, 0.03};
+/// For few particles, which mostly crowd on a surface that bends within a few dp.
+constexpr Pace careful{1.0, 1, 0};
+
+Pace pace_of(std::size_t particles)
+{
+    return particles < few_particles ? careful : quick;
+}
+/// A particle that is taken back to a place so far from where it was, in dp, met a border.
+constexpr double held_up = 0.01;
 /// How far within a feature edge particles are kept, dp.
 constexpr double inside_border = 1e-10;
-constexpr std::size_t prefetch_ahead = 8;
+constexpr float none_near = 1e30f;
 
 /// Particles whose normals oppose by more than 120 degrees are on two sheets, as in fitting: were
 /// only those right behind one another left out, the two sides of a thin plate would thin and fill
@@ -57,6 +80,18 @@ std::size_t chunks_of(std::size_t n)
     return (n + NeighbourList::rows_per_chunk - 1) / NeighbourList::rows_per_chunk;
 }
 
+/// Calls body(chunk, begin, end) for chunks of [0, n).
+template <typename Body>
+void for_chunks(std::size_t n, int threads, const Body& body)
+{
+    parallel_for(chunks_of(n), threads,
+                 [&](std::size_t c)
+                 {
+                     const std::size_t begin = c * NeighbourList::rows_per_chunk;
+                     body(c, begin, std::min(begin + NeighbourList::rows_per_chunk, n));
+                 });
+}
+
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
 {
     const Vec3 d = b - a;
@@ -91,65 +126,6 @@ FeatureParticle feature_at(const FittedBody& body, FitKind kind, const SlidePlac
     return particle;
 }
 
-/// The Voronoi cell of the origin in a plane, cut by one neighbour after another.
-class VoronoiCell
-{
-public:
-    explicit VoronoiCell(float half_side)
-        : x_{-half_side, half_side, half_side, -half_side},
-          y_{-half_side, -half_side, half_side, half_side}
-    {
-    }
-
-    bool is_within(float radius) const
-    {
-        float farthest = 0;
-        for (std::size_t k = 0; k < count_; ++k)
-            farthest = std::max(farthest, x_[k] * x_[k] + y_[k] * y_[k]);
-        return farthest <= radius * radius;
-    }
-
-    /// Keeps what is nearer to the origin than to a point over (x, y) whose distance has the square
-    /// `squared`.
-    void cut(float x, float y, float squared)
-    {
-        std::array<float, capacity> excess;
-        bool is_cut = false;
-        for (std::size_t k = 0; k < count_; ++k)
-        {
-            excess[k] = x_[k] * x + y_[k] * y - 0.5f * squared;
-            is_cut |= excess[k] > 0;
-        }
-        if (!is_cut || count_ + 2 > capacity) return;
-        std::array<float, capacity> xs;
-        std::array<float, capacity> ys;
-        std::size_t n = 0;
-        for (std::size_t k = 0; k < count_; ++k)
-        {
-            const std::size_t next = k + 1 == count_ ? 0 : k + 1;
-            if (excess[k] <= 0)
-            {
-                xs[n] = x_[k];
-                ys[n++] = y_[k];
-            }
-            if ((excess[k] > 0) == (excess[next] > 0)) continue;
-            const float t = excess[k] / (excess[k] - excess[next]);
-            xs[n] = x_[k] + t * (x_[next] - x_[k]);
-            ys[n++] = y_[k] + t * (y_[next] - y_[k]);
-        }
-        x_ = xs;
-        y_ = ys;
-        count_ = n;
-    }
-
-private:
-    /// A convex polygon gains at most one corner a cut; a cell that has too many is left too wide.
-    static constexpr std::size_t capacity = 24;
-    std::array<float, capacity> x_;
-    std::array<float, capacity> y_;
-    std::size_t count_ = 4;
-};
-
 Vec3 middle_of(const SurfaceMesh& mesh)
 {
     Box3 box;
@@ -165,58 +141,61 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
       dp_(dp),
       threads_(threads),
       work_(make_work_mesh(body.mesh, body.features, longest_chart_side * dp)),
-      charts_(work_, dp),
       forces_of_(static_cast<float>(h)),
-      step_over_force_(static_cast<float>(1 / stiffest_mode(h))),
+      step_over_force_(static_cast<float>(pace_of(particles.size()).share /
+                                          (stiffest_mode(h) + SurfaceForces::stiffness_of_push()))),
       origin_(middle_of(body.mesh)),
       particles_(std::move(particles)),
-      list_(static_cast<float>(2 * h), skin)
+      list_(static_cast<float>(std::max(2 * h, least_list_radius) + beyond_kernel) - skin, skin)
+{
+    place_on_work_mesh();
+    sort();
+    const std::size_t n = particles_.size();
+    velocities_.resize(n);
+    forces_.resize(n);
+    nearest_squared_.resize(n);
+    normals_.resize(n);
+    parallel_for(
+        n, threads_, [&](std::size_t i) { set_vector(normals_, i, normal_of(particles_[i])); },
+        NeighbourList::rows_per_chunk);
+}
+
+SurfaceLayer::~SurfaceLayer() = default;
+SurfaceLayer::SurfaceLayer(SurfaceLayer&&) noexcept = default;
+
+void SurfaceLayer::place_on_work_mesh()
 {
     std::vector<FeatureParticle> on_features;
     for (LayerParticle& p : particles_)
     {
-        if (p.kind != FitKind::Surface)
-        {
-            p.site = static_cast<std::uint32_t>(on_features.size());
-            on_features.push_back(feature_at(body, p.kind, p.place));
-            p.place.facet = work_.first_piece[p.place.facet];
-        }
+        if (p.kind == FitKind::Surface) continue;
+        p.site = static_cast<std::uint32_t>(on_features.size());
+        on_features.push_back(feature_at(*body_, p.kind, p.place));
+        p.place.facet = work_.first_piece[p.place.facet];
     }
     parallel_for(
         particles_.size(), threads_,
         [&](std::size_t i)
         {
             LayerParticle& p = particles_[i];
-            if (p.kind != FitKind::Surface) return;
             if (p.is_moving)
                 p.place = place_on_facet(work_, p.place.facet, p.place.position);
-            else
+            else if (p.kind == FitKind::Surface)
                 p.place.facet = work_.locate(p.place.facet, p.place.position);
         },
         NeighbourList::rows_per_chunk);
-    sites_ = make_feature_sites(body.mesh, work_, on_features, threads);
-    velocities_.resize(particles_.size());
-    sort();
+    sites_ = make_feature_sites(body_->mesh, work_, on_features, threads_);
 }
-
-SurfaceLayer::~SurfaceLayer() = default;
-SurfaceLayer::SurfaceLayer(SurfaceLayer&&) noexcept = default;
 
 void SurfaceLayer::sort()
 {
     const std::size_t n = particles_.size();
     points_.resize(n);
-    parallel_for(
-        n, threads_,
-        [&](std::size_t i) { set_vector(points_, i, local(particles_[i].place.position)); },
-        NeighbourList::rows_per_chunk);
-    const auto order = morton_order(points_, 2, threads_);
-    reorder(particles_, order, threads_);
-    for (PointArrays* v : {&points_, &velocities_})
-        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) reorder(*axis, order, threads_);
-    forces_.resize(n);
-    nearest_squared_.resize(n);
-    is_listed_ = false;
+    const auto take_over = [&](std::size_t i)
+    { set_vector(points_, i, local(particles_[i].place.position)); };
+    parallel_for(n, threads_, take_over, NeighbourList::rows_per_chunk);
+    reorder(particles_, morton_order(points_, 2, threads_), threads_);
+    parallel_for(n, threads_, take_over, NeighbourList::rows_per_chunk);
 }
 
 Vec3 SurfaceLayer::normal_of(const LayerParticle& particle) const
@@ -229,59 +208,67 @@ Vec3 SurfaceLayer::normal_of(const LayerParticle& particle) const
 
 void SurfaceLayer::build_list()
 {
-    struct Normal
+    const PointArrays& n = normals_;
+    const auto is_own_sheet = [&](std::uint32_t i, std::uint32_t j)
     {
-        float x, y, z;
+        if (n.x[i] * n.x[j] + n.y[i] * n.y[j] + n.z[i] * n.z[j] >= opposing) return true;
+        return is_close_across(vector_at(n, i), vector_at(points_, j) - vector_at(points_, i),
+                               particles_[j].kind != FitKind::Surface);
     };
-    RawArray<Normal> normals(particles_.size());
+    list_.build(
+        points_, threads_, [&](std::uint32_t i) { return particles_[i].is_awake; }, is_own_sheet);
+    is_listed_ = true;
+    // What sleeps keeps its own.
+    roles_.resize(particles_.size());
     parallel_for(
         particles_.size(), threads_,
         [&](std::size_t i)
         {
-            if (i + prefetch_ahead < particles_.size()) prefetch_facet(i + prefetch_ahead);
-            const Vec3 normal = normal_of(particles_[i]);
-            normals[i] = {static_cast<float>(normal.x), static_cast<float>(normal.y),
-                          static_cast<float>(normal.z)};
+            if (particles_[i].is_awake) nearest_squared_[i] = none_near;
+            roles_[i] = !particles_[i].is_moving ? Role::Still
+                        : particles_[i].is_awake ? Role::Awake
+                                                 : Role::Asleep;
         },
         NeighbourList::rows_per_chunk);
-    const auto is_own_sheet = [&](std::uint32_t i, std::uint32_t j)
+}
+
+LayerState SurfaceLayer::state_of_rows(std::size_t begin, std::size_t end) const
+{
+    LayerState state;
+    for (std::size_t row = begin; row < end; ++row)
     {
-        const float cosine =
-            normals[i].x * normals[j].x + normals[i].y * normals[j].y + normals[i].z * normals[j].z;
-        if (cosine >= opposing) return true;
-        return is_close_across({normals[i].x, normals[i].y, normals[i].z},
-                               vector_at(points_, j) - vector_at(points_, i),
-                               particles_[j].kind != FitKind::Surface);
-    };
-    list_.build(
-        points_, threads_, [&](std::uint32_t i) { return particles_[i].is_moving; }, is_own_sheet);
-    is_listed_ = true;
+        const std::uint32_t i = list_.point(row);
+        if (roles_[i] == Role::Still) continue;
+        const float reach = 4; // dp squared: nothing is near
+        const float squared = std::min(nearest_squared_[i], reach);
+        ++state.moving;
+        state.spacing_sum += double{std::sqrt(squared)};
+        state.spacing_square_sum += double{squared};
+        if (roles_[i] == Role::Asleep) continue;
+        state.power += double{forces_.x[i] * velocities_.x[i] + forces_.y[i] * velocities_.y[i] +
+                              forces_.z[i] * velocities_.z[i]};
+    }
+    return state;
 }
 
 LayerState SurfaceLayer::look_around()
 {
-    if (!is_listed_ || list_.is_outdated(points_, threads_)) build_list();
+    if (!is_listed_ || (steps_off_ == 0 && list_.is_outdated(points_, threads_))) build_list();
+    packed_.resize(particles_.size());
+    parallel_for(
+        particles_.size(), threads_,
+        [&](std::size_t i) {
+            packed_[i] = PackedPoint{points_.x[i], points_.y[i], points_.z[i], 0};
+        },
+        NeighbourList::rows_per_chunk);
     std::vector<LayerState> states(chunks_of(list_.rows()));
-    parallel_for(states.size(), threads_,
-                 [&](std::size_t c)
-                 {
-                     const std::size_t begin = c * NeighbourList::rows_per_chunk;
-                     const std::size_t end =
-                         std::min(begin + NeighbourList::rows_per_chunk, list_.rows());
-                     forces_of_.compute(list_, begin, end, points_, forces_, nearest_squared_);
-                     LayerState& state = states[c];
-                     for (std::size_t row = begin; row < end; ++row)
-                     {
-                         const std::uint32_t i = list_.point(row);
-                         if (!particles_[i].is_moving) continue;
-                         const double reach = 4; // dp squared: nothing is near
-                         const double squared = std::min<double>(nearest_squared_[i], reach);
-                         ++state.moving;
-                         state.spacing_sum += std::sqrt(squared);
-                         state.spacing_square_sum += squared;
-                         state.power += dot(vector_at(forces_, i), vector_at(velocities_, i));
-                     }
-                 });
+    for_chunks(
+        list_.rows(), threads_,
+        [&](std::size_t c, std::size_t begin, std::size_t end)
+        {
+            forces_of_.compute({list_, begin, end}, packed_.data(), forces_, nearest_squared_);
+            states[c] = state_of_rows(begin, end);
+        });
     LayerState sum;
     for (const LayerState& state : states)
     {
@@ -293,74 +280,100 @@ LayerState SurfaceLayer::look_around()
     return sum;
 }
 
-Vec3 SurfaceLayer::intended_step(std::size_t i, bool is_restart) const
+/// Makes a particle's step in the plane of its facet; returns the square of its length, dp.
+float SurfaceLayer::push_on(std::size_t i, bool is_restart)
 {
-    const Vec3& normal = work_.facets[particles_[i].place.facet].normal;
-    Vec3 step = vector_at(forces_, i) * step_over_force_;
-    if (!is_restart) step = step + vector_at(velocities_, i) * layer_momentum;
-    step = step - normal * dot(step, normal);
-    const double length = norm(step);
-    return length > largest_step ? step * (largest_step / length) : step;
+    const float kept = is_restart ? 0.0f : static_cast<float>(layer_momentum);
+    float x = forces_.x[i] * step_over_force_ + velocities_.x[i] * kept;
+    float y = forces_.y[i] * step_over_force_ + velocities_.y[i] * kept;
+    float z = forces_.z[i] * step_over_force_ + velocities_.z[i] * kept;
+    const float across = x * normals_.x[i] + y * normals_.y[i] + z * normals_.z[i];
+    x -= across * normals_.x[i];
+    y -= across * normals_.y[i];
+    z -= across * normals_.z[i];
+    float squared = x * x + y * y + z * z;
+    if (squared > largest_step * largest_step)
+    {
+        const float shorter = largest_step / std::sqrt(squared);
+        x *= shorter;
+        y *= shorter;
+        z *= shorter;
+        squared = largest_step * largest_step;
+    }
+    velocities_.x[i] = x;
+    velocities_.y[i] = y;
+    velocities_.z[i] = z;
+    points_.x[i] += x;
+    points_.y[i] += y;
+    points_.z[i] += z;
+    return squared;
+}
+
+double SurfaceLayer::step(bool is_restart)
+{
+    std::vector<float> largest(chunks_of(particles_.size()), 0);
+    for_chunks(particles_.size(), threads_,
+               [&](std::size_t c, std::size_t begin, std::size_t end)
+               {
+                   for (std::size_t i = begin; i < end; ++i)
+                       if (roles_[i] == Role::Awake)
+                           largest[c] = std::max(largest[c], push_on(i, is_restart));
+               });
+    const Pace pace = pace_of(particles_.size());
+    if (++steps_off_ >= pace.steps) settle(pace.worth);
+    return std::sqrt(double{*std::max_element(largest.begin(), largest.end())});
+}
+
+/// From where a particle last stood on the surface, along the facet there, dp.
+Vec3 SurfaceLayer::strayed(std::size_t i) const
+{
+    const SlidePlace& place = particles_[i].place;
+    const Vec3 normal = vector_at(normals_, i);
+    const Vec3 step = vector_at(points_, i) - local(place.position);
+    return step - normal * dot(step, normal);
 }
 
 void SurfaceLayer::accept(std::size_t i, const SlidePlace& place)
 {
     const Vec3& normal = work_.facets[place.facet].normal;
-    const Vec3 moved = (place.position - particles_[i].place.position) / dp_;
-    set_vector(velocities_, i, moved - normal * dot(moved, normal));
-    set_vector(points_, i, local(place.position));
+    const Vec3 at = local(place.position);
+    Vec3 velocity = vector_at(velocities_, i);
+    const Vec3 set_back = at - vector_at(points_, i);
+    const Vec3 along = set_back - normal * dot(set_back, normal);
+    if (dot(along, along) > held_up * held_up) velocity = {};
+    set_vector(velocities_, i, velocity - normal * dot(velocity, normal));
+    set_vector(points_, i, at);
+    set_vector(normals_, i, normal);
     particles_[i].place = place;
 }
 
-bool SurfaceLayer::move(std::size_t i, bool is_restart)
+/// Takes a particle back to the surface if it is farther than `least` dp from where it last stood
+/// on it. False where that takes too many facets.
+bool SurfaceLayer::slide_back(std::size_t i, double least)
 {
+    const Vec3 step = strayed(i);
+    if (dot(step, step) <= least * least) return true;
     SlidePlace place = particles_[i].place;
-    if (!slide(work_, place, intended_step(i, is_restart) * dp_, inside_border * dp_)) return false;
+    if (!slide(work_, place, step * dp_, inside_border * dp_)) return false;
     accept(i, place);
     return true;
 }
 
-/// Facets lie in the order of the file, which need not be one in space.
-void SurfaceLayer::prefetch_facet(std::size_t i) const
+void SurfaceLayer::settle(double least)
 {
-    const char* facet = reinterpret_cast<const char*>(&work_.facets[particles_[i].place.facet]);
-    __builtin_prefetch(facet);
-    __builtin_prefetch(facet + 64);
-}
-
-double SurfaceLayer::step(bool is_restart)
-{
-    struct Outcome
-    {
-        double largest = 0;
-        std::vector<std::uint32_t> stuck;
-    };
-    std::vector<Outcome> outcomes(chunks_of(particles_.size()));
-    parallel_for(outcomes.size(), threads_,
-                 [&](std::size_t c)
-                 {
-                     const std::size_t end =
-                         std::min((c + 1) * NeighbourList::rows_per_chunk, particles_.size());
-                     for (std::size_t i = c * NeighbourList::rows_per_chunk; i < end; ++i)
-                     {
-                         if (i + prefetch_ahead < end) prefetch_facet(i + prefetch_ahead);
-                         if (!particles_[i].is_moving) continue;
-                         if (!move(i, is_restart))
-                             outcomes[c].stuck.push_back(static_cast<std::uint32_t>(i));
-                         else
-                         {
-                             const Vec3 v = vector_at(velocities_, i);
-                             outcomes[c].largest = std::max(outcomes[c].largest, dot(v, v));
-                         }
-                     }
-                 });
-    double largest = 0;
-    for (const Outcome& outcome : outcomes)
-    {
-        largest = std::max(largest, outcome.largest);
-        for (const std::uint32_t i : outcome.stuck) project(i, is_restart);
-    }
-    return std::sqrt(largest);
+    steps_off_ = 0;
+    std::vector<std::vector<std::uint32_t>> stuck(chunks_of(particles_.size()));
+    for_chunks(particles_.size(), threads_,
+               [&](std::size_t c, std::size_t begin, std::size_t end)
+               {
+                   for (std::size_t i = begin; i < end; ++i)
+                   {
+                       if (roles_[i] == Role::Awake && !slide_back(i, least))
+                           stuck[c].push_back(static_cast<std::uint32_t>(i));
+                   }
+               });
+    for (const auto& of_chunk : stuck)
+        for (const std::uint32_t i : of_chunk) project(i);
 }
 
 /// Labels the facets between borders, so that a projected point is known to be on its own.
@@ -387,7 +400,7 @@ void SurfaceLayer::find_patches()
     }
 }
 
-void SurfaceLayer::project(std::size_t i, bool is_restart)
+void SurfaceLayer::project(std::size_t i)
 {
     if (!query_)
     {
@@ -395,7 +408,7 @@ void SurfaceLayer::project(std::size_t i, bool is_restart)
         find_patches();
     }
     const SlidePlace& place = particles_[i].place;
-    const Vec3 step = intended_step(i, is_restart) * dp_;
+    const Vec3 step = strayed(i) * dp_;
     const ClosestPoint found = query_->closest_point(place.position + step);
     const std::uint32_t piece = work_.locate(found.facet, found.point);
     const bool is_own_sheet =
@@ -408,155 +421,106 @@ void SurfaceLayer::project(std::size_t i, bool is_restart)
         ++projected_;
         return;
     }
+    accept(i, place);
     set_vector(velocities_, i, {});
     ++returned_;
 }
 
-std::size_t SurfaceLayer::thin(double least)
+/// Marks moving particles that go as they are too near others; those nearest to another go first.
+std::vector<char> SurfaceLayer::find_crowded(double least)
 {
-    look_around();
     const auto limit = static_cast<float>(least * least);
-    std::vector<std::pair<float, std::uint32_t>> rows; // nearest first
-    for (std::uint32_t row = 0; row < list_.rows(); ++row)
-    {
-        const std::uint32_t i = list_.point(row);
-        if (particles_[i].is_moving && nearest_squared_[i] < limit)
-            rows.push_back({nearest_squared_[i], row});
-    }
+    using Row = std::pair<float, std::uint32_t>;
+    std::vector<std::vector<Row>> of_chunk(chunks_of(list_.rows()));
+    for_chunks(
+        list_.rows(), threads_,
+        [&](std::size_t c, std::size_t begin, std::size_t end)
+        {
+            for (std::size_t row = begin; row < end; ++row)
+            {
+                const std::uint32_t i = list_.point(row);
+                if (particles_[i].is_moving && nearest_squared_[i] < limit)
+                    of_chunk[c].push_back({nearest_squared_[i], static_cast<std::uint32_t>(row)});
+            }
+        });
+    std::vector<Row> rows;
+    for (const auto& some : of_chunk) rows.insert(rows.end(), some.begin(), some.end());
     std::sort(rows.begin(), rows.end());
     std::vector<char> is_out(particles_.size(), 0);
-    std::size_t count = 0;
     for (const auto& [nearest, row] : rows)
     {
         const std::uint32_t i = list_.point(row);
         const auto near = list_.neighbours(row);
-        const bool is_too_near = std::any_of(near.begin(), near.end(),
-                                             [&](std::uint32_t j)
-                                             {
-                                                 const Vec3 d =
-                                                     vector_at(points_, j) - vector_at(points_, i);
-                                                 return !is_out[j] && dot(d, d) < limit;
-                                             });
-        if (!is_too_near) continue;
-        is_out[i] = 1;
-        ++count;
+        is_out[i] = std::any_of(near.begin(), near.end(),
+                                [&](std::uint32_t j)
+                                {
+                                    const Vec3 d = vector_at(points_, j) - vector_at(points_, i);
+                                    return is_out[j] == 0 && dot(d, d) < limit;
+                                });
     }
-    if (count == 0) return 0;
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < particles_.size(); ++i)
-        if (!is_out[i]) kept.push_back(i);
-    reorder(particles_, kept, threads_);
-    for (PointArrays* v : {&points_, &velocities_})
-        for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) reorder(*axis, kept, threads_);
-    sort();
-    return count;
+    return is_out;
 }
 
-/// Per particle whether its Voronoi cell reaches farther than a radius, in dp, or may do so.
-std::vector<char> SurfaceLayer::find_near_holes(float radius)
+void SurfaceLayer::wake_around(std::size_t row, std::vector<char>& is_awake) const
 {
-    if (!is_listed_ || list_.is_outdated(points_, threads_)) build_list();
-    // The cell is taken in the plane of the facet and in float: a little room for both.
-    const float limit = 0.99f * radius;
-    std::vector<char> is_near_hole(particles_.size(), 1);
-    parallel_for(
-        list_.rows(), threads_,
-        [&](std::size_t row)
-        {
-            const std::uint32_t i = list_.point(row);
-            if (!particles_[i].is_moving) return;
-            const WorkFacet& facet = work_.facets[particles_[i].place.facet];
-            const Vec3 side = facet.corners[1] - facet.corners[0];
-            const Vec3 x_axis = side / norm(side);
-            const Vec3 y_axis = cross(facet.normal, x_axis);
-            VoronoiCell cell(1.3f);
-            // The nearest first, after which there is mostly nothing left to cut.
-            for (const bool is_close : {true, false})
-            {
-                for (const std::uint32_t j : list_.neighbours(row))
-                {
-                    const Vec3 d = vector_at(points_, j) - vector_at(points_, i);
-                    const auto squared = static_cast<float>(dot(d, d));
-                    if ((squared < 1.7f) != is_close) continue;
-                    cell.cut(static_cast<float>(dot(d, x_axis)), static_cast<float>(dot(d, y_axis)),
-                             squared);
-                }
-                if (!cell.is_within(limit)) continue;
-                is_near_hole[i] = 0;
-                return;
-            }
-        },
-        NeighbourList::rows_per_chunk);
-    return is_near_hole;
+    is_awake[list_.point(row)] = 1;
+    for (const std::uint32_t j : list_.neighbours(row)) is_awake[j] = 1;
 }
 
-std::size_t SurfaceLayer::fill(double radius,
-                               const std::function<bool(const Vec3&, const Vec3&)>& may_fill)
+LayerChange SurfaceLayer::renew(const Limits& limits, bool is_local,
+                                const std::function<bool(const Vec3&, const Vec3&)>& may_fill)
 {
-    FillState state{work_, charts_, sites_, dp_, std::vector<ChartParticles>(charts_.size())};
-    state.hole_radius = radius;
-    state.may_fill = may_fill;
-    state.share_out_features();
-    const std::vector<char> is_near_hole = find_near_holes(static_cast<float>(radius));
-    std::vector<std::size_t> given(charts_.size(), 0);
-    for (const LayerParticle& p : particles_)
-        if (p.kind == FitKind::Surface) ++given[charts_.of_facet(p.place.facet)];
-    for (std::size_t c = 0; c < given.size(); ++c)
-        state.particles[c].sites.reserve(given[c] + given[c] / 16);
-    for (std::uint32_t i = 0; i < particles_.size(); ++i)
-    {
-        const LayerParticle& p = particles_[i];
-        if (p.kind != FitKind::Surface) continue;
-        SurfaceSite site;
-        site.position = p.place.position;
-        site.facet = p.place.facet;
-        site.is_irregular = is_near_hole[i];
-        site.is_at_seam = charts_.near_point(site.position).size() > 1;
-        state.particles[charts_.of_facet(site.facet)].sites.push_back(site);
-    }
-    for_each_chart(state, threads_,
-                   [](ChartFiller& filler, std::uint32_t c) { filler.fill_holes(c); });
-    std::size_t count = 0;
-    for (std::size_t c = 0; c < given.size(); ++c)
-        for (std::size_t s = given[c]; s < state.particles[c].sites.size(); ++s)
-        {
-            const SurfaceSite& site = state.particles[c].sites[s];
-            LayerParticle p;
-            p.place = {site.position, site.facet};
-            p.is_moving = true;
-            p.is_new = true;
-            particles_.push_back(p);
-            ++count;
-        }
-    if (count == 0) return 0;
-    velocities_.resize(particles_.size());
-    sort();
-    build_list();
-    name_sources();
-    return count;
-}
-
-/// New particles take after the given particle that is nearest to them: its mk, and whether it is
-/// held, or those that fill a gap in a held row would leave it.
-void SurfaceLayer::name_sources()
-{
+    settle(0);
+    if (!is_listed_) look_around();
+    const std::vector<char> is_out = find_crowded(limits.least);
+    const HoleFinder finder(*this, is_out, limits.hole_radius);
+    const std::vector<SurfaceHole> holes = finder.find(may_fill, limits.is_sampled);
+    const std::size_t given = particles_.size();
+    std::vector<char> is_awake(given, is_local ? 0 : 1);
+    LayerChange change;
     for (std::size_t row = 0; row < list_.rows(); ++row)
     {
-        const std::uint32_t i = list_.point(row);
-        if (particles_[i].source != no_index) continue;
-        double best = std::numeric_limits<double>::infinity();
-        std::uint32_t nearest = i;
-        for (const std::uint32_t j : list_.neighbours(row))
-        {
-            const Vec3 d = vector_at(points_, j) - vector_at(points_, i);
-            if (particles_[j].source == no_index || dot(d, d) >= best) continue;
-            best = dot(d, d);
-            nearest = j;
-        }
-        particles_[i].source = particles_[nearest].source;
-        if (particles_[nearest].kind == FitKind::Surface)
-            particles_[i].is_moving = particles_[nearest].is_moving;
+        if (is_out[list_.point(row)] == 0) continue;
+        wake_around(row, is_awake);
+        ++change.removed;
     }
+    for (const SurfaceHole& hole : holes)
+    {
+        wake_around(hole.row, is_awake);
+        if (!hole.is_filled) continue;
+        ++change.inserted;
+        LayerParticle p;
+        p.place = hole.place;
+        p.is_new = true;
+        const LayerParticle& beside = particles_[hole.beside];
+        p.source = beside.source;
+        p.is_moving = beside.kind != FitKind::Surface || beside.is_moving;
+        particles_.push_back(p);
+    }
+    parallel_for(
+        given, threads_, [&](std::size_t i) { particles_[i].is_awake = is_awake[i] != 0; },
+        NeighbourList::rows_per_chunk);
+    if (change.inserted + change.removed == 0) return change;
+    const std::size_t n = particles_.size();
+    for (PointArrays* v : {&points_, &velocities_, &normals_, &forces_}) v->resize(n);
+    nearest_squared_.resize(n);
+    for (std::size_t i = given; i < n; ++i)
+    {
+        set_vector(points_, i, local(particles_[i].place.position));
+        set_vector(normals_, i, normal_of(particles_[i]));
+    }
+    if (change.removed > 0)
+    {
+        std::vector<std::uint32_t> kept;
+        for (std::uint32_t i = 0; i < n; ++i)
+            if (i >= given || is_out[i] == 0) kept.push_back(i);
+        reorder(particles_, kept, threads_);
+        for (PointArrays* v : {&points_, &velocities_, &normals_, &forces_})
+            for (std::vector<float>* axis : {&v->x, &v->y, &v->z}) reorder(*axis, kept, threads_);
+        reorder(nearest_squared_, kept, threads_);
+    }
+    is_listed_ = false;
+    return change;
 }
 
 } // namespace fppg

@@ -20,9 +20,9 @@ FPPG_LANES PairSums sum_pairs(const PointArrays& points, std::uint32_t i,
 {
     Lanes x{}, y{}, z{}, weight{};
     const Lanes none{};
-    NeighbourLanes(points.x.data(), points.y.data(), points.z.data(), i)
+    NeighbourLanes(AxesGather{points.x.data(), points.y.data(), points.z.data()}, i)
         .for_each(near.data(), near.size(),
-                  [&](const NeighbourLanes::Offsets& o)
+                  [&](const LaneOffsets& o)
                   {
                       const Lanes r = square_root(o.squared);
                       const Lanes half_q = r * factors.half_inverse_h;

@@ -1,7 +1,7 @@
 // Fits particles to the surface of an STL file, relaxes them on request, says how long that takes,
 // and writes them as a legacy VTK file with their kind as mk and the normal of their facet.
 //
-//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] [--relax N] [--h H]
+//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] [--relax N] [--h H] [--quality]
 //
 // N is the number of iterations, 0 for as many as improve the spacing.
 
@@ -13,8 +13,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -102,6 +104,70 @@ void relax(fppg::SurfaceMesh& mesh, const fppg::Features& features,
     mesh = std::move(bodies[0].mesh);
 }
 
+/// From a place to the nearest particle but one, in dp; at most 2.
+double distance_to_nearest(const fppg::PointGrid& grid, const fppg::Vec3& place, double dp,
+                           std::size_t but)
+{
+    double best = 4 * dp * dp;
+    grid.for_each_near(place, 2 * dp,
+                       [&](std::uint32_t i, double squared)
+                       {
+                           if (i != but) best = std::min(best, squared);
+                       });
+    return std::sqrt(best) / dp;
+}
+
+/// The farthest of 30 surface points a dp squared from its nearest particle, in dp.
+double farthest_surface_point(const fppg::SurfaceMesh& mesh, const fppg::PointGrid& grid, double dp)
+{
+    double farthest = 0;
+    double due = 0;
+    double count = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        for (due += 30 * mesh.areas[f] / (dp * dp); due >= 1; due -= 1)
+        {
+            // The plastic number's sequence spreads points evenly for any count.
+            ++count;
+            double u = std::fmod(0.5 + 0.7548776662466927 * count, 1.0);
+            double v = std::fmod(0.5 + 0.5698402909980532 * count, 1.0);
+            if (u + v > 1)
+            {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const fppg::Vec3& a = mesh.vertices[mesh.facets[f][0]];
+            const fppg::Vec3 place = a + (mesh.vertices[mesh.facets[f][1]] - a) * u +
+                                     (mesh.vertices[mesh.facets[f][2]] - a) * v;
+            farthest = std::max(farthest, distance_to_nearest(grid, place, dp, SIZE_MAX));
+        }
+    return farthest;
+}
+
+/// Prints how evenly particles stand, and how far the surface is from them.
+void print_quality(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticles& particles,
+                   double dp)
+{
+    const std::size_t n = particles.positions.size();
+    fppg::PointGrid grid(dp, n);
+    for (const fppg::Vec3& p : particles.positions) grid.add(p);
+    double sum = 0, squares = 0, least = 2, count = 0;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        const double distance = distance_to_nearest(grid, particles.positions[i], dp, i);
+        least = std::min(least, distance);
+        if (particles.kinds[i] != fppg::FitKind::Surface) continue;
+        sum += distance;
+        squares += distance * distance;
+        ++count;
+    }
+    const double mean = sum / count;
+    std::printf(
+        "   nearest particle of those on the surface: mean %.4f, c.v. %.4f; least of all "
+        "%.3f; farthest surface point %.3f dp\n",
+        mean, std::sqrt(std::max(0.0, squares / count - mean * mean)) / mean, least,
+        farthest_surface_point(mesh, grid, dp));
+}
+
 /// Counts pairs closer than 0.3 dp, and those of them whose facets look apart: through a plate.
 void count_close_pairs(const fppg::SurfaceMesh& mesh, const fppg::SurfaceParticles& particles,
                        double dp)
@@ -135,12 +201,16 @@ int main(int count, char** values)
     std::vector<char*> argv(values, values + count);
     const char* iterations = take_option(argv, "--relax");
     const char* h = take_option(argv, "--h");
+    const auto quality = std::find_if(
+        argv.begin(), argv.end(), [](const char* a) { return std::strcmp(a, "--quality") == 0; });
+    const bool wants_quality = quality != argv.end();
+    if (wants_quality) argv.erase(quality);
     const std::size_t argc = argv.size();
     if (argc < 3)
     {
         std::fprintf(stderr,
                      "usage: fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] "
-                     "[--relax N] [--h H]\n");
+                     "[--relax N] [--h H] [--quality]\n");
         return 2;
     }
     using clock = std::chrono::steady_clock;
@@ -181,6 +251,7 @@ int main(int count, char** values)
         if (h != nullptr) relax_options.h = std::atof(h);
         relax(mesh, features, particles, relax_options, threads);
     }
+    if (wants_quality) print_quality(mesh, particles, dp);
     count_close_pairs(mesh, particles, dp);
     if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], mesh, particles);
     return 0;
