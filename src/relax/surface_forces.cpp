@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr float spread_reach = 1.05f;
-constexpr float spread_strength = 0.8f;
+constexpr float spread_strength = 0.85f;
 constexpr float push_reach = 0.8f;
 constexpr float push_strength = 4;
 /// Of the six around a particle this many are within reach of the wider push where it is crowded.

@@ -6,9 +6,9 @@ namespace fppg
 {
 
 /// Pair forces with lengths in dp: the negative gradient of the sum of w(r / h), two
-/// pushes. One of 0.8 (1 - r / 1.05) below 1.05 dp, just less than the spacing of a hexagonal layer
-/// of one particle a dp^2, spreads the nearest neighbours evenly; one of 4 (1 - r / 0.8) below 0.8
-/// dp parts particles that come too near, as the kernel's force vanishes at no distance.
+/// pushes. One of 0.85 (1 - r / 1.05) below 1.05 dp, just less than the spacing of a hexagonal
+/// layer of one particle a dp^2, spreads the nearest neighbours evenly; one of 4 (1 - r / 0.8)
+/// below 0.8 dp parts particles that come too near, as the kernel's force vanishes at no distance.
 class SurfaceForces
 {
 public:
