@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <new>
 #include <string>
 #include <vector>
@@ -48,17 +49,29 @@ int fail(const char* text, int code)
 
 bool ends_itself = false;
 
+/// Ends the program where a library gave up.
+[[noreturn]] void end_without_memory(const char* library)
+{
+    fppg::drop_unfinished_files();
+    const std::string text = std::string("memory or threads ran out and ") + library +
+                             " gave up; a larger dp, a smaller domain or fewer -threads need less";
+    const int code = fail(text.c_str(), 4);
+    std::fflush(stderr);
+    _exit(code);
+}
+
 /// GCC's OpenMP runtime ends the program where it gets no memory or no thread, with exit code 1.
 void tell_foreign_end()
 {
-    if (ends_itself) return;
-    fppg::drop_unfinished_files();
-    const int code = fail(
-        "memory or threads ran out and the OpenMP runtime gave up; a larger dp, a "
-        "smaller domain or fewer -threads need less",
-        4);
-    std::fflush(stderr);
-    _exit(code);
+    if (!ends_itself) end_without_memory("the OpenMP runtime");
+}
+
+/// Embree calls std::terminate() where it gets no memory for a scene. An exception that nobody
+/// caught is a fault of the program.
+void tell_terminate()
+{
+    if (std::current_exception()) std::abort();
+    end_without_memory("Embree");
 }
 
 /// A file that the program opens must not become its standard output because the caller closed
@@ -117,6 +130,7 @@ int main(int argc, char** argv)
     open_missing_streams();
     fppg::catch_stop_signals();
     std::atexit(tell_foreign_end);
+    std::set_terminate(tell_terminate);
     const int code = run_and_tell(argc, argv);
     ends_itself = true;
     return code;

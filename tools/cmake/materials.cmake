@@ -31,10 +31,10 @@ set(materials
     "CLI11|${CLI11_VERSION}|BSD-3-Clause|CONTAINS|headers"
     "nlohmann_json|${nlohmann_json_VERSION}|MIT|CONTAINS|headers")
 if(hdf5_version)
-  list(APPEND materials "hdf5|${hdf5_version}||OPTIONAL_COMPONENT_OF|${loaded} in the module fppg_hdf5.so: libhdf5")
+  list(APPEND materials "hdf5|${hdf5_version}||OPTIONAL_COMPONENT_OF|${loaded} in the plugin libfppg_hdf5.so: libhdf5")
 endif()
 if(TARGET fppg_python)
-  list(APPEND materials "pybind11|${pybind11_VERSION}|BSD-3-Clause|CONTAINS|headers, in the Python module")
+  list(APPEND materials "pybind11|${FPPG_PYBIND11_VERSION}|BSD-3-Clause|CONTAINS|headers, in the Python module")
 endif()
 file(READ ${PROJECT_SOURCE_DIR}/src/report/web/package-lock.json lock)
 string(JSON three_version GET "${lock}" packages node_modules/three version)
