@@ -119,31 +119,15 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
 {
     const MeshQuery query(soup_of(mesh), found.options.threads);
 
-    std::vector<double> up_to(mesh.facets.size());
-    double area = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
-    std::vector<Thickness> samples(thickness_samples);
+    const std::vector<FacetSpot> places = even_places(mesh, thickness_samples);
+    std::vector<Thickness> samples(places.size());
     const double reach = (Inspection::most_layers + 0.5) * found.options.dp;
     parallel_for(
         samples.size(), found.options.threads,
         [&](std::size_t i)
         {
-            const double share = (static_cast<double>(i) + 0.5) / thickness_samples;
-            const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, share * area);
-            const auto f = static_cast<std::uint32_t>(at - up_to.begin());
-            // The additive sequence of the plastic number fills a square evenly.
-            double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
-            double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            const auto& c = mesh.facets[f];
-            const Vec3& a = mesh.vertices[c[0]];
-            const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-            samples[i] = {p,
-                          facing_distance(mesh.normals, query, {f, p}, FacetSide::Behind, reach)};
+            samples[i] = {places[i].place, facing_distance(mesh.normals, query, places[i],
+                                                           FacetSide::Behind, reach)};
         },
         64);
     std::size_t thin = 0;

@@ -7,6 +7,31 @@
 namespace fppg
 {
 
+std::vector<FacetSpot> even_places(const SurfaceMesh& mesh, std::size_t count)
+{
+    std::vector<double> up_to(mesh.facets.size());
+    double area = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
+    std::vector<FacetSpot> out(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+        const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, share * area);
+        const auto f = static_cast<std::uint32_t>(at - up_to.begin());
+        double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
+        double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
+        if (u + v > 1)
+        {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        const auto& c = mesh.facets[f];
+        const Vec3& a = mesh.vertices[c[0]];
+        out[i] = {f, a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a)};
+    }
+    return out;
+}
+
 double facing_distance(const std::vector<Vec3>& normals, const MeshQuery& query,
                        const FacetSpot& from, FacetSide side, double reach)
 {

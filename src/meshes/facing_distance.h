@@ -1,7 +1,10 @@
 #pragma once
 
+#include "fppg/surface_mesh.h"
+
 #include "meshes/mesh_query.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +24,10 @@ struct FacetSpot
     std::uint32_t facet = 0;
     Vec3 place;
 };
+
+/// Places spread evenly over the area of a mesh, by the additive sequence of the plastic number;
+/// always the same.
+std::vector<FacetSpot> even_places(const SurfaceMesh& mesh, std::size_t count);
 
 /// How far it is from a place of a facet to the next facet that looks the other way: along the axis
 /// nearest to the normal, times the cosine between both, which is exact for plates and gaps between

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/principal_axes.h"
 #include "core/transforms.h"
+#include "meshes/facing_distance.h"
 #include "meshes/mesh_query.h"
 
 #include <algorithm>
@@ -41,27 +42,9 @@ struct SurfacePlace
 /// Places spread evenly over the area; always the same.
 std::vector<SurfacePlace> places_on(const SurfaceMesh& mesh)
 {
-    std::vector<double> up_to(mesh.facets.size());
-    double area = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
-    std::vector<SurfacePlace> out(sample_count);
-    for (std::size_t i = 0; i < sample_count; ++i)
-    {
-        const double share = (static_cast<double>(i) + 0.5) / sample_count;
-        const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, share * area);
-        const auto f = static_cast<std::size_t>(at - up_to.begin());
-        double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
-        double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
-        if (u + v > 1)
-        {
-            u = 1 - u;
-            v = 1 - v;
-        }
-        const auto& c = mesh.facets[f];
-        const Vec3& a = mesh.vertices[c[0]];
-        out[i] = {a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a),
-                  mesh.normals[f]};
-    }
+    std::vector<SurfacePlace> out;
+    for (const FacetSpot& spot : even_places(mesh, sample_count))
+        out.push_back({spot.place, mesh.normals[spot.facet]});
     return out;
 }
 
