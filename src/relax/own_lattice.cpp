@@ -88,7 +88,9 @@ std::optional<std::array<Vec3, 3>> axes_of(const SurfaceMesh& mesh, bool is_2d)
     double all = 0;
     const std::vector<Direction> found = directions_of(mesh, is_2d, all);
     if (found.empty()) return std::nullopt;
-    const Vec3 first = found[0].sum / norm(found[0].sum);
+    Vec3 first = found[0].sum;
+    if (is_2d) first.y = 0; // all places stay in the plane to the last bit
+    first = first / norm(first);
     Vec3 second{0, 1, 0};
     if (!is_2d)
     {
