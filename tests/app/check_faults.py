@@ -20,6 +20,8 @@ import threading
 import time
 import unittest
 
+from check_limits import box_stl
+
 PROGRAM = sys.argv[1]
 TIMES = int(os.environ.get("FPPG_FAULTS", "1"))
 os.environ["SOURCE_DATE_EPOCH"] = "86400"
@@ -32,17 +34,6 @@ CASE = """<case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 v
 </mainlist></commands></geometry></casedef><execution><parameters><parameter key="TimeMax" value="1" /></parameters>
 </execution></case>
 """
-
-
-def box_stl(size, low):
-    """A closed cube as binary STL."""
-    corners = [[low + size * (c >> axis & 1) for axis in range(3)] for c in range(8)]
-    faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2),
-             (2, 4, 6), (1, 3, 5), (3, 7, 5)]
-    out = bytes(80) + struct.pack("<I", len(faces))
-    for face in faces:
-        out += struct.pack("<12f", 0, 0, 0, *(x for c in face for x in corners[c])) + bytes(2)
-    return out
 
 
 class Faults(unittest.TestCase):
