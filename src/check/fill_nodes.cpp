@@ -386,18 +386,26 @@ std::vector<std::uint8_t> wet_by_fluid(const FillNodes& nodes, const std::vector
     return wet;
 }
 
-/// Spreads what is wet to runs in the box that touch it.
-void spread_fluid(const FillNodes& nodes, std::vector<std::uint8_t>& wet)
+/// A run and its column.
+struct RunPlace
 {
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> open; // run, column
-    const std::size_t columns = nodes.begins.size() - 1;
-    for (std::size_t c = 0; c < columns; ++c)
-        for (std::uint64_t r = nodes.begins[c]; r < nodes.begins[c + 1]; ++r)
-            if (wet[r]) open.emplace_back(r, c);
-    while (!open.empty())
+    std::uint64_t run = 0;
+    std::size_t column = 0;
+};
+
+template <typename Visit>
+void for_each_run(const FillNodes& nodes, const Visit& visit)
+{
+    for (std::size_t c = 0; c + 1 < nodes.begins.size(); ++c)
+        for (std::uint64_t r = nodes.begins[c]; r < nodes.begins[c + 1]; ++r) visit(RunPlace{r, c});
+}
+
+/// Spreads what is wet from some runs to those in the box that touch them, which are appended.
+void spread(const FillNodes& nodes, std::vector<RunPlace>& reached, std::vector<std::uint8_t>& wet)
+{
+    for (std::size_t i = 0; i < reached.size(); ++i)
     {
-        const auto [run, column] = open.back();
-        open.pop_back();
+        const auto [run, column] = reached[i];
         const auto [x, y] = xy_of(nodes, column);
         const FillNodes::NodeRun of = nodes.runs[run];
         if (side_of(nodes, column, of) >= 0) continue;
@@ -410,10 +418,50 @@ void spread_fluid(const FillNodes& nodes, std::vector<std::uint8_t>& wet)
                 if (!wet[r])
                 {
                     wet[r] = 1;
-                    open.emplace_back(r, beside);
+                    reached.push_back({r, beside});
                 }
         }
     }
+}
+
+/// Without fluid, all that is no gap between particles inside a wall: spaces of some nodes.
+std::vector<std::uint8_t> wet_spaces(const FillNodes& nodes)
+{
+    constexpr std::uint64_t least_nodes = 8;
+    constexpr std::uint8_t is_gap = 2;
+    std::vector<std::uint8_t> wet(nodes.runs.size(), 0);
+    std::vector<RunPlace> space;
+    for_each_run(nodes,
+                 [&](const RunPlace& first)
+                 {
+                     if (wet[first.run]) return;
+                     wet[first.run] = 1;
+                     space.assign(1, first);
+                     spread(nodes, space, wet);
+                     std::uint64_t size = 0;
+                     for (const RunPlace& p : space)
+                         size += nodes.runs[p.run].end - nodes.runs[p.run].begin;
+                     if (size >= least_nodes) return;
+                     for (const RunPlace& p : space) wet[p.run] = is_gap;
+                 });
+    std::replace(wet.begin(), wet.end(), is_gap, std::uint8_t{0});
+    return wet;
+}
+
+/// All that the fluid of the case can come to.
+std::vector<std::uint8_t> wet_from_fluid(const FillNodes& nodes, const std::vector<Vec3>& positions,
+                                         const std::vector<std::uint32_t>& fluid, double dp,
+                                         int threads)
+{
+    std::vector<std::uint8_t> wet = wet_by_fluid(nodes, positions, fluid, 0.87 * dp, threads);
+    std::vector<RunPlace> reached;
+    for_each_run(nodes,
+                 [&](const RunPlace& p)
+                 {
+                     if (wet[p.run]) reached.push_back(p);
+                 });
+    spread(nodes, reached, wet);
+    return wet;
 }
 
 } // namespace
@@ -442,10 +490,9 @@ FillNodes fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
                                     emit_cylinder(nodes, positions[i], normal, emit);
                             }),
               threads);
-    std::vector<std::uint8_t> wet =
-        fluid.empty() ? std::vector<std::uint8_t>(nodes.runs.size(), 1)
-                      : wet_by_fluid(nodes, positions, fluid, 0.87 * setup.dp, threads);
-    spread_fluid(nodes, wet);
+    const std::vector<std::uint8_t> wet =
+        fluid.empty() ? wet_spaces(nodes)
+                      : wet_from_fluid(nodes, positions, fluid, setup.dp, threads);
     keep_wet(nodes, wet, static_cast<std::int64_t>(std::ceil(longest / setup.dp)));
     if (!nodes.runs.empty())
         take_away(nodes,
