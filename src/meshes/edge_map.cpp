@@ -5,59 +5,93 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "core/parallel_sort.h"
 
 namespace fppg
 {
 
-void build_edges(SurfaceMesh& mesh, int threads)
+namespace
 {
-    struct Side
+
+/// A side of a facet, at its vertex of smaller index.
+struct Side
+{
+    std::uint32_t larger; ///< the other vertex
+    std::uint32_t side;   ///< 3 * facet + side
+};
+
+/// The sides of all facets by their smaller vertex, then their larger one, then by facet.
+struct SidesOfVertices
+{
+    std::vector<std::size_t> first; ///< per vertex, and one past the end
+    std::vector<Side> sides;
+};
+
+SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
+{
+    SidesOfVertices out;
+    out.first.assign(mesh.vertices.size() + 1, 0);
+    const auto for_each_side = [&](const auto& visit)
     {
-        std::uint64_t edge; ///< smaller vertex, then larger one
-        std::uint32_t side; ///< 3 * facet + side
-    };
-    const std::size_t n = mesh.facets.size();
-    std::vector<Side> sides(3 * n);
-    parallel_for(
-        n, threads,
-        [&](std::size_t f)
-        {
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
             for (std::size_t s = 0; s < 3; ++s)
             {
-                const std::uint64_t a = mesh.facets[f][s], b = mesh.facets[f][(s + 1) % 3];
-                sides[3 * f + s] = {std::min(a, b) << 32 | std::max(a, b),
-                                    static_cast<std::uint32_t>(3 * f + s)};
+                const std::uint32_t a = mesh.facets[f][s], b = mesh.facets[f][(s + 1) % 3];
+                visit(std::min(a, b), Side{std::max(a, b), static_cast<std::uint32_t>(3 * f + s)});
             }
+    };
+    for_each_side([&](std::uint32_t vertex, const Side&) { ++out.first[vertex + 1]; });
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) out.first[v + 1] += out.first[v];
+    std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
+    out.sides.resize(3 * mesh.facets.size());
+    for_each_side([&](std::uint32_t vertex, const Side& side)
+                  { out.sides[next[vertex]++] = side; });
+    parallel_for(
+        mesh.vertices.size(), threads,
+        [&](std::size_t v)
+        {
+            const auto at = [&](std::size_t i)
+            { return out.sides.begin() + static_cast<std::ptrdiff_t>(i); };
+            std::sort(at(out.first[v]), at(out.first[v + 1]),
+                      [](const Side& a, const Side& b)
+                      { return a.larger != b.larger ? a.larger < b.larger : a.side < b.side; });
         },
         4096);
-    parallel_sort(sides, threads,
-                  [](const Side& a, const Side& b)
-                  { return a.edge != b.edge ? a.edge < b.edge : a.side < b.side; });
+    return out;
+}
 
+} // namespace
+
+void build_edges(SurfaceMesh& mesh, int threads)
+{
+    const SidesOfVertices of = sort_sides(mesh, threads);
+    const std::vector<Side>& sides = of.sides;
+    const std::size_t n = mesh.facets.size();
     mesh.edges.clear();
     mesh.edge_facets.clear();
     mesh.is_manifold.clear();
+    mesh.edges.reserve(sides.size() / 2 + 1);
+    mesh.edge_facets.reserve(sides.size() / 2 + 1);
+    mesh.is_manifold.reserve(sides.size() / 2 + 1);
     mesh.neighbours.assign(n, {no_index, no_index, no_index});
     mesh.facet_edges.assign(n, {no_index, no_index, no_index});
-    for (std::size_t i = 0; i < sides.size();)
-    {
-        std::size_t end = i + 1;
-        while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
-        const auto edge = static_cast<std::uint32_t>(mesh.edges.size());
-        const std::uint32_t first = sides[i].side;
-        const std::uint32_t second = end > i + 1 ? sides[i + 1].side : no_index;
-        mesh.edges.push_back({static_cast<std::uint32_t>(sides[i].edge >> 32),
-                              static_cast<std::uint32_t>(sides[i].edge)});
-        mesh.edge_facets.push_back({first / 3, second == no_index ? no_index : second / 3});
-        mesh.is_manifold.push_back(end - i <= 2 ? 1 : 0);
-        if (end - i == 2)
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+        for (std::size_t i = of.first[v]; i < of.first[v + 1];)
         {
-            mesh.neighbours[first / 3][first % 3] = second / 3;
-            mesh.neighbours[second / 3][second % 3] = first / 3;
+            std::size_t end = i + 1;
+            while (end < of.first[v + 1] && sides[end].larger == sides[i].larger) ++end;
+            const auto edge = static_cast<std::uint32_t>(mesh.edges.size());
+            const std::uint32_t first = sides[i].side;
+            const std::uint32_t second = end > i + 1 ? sides[i + 1].side : no_index;
+            mesh.edges.push_back({v, sides[i].larger});
+            mesh.edge_facets.push_back({first / 3, second == no_index ? no_index : second / 3});
+            mesh.is_manifold.push_back(end - i <= 2 ? 1 : 0);
+            if (end - i == 2)
+            {
+                mesh.neighbours[first / 3][first % 3] = second / 3;
+                mesh.neighbours[second / 3][second % 3] = first / 3;
+            }
+            for (; i < end; ++i) mesh.facet_edges[sides[i].side / 3][sides[i].side % 3] = edge;
         }
-        for (; i < end; ++i) mesh.facet_edges[sides[i].side / 3][sides[i].side % 3] = edge;
-    }
 }
 
 } // namespace fppg

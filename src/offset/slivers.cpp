@@ -1,11 +1,14 @@
 #include "offset/slivers.h"
 
 #include "meshes/connect_mesh.h"
+#include "meshes/edge_map.h"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -25,76 +28,95 @@ Corners sorted(Corners c)
     return c;
 }
 
-/// Facets that lost a side go, and pairs that came to lie on one another.
-void drop_flat(SurfaceMesh& mesh)
+/// Facets that lost a side go, and pairs that came to lie on one another; these have a vertex that
+/// others were joined with.
+void drop_flat(SurfaceMesh& mesh, const std::vector<char>& is_joined)
 {
-    std::vector<Corners> kept;
-    for (const Corners& f : mesh.facets)
-        if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) kept.push_back(f);
-    std::vector<std::size_t> order(kept.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b)
-              {
-                  const Corners x = sorted(kept[a]);
-                  const Corners y = sorted(kept[b]);
-                  return x < y || (x == y && a < b);
-              });
-    std::vector<char> is_out(kept.size(), 0);
-    for (std::size_t i = 1; i < order.size(); ++i)
-        if (is_out[order[i - 1]] == 0 && sorted(kept[order[i]]) == sorted(kept[order[i - 1]]))
-            is_out[order[i]] = is_out[order[i - 1]] = 1;
-    mesh.facets.clear();
-    for (std::size_t i = 0; i < kept.size(); ++i)
-        if (is_out[i] == 0) mesh.facets.push_back(kept[i]);
+    std::vector<Corners>& facets = mesh.facets;
+    const auto is_flat = [](const Corners& f)
+    { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; };
+    facets.erase(std::remove_if(facets.begin(), facets.end(), is_flat), facets.end());
+    std::vector<std::pair<Corners, std::size_t>> changed;
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        if (std::any_of(facets[f].begin(), facets[f].end(),
+                        [&](std::uint32_t v) { return is_joined[v] != 0; }))
+            changed.emplace_back(sorted(facets[f]), f);
+    std::sort(changed.begin(), changed.end());
+    std::vector<char> is_out(facets.size(), 0);
+    bool has_pairs = false;
+    for (std::size_t i = 1; i < changed.size(); ++i)
+        if (is_out[changed[i - 1].second] == 0 && changed[i].first == changed[i - 1].first)
+            has_pairs = is_out[changed[i].second] = is_out[changed[i - 1].second] = 1;
+    if (!has_pairs) return;
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        if (is_out[f] == 0) facets[kept++] = facets[f];
+    facets.resize(kept);
 }
 
 /// The vertices at the other ends of the edges of each vertex, ascending.
-std::vector<std::vector<std::uint32_t>> neighbours_of_vertices(const SurfaceMesh& mesh)
+class VertexNeighbours
 {
-    std::vector<std::vector<std::uint32_t>> out(mesh.vertices.size());
-    for (const auto& edge : mesh.edges)
+public:
+    explicit VertexNeighbours(const SurfaceMesh& mesh) : first_(mesh.vertices.size() + 1, 0)
     {
-        out[edge[0]].push_back(edge[1]);
-        out[edge[1]].push_back(edge[0]);
+        for (const auto& edge : mesh.edges)
+            for (const std::uint32_t v : edge) ++first_[v + 1];
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+        vertices_.resize(first_.back());
+        // Edges are sorted, so that a vertex meets the smaller ones first.
+        for (const auto& [a, b] : mesh.edges)
+        {
+            vertices_[next[a]++] = b;
+            vertices_[next[b]++] = a;
+        }
     }
-    for (auto& list : out) std::sort(list.begin(), list.end());
-    return out;
-}
+
+    std::span<const std::uint32_t> of(std::uint32_t v) const
+    {
+        return {vertices_.data() + first_[v], vertices_.data() + first_[v + 1]};
+    }
+
+private:
+    std::vector<std::size_t> first_;
+    std::vector<std::uint32_t> vertices_;
+};
 
 /// Joins the ends of short edges, each vertex with one other at most and none of its neighbours
 /// with any; returns whether any was. Ends that have more neighbours in common than the facets of
 /// their edge say would pinch the surface.
 bool join_near_vertices(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases)
 {
-    const std::vector<std::vector<std::uint32_t>> around = neighbours_of_vertices(mesh);
+    const VertexNeighbours around(mesh);
     std::vector<std::uint32_t> of(mesh.vertices.size());
     std::iota(of.begin(), of.end(), 0u);
     std::vector<char> is_used(of.size(), 0);
+    std::vector<char> is_joined(of.size(), 0);
     bool found = false;
     for (const auto& edge : mesh.edges)
     {
         if (is_used[edge[0]] != 0 || is_used[edge[1]] != 0) continue;
         if (!(norm(mesh.vertices[edge[0]] - mesh.vertices[edge[1]]) < one_vertex * cell)) continue;
         std::vector<std::uint32_t> common;
-        std::set_intersection(around[edge[0]].begin(), around[edge[0]].end(),
-                              around[edge[1]].begin(), around[edge[1]].end(),
-                              std::back_inserter(common));
+        std::ranges::set_intersection(around.of(edge[0]), around.of(edge[1]),
+                                      std::back_inserter(common));
         if (common.size() > 2) continue;
         for (const std::uint32_t end : edge)
         {
             is_used[end] = 1;
-            for (const std::uint32_t v : around[end]) is_used[v] = 1;
+            for (const std::uint32_t v : around.of(end)) is_used[v] = 1;
         }
         // The vertex on a crease stays.
         const std::size_t kept = on_creases[edge[1]] > on_creases[edge[0]] ? 1 : 0;
         of[edge[1 - kept]] = edge[kept];
+        is_joined[edge[kept]] = 1;
         found = true;
     }
     if (!found) return false;
     for (Corners& f : mesh.facets)
         for (std::uint32_t& v : f) v = of[v];
-    drop_flat(mesh);
+    drop_flat(mesh, is_joined);
     return true;
 }
 
@@ -160,14 +182,17 @@ bool turn_sides(SurfaceMesh& mesh, double cell)
 void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
                     int threads, MeshReport& report)
 {
+    bool is_changed = false;
     for (int round = 0; round < rounds; ++round)
     {
         const bool joined = join_near_vertices(mesh, cell, on_creases);
-        if (joined) reconnect(mesh, threads, report);
+        if (joined) build_edges(mesh, threads);
         const bool turned = turn_sides(mesh, cell);
-        if (turned) reconnect(mesh, threads, report);
+        if (turned) build_edges(mesh, threads);
         if (!joined && !turned) break;
+        is_changed = true;
     }
+    if (is_changed) reconnect(mesh, threads, report);
 }
 
 void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report)

@@ -169,6 +169,16 @@ void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threa
     out.particles = of_body(std::move(surface));
 }
 
+FittedDraw nothing_of(FittedBody&& body, const LatticeGrid& grid)
+{
+    FittedDraw out;
+    out.warnings = body.report.warnings;
+    out.body = std::move(body);
+    out.zone.resize(grid.n[0]);
+    out.volume.resize(grid.n[0]);
+    return out;
+}
+
 /// A blob smaller than a cell, or a clip, can leave a particle without a node of the zone.
 void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDraw& out)
 {
@@ -257,7 +267,7 @@ FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& g
 }
 
 FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
-                     const std::vector<ClipPlane>& clips, int threads)
+                     const std::vector<ClipPlane>& clips, BodyExtent extent, int threads)
 {
     FittedBody body;
     body.is_solid = shape.is_solid;
@@ -265,7 +275,10 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     body.mesh =
         repair_mesh(shape.soup, {.dp = grid.dp, .is_solid = shape.is_solid}, threads, body.report);
     unite_touching_shells(body.mesh, body.report, grid.dp, threads);
-    body.features = find_features(body.mesh, feature_options(settings, grid));
+    std::vector<std::uint32_t> seams;
+    if (extent == BodyExtent::NearDomain) seams = cut_to_domain(body, settings, grid, threads);
+    if (body.mesh.facets.empty()) return nothing_of(std::move(body), grid);
+    body.features = find_features(body.mesh, feature_options(settings, grid), seams);
     return fit_body(std::move(body), settings, grid, clips, threads);
 }
 

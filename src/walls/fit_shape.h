@@ -3,6 +3,7 @@
 #include "fppg/case_def.h"
 
 #include "lattice/fitted_draw.h"
+#include "walls/part_in_domain.h"
 
 #include <vector>
 
@@ -30,7 +31,7 @@ double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid);
 /// returns  particles inside the domain (between its first and last nodes) only
 /// throws   GeometryError without the place of the draw
 FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
-                     const std::vector<ClipPlane>& clips, int threads);
+                     const std::vector<ClipPlane>& clips, BodyExtent extent, int threads);
 
 /// The same for a body whose mesh, report and features are made; is_solid and, where it is round,
 /// its shape are set.

@@ -90,10 +90,25 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
             fmt::format("{}: no particle of the body-fitted wall lies inside the domain", place));
 }
 
+bool floats(const CaseDef& def, std::uint16_t mk)
+{
+    const int mkbound = mk - def.mk_bound_first;
+    return std::any_of(def.floatings.begin(), def.floatings.end(),
+                       [&](const FloatingDef& floating)
+                       {
+                           const std::vector<std::uint16_t>& mks = floating.mkbound;
+                           return std::find(mks.begin(), mks.end(), mkbound) != mks.end();
+                       });
+}
+
 FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
                const FitSettings& settings, int threads)
 {
-    FittedDraw out = fit_shape(shape, settings, scene.def->grid, draw.state->clips, threads);
+    // The mass of what floats is that of all of it.
+    const BodyExtent extent =
+        floats(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
+    FittedDraw out =
+        fit_shape(shape, settings, scene.def->grid, draw.state->clips, extent, threads);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace fppg
+{
+
+/// How much of a body is laid out.
+enum class BodyExtent : std::uint8_t
+{
+    NearDomain, ///< what can come into the domain
+    Whole,      ///< all of it, for its mass
+};
+
+/// Cuts off what a body has far beyond the domain: its particles would be taken out again.
+///
+/// Only where more of its surface lies beyond the domain and a margin of 12 dp than within, and at
+/// least 20,000 dp^2. A solid gets facets where it is cut, an open surface ends there. The measures
+/// of the body are then those of what is left. Left whole are round bodies, 2D cases and bodies
+/// with Placement::Inside.
+///
+/// body     mesh and report are made, features are not yet; without a facet where nothing of it is
+///          within the margin
+/// returns  the edges along which it was cut, ascending; none where it is left whole
+std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
+                                         const LatticeGrid& grid, int threads);
+
+} // namespace fppg

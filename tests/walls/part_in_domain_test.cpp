@@ -1,0 +1,167 @@
+// Bodies far larger than the domain: what comes into it is as if all of them were laid out.
+
+#include "walls/part_in_domain.h"
+
+#include "helpers/surface_cover.h"
+#include "meshes/mesh_query.h"
+#include "walls/fit_shape.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+using test::add_quad;
+using test::box;
+
+constexpr double dp = 0.05;
+
+LatticeGrid domain()
+{
+    return {.origin = {-1.01, -0.97, -0.8}, .dp = dp, .n = {41, 41, 33}};
+}
+
+FittedDraw fit(const TriangleSoup& soup, bool is_solid, BodyExtent extent)
+{
+    FitSettings settings;
+    return fit_shape({soup, is_solid}, settings, domain(), {}, extent, 2);
+}
+
+double height(double x, double y)
+{
+    return 0.3 * std::sin(2 * x) * std::cos(1.5 * y);
+}
+
+/// Hills of 20 m by 20 m; a solid has walls and a bottom.
+TriangleSoup hills(bool is_solid)
+{
+    constexpr int n = 80;
+    constexpr double half = 10;
+    const auto at = [](int i, int j)
+    {
+        const double x = -half + 2 * half * i / n, y = -half + 2 * half * j / n;
+        return Vec3{x, y, height(x, y)};
+    };
+    TriangleSoup soup;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+        {
+            std::array<Vec3, 4> quad{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+            add_quad(soup, quad[0], quad[1], quad[2], quad[3]);
+            if (!is_solid) continue;
+            for (std::size_t s = 0; s < 4; ++s)
+            {
+                const Vec3& a = quad[s];
+                const Vec3& b = quad[(s + 1) % 4];
+                if (std::max({std::fabs(a.x), std::fabs(a.y)}) < half - 1e-9 ||
+                    std::max({std::fabs(b.x), std::fabs(b.y)}) < half - 1e-9 ||
+                    (a.x != b.x ? std::fabs(a.y) : std::fabs(a.x)) < half - 1e-9)
+                    continue;
+                add_quad(soup, b, a, {a.x, a.y, -3}, {b.x, b.y, -3});
+            }
+            for (Vec3& p : quad) p.z = -3;
+            add_quad(soup, quad[3], quad[2], quad[1], quad[0]);
+        }
+    return soup;
+}
+
+/// Facets that lie in the domain with a step to spare.
+SurfaceMesh part_well_inside(const TriangleSoup& soup)
+{
+    const LatticeGrid grid = domain();
+    TriangleSoup out;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const auto is_inside = [&](const Vec3& p)
+        {
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                const double index = (p[axis] - grid.origin[axis]) / dp;
+                if (index < 1 || index > grid.n[static_cast<std::size_t>(axis)] - 2.0) return false;
+            }
+            return true;
+        };
+        const Vec3* p = &soup.vertices[3 * f];
+        if (std::all_of(p, p + 3, is_inside)) out.vertices.insert(out.vertices.end(), p, p + 3);
+    }
+    MeshReport report;
+    return repair_mesh(out, {}, 1, report);
+}
+
+/// Nodes 2 dp under the hills are inside, those above are not.
+void expect_full_below_hills(const std::vector<Spans>& volume)
+{
+    const LatticeGrid grid = domain();
+    for (std::uint32_t x = 0; x < grid.n[0]; ++x)
+        for (std::uint32_t y = 0; y < grid.n[1]; ++y)
+        {
+            std::uint32_t nodes = 0;
+            for (const Span& span : volume[x])
+                if (span.y == y) nodes += span.z_end - span.z_begin;
+            const double z = height(grid.origin.x + dp * x, grid.origin.y + dp * y);
+            const double under = (z - grid.origin.z) / dp;
+            ASSERT_GE(nodes, std::floor(under - 2) + 1) << x << ' ' << y;
+            ASSERT_LE(nodes, under + 1) << x << ' ' << y;
+        }
+}
+
+class LargeBody : public testing::TestWithParam<bool>
+{
+};
+
+TEST_P(LargeBody, HasTheWallsInTheDomainThatTheWholeBodyHas)
+{
+    const TriangleSoup soup = hills(GetParam());
+    const FittedDraw whole = fit(soup, GetParam(), BodyExtent::Whole);
+    const FittedDraw part = fit(soup, GetParam(), BodyExtent::NearDomain);
+    EXPECT_LT(part.body.measures.area, 0.1 * whole.body.measures.area) << "nothing was cut off";
+
+    const auto n = static_cast<double>(whole.particles.size());
+    ASSERT_GT(n, 1000);
+    // Before relaxation 0.9 to 1.15 a dp^2.
+    EXPECT_NEAR(static_cast<double>(part.particles.size()), n, 0.06 * n);
+    const MeshQuery query(TriangleSoup(soup), 1);
+    for (const Vec3& p : part.particles.positions) ASSERT_LT(query.closest_point(p).distance, 1e-9);
+    EXPECT_LT(test::farthest_point_dp(part_well_inside(soup), part.particles.positions, dp, 4),
+              0.92);
+    if (GetParam()) expect_full_below_hills(part.volume);
+}
+
+INSTANTIATE_TEST_SUITE_P(SolidAndSheet, LargeBody, testing::Bool());
+
+TEST(LargeBody, KeepsItsEdgesAndCornersInTheDomain)
+{
+    // One corner of a cube of 20 m lies in the domain.
+    const FittedDraw part =
+        fit(box({0.013, 0.021, 0.017}, {20, 20, 20}), true, BodyExtent::NearDomain);
+    const auto count = [&](FitKind kind)
+    { return std::count(part.particles.kinds.begin(), part.particles.kinds.end(), kind); };
+    EXPECT_EQ(count(FitKind::Corner), 1);
+    // The three edges are 0.98, 1.01 and 0.78 m long up to the end of the domain.
+    EXPECT_NEAR(static_cast<double>(count(FitKind::Edge)), (0.98 + 1.01 + 0.78) / dp, 2);
+}
+
+TEST(LargeBody, ThatHoldsTheDomainFillsIt)
+{
+    const FittedDraw part = fit(box({-20, -20, -20}, {20, 20, 20}), true, BodyExtent::NearDomain);
+    std::size_t nodes = 0;
+    for (const Spans& slab : part.volume)
+        for (const Span& span : slab) nodes += span.z_end - span.z_begin;
+    EXPECT_EQ(nodes, 41u * 41u * 33u);
+    EXPECT_EQ(part.particles.size(), 0u);
+}
+
+TEST(LargeBody, BesideTheDomainHasNothingInIt)
+{
+    const FittedDraw part = fit(box({5, 5, 5}, {25, 25, 25}), true, BodyExtent::NearDomain);
+    EXPECT_EQ(part.particles.size(), 0u);
+    for (const Spans& slab : part.volume) EXPECT_TRUE(slab.empty());
+}
+
+} // namespace
+} // namespace fppg
