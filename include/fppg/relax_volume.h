@@ -96,6 +96,9 @@ struct RelaxVolumeOptions
     /// With `fit_count`: so many particles are wanted in all; empty: as many as fill the space
     /// evenly.
     std::optional<double> wanted{};
+    /// With `fit_count`: of two particles that end nearer than this to one another, or to one that
+    /// does not move, one is taken out, dp; 0: none is.
+    double least_pair_dp = 0;
     /// Called after every iteration; relaxation ends when it returns false. May be empty.
     std::function<bool(const RelaxVolumeProgress&)> on_iteration;
 };

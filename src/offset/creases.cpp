@@ -38,7 +38,11 @@ constexpr std::size_t tiny_loop = 4;
 class CreaseFinder
 {
 public:
-    explicit CreaseFinder(const CreaseMesh& on) : on_(on) {}
+    /// was_placed  per vertex: it was put onto a crease before; may be empty
+    CreaseFinder(const CreaseMesh& on, std::vector<char>&& was_placed)
+        : on_(on), was_placed_(std::move(was_placed))
+    {
+    }
 
     /// Puts the vertices at creases onto them; returns whether there are any.
     bool place_vertices()
@@ -125,25 +129,27 @@ private:
         is_crease_ = std::move(found);
     }
 
-    /// The place on a crease, or at its corner, nearest to a vertex.
+    /// The place on a crease, or at its corner, nearest to a vertex: where the planes meet along
+    /// which the depth is right under the facets around it.
     std::optional<Vec3> crease_place(std::uint32_t v, double longest = longest_move) const
     {
-        std::vector<Vec3> faces;
+        std::vector<std::uint32_t> facets;
         for (const std::uint32_t* e = on_.edges_of(v); e != on_.edges_end(v); ++e)
             for (const std::uint32_t f : on_.mesh.edge_facets[*e])
-                if (f != no_index) faces.push_back(on_.middle_of(f));
+                if (f != no_index && std::find(facets.begin(), facets.end(), f) == facets.end())
+                    facets.push_back(f);
         const Vec3& from = on_.mesh.vertices[v];
         Quadric quadric;
-        for (const Vec3& p : faces)
+        for (const std::uint32_t f : facets)
         {
+            const Vec3 p = on_.middle_of(f);
             const DepthPlace place = on_.wall.at(p);
             const double at_vertex = place.depth + dot(place.direction, from - p);
             quadric.add_plane(place.direction, on_.options.depth - at_vertex);
         }
         const Vec3 start = from + quadric.least_point();
         if (!(norm(start - from) < longest * on_.options.cell)) return std::nullopt;
-        const Vec3 out =
-            project_to_crease(on_.wall, start, on_.options.depth, on_.options.dp, faces);
+        const Vec3 out = project_to_depth(on_.wall, start, on_.options.depth);
         return norm(out - from) < longest * on_.options.cell ? std::optional(out) : std::nullopt;
     }
 
@@ -188,17 +194,22 @@ private:
         parallel_for(
             near.size(), on_.threads,
             [&](std::size_t i) { places[near[i]] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
+        const std::vector<std::uint32_t> cut = edges_with_creases(places);
+        std::vector<std::array<std::optional<Vec3>, 2>> on_crease(cut.size());
+        parallel_for(
+            cut.size(), on_.threads,
+            [&](std::size_t i)
+            {
+                for (std::size_t end = 0; end < 2; ++end)
+                    on_crease[i][end] = crease_place(on_.mesh.edges[cut[i]][end], longest_pull);
+            },
+            64);
         std::vector<char> is_pulled(on_.mesh.vertices.size(), 0);
-        for (const auto& edge : on_.mesh.edges)
+        for (std::size_t i = 0; i < cut.size(); ++i)
         {
-            const auto [a, b] = edge;
-            if (!places[a] || !places[b] || is_pulled[a] != 0 || is_pulled[b] != 0) continue;
-            if (!has_crease_between(*places[a], *places[b], on_.mesh.vertices[a],
-                                    on_.mesh.vertices[b]))
-                continue;
-            const std::optional<Vec3> of_a = crease_place(a, longest_pull);
-            const std::optional<Vec3> of_b = crease_place(b, longest_pull);
-            if (!of_a && !of_b) continue;
+            const auto [a, b] = on_.mesh.edges[cut[i]];
+            const auto& [of_a, of_b] = on_crease[i];
+            if (is_pulled[a] != 0 || is_pulled[b] != 0 || (!of_a && !of_b)) continue;
             const bool takes_a = of_a && (!of_b || norm(*of_a - on_.mesh.vertices[a]) <=
                                                        norm(*of_b - on_.mesh.vertices[b]));
             const std::uint32_t v = takes_a ? a : b;
@@ -207,16 +218,49 @@ private:
         }
     }
 
+    /// Of the edges between vertices whose places are given, those with a crease between their
+    /// ends, but for those that end on one.
+    std::vector<std::uint32_t> edges_with_creases(
+        const std::vector<std::optional<DepthPlace>>& places) const
+    {
+        const std::vector<std::array<std::uint32_t, 2>>& edges = on_.mesh.edges;
+        std::vector<char> is_cut(edges.size(), 0);
+        parallel_for(
+            edges.size(), on_.threads,
+            [&](std::size_t e)
+            {
+                const auto [a, b] = edges[e];
+                if (!places[a] || !places[b]) return;
+                if (!was_placed_.empty() && (was_placed_[a] != 0 || was_placed_[b] != 0)) return;
+                is_cut[e] = has_crease_between(*places[a], *places[b], on_.mesh.vertices[a],
+                                               on_.mesh.vertices[b])
+                                ? 1
+                                : 0;
+            },
+            256);
+        std::vector<std::uint32_t> out;
+        for (std::uint32_t e = 0; e < edges.size(); ++e)
+            if (is_cut[e] != 0) out.push_back(e);
+        return out;
+    }
+
+    /// Those that were put onto a crease before stay where they are.
     void move_onto_creases()
     {
+        is_placed_.assign(on_.mesh.vertices.size(), 0);
         std::vector<std::uint32_t> vertices;
         for (std::uint32_t v = 0; v < on_.mesh.vertices.size(); ++v)
-            if (has_crease(v)) vertices.push_back(v);
+        {
+            if (!has_crease(v)) continue;
+            if (was_placed_.empty() || was_placed_[v] == 0)
+                vertices.push_back(v);
+            else
+                is_placed_[v] = 1;
+        }
         std::vector<std::optional<Vec3>> places(vertices.size());
         parallel_for(
             vertices.size(), on_.threads,
             [&](std::size_t i) { places[i] = crease_place(vertices[i]); }, 64);
-        is_placed_.assign(on_.mesh.vertices.size(), 0);
         for (std::size_t i = 0; i < vertices.size(); ++i)
         {
             if (!places[i]) continue;
@@ -391,6 +435,7 @@ private:
     }
 
     const CreaseMesh& on_;
+    std::vector<char> was_placed_;
     std::vector<char> is_crease_;
     std::vector<char> is_placed_; ///< per vertex
 };
@@ -400,17 +445,18 @@ private:
 void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
                      OffsetSurface& offset)
 {
+    std::vector<char> on_creases;
     for (int round = 0; round < crease_rounds; ++round)
     {
         const CreaseMesh on(wall, options, threads, offset.mesh);
-        CreaseFinder finder(on);
+        CreaseFinder finder(on, std::move(on_creases));
         if (!finder.place_vertices()) return;
-        const std::vector<char> on_creases = finder.on_creases();
+        on_creases = finder.on_creases();
         if (turn_onto_creases(on, on_creases)) reconnect(offset.mesh, threads, offset.report);
         remove_slivers(offset.mesh, options.cell, on_creases, threads, offset.report);
     }
     const CreaseMesh on(wall, options, threads, offset.mesh);
-    offset.creases = CreaseFinder(on).run();
+    offset.creases = CreaseFinder(on, std::move(on_creases)).run();
     reconnect(offset.mesh, threads, offset.report);
 }
 

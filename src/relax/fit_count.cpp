@@ -140,8 +140,14 @@ void change_array(std::vector<T>& array, const CountChange& change, const Value&
 namespace
 {
 
+/// So much of those that may move come or go at most for the number wanted, where others stay
+/// around them: a few particles in a narrow place cannot make up for a body.
+constexpr double most_change = 0.25;
+
 /// Spreads what the number wanted differs from what fills the space evenly over all particles.
-void add_bias(const Band& band, double wanted, std::vector<float>& excess)
+///
+/// most  of a particle, for each of them
+void add_bias(const Band& band, double wanted, double most, std::vector<float>& excess)
 {
     double sum = 0;
     std::size_t count = 0;
@@ -153,7 +159,8 @@ void add_bias(const Band& band, double wanted, std::vector<float>& excess)
     }
     if (count == 0) return;
     const double too_many = static_cast<double>(band.moving) - wanted;
-    const auto bias = static_cast<float>((too_many - sum) / static_cast<double>(count));
+    const auto bias =
+        static_cast<float>(std::clamp((too_many - sum) / static_cast<double>(count), -most, most));
     for (float& e : excess)
         if (e != 0) e += bias;
 }
@@ -189,6 +196,9 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
                      [&](std::size_t a, std::size_t b)
                      { return sign * excess[list.point(a)] > sign * excess[list.point(b)]; });
     auto left = static_cast<std::size_t>(std::abs(too_many));
+    if (options.least_pair_dp > 0)
+        left = std::min(left,
+                        static_cast<std::size_t>(most_change * static_cast<double>(rows.size())));
     for (std::size_t k = 0; k < rows.size() && left > 0; ++k)
     {
         const std::uint32_t i = list.point(rows[k]);
@@ -236,7 +246,10 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         NeighbourList::rows_per_chunk);
     CountChange change;
     change.is_removed.assign(band.moving, 0);
-    if (options.wanted) add_bias(band, *options.wanted, excess);
+    if (options.wanted)
+        add_bias(band, *options.wanted,
+                 options.least_pair_dp > 0 ? most_change : std::numeric_limits<double>::max(),
+                 excess);
     double sum = 0;
     std::size_t highest = list.rows();
     std::size_t lowest = list.rows();

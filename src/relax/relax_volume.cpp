@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "fppg/error.h"
+#include "meshes/crowded_points.h"
 #include "relax/fit_count.h"
 #include "relax/free_surface.h"
 #include "relax/volume_band.h"
@@ -278,6 +279,33 @@ void give_back(const Band& band, const VolumeSurroundings& surroundings,
     positions = std::move(result);
 }
 
+/// Takes out what was squeezed into gaps that are too narrow; inserted particles first.
+void drop_crowded(const VolumeSurroundings& surroundings, double least_pair, int threads,
+                  std::vector<Vec3>& positions, RelaxVolumeReport& report)
+{
+    std::vector<Vec3> all = positions;
+    all.insert(all.end(), surroundings.held.begin(), surroundings.held.end());
+    all.insert(all.end(), surroundings.walls.begin(), surroundings.walls.end());
+    constexpr std::uint32_t stays = 0, moved = 1, inserted = 2;
+    std::vector<std::uint32_t> rank(all.size(), stays);
+    for (std::size_t i = 0; i < positions.size(); ++i) rank[i] = i < report.kept ? moved : inserted;
+    const auto may_stay = [&](std::size_t i, std::size_t j)
+    { return rank[i] == stays && rank[j] == stays; };
+    const std::vector<char> goes = find_crowded(all, rank, least_pair, may_stay, threads);
+    std::size_t left = 0, kept = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+        if (goes[i] != 0) continue;
+        positions[left] = positions[i];
+        report.sources[left++] = report.sources[i];
+        if (i < report.kept) ++kept;
+    }
+    report.removed += positions.size() - left;
+    report.kept = kept;
+    positions.resize(left);
+    report.sources.resize(left);
+}
+
 /// An upper bound of the largest eigenvalue of the forces' derivative on square and cubic lattices.
 /// Source: computed over the Brillouin zone for h from 0.7 to 1.5, rounded up.
 double stiffness(double h, bool is_2d)
@@ -365,6 +393,8 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     }
     list = NeighbourList(0, 0); // its memory is needed for the result
     give_back(band, surroundings, options, positions, report);
+    if (options.fit_count && options.least_pair_dp > 0)
+        drop_crowded(surroundings, options.least_pair_dp * options.dp, threads, positions, report);
     return report;
 }
 

@@ -471,6 +471,7 @@ private:
                                            count_nodes(region, runs), grid.dp);
         if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
         options.has_free_surface = !is_of_inside;
+        if (options.wanted && !is_of_inside) options.least_pair_dp = least_pair_dp;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations,
