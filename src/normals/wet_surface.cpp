@@ -331,8 +331,8 @@ void WetSurface::note_thin_walls(const RunField& field)
 Vec3 WetSurface::vector_from(const Vec3& p, double most) const
 {
     if (query_ == nullptr) return {};
-    const ClosestPoint near = query_->closest_point(p);
-    if (near.distance > most) return {};
+    const ClosestPoint near = query_->closest_point(p, most);
+    if (!(near.distance <= most)) return {};
     const WallDepth* round_wall = round_walls_[near.facet];
     if (round_wall == nullptr) return near.point - p;
     // From the facets to their exact surface. Its nearest place may be on a dry side.
