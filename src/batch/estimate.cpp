@@ -5,6 +5,7 @@
 #include "fppg/lattice.h"
 #include "fppg/scene.h"
 
+#include "batch/fluid_near_walls.h"
 #include "batch/particle_limit.h"
 #include "batch/rates.h"
 #include "core/json.h"
@@ -38,8 +39,10 @@ struct WallCount
 {
     double on_surface = 0;
     double on_lines = 0;
+    double in_layers = 0; ///< behind them
     double inside = 0;
     double relaxed = 0; ///< of those on surfaces
+    double in_band = 0; ///< of those inside, that are relaxed too
 };
 
 class Estimator
@@ -78,6 +81,7 @@ private:
         LatticeReport report;
         RunField field = draw_on_lattice(scene_, options_.threads, {}, report);
         for (const auto& slab : field.slabs) runs_ += slab.size();
+        fluid_ = sample_fluid(field, def_.mk_bound_first);
         add_point_files(scene_, field, report);
         CaseConstants constants;
         std::vector<std::string> warnings;
@@ -136,9 +140,13 @@ private:
                 WallCount& wall = walls_[mk];
                 wall.on_surface += share * count.on_surface;
                 wall.on_lines += share * count.on_lines;
+                wall.in_layers += share * count.in_layers;
                 wall.inside += share * count.inside;
                 wall.relaxed += share * count.relaxed;
+                wall.in_band += share * count.in_band;
             }
+            const std::vector<Vec3>& corners = surface.shape.soup.vertices;
+            surfaces_.vertices.insert(surfaces_.vertices.end(), corners.begin(), corners.end());
         }
     }
 
@@ -174,15 +182,47 @@ private:
         for (const FeatureLine& line : features.lines) length += line.length;
         const double share = share_inside(mesh, clips);
         const double density = settings.density == FitDensity::Cell ? cell_density : 1;
+        const double on_area = share * density * report.area / (dp * dp);
         count.on_lines = share * (length / dp + static_cast<double>(features.singular.size()));
-        count.on_surface = std::max(count.on_lines, share * density * report.area / (dp * dp));
+        const bool is_on_surface = settings.depths_dp.empty() || settings.depths_dp[0] == 0;
+        if (is_on_surface) count.on_surface = std::max(count.on_lines, on_area);
+        const double volume = share * std::abs(report.volume) / (dp * dp * dp);
+        count.in_layers = on_area * layers_of(settings, report, dp);
+        if (report.is_watertight) count.in_layers = std::min(count.in_layers, volume);
         if (settings.relax.is_active) count.relaxed = count.on_surface;
         if (shape.is_solid)
-            count.inside = std::max(
-                0.0, share * std::abs(report.volume) / (dp * dp * dp) - count.on_surface / 2);
+            count.inside = std::max(0.0, volume - count.on_surface / 2 - count.in_layers);
+        if (settings.relax.is_active)
+            count.in_band = std::min(count.inside, rates.band_particles * on_area);
         out_.wall_area += share * report.area;
         out_.line_length += share * length;
         return count;
+    }
+
+    /// The layers behind a surface, each counted by its area: it shrinks as that of a ball with
+    /// the same volume for its surface.
+    static double layers_of(const FitSettings& settings, const MeshReport& report, double dp)
+    {
+        const double radius =
+            report.is_watertight && report.area > 0 ? 3 * std::abs(report.volume) / report.area : 0;
+        double out = 0;
+        for (const double depth_dp : settings.depths_dp)
+        {
+            if (depth_dp == 0) continue;
+            const double left = radius > 0 ? std::max(0.0, 1 - depth_dp * dp / radius) : 1;
+            out += left * left;
+        }
+        return out;
+    }
+
+    /// Fluid near walls that is balanced (balance.h).
+    double balanced() const
+    {
+        if (!def_.balances() || out_.n_fluid == 0) return 0;
+        double width = 2 * def_.h / def_.grid.dp + 1.5;
+        for (const FluidBand& band : def_.fluid_bands) width = std::max(width, band.width_dp);
+        return static_cast<double>(out_.n_fluid) *
+               share_near(fluid_, surfaces_, width * def_.grid.dp, options_.threads);
     }
 
     bool is_inside(const Vec3& p, const std::vector<ClipPlane>& clips) const
@@ -232,6 +272,11 @@ private:
         return area > 0 ? inside / area : 1;
     }
 
+    static std::uint64_t all_of(const WallCount& wall)
+    {
+        return static_cast<std::uint64_t>(wall.on_surface + wall.in_layers + wall.inside);
+    }
+
     void count_blocks()
     {
         for (EstimatedBlock& block : out_.blocks)
@@ -240,21 +285,20 @@ private:
             if (fit_settings(def_.fit, block.mk) == nullptr) continue;
             const auto wall = walls_.find(block.mk);
             block.is_exact = wall == walls_.end() && !def_.grid.is_2d;
-            if (wall != walls_.end())
-                block.count =
-                    static_cast<std::uint64_t>(wall->second.on_surface + wall->second.inside);
+            if (wall != walls_.end()) block.count = all_of(wall->second);
         }
         for (const auto& [mk, wall] : walls_)
         {
-            out_.n_wall += static_cast<std::uint64_t>(wall.on_surface);
+            out_.n_wall += static_cast<std::uint64_t>(wall.on_surface + wall.in_layers);
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
+            on_surfaces_ += wall.on_surface;
+            in_layers_ += wall.in_layers;
             relaxed_ += wall.relaxed;
+            in_band_ += wall.in_band;
             const auto is_it = [mk = mk](const EstimatedBlock& b) { return b.mk == mk; };
             // A shape so thin that no node is near it.
             if (std::none_of(out_.blocks.begin(), out_.blocks.end(), is_it))
-                out_.blocks.push_back({ParticleType::Fixed, mk,
-                                       static_cast<std::uint64_t>(wall.on_surface + wall.inside),
-                                       false});
+                out_.blocks.push_back({ParticleType::Fixed, mk, all_of(wall), false});
         }
         out_.is_exact = std::all_of(out_.blocks.begin(), out_.blocks.end(),
                                     [](const EstimatedBlock& b) { return b.is_exact; });
@@ -291,17 +335,21 @@ private:
         if (options_.saves_all) out_.output_bytes += np * vtk;
         if (options_.saves_parts) out_.output_bytes += np * vtk;
 
-        out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
-                            rates.bytes_per_run * static_cast<double>(runs_) +
-                            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
-                            rates.bytes_a_wall_particle * walls +
-                            rates.bytes_a_relaxed_particle * relaxed_;
+        out_.memory_bytes =
+            rates.base_bytes + rates.bytes_per_thread * options_.threads +
+            rates.bytes_per_run * static_cast<double>(runs_) +
+            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
+            rates.bytes_a_wall_particle * on_surfaces_ + rates.bytes_a_relaxed_particle * relaxed_ +
+            rates.bytes_a_band_particle * in_band_ + rates.bytes_a_layer_particle * in_layers_;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
-        out_.seconds =
-            rates.seconds_to_start + draw_seconds_ +
-            (rates.seconds_a_wall_particle * walls + rates.seconds_a_relaxed_particle * relaxed_) /
-                options_.threads +
-            out_.output_bytes / rates.written_bytes_a_second;
+        out_.seconds = rates.seconds_to_start + draw_seconds_ +
+                       (rates.seconds_a_wall_particle * on_surfaces_ +
+                        rates.seconds_a_relaxed_particle * relaxed_ +
+                        rates.seconds_a_band_particle * in_band_ +
+                        rates.seconds_a_layer_particle * in_layers_ +
+                        rates.seconds_a_balanced_particle * balanced()) /
+                           options_.threads +
+                       out_.output_bytes / rates.written_bytes_a_second;
     }
 
     EstimateOptions options_;
@@ -310,7 +358,12 @@ private:
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
     std::uint64_t runs_ = 0;
+    std::vector<Vec3> fluid_; ///< some of its nodes
+    TriangleSoup surfaces_;   ///< of all fitted walls
+    double on_surfaces_ = 0;
+    double in_layers_ = 0;
     double relaxed_ = 0;
+    double in_band_ = 0;
     double draw_seconds_ = 0;
 };
 

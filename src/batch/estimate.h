@@ -45,7 +45,7 @@ struct Estimate
 
     double wall_area = 0;        ///< of body-fitted shapes inside the domain, metres squared
     double line_length = 0;      ///< of their edges, metres
-    std::uint64_t n_wall = 0;    ///< particles on their surfaces
+    std::uint64_t n_wall = 0;    ///< particles on their surfaces and in layers
     std::uint64_t n_line = 0;    ///< of them, on edges
     std::uint64_t triangles = 0; ///< drawn
 
@@ -59,8 +59,9 @@ struct Estimate
 /// Reads a case and draws it on the lattice, in memory only. Without body-fitted walls the counts
 /// are those of a run. A body-fitted mk counts, per shape drawn with it inside the domain and its
 /// clips, area / dp^2 particles on the surface (1.5 times as many with density="cell"), of them
-/// length / dp on its edges, and in a solid volume / dp^3 less half of the surface's; what later
-/// draws cut off, and what parts share, is not taken off. In 2D it counts its nodes. Memory and
+/// length / dp on its edges, in each layer as many as a ball with its area and volume would have,
+/// and in a solid volume / dp^3 less half of the surface's and the layers'; what later draws cut
+/// off, and what parts share, is not taken off. In 2D it counts its nodes. Memory and
 /// time follow from counts by the rates of src/batch/rates.h and from the time that drawing takes.
 ///
 /// path    the definition, with its extension

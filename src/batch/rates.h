@@ -4,21 +4,27 @@ namespace fppg
 {
 
 /// What particles cost, for estimates: measured with the release build on an AMD EPYC, one thread,
-/// with the cases of cases/ (gear, tyre, ford; lattice, -fit:raw and -fit). A factor of two off on
-/// another machine is usual.
+/// with a ball (surface, filled, in layers; -fit:raw and -fit) and the wet road of cases/new. A
+/// factor of two off on another machine is usual.
 struct Rates
 {
     double base_bytes = 8e6;                 ///< of the program itself
     double bytes_per_thread = 2e6;           ///< pieces of files being filled
     double bytes_per_run = 100;              ///< of nodes in a column: while drawn, as particles
     double bytes_per_triangle = 600;         ///< of mesh files, with the trees to search them
-    double bytes_a_wall_particle = 600;      ///< off the lattice, placed
-    double bytes_a_relaxed_particle = 500;   ///< besides, with the band around it
+    double bytes_a_wall_particle = 170;      ///< off the lattice, placed
+    double bytes_a_relaxed_particle = 190;   ///< besides
+    double bytes_a_band_particle = 550;      ///< of a volume that is relaxed
+    double bytes_a_layer_particle = 4200;    ///< with the surface that it is laid on
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
     double seconds_to_start = 0.01;
-    double seconds_a_wall_particle = 6e-6;     ///< placed, with its zone of the lattice; one thread
-    double seconds_a_relaxed_particle = 50e-6; ///< with the band around it; one thread
+    double seconds_a_wall_particle = 2e-6; ///< placed, with its zone of the lattice; one thread
+    double seconds_a_relaxed_particle = 5e-6;
+    double seconds_a_band_particle = 18e-6;
+    double seconds_a_layer_particle = 100e-6;    ///< cut, laid and relaxed
+    double seconds_a_balanced_particle = 260e-6; ///< fluid near walls
+    double band_particles = 2.3;                 ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;
 
     double bi4_bytes = 44;      ///< a particle: id, position, velocity, density
