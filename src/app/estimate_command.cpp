@@ -4,6 +4,7 @@
 #include "app/stage_bar.h"
 #include "app/threads.h"
 #include "batch/estimate.h"
+#include "batch/machine_speed.h"
 #include "fppg/error.h"
 
 #include <fmt/format.h>
@@ -25,10 +26,23 @@ int run_estimate(const std::vector<std::string>& arguments)
             "\n"
             "Usage:\n"
             "  fppg estimate DEFINITION [--json] [options]   fppg estimate Case_Def -dp:0.005\n"
+            "  fppg estimate --calibrate                     measures this machine, in two "
+            "seconds\n"
             "\n"
             "The options are those of a run: -dp, -evars, -fit, -save, -threads. Counts are exact, "
             "but for\n"
-            "body-fitted walls; memory and time are estimates. --json prints one JSON object.\n");
+            "body-fitted walls; memory and time are estimates. --json prints one JSON object.\n"
+            "--calibrate keeps how fast this machine is in the user's settings, for all later "
+            "estimates.\n");
+        return 0;
+    }
+    if (arguments == std::vector<std::string>{"--calibrate"})
+    {
+        const MachineSpeed speed = calibrate_speed();
+        fmt::print(
+            "Body-fitting takes {:.2f} times as long here as on the machine that estimates "
+            "were made for; kept in {}.\n",
+            speed.factor, speed.file);
         return 0;
     }
     std::vector<std::string> of_run = arguments;

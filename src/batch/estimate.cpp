@@ -6,6 +6,7 @@
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
+#include "batch/machine_speed.h"
 #include "batch/particle_limit.h"
 #include "batch/rates.h"
 #include "core/json.h"
@@ -343,11 +344,12 @@ private:
             rates.bytes_a_band_particle * in_band_ + rates.bytes_a_layer_particle * in_layers_;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
         out_.seconds = rates.seconds_to_start + draw_seconds_ +
-                       (rates.seconds_a_wall_particle * on_surfaces_ +
-                        rates.seconds_a_relaxed_particle * relaxed_ +
-                        rates.seconds_a_band_particle * in_band_ +
-                        rates.seconds_a_layer_particle * in_layers_ +
-                        rates.seconds_a_balanced_particle * balanced()) /
+                       read_machine_speed().factor *
+                           (rates.seconds_a_wall_particle * on_surfaces_ +
+                            rates.seconds_a_relaxed_particle * relaxed_ +
+                            rates.seconds_a_band_particle * in_band_ +
+                            rates.seconds_a_layer_particle * in_layers_ +
+                            rates.seconds_a_balanced_particle * balanced()) /
                            options_.threads +
                        out_.output_bytes / rates.written_bytes_a_second;
     }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace
 {
@@ -63,6 +64,49 @@ TEST(Estimate, LeavesOutTheSurfaceBeyondTheDomain)
     write_text(folder / "Case_Def.xml", text.text());
     const double whole = 4 * M_PI * 0.4 * 0.4;
     EXPECT_NEAR(estimate(folder, {"-fit"}).at("wall_area").get<double>(), whole / 2, whole * 0.03);
+}
+
+/// A ball with three layers in front of fluid, about 7,000 particles in them.
+CaseText layered_ball()
+{
+    CaseText text;
+    text.dp = "0.02";
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawsphere radius="0.3"><point x="0.5" y="0.5" z="0.5" /></drawsphere><setmkfluid mk="0" /><fillbox x="0.05" y="0.05" z="0.05"><modefill>void</modefill><point x="0" y="0" z="0" /><size x="1" y="1" z="1" /></fillbox>)";
+    text.after_geometry = R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
+    return text;
+}
+
+TEST(Estimate, CountsLayersAndTakesTheirTimeIn)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", layered_ball().text());
+    const json found = estimate(folder);
+    run(folder, {"Case_Def", "out/Case"});
+    const double particles =
+        static_cast<double>(fppg::read_particles(folder / "out/Case", false, 1).positions.size());
+    EXPECT_NEAR(found.at("particles").get<double>(), particles, 0.03 * particles);
+    EXPECT_NEAR(found.at("wall_particles").get<double>(), 7050, 350)
+        << "4 pi of (0.29, 0.27 and 0.25 m) / dp, squared";
+}
+
+TEST(Estimate, IsFittedToTheMachineByCalibrating)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", layered_ball().text());
+    setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+    const double before = estimate(folder).at("seconds");
+    const RunResult calibrated = run(folder, {"estimate", "--calibrate"});
+    EXPECT_EQ(calibrated.code, 0) << calibrated.output;
+    const json measured = json::parse(read_text(folder / "fppg/speed.json"));
+    EXPECT_GT(measured.at("factor").get<double>(), 0);
+    write_text(folder / "fppg/speed.json", R"({"factor": 100})");
+    const double slow = estimate(folder).at("seconds");
+    EXPECT_GT(slow, 20 * before);
+    // Cut short, it counts as none.
+    write_text(folder / "fppg/speed.json", R"({"factor":)");
+    EXPECT_LT(estimate(folder).at("seconds").get<double>(), slow / 4);
+    unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST(Estimate, NamesTheFilesThatACaseReads)

@@ -15,7 +15,7 @@ _fppg()
             options="--json --html --stl --definition --tolerance --tolerance-density --tolerance-velocity --tolerance-normal
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:convert) options="--output --to --case-xml --threads --help" ;;
-        *:estimate) options="--json -dp: -evars: -fit -save: -threads: --help" ;;
+        *:estimate) options="--json --calibrate -dp: -evars: -fit -save: -threads: --help" ;;
         *:inspect) options="--dp --unit --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:new)
