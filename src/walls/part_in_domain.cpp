@@ -15,9 +15,9 @@ namespace fppg
 namespace
 {
 
-/// No round number, so that the cut goes along no face of a mesh. Layers, relaxation and features
-/// reach less far.
-constexpr double margin_dp = 12.37;
+/// Layers, relaxation and features reach less far. Hardly beyond a plane of nodes, so that nodes go
+/// on a step behind the cut, as the volume asks, and not quite on it, where faces of meshes lie.
+constexpr double margin_dp = 12.001;
 constexpr double least_area_dp2 = 20000;
 /// The box touches nothing by intent.
 constexpr double cut_merge_dp = 1e-6;

@@ -146,6 +146,14 @@ TEST(LargeBody, KeepsItsEdgesAndCornersInTheDomain)
     EXPECT_NEAR(static_cast<double>(count(FitKind::Edge)), (0.98 + 1.01 + 0.78) / dp, 2);
 }
 
+TEST(LargeBody, StandsForTheVolumeOfWhatIsLeft)
+{
+    FittedDraw part = fit(hills(true), true, BodyExtent::NearDomain);
+    FitMeasures& measures = part.body.measures;
+    EXPECT_NEAR(measures.node_volume + measures.wall_volume, measures.volume,
+                0.001 * measures.volume);
+}
+
 TEST(LargeBody, ThatHoldsTheDomainFillsIt)
 {
     const FittedDraw part = fit(box({-20, -20, -20}, {20, 20, 20}), true, BodyExtent::NearDomain);
