@@ -38,7 +38,7 @@ BLOCK = ('<setmkbound mk="1" /><drawbox fppg:name="block"><boxfill>solid</boxfil
 # GenCase's rule for the nodes of a facet (tests/golden/rules.md) depends on how a surface is cut into facets.
 MOST_OF_COUNT = 0.2
 # What nobody says yet.
-KNOWN = {("crosses itself", "lattice, inside"), ("crosses itself", "fitted")}
+KNOWN = set()
 # name -> draws, <fppg>, option, Boundary.
 MODES = {
     "lattice": (MESH.format('autofill="true"'), "", "-fit:off", 1),

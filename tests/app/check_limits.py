@@ -120,6 +120,34 @@ class TooMany(Limits):
                 self.assertIn(f"Total particles: {expected:,} ", out)
 
 
+class SmallDisk(Limits):
+    SIZE = 1 << 21
+
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("mount"), "only root can mount a small disk")
+    def test_is_told_before_the_case_is_drawn_and_names_the_dp_that_fits(self):
+        disk = self.path("disk")
+        os.mkdir(disk)
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.SIZE}", "tmpfs", disk], check=False).returncode:
+            self.skipTest("this system mounts no tmpfs")
+        try:
+            for dp, begin in (("0.0005", "the case would have about 8e+09 particles"), ("0.02", "the case has 132651 ")):
+                self.write_case(SOLID, dp)
+                code, out = self.run_it("Case_Def", "disk/Case")
+                self.assertEqual(code, 4, out)
+                self.assertIn(begin, out)
+                self.assertIn("the disk of disk has room for about 4.8e+04 (0.0021 GB)", out)
+                self.assertEqual(os.path.exists(self.path("disk/Case.bi4")), False)
+                named = re.search(r"; dp=([0-9.]+)", out).group(1)
+                code, out = self.run_it("Case_Def", "disk/Case", "-dp:" + named)
+                self.assertEqual(code, 0, out)
+                self.assertGreater(os.path.getsize(self.path("disk/Case.bi4")), self.SIZE / 5)
+                os.remove(self.path("disk/Case.bi4"))
+            code, out = self.run_it("Case_Def", "disk/Case", "-dp:0.02", "-save:-bi")
+            self.assertEqual(code, 0, out)
+        finally:
+            subprocess.run(["umount", disk], check=True)
+
+
 class Endless(Limits):
     def test_lists_are_counted_before_they_run(self):
         lists = "".join(f'<list name="l{i}">' + f'<runlist name="l{i + 1}" />' * 10 + "</list>" for i in range(11))
