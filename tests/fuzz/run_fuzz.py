@@ -42,7 +42,7 @@ def fuzz(options, target):
     os.makedirs(new, exist_ok=True)
     os.makedirs(options.findings, exist_ok=True)
     seeds = [new] + [f for f in (corpus_of(target),) if os.path.isdir(f)]
-    done = call(options.program, target, [f"-max_total_time={options.seconds}", "-print_final_stats=1", "-max_len=8192",
+    done = call(options.program, target, [f"-max_total_time={options.seconds}", "-print_final_stats=1", "-max_len=8192", f"-seed={options.seed}",
                                           f"-artifact_prefix={options.findings}/{target}-", *LIMITS, *seeds])
     with open(os.path.join(options.findings, target + ".log"), "w", encoding="utf-8") as log:
         log.write(done.stderr)
@@ -84,6 +84,7 @@ def main():
     parser.add_argument("--findings", default="")
     parser.add_argument("--seeds", default="")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=0, help="of the random changes; 0: another one each time")
     parser.add_argument("--merge", type=int, default=0, metavar="KILOBYTES", help="of all targets together")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
