@@ -101,7 +101,8 @@ def run(program, name, folder):
     if not races and done.returncode in codes:
         print(f"{name}: no race", flush=True)
         return True
-    print(f"{name}: {len(races)} races, exit code {done.returncode}\n{done.stdout}", flush=True)
+    tale = re.search(r"={10,}\nWARNING: ThreadSanitizer.*?SUMMARY[^\n]*", done.stdout, flags=re.S)
+    print(f"{name}: {len(races)} races, exit code {done.returncode}\n{tale.group() if tale else done.stdout}", flush=True)
     return False
 
 

@@ -17,6 +17,7 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+MOST_INPUTS = 40
 # Of one input, under sanitizers that make the program about five times slower and larger.
 LIMITS = ["-timeout=60", "-rss_limit_mb=2048", "-malloc_limit_mb=1024"]
 
@@ -59,7 +60,7 @@ def size_of(folder):
 
 
 def merge(options, target, most):
-    """The least inputs that reach all that the seeds reach, small ones first, up to `most` bytes."""
+    """Of the least inputs that reach all that the seeds reach MOST_INPUTS of all sizes, small ones first up to `most` bytes."""
     corpus = corpus_of(target)
     with tempfile.TemporaryDirectory(prefix="fppg-merge-") as out:
         old = [f for f in (os.path.join(options.seeds, target), corpus) if os.path.isdir(f)]
@@ -69,7 +70,8 @@ def merge(options, target, most):
         shutil.rmtree(corpus, ignore_errors=True)
         os.makedirs(corpus)
         left = most
-        for name in sorted(os.listdir(out), key=lambda n: (os.path.getsize(os.path.join(out, n)), n)):
+        names = sorted(os.listdir(out), key=lambda n: (os.path.getsize(os.path.join(out, n)), n))
+        for name in names[::max(1, -(-len(names) // MOST_INPUTS))]:
             left -= os.path.getsize(os.path.join(out, name))
             if left >= 0:
                 shutil.copy(os.path.join(out, name), os.path.join(corpus, name[:12]))
