@@ -84,7 +84,7 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
 /// Body-fitted walls are laid whole before what is outside the domain goes.
 void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
-    constexpr double bytes_per_particle = 500; // about what laying them needs
+    constexpr double bytes_per_particle = 100; // the least that laying them needs
     const double dp = scene.def->grid.dp;
     const auto memory = static_cast<double>(available_memory());
     const double most = std::min(static_cast<double>(most_particles), memory / bytes_per_particle);
