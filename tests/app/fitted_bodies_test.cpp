@@ -189,7 +189,7 @@ TEST(FittedSolids, WithExactVolumesCountWhatOfThemIsInTheDomain)
     text.dp = "0.05";
     text.mainlist =
         R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>solid</boxfill>)"
-        R"(<point x="1.2" y="0.1" z="0.1" /><size x="500" y="0.4" z="0.4" /></drawbox>)";
+        R"(<point x="1.2" y="0.1" z="0.1" /><size x="10" y="0.4" z="0.4" /></drawbox>)";
     text.after_geometry =
         R"(<fppg><bodyfitted mkbound="0" place="inside" volume="exact" /></fppg>)";
     write_text(folder / "Case_Def.xml", text.text());
