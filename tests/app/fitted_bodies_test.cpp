@@ -193,8 +193,7 @@ TEST(FittedSolids, WithExactVolumesCountWhatOfThemIsInTheDomain)
     text.after_geometry =
         R"(<fppg><bodyfitted mkbound="0" place="inside" volume="exact" /></fppg>)";
     write_text(folder / "Case_Def.xml", text.text());
-    const fppg::GeneratedCase made =
-        fppg::generate_case((folder / "Case_Def.xml").string(), {.threads = 2});
+    const fppg::GeneratedCase made = fppg::generate_case(folder / "Case_Def.xml", {.threads = 2});
     const std::vector<double>& volumes = made.particles().volumes;
     ASSERT_FALSE(volumes.empty());
     // The last nodes stand at 1.45, half a dp before the end of the domain.

@@ -60,7 +60,10 @@ void generate_particles(std::string_view bytes)
     write_input("Case_Def.xml", bytes);
     // Half of all inputs also fit the walls that the definition leaves on the lattice.
     const FitChoice fit = bytes.size() % 2 == 0 ? FitChoice::AsCase : FitChoice::On;
-    if (!is_small(read_case("Case_Def.xml", {.fit = fit, .case_name = "Case"}))) return;
+    CaseOptions options;
+    options.fit = fit;
+    options.case_name = "Case";
+    if (!is_small(read_case("Case_Def.xml", options))) return;
     GeneratedCase made = generate_case("Case_Def.xml", {.fit = fit, .threads = 1});
     expect_sane(made.particles());
     if (made.particles().np > 0) expect_readable(made);

@@ -54,7 +54,7 @@ void read_ground(std::string_view bytes)
     BathymetryGrid grid;
     grid.spacing = 0.1;
     grid.expands[0] = {.size = 0.4, .z = 0.9, .size2 = 0.3, .z2 = -0.2};
-    grid.expands[3] = {.size = -0.2};
+    grid.expands[3].size = -0.2;
     grid.periods[1] = BathymetryPeriod{.ramp_width = 0.2, .flat_width = 0.1};
     read_and_repair("input.mesh", bytes, {.format = MeshFormat::Bathymetry, .bathymetry = grid});
 }
@@ -62,6 +62,13 @@ void read_ground(std::string_view bytes)
 void read_point_list(std::string_view bytes)
 {
     (void)read_points(bytes, "points");
+}
+
+CaseOptions options_of_case()
+{
+    CaseOptions options;
+    options.case_name = "Case";
+    return options;
 }
 
 /// A definition, and the program that brings old ones up to date.
@@ -75,14 +82,14 @@ void read_definition_text(std::string_view bytes)
     {
     }
     write_input("Case_Def.xml", bytes);
-    (void)read_case("Case_Def.xml", {.case_name = "Case"});
+    (void)read_case("Case_Def.xml", options_of_case());
 }
 
 /// The parts that `<drawfilevtm>` draws; Vtm_Def.xml draws those of input.vtm.
 void read_parts(std::string_view bytes)
 {
     write_input("input.vtm", bytes);
-    (void)read_case("Vtm_Def.xml", {.case_name = "Case"});
+    (void)read_case("Vtm_Def.xml", options_of_case());
 }
 
 void evaluate(std::string_view bytes)
