@@ -59,6 +59,8 @@ struct MeshReport
     Vec3 first_junction;         ///< the first of these vertices
     std::size_t self_intersections =
         0;                  ///< facet pairs without a common vertex that cross; counted on request
+    std::size_t folds = 0;  ///< pairs of them in one shell; with warns_of_folds
+    Vec3 first_fold;        ///< a corner of the first of these pairs
     std::size_t shells = 0; ///< parts connected through edges with two facets
     bool is_watertight = false; ///< every edge has as many facets that run one way as the other
     double volume = 0;          ///< signed sum, metres cubed
@@ -78,6 +80,9 @@ struct MeshIntakeOptions
     /// facet that part it and closed shells inside others.
     bool is_solid = false;
     bool count_self_intersections = false;
+    /// A part that crosses itself, deeper than a thousandth of `dp`, is told: which of its sides is
+    /// the inside is anybody's guess there.
+    bool warns_of_folds = false;
 };
 
 /// Welds, cleans and orients the facets of a file.

@@ -55,7 +55,7 @@ std::string embree_version()
     const RTCDevice device = new_embree_device(1);
     const auto part = [&](RTCDeviceProperty property)
     { return static_cast<long long>(rtcGetDeviceProperty(device, property)); };
-    const std::string out =
+    std::string out =
         numbers(part(RTC_DEVICE_PROPERTY_VERSION_MAJOR), part(RTC_DEVICE_PROPERTY_VERSION_MINOR),
                 part(RTC_DEVICE_PROPERTY_VERSION_PATCH));
     rtcReleaseDevice(device);

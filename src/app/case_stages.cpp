@@ -14,11 +14,11 @@
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
-#include "batch/particle_limit.h"
 #include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
 #include "particles/exact_volumes.h"
+#include "particles/off_lattice_particles.h"
 
 #include <fmt/format.h>
 
@@ -54,6 +54,15 @@ void enter_zone(MadeCase& made)
                         "meet across the period; expected none of the parameters XPeriodicIncY "
                         "and the like, or particles on the lattice only");
     clip_to_zone(made.def.vres, made.def.zone, made.field);
+}
+
+std::uint64_t count_particles(const RunField& field)
+{
+    std::uint64_t count = 0;
+    for (const std::uint64_t n : count_off_lattice_particles(field.walls)) count += n;
+    for (const std::vector<Run>& slab : field.slabs)
+        for (const Run& r : slab) count += r.is_covered ? 0 : r.z_end - r.z_begin;
+    return count;
 }
 
 LatticeProgress draw_progress(CaseRunState& run)
@@ -154,12 +163,14 @@ void draw(CaseRunState& run, MadeCase& made)
                   for (const std::string& line : made.def.list_log) run.log.line(line);
                   CaseOptions options = case_options(run.options);
                   options.meshes = made.scene.meshes;
-                  expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads);
+                  expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
+                                       run.limit);
                   expect_metres(made.scene, run.threads);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);
                   enter_zone(made);
+                  expect_room(made.def, count_particles(made.field), run.limit);
                   made.mesh_files = std::move(report.mesh_files);
                   for (const CavityFilled& fill : report.fills) log_fill(fill, run.log);
                   for (const std::string& line : report.log) run.log.line(line);

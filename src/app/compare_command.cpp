@@ -142,8 +142,8 @@ void draw_changed(const Comparison& comparison, std::vector<ComparePicture>& pic
     RenderOptions options = picture_options(comparison);
     options.colour = RenderColour::Kind;
     std::vector<std::pair<std::string, std::string>> legend;
-    for (std::uint8_t c = 0; c < std::size(changes); ++c)
-        legend.emplace_back(hex_of(colour_of_kind(c)), changes[c]);
+    for (std::size_t c = 0; c < std::size(changes); ++c)
+        legend.emplace_back(hex_of(colour_of_kind(static_cast<std::uint8_t>(c))), changes[c]);
     pictures.push_back(
         {fmt::format("Only what differs{}, A on the left, B on the right:",
                      comparison.changed.size() < most_changed ? "" : " (the first 200,000)"),
@@ -156,8 +156,8 @@ SceneSet scene_of_changed(const Comparison& comparison, std::size_t f)
     SceneSet set;
     set.name = f == 0 ? "A, only what differs" : "B, only what differs";
     set.dp = comparison.dp;
-    for (std::uint8_t c = 0; c < std::size(changes); ++c)
-        set.parts.push_back({changes[c], hex_of(colour_of_kind(c)), {}});
+    for (std::size_t c = 0; c < std::size(changes); ++c)
+        set.parts.push_back({changes[c], hex_of(colour_of_kind(static_cast<std::uint8_t>(c))), {}});
     for (const ChangedParticle& p : comparison.changed)
         if (p.kind != (f == 0 ? ChangeKind::Extra : ChangeKind::Missing))
             set.parts[colour_of(p.kind)].positions.push_back(p.position[f]);

@@ -9,6 +9,7 @@
 #include "app/save_result.h"
 #include "app/templates_command.h"
 #include "app/threads.h"
+#include "batch/rates.h"
 #include "files/output_lock.h"
 
 #include <fmt/format.h>
@@ -35,6 +36,15 @@ void prepare_folder(const DropInOptions& options)
     if (error)
         throw IoError(
             fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+}
+
+/// In the files that a run writes; those that not every particle has do not count.
+double bytes_of_particle(const DropInOptions& options)
+{
+    double bytes = options.save_bi4 ? rates.bi4_bytes : 0;
+    if (options.save_all) bytes += rates.vtk_bytes;
+    if (options.save_bound && options.save_fluid) bytes += rates.vtk_bytes;
+    return bytes;
 }
 
 /// What a zone of a case with `<vres>` takes from those made before it.
@@ -128,6 +138,8 @@ int run_case(const DropInOptions& options)
     {
         prepare_folder(options);
         lock.emplace(options.output);
+        run.limit = limit_of_disk(fs::path(options.output).parent_path().string(),
+                                  bytes_of_particle(options));
         make_zones(run, made);
     }
     catch (const std::exception& error)

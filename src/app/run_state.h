@@ -11,6 +11,7 @@
 #include "app/run_log.h"
 #include "app/stage_bar.h"
 #include "app/stopwatch.h"
+#include "batch/particle_limit.h"
 
 #include <array>
 #include <cstdint>
@@ -33,6 +34,7 @@ struct CaseRunState
     std::vector<std::string> warnings;
     std::vector<std::string> diagnostics; ///< those that -strict takes for errors
     std::set<std::uint16_t> mks;          ///< absolute, with particles in any zone
+    ParticleLimit limit{};                ///< of the files that the run writes
     /// Told of the stage and the share of it that is done, 0 to 1, by the thread that runs the
     /// case. What it throws ends the run.
     std::function<void(const std::string& stage, double share)> on_progress{};

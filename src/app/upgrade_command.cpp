@@ -53,7 +53,7 @@ std::string back_up(const std::string& path)
 {
     for (int i = 1;; ++i)
     {
-        const std::string copy = path + (i == 1 ? ".bak" : fmt::format(".bak{}", i));
+        std::string copy = path + (i == 1 ? ".bak" : fmt::format(".bak{}", i));
         if (fs::exists(fs::symlink_status(copy))) continue;
         std::error_code error;
         fs::copy_file(path, copy, error);

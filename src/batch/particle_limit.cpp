@@ -5,13 +5,13 @@
 #include "fppg/particles.h"
 #include "fppg/scene.h"
 
-#include "core/most_particles.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 namespace fppg
 {
@@ -53,7 +53,7 @@ public:
     double dp_of(double count) const
     {
         double least = dp_ * 1e-9;
-        double most = dp_;
+        double most = dp_ * 1e3;
         for (int i = 0; i < 100; ++i)
         {
             const double middle = std::sqrt(least * most);
@@ -118,12 +118,36 @@ std::optional<ParticleLaw> find_law(CoarseDraws& draws, const LatticeGrid& grid)
 
 } // namespace
 
+ParticleLimit limit_of_disk(const std::string& folder, double bytes)
+{
+    ParticleLimit limit;
+    std::error_code error;
+    const std::string place = folder.empty() ? "." : folder;
+    const std::filesystem::space_info space = std::filesystem::space(place, error);
+    const auto available = static_cast<double>(space.available);
+    if (error || !(bytes > 0) || available / bytes >= limit.most) return limit;
+    limit.most = std::max(1.0, available / bytes);
+    limit.holder = fmt::format("the disk of {} has room for about {:.2g} ({:.3g} GB)", place,
+                               limit.most, available * 1e-9);
+    limit.is_of_disk = true;
+    return limit;
+}
+
+void expect_room(const CaseDef& def, std::uint64_t particles, const ParticleLimit& limit)
+{
+    const auto count = static_cast<double>(particles);
+    if (!limit.is_of_disk || count <= limit.most) return;
+    throw IoError(fmt::format("{}: the case has {} particles with dp={:g}, {}; dp={:g} fits",
+                              def.file, particles, def.grid.dp, limit.holder,
+                              dp_that_fits(def.grid.dp, count, def.grid.is_2d, limit.most)));
+}
+
 void expect_particles_fit(const std::string& path, const CaseOptions& options, const CaseDef& def,
-                          int threads)
+                          int threads, const ParticleLimit& limit)
 {
     const LatticeGrid& grid = def.grid;
     const double nodes = static_cast<double>(grid.n[0]) * grid.n[1] * grid.n[2];
-    if (nodes < static_cast<double>(most_particles) || def.vres.is_active()) return;
+    if (nodes < limit.most || def.vres.is_active()) return;
     std::optional<ParticleLaw> law;
     try
     {
@@ -136,14 +160,12 @@ void expect_particles_fit(const std::string& path, const CaseOptions& options, c
     }
     if (!law) return;
     const double count = law->at(grid.dp);
-    if (count <= clearly_above * static_cast<double>(most_particles)) return;
-    throw CaseError(
-        path, 0,
-        fmt::format(
-            "the case would have about {:.2g} particles with dp={:g}, the file format holds "
-            "at most {}; dp={:g} and larger ones fit",
-            count, grid.dp, most_particles_text,
-            dp_rounded_up(law->dp_of(0.95 * static_cast<double>(most_particles)))));
+    if (count <= clearly_above * limit.most) return;
+    const std::string text = fmt::format(
+        "the case would have about {:.2g} particles with dp={:g}, {}; dp={:g} and larger ones fit",
+        count, grid.dp, limit.holder, dp_rounded_up(law->dp_of(0.95 * limit.most)));
+    if (limit.is_of_disk) throw IoError(path + ": " + text);
+    throw CaseError(path, 0, text);
 }
 
 } // namespace fppg

@@ -118,7 +118,7 @@ BatchRun run_of(const FoundCase& found, const fs::path& out,
         if (is_dp(name))
             run.options.push_back("-dp:" + value);
         else
-            evars += ":" + name + "=" + value;
+            evars.append(":").append(name).append("=").append(value);
     }
     if (!evars.empty()) run.options.push_back("-evars" + evars);
     run.options.insert(run.options.end(), options.begin(), options.end());

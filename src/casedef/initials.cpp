@@ -235,7 +235,7 @@ private:
     /// A file in the working directory, as with GenCase, or beside the definition.
     std::string find_file(const Element& e) const
     {
-        const std::string name = read_.text(e, "file");
+        std::string name = read_.text(e, "file");
         if (std::filesystem::exists(name)) return name;
         const std::filesystem::path beside =
             std::filesystem::path(read_.file()).parent_path() / name;

@@ -64,7 +64,7 @@ private:
     {
         require_known_children(
             e, {"geometryfile", "distanceh", "maxsizeh", "svshapes", "svnormals"}, read_);
-        const GeometryNormals geometry = read_geometry(e, "value");
+        GeometryNormals geometry = read_geometry(e, "value");
         std::string form = fmt::format("<norgeometry><geometryfile file=\"{}\" />",
                                        *read_.child(e, "geometryfile").find_attribute("file"));
         for (const char* name : {"distanceh", "maxsizeh", "svshapes"})

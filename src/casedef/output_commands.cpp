@@ -17,7 +17,7 @@ namespace
 /// ".." among them would lead out of that of the result.
 std::string name_beside_result(const Program& p, const Element& e)
 {
-    const std::string name = p.read.text(e, "file");
+    std::string name = p.read.text(e, "file");
     for (const std::string_view folder : split(name, '/'))
         if (folder == "..")
             p.read.fail(e,

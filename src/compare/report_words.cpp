@@ -30,7 +30,7 @@ const char* change_name(ChangeKind kind)
 
 std::string describe_change(const ChangedParticle& p)
 {
-    const std::string from = fmt::format("id {} at {}", p.id[0], place(p.position[0]));
+    std::string from = fmt::format("id {} at {}", p.id[0], place(p.position[0]));
     switch (p.kind)
     {
         case ChangeKind::Missing:

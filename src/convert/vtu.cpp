@@ -60,7 +60,7 @@ std::string vtu_head(std::uint64_t n, const std::vector<VtuPart>& parts,
     const auto array = [&](const Column& column, std::uint64_t count, const char* tuples)
     {
         offsets.push_back(at);
-        const std::string line = fmt::format(
+        std::string line = fmt::format(
             "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{} format=\"appended\" "
             "offset=\"{}\"/>\n",
             vtk_name(column.type), column.name, column.is_vector() ? 3 : 1, tuples, at);

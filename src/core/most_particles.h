@@ -19,10 +19,10 @@ inline double dp_rounded_up(double dp)
 
 /// A particle distance that gives few enough where `dp` gives `count`: that of a case of surfaces
 /// alone, as volumes need no larger one.
-inline double dp_that_fits(double dp, double count, bool is_2d)
+inline double dp_that_fits(double dp, double count, bool is_2d,
+                           double most = static_cast<double>(most_particles))
 {
-    return dp_rounded_up(
-        dp * std::pow(count / static_cast<double>(most_particles), is_2d ? 1.0 : 1.0 / 2));
+    return dp_rounded_up(dp * std::pow(count / most, is_2d ? 1.0 : 1.0 / 2));
 }
 
 } // namespace fppg

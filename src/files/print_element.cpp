@@ -79,7 +79,7 @@ void print_bare(const Element& element, int depth, std::string& out)
     {
         out += "\n";
         for (const Element& child : element.children) print(child, depth + 1, out);
-        out.append(static_cast<std::size_t>(4 * depth), ' ');
+        out.append(4 * static_cast<std::size_t>(depth), ' ');
     }
     out += "</";
     out += element.name;
@@ -88,7 +88,7 @@ void print_bare(const Element& element, int depth, std::string& out)
 
 void print(const Element& element, int depth, std::string& out)
 {
-    out.append(static_cast<std::size_t>(4 * depth), ' ');
+    out.append(4 * static_cast<std::size_t>(depth), ' ');
     print_bare(element, depth, out);
     out += escape(element.tail, false);
     out += '\n';

@@ -116,7 +116,7 @@ CellRange cells_around(const WorkFacet& facet, double clearance, double cell)
     {
         const auto [low, high] =
             std::minmax({facet.corners[0][axis], facet.corners[1][axis], facet.corners[2][axis]});
-        const auto at = static_cast<std::size_t>(2 * axis);
+        const std::size_t at = 2 * static_cast<std::size_t>(axis);
         range[at] = floor_of((low - clearance) / cell);
         range[at + 1] = floor_of((high + clearance) / cell);
     }

@@ -102,7 +102,7 @@ public:
     SlabSearch(const TriangleSoup& soup, const LatticeGrid& grid)
         : soup_(soup), grid_(grid), reach_(reach_dp * grid.dp), offsets_(grid.n[1] + 1)
     {
-        nearest_.resize(grid.n[2], far_);
+        nearest_.resize(grid.n[2], no_distance);
         touched_.resize((grid.n[2] / chunk + 63) / 64 + 1, 0);
     }
 
@@ -127,7 +127,7 @@ public:
     }
 
 private:
-    static constexpr double far_ = std::numeric_limits<double>::infinity();
+    static constexpr double no_distance = std::numeric_limits<double>::infinity();
     static constexpr std::uint32_t chunk = 16; ///< nodes of a row that are looked through together
 
     void add_stretches(std::uint32_t f)
@@ -242,9 +242,9 @@ private:
                 const std::uint32_t end = std::min(begin + chunk, grid_.n[2]);
                 for (std::uint32_t k = begin; k < end; ++k)
                 {
-                    if (nearest_[k] == far_) continue;
+                    if (nearest_[k] == no_distance) continue;
                     const double distance = std::floor(std::sqrt(nearest_[k]) * scale + 0.5);
-                    nearest_[k] = far_;
+                    nearest_[k] = no_distance;
                     if (distance <= distance_units)
                         result.push_back({row, k, static_cast<std::uint32_t>(distance)});
                 }

@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "lattice/mesh_units.h"
 #include "meshes/open_edges.h"
+#include "meshes/warning_words.h"
 #include "nodes/snap.h"
 #include "shapes/shape.h"
 
@@ -91,6 +92,12 @@ void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
                          "its inside is not certain; close the mesh (fppg inspect shows "
                          "where) or draw it without autofill, advanced or fppg:fill",
                          op.file, open));
+    if (repairs.folds > 0)
+        warn(source, Kind::Folded,
+             fmt::format("{} crosses itself ({} of its facets, the first {}), so its inside is not "
+                         "certain there",
+                         op.file, counted(repairs.folds, "pair", "pairs"),
+                         near(repairs.first_fold)));
     if (open > 0 || (!op.fill_inside && !op.advanced)) return;
     const bool is_mixed =
         repairs.flipped_facets > 0 && repairs.flipped_facets < repairs.facets_read;

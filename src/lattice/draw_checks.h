@@ -43,6 +43,7 @@ private:
         Thin,
         Lost,
         Open,
+        Folded,
         Leak,
     };
 

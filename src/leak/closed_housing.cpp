@@ -61,10 +61,10 @@ ClosedHousing::ClosedHousing(const CaseSolids& solids, const std::vector<Vec3>& 
         {
             for (std::int64_t i = 0; i < slab; ++i)
             {
-                const Vec3 p =
-                    origin_ + Vec3{static_cast<double>(x), static_cast<double>(i / n_[2]),
-                                   static_cast<double>(i % n_[2])} *
-                                  spacing_;
+                const std::int64_t row = i / n_[2];
+                const Vec3 p = origin_ + Vec3{static_cast<double>(x), static_cast<double>(row),
+                                              static_cast<double>(i % n_[2])} *
+                                             spacing_;
                 for (const Solid* wall : walls)
                     if (wall->is_nearer(p, blocked_within * spacing_))
                     {

@@ -240,35 +240,63 @@ KnownMean known_mean(const std::vector<double>& z, const std::vector<double>& xs
     return out;
 }
 
-/// Step 3.
+/// The unknown neighbours of nodes that were found, each once, ascending.
+std::vector<std::int64_t> unknown_beside(const std::vector<double>& z, std::int64_t columns,
+                                         const std::vector<std::int64_t>& nodes)
+{
+    const std::int64_t rows = static_cast<std::int64_t>(z.size()) / columns;
+    std::vector<std::int64_t> out;
+    for (const std::int64_t n : nodes)
+        for (std::int64_t k = 0; k < 9; ++k)
+        {
+            const std::int64_t i = n % columns + k % 3 - 1;
+            const std::int64_t j = n / columns + k / 3 - 1;
+            if (i < 0 || i >= columns || j < 0 || j >= rows) continue;
+            if (std::isnan(z[static_cast<std::size_t>(j * columns + i)]))
+                out.push_back(j * columns + i);
+        }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
+/// Step 3. A node is looked at again only where a neighbour of it was found since.
 void fill_from_neighbours(std::vector<double>& z, const std::vector<double>& xs,
                           const std::vector<double>& ys, int threads)
 {
     const auto columns = static_cast<std::int64_t>(xs.size());
-    std::vector<std::int64_t> unknown;
-    for (std::size_t n = 0; n < z.size(); ++n)
-        if (std::isnan(z[n])) unknown.push_back(static_cast<std::int64_t>(n));
-    std::vector<double> found;
-    for (int enough = 5; enough > 0 && !unknown.empty();)
+    const auto all_unknown = [&]
     {
-        found.assign(unknown.size(), std::numeric_limits<double>::quiet_NaN());
+        std::vector<std::int64_t> out;
+        for (std::size_t n = 0; n < z.size(); ++n)
+            if (std::isnan(z[n])) out.push_back(static_cast<std::int64_t>(n));
+        return out;
+    };
+    std::vector<std::int64_t> looked_at = all_unknown();
+    std::vector<double> found;
+    for (int enough = 5; enough > 0 && !looked_at.empty();)
+    {
+        found.assign(looked_at.size(), std::numeric_limits<double>::quiet_NaN());
         parallel_for(
-            unknown.size(), threads,
+            looked_at.size(), threads,
             [&](std::size_t k)
             {
                 const KnownMean mean =
-                    known_mean(z, xs, ys, unknown[k] % columns, unknown[k] / columns);
+                    known_mean(z, xs, ys, looked_at[k] % columns, looked_at[k] / columns);
                 if (mean.score >= enough) found[k] = mean.height;
             },
             4096);
-        std::size_t left = 0;
-        for (std::size_t k = 0; k < unknown.size(); ++k)
-            if (std::isnan(found[k]))
-                unknown[left++] = unknown[k];
-            else
-                z[static_cast<std::size_t>(unknown[k])] = found[k];
-        if (left == unknown.size()) --enough;
-        unknown.resize(left);
+        std::vector<std::int64_t> nodes;
+        for (std::size_t k = 0; k < looked_at.size(); ++k)
+            if (!std::isnan(found[k]))
+            {
+                z[static_cast<std::size_t>(looked_at[k])] = found[k];
+                nodes.push_back(looked_at[k]);
+            }
+        looked_at = unknown_beside(z, columns, nodes);
+        if (!looked_at.empty()) continue;
+        --enough;
+        looked_at = all_unknown();
     }
 }
 

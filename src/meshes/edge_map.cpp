@@ -13,7 +13,7 @@ namespace
 {
 
 /// A side of a facet, at its vertex of smaller index.
-struct Side
+struct EdgeSide
 {
     std::uint32_t larger; ///< the other vertex
     std::uint32_t side;   ///< 3 * facet + side
@@ -23,7 +23,7 @@ struct Side
 struct SidesOfVertices
 {
     std::vector<std::size_t> first; ///< per vertex, and one past the end
-    std::vector<Side> sides;
+    std::vector<EdgeSide> sides;
 };
 
 SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
@@ -36,14 +36,15 @@ SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
             for (std::size_t s = 0; s < 3; ++s)
             {
                 const std::uint32_t a = mesh.facets[f][s], b = mesh.facets[f][(s + 1) % 3];
-                visit(std::min(a, b), Side{std::max(a, b), static_cast<std::uint32_t>(3 * f + s)});
+                visit(std::min(a, b),
+                      EdgeSide{std::max(a, b), static_cast<std::uint32_t>(3 * f + s)});
             }
     };
-    for_each_side([&](std::uint32_t vertex, const Side&) { ++out.first[vertex + 1]; });
+    for_each_side([&](std::uint32_t vertex, const EdgeSide&) { ++out.first[vertex + 1]; });
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) out.first[v + 1] += out.first[v];
     std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
     out.sides.resize(3 * mesh.facets.size());
-    for_each_side([&](std::uint32_t vertex, const Side& side)
+    for_each_side([&](std::uint32_t vertex, const EdgeSide& side)
                   { out.sides[next[vertex]++] = side; });
     parallel_for(
         mesh.vertices.size(), threads,
@@ -52,7 +53,7 @@ SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
             const auto at = [&](std::size_t i)
             { return out.sides.begin() + static_cast<std::ptrdiff_t>(i); };
             std::sort(at(out.first[v]), at(out.first[v + 1]),
-                      [](const Side& a, const Side& b)
+                      [](const EdgeSide& a, const EdgeSide& b)
                       { return a.larger != b.larger ? a.larger < b.larger : a.side < b.side; });
         },
         4096);
@@ -64,7 +65,7 @@ SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
 void build_edges(SurfaceMesh& mesh, int threads)
 {
     const SidesOfVertices of = sort_sides(mesh, threads);
-    const std::vector<Side>& sides = of.sides;
+    const std::vector<EdgeSide>& sides = of.sides;
     const std::size_t n = mesh.facets.size();
     mesh.edges.clear();
     mesh.edge_facets.clear();

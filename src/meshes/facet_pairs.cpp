@@ -1,6 +1,7 @@
 #include "meshes/facet_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "core/predicates.h"
@@ -14,15 +15,19 @@ namespace
 
 using Corners = std::array<Vec3, 3>;
 
-/// Whether a side of `a` has its ends on both sides of `b`'s plane and passes inside the facet.
-bool pierces(const Corners& a, const Corners& b)
+/// Whether a side of `a` has its ends on both sides of `b`'s plane, farther from it than `depth`,
+/// and passes inside the facet.
+bool pierces(const Corners& a, const Corners& b, double depth)
 {
+    const Vec3 normal = cross(b[1] - b[0], b[2] - b[0]);
+    const double near = depth * norm(normal);
+    const auto is_near = [&](const Vec3& p) { return std::abs(dot(p - b[0], normal)) < near; };
     std::array<int, 3> side{};
     for (std::size_t i = 0; i < 3; ++i) side[i] = orient3d(b[0], b[1], b[2], a[i]);
     for (std::size_t i = 0; i < 3; ++i)
     {
         const std::size_t j = (i + 1) % 3;
-        if (side[i] * side[j] >= 0) continue;
+        if (side[i] * side[j] >= 0 || is_near(a[i]) || is_near(a[j])) continue;
         int turns = 0;
         for (std::size_t k = 0; k < 3; ++k) turns += orient3d(a[i], a[j], b[k], b[(k + 1) % 3]);
         if (turns == 3 || turns == -3) return true;
@@ -30,9 +35,7 @@ bool pierces(const Corners& a, const Corners& b)
     return false;
 }
 
-} // namespace
-
-FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads)
+FacetPairs find_pairs(const SurfaceMesh& mesh, bool of_one_shell, double depth, int threads)
 {
     const std::size_t n = mesh.facets.size();
     const auto corners_of = [&mesh](std::size_t f)
@@ -62,12 +65,13 @@ FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads)
                 [&](std::uint32_t other)
                 {
                     if (other <= f) return;
+                    if (of_one_shell && mesh.shells[other] != mesh.shells[f]) return;
                     for (const std::uint32_t v : mesh.facets[f])
                         if (std::find(mesh.facets[other].begin(), mesh.facets[other].end(), v) !=
                             mesh.facets[other].end())
                             return;
                     const Corners theirs = corners_of(other);
-                    if (!pierces(own, theirs) && !pierces(theirs, own)) return;
+                    if (!pierces(own, theirs, depth) && !pierces(theirs, own, depth)) return;
                     ++crossed[f];
                     first[f] = std::min(first[f], other);
                 });
@@ -80,6 +84,18 @@ FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads)
         if (crossed[f] > 0) pairs.first = {static_cast<std::uint32_t>(f), first[f]};
     }
     return pairs;
+}
+
+} // namespace
+
+FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads)
+{
+    return find_pairs(mesh, false, 0, threads);
+}
+
+FacetPairs find_folded_facets(const SurfaceMesh& mesh, double depth, int threads)
+{
+    return find_pairs(mesh, true, depth, threads);
 }
 
 } // namespace fppg

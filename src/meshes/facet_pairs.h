@@ -23,4 +23,8 @@ struct FacetPairs
 /// cost     O(n log n + pairs whose boxes overlap)
 FacetPairs find_crossing_facets(const SurfaceMesh& mesh, int threads);
 
+/// The same of facets of one shell alone, where a side reaches farther than `depth` (metres) on
+/// both sides of the other facet: what rounding makes of surfaces that touch does not count.
+FacetPairs find_folded_facets(const SurfaceMesh& mesh, double depth, int threads);
+
 } // namespace fppg

@@ -17,7 +17,7 @@ namespace fppg
 std::string MeshLibrary::find(const SourceRef& source, const std::string& name) const
 {
     std::error_code ignored;
-    const std::string beside = (std::filesystem::path(definition_).parent_path() / name).string();
+    std::string beside = (std::filesystem::path(definition_).parent_path() / name).string();
     const bool is_here = std::filesystem::exists(name, ignored);
     if (is_here && places_ == MeshPlaces::WorkingDirectoryFirst) return name;
     if (std::filesystem::exists(beside, ignored)) return beside;

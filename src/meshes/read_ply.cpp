@@ -366,7 +366,8 @@ private:
         double n = 1;
         if (property.count_type) n = take(element, i, *property.count_type);
         const std::size_t width = width_of(property.type);
-        if (n < 0 || n > static_cast<double>((bytes_.size() - at_) / width))
+        const std::size_t most = (bytes_.size() - at_) / width;
+        if (n < 0 || n > static_cast<double>(most))
             throw GeometryError(
                 fmt::format("{}: is truncated, or a count is wrong: element {} of {} '{}' has {} "
                             "numbers in {}, {} bytes are left at byte {}",

@@ -147,6 +147,20 @@ void warn_of_repairs(const Vec3& first_flipped, MeshReport& report)
          });
 }
 
+/// Deeper than this a part crosses itself, dp.
+constexpr double least_fold = 1e-3;
+
+void warn_of_folds(const SurfaceMesh& mesh, double dp, int threads, MeshReport& report)
+{
+    const FacetPairs pairs = find_folded_facets(mesh, least_fold * dp, threads);
+    if (pairs.count == 0) return;
+    report.folds = pairs.count;
+    report.first_fold = mesh.vertices[mesh.facets[pairs.first[0]][0]];
+    report.warnings.push_back(fmt::format(
+        "A part crosses itself: {} of its facets, the first {}; particles there may be wrong.",
+        counted(pairs.count, "pair", "pairs"), near(report.first_fold)));
+}
+
 } // namespace
 
 SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& options, int threads,
@@ -183,6 +197,7 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     sum_up(mesh, is_turned, report, first_flipped);
     warn_of_repairs(first_flipped, report);
     judge_edges(mesh, report);
+    if (options.warns_of_folds) warn_of_folds(mesh, options.dp, threads, report);
     if (options.count_self_intersections)
     {
         const FacetPairs pairs = find_crossing_facets(mesh, threads);

@@ -14,7 +14,8 @@ inline std::optional<SurfaceMesh> repaired_solid(const TriangleSoup& soup, doubl
 {
     try
     {
-        return repair_mesh(soup, {.dp = dp, .is_solid = true}, threads, report);
+        return repair_mesh(soup, {.dp = dp, .is_solid = true, .warns_of_folds = true}, threads,
+                           report);
     }
     catch (const GeometryError&)
     {

@@ -102,8 +102,9 @@ std::vector<std::string> comments_of(const fs::path& path)
     // A binary file has only its title.
     const std::size_t end = text.find('\0');
     if (end != std::string::npos) text.resize(std::min<std::size_t>(end, 80));
+    text = lower_case(text);
     std::vector<std::string> out;
-    for (const std::string_view line : split(lower_case(text), '\n'))
+    for (const std::string_view line : split(text, '\n'))
         if (out.size() < 20) out.emplace_back(trimmed(line));
     return out;
 }

@@ -27,8 +27,8 @@ std::size_t VesselSpace::count() const
 Vec3 VesselSpace::place(std::size_t node) const
 {
     const std::size_t nz = grid_.n[2], ny = grid_.n[1];
-    return grid_.origin + Vec3{static_cast<double>(node / (nz * ny)),
-                               static_cast<double>(node / nz % ny),
+    const std::size_t slab = node / (nz * ny), row = node / nz % ny;
+    return grid_.origin + Vec3{static_cast<double>(slab), static_cast<double>(row),
                                static_cast<double>(node % nz)} *
                               grid_.dp;
 }

@@ -352,7 +352,7 @@ private:
                 at = on_.other_end(loop[next], at);
             }
         // The one that other creases leave stays, else that with more vertices.
-        const auto weight = [&](const std::vector<std::uint32_t>& way)
+        const auto weight = [this, a = a, b = b](const std::vector<std::uint32_t>& way)
         {
             int out = static_cast<int>(way.size());
             for (const std::uint32_t e : way)

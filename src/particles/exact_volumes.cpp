@@ -38,11 +38,29 @@ void for_each_particle(const CaseParticles& particles, const ParticleBlock& bloc
         }
 }
 
-/// The fine lattice over a body.
-LatticeGrid sample_grid(const SurfaceMesh& mesh, const LatticeGrid& grid)
+/// Farther from all particles of its body a point belongs to none of them: other draws took them.
+constexpr double most_distance = 10; ///< dp
+
+/// What of a body lies in the domain, half a dp around its nodes.
+Box3 box_in_domain(const SurfaceMesh& mesh, const LatticeGrid& grid, bool& is_cut)
 {
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.add(v);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (grid.is_2d && axis == 1) continue;
+        const double low = grid.origin[axis] - 0.5 * grid.dp;
+        const double high = low + grid.dp * grid.n[static_cast<std::size_t>(axis)];
+        is_cut = is_cut || box.min[axis] < low || box.max[axis] > high;
+        box.min[axis] = std::clamp(box.min[axis], low, high);
+        box.max[axis] = std::clamp(box.max[axis], low, high);
+    }
+    return box;
+}
+
+/// The fine lattice over a body.
+LatticeGrid sample_grid(const Box3& box, const LatticeGrid& grid)
+{
     LatticeGrid out;
     out.is_2d = grid.is_2d;
     out.dp = grid.dp / (grid.is_2d ? samples_in_plane : samples_in_space);
@@ -71,7 +89,8 @@ public:
     /// Adds the volume of a body to its particles.
     void add(const FittedBody& body, const LatticeGrid& lattice, int threads)
     {
-        const LatticeGrid samples = sample_grid(body.mesh, lattice);
+        bool is_cut = false;
+        const LatticeGrid samples = sample_grid(box_in_domain(body.mesh, lattice, is_cut), lattice);
         const InsideVote vote = vote_inside(soup_of(body.mesh), samples, threads);
         std::vector<std::vector<std::uint32_t>> nearest(vote.inside.slabs.size());
         parallel_for(nearest.size(), threads,
@@ -88,9 +107,11 @@ public:
         double all = 0;
         for (const auto& of_slab : nearest) all += static_cast<double>(of_slab.size());
         if (!(all > 0)) return;
-        const double part = body.measures.volume / (lattice.is_2d ? lattice.dp : 1) / all;
+        const double part = is_cut ? std::pow(samples.dp, lattice.is_2d ? 2 : 3)
+                                   : body.measures.volume / (lattice.is_2d ? lattice.dp : 1) / all;
         for (const auto& of_slab : nearest)
-            for (const std::uint32_t i : of_slab) counts_[i] += part;
+            for (const std::uint32_t i : of_slab)
+                if (i != no_index) counts_[i] += part;
     }
 
     const std::vector<double>& volumes() const { return counts_; }
@@ -98,9 +119,10 @@ public:
 private:
     std::uint32_t nearest_to(const Vec3& p) const
     {
-        std::uint32_t best = 0;
+        std::uint32_t best = no_index;
         double least = 1e300;
-        for (double reach = 1.2 * dp_; least > reach * reach && reach < 1e6 * dp_; reach *= 2)
+        for (double reach = 1.2 * dp_; least > reach * reach && reach < most_distance * dp_;
+             reach *= 2)
             grid_.for_each_near(p, reach,
                                 [&](std::uint32_t i, double squared)
                                 {

@@ -43,6 +43,8 @@ def box_stl(size, low):
 
 
 class Limits(unittest.TestCase):
+    """Without a .bi4 the disk of the tests is no limit."""
+
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="fppg-limits-")
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
@@ -62,7 +64,8 @@ class Limits(unittest.TestCase):
         return done.returncode, done.stdout
 
     def expect_refused(self, code, *texts, calls=None):
-        for call in calls or (("Case_Def", "out/Case"), ("Case_Def", "out/Case", "-fit"), ("estimate", "Case_Def")):
+        for call in calls or (("Case_Def", "out/Case", "-save:-bi"), ("Case_Def", "out/Case", "-fit", "-save:-bi"),
+                              ("estimate", "Case_Def")):
             got, out = self.run_it(*call)
             self.assertEqual(got, code, out)
             for text in texts:
@@ -75,7 +78,7 @@ class TooMany(Limits):
     def expect_dp(self, draws, dp, **more):
         """The dp that the message names has to fit, and not by much."""
         self.write_case(draws, dp, **more)
-        _, out = self.run_it("Case_Def", "out/Case")
+        _, out = self.run_it("Case_Def", "out/Case", "-save:-bi")
         named = re.search(r"; dp=(\S+) and larger ones fit", out).group(1)
         _, out = self.run_it("estimate", "Case_Def", "-dp:" + named, limit=60)
         count = int(re.search(r"Particles +([\d,]+)", out).group(1).replace(",", ""))
@@ -97,12 +100,12 @@ class TooMany(Limits):
 
     def test_on_walls(self):
         self.write_case(WALLS, "2e-5")
-        self.expect_refused(3, FORMAT, calls=[("Case_Def", "out/Case"), ("estimate", "Case_Def")])
+        self.expect_refused(3, FORMAT, calls=[("Case_Def", "out/Case", "-save:-bi"), ("estimate", "Case_Def")])
 
     def test_in_a_plane(self):
         self.write_case(SOLID, "1e-5", ymin="0", ymax="0")
         self.expect_refused(3, "about 1e+10 particles", FORMAT,
-                            calls=[("Case_Def", "out/Case"), ("estimate", "Case_Def")])
+                            calls=[("Case_Def", "out/Case", "-save:-bi"), ("estimate", "Case_Def")])
 
     def test_nodes_along_an_axis(self):
         for dp in ("1e-9", "1e-12"):
@@ -118,6 +121,34 @@ class TooMany(Limits):
             self.assertEqual(code, 0, out)
             if expected:
                 self.assertIn(f"Total particles: {expected:,} ", out)
+
+
+class SmallDisk(Limits):
+    SIZE = 1 << 21
+
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("mount"), "only root can mount a small disk")
+    def test_is_told_before_the_case_is_drawn_and_names_the_dp_that_fits(self):
+        disk = self.path("disk")
+        os.mkdir(disk)
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.SIZE}", "tmpfs", disk], check=False).returncode:
+            self.skipTest("this system mounts no tmpfs")
+        try:
+            for dp, begin in (("0.0005", "the case would have about 8e+09 particles"), ("0.02", "the case has 132651 ")):
+                self.write_case(SOLID, dp)
+                code, out = self.run_it("Case_Def", "disk/Case")
+                self.assertEqual(code, 4, out)
+                self.assertIn(begin, out)
+                self.assertRegex(out, r"the disk of disk has room for about 4\.\de\+04 \(0\.0020\d GB\)")
+                self.assertEqual(os.path.exists(self.path("disk/Case.bi4")), False)
+                named = re.search(r"; dp=([0-9.]+)", out).group(1)
+                code, out = self.run_it("Case_Def", "disk/Case", "-dp:" + named)
+                self.assertEqual(code, 0, out)
+                self.assertGreater(os.path.getsize(self.path("disk/Case.bi4")), self.SIZE / 5)
+                os.remove(self.path("disk/Case.bi4"))
+            code, out = self.run_it("Case_Def", "disk/Case", "-dp:0.02", "-save:-bi")
+            self.assertEqual(code, 0, out)
+        finally:
+            subprocess.run(["umount", disk], check=True)
 
 
 class Endless(Limits):

@@ -2,6 +2,7 @@
 // are off; FPPG_PROGRAM is the program's path.
 
 #include "fppg/element.h"
+#include "fppg/generate.h"
 #include "fppg/particles.h"
 #include "fppg/read_particles.h"
 
@@ -17,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace
 {
@@ -178,6 +180,25 @@ TEST(FittedSolids, AndTheirParticlesAreInOneTable)
     EXPECT_NEAR(value("shape", "mass"), rhop_body * volume, 1e-6);
     EXPECT_NEAR(value("particles", "volume"), volume, 1e-3 * volume);
     EXPECT_NEAR(static_cast<double>(count(folder)), volume / std::pow(dp, 3), 1);
+}
+
+TEST(FittedSolids, WithExactVolumesCountWhatOfThemIsInTheDomain)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.dp = "0.05";
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>solid</boxfill>)"
+        R"(<point x="1.2" y="0.1" z="0.1" /><size x="10" y="0.4" z="0.4" /></drawbox>)";
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="0" place="inside" volume="exact" /></fppg>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const fppg::GeneratedCase made = fppg::generate_case(folder / "Case_Def.xml", {.threads = 2});
+    const std::vector<double>& volumes = made.particles().volumes;
+    ASSERT_FALSE(volumes.empty());
+    // The last nodes stand at 1.45, half a dp before the end of the domain.
+    const double expected = (1.475 - 1.2) * 0.4 * 0.4;
+    EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0), expected, 0.03 * expected);
 }
 
 TEST(FittedSolids, ThatHaveNoRoomAreToldWithADpThatWouldDo)

@@ -1,8 +1,11 @@
 #include "fppg/surface_mesh.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -277,6 +280,35 @@ TEST(TakeInMesh, CountsFacetsThatCross)
     taken_in(fin, fin_report);
     EXPECT_EQ(fin_report.self_intersections, 0u);
     EXPECT_TRUE(report.is_watertight);
+}
+
+TEST(TakeInMesh, NamesThePlaceWhereAPartCrossesItself)
+{
+    constexpr double dp = 0.1;
+    // A strip that goes on upwards, back above itself and down through its beginning.
+    const auto folded = [](double end)
+    {
+        const std::vector<std::pair<double, double>> profile = {
+            {0, 0}, {3, 0}, {3, 1}, {1.2, 1}, {1.2, end}};
+        TriangleSoup strip;
+        for (std::size_t i = 1; i < profile.size(); ++i)
+        {
+            const auto& [x, z] = profile[i - 1];
+            const auto& [next_x, next_z] = profile[i];
+            add_quad(strip, {x, 0, z}, {next_x, 0, next_z}, {next_x, 1, next_z}, {x, 1, z});
+        }
+        MeshReport report;
+        repair_mesh(strip, {.dp = dp, .warns_of_folds = true}, 2, report);
+        return report;
+    };
+    const MeshReport deep = folded(-1);
+    EXPECT_GT(deep.folds, 0u);
+    EXPECT_TRUE(std::any_of(deep.warnings.begin(), deep.warnings.end(),
+                            [](const std::string& w)
+                            { return w.starts_with("A part crosses itself: "); }));
+    EXPECT_EQ(folded(0.5).folds, 0u);
+    // What rounding of coordinates can do is no fold.
+    EXPECT_EQ(folded(-1e-4 * dp).folds, 0u);
 }
 
 TEST(TakeInMesh, SaysThatAMoebiusStripHasOneSide)
