@@ -1,12 +1,13 @@
 #include "report/run_facts.h"
 
-#include "core/regular_file.h"
 #include "core/text.h"
+#include "platform/regular_file.h"
 #include "report/html.h"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -41,7 +42,7 @@ std::optional<RunFacts> facts_of_result(const std::string& path)
     for (const std::string_view ending : {".bi4", ".xml", ".vtk", "_All"})
         if (stem.ends_with(ending)) stem.erase(stem.size() - ending.size());
     expect_regular_file(stem + ".out");
-    std::ifstream in(stem + ".out", std::ios::binary);
+    std::ifstream in(std::filesystem::path(stem + ".out"), std::ios::binary);
     if (!in) return std::nullopt;
     return read_run_facts(std::string((std::istreambuf_iterator<char>(in)), {}));
 }
