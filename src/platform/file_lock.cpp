@@ -12,8 +12,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 #include <utility>
 
@@ -28,15 +26,6 @@ using namespace std::chrono_literals;
 /// For the child of a process that was killed while it started it: the child gives the lock back
 /// as soon as it runs its program.
 constexpr auto wait_for_gone = 10s;
-
-/// Who wrote the file of a lock: "process 123 on name".
-std::string owner_in(const std::string& path)
-{
-    std::ifstream in{std::filesystem::path(path)};
-    std::string owner;
-    std::getline(in, owner);
-    return owner;
-}
 
 /// Whether a process of this machine is gone.
 bool is_gone(const std::string& owner)
@@ -56,7 +45,7 @@ FileLock::FileLock(std::string path, const FileLockWish& wish) : path_(std::move
     const auto start = std::chrono::steady_clock::now();
     while (!is_taken() && why_.empty())
     {
-        owner_ = owner_in(path_);
+        owner_ = first_line_of_locked_file(path_);
         const auto waited = std::chrono::steady_clock::now() - start;
         if (waited > (is_gone(owner_)
                           ? std::max<std::chrono::milliseconds>(wish_.wait, wait_for_gone)

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace fppg
 {
@@ -46,11 +47,17 @@ bool lock_file(int file, bool is_shared);
 /// Empties a file that is locked and writes `text` into it, which others may read meanwhile.
 bool write_locked_file(int file, const std::string& text);
 
+/// The first line of a file that another process may have locked; empty where it cannot be read.
+std::string first_line_of_locked_file(const std::string& path);
+
 /// Whether the file of a descriptor still has this name.
 bool has_name(int file, const std::string& path);
 
 /// Whether another process has the lock of a file, or that cannot be found out.
 bool is_locked(const std::string& path);
+
+/// What ends the name of a folder in a path.
+std::string_view folder_ends();
 
 /// Text as files for editors hold it on this system: lines of Windows end with CR and LF.
 std::string with_line_ends(std::string text);

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 namespace fppg
 {
@@ -89,6 +90,14 @@ bool write_locked_file(int file, const std::string& text)
            ::pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
 }
 
+std::string first_line_of_locked_file(const std::string& path)
+{
+    std::ifstream in(path);
+    std::string line;
+    std::getline(in, line);
+    return line;
+}
+
 bool has_name(int file, const std::string& path)
 {
     struct stat ours = {};
@@ -104,6 +113,11 @@ bool is_locked(const std::string& path)
     const bool is_held = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     ::close(file);
     return is_held;
+}
+
+std::string_view folder_ends()
+{
+    return "/";
 }
 
 std::string with_line_ends(std::string text)
