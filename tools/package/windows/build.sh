@@ -65,6 +65,12 @@ compile() {
         # It takes every Windows for Microsoft's compiler, and lists a resource file for it.
         sed -i '/^# Compiler$/,/^# ISA/ s/^IF (WIN32)$/IF (MSVC)/' "$folder/$name/source/CMakeLists.txt"
         sed -i '/embree\.rc/d' "$folder/$name/source/kernels/CMakeLists.txt"
+        # What both sizes of AVX share is compiled with the smaller one, which this leaves out.
+        # shellcheck disable=SC2016
+        sed -i 's/^  IF (${ISA} EQUAL ${ISA_LOWEST_AVX})$/  IF (${ISA} EQUAL ${AVX2})/
+            s/^  IF (${ISA} EQUAL ${AVX})$/  IF (${ISA} EQUAL ${AVX2})/' "$folder/$name/source/kernels/CMakeLists.txt"
+        # Debian leaves the manual out.
+        sed -i '/readme\.pdf/d' "$folder/$name/source/common/cmake/package.cmake"
         # Where GCC speaks to Linux' linker.
         sed -i 's/ -z [a-z]*//g; s/ -pie"/"/' "$folder/$name/source/common/cmake/gnu.cmake"
     fi
