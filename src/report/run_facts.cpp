@@ -22,7 +22,8 @@ RunFacts read_run_facts(std::string_view text)
     RunFacts facts;
     for (const std::string_view part : split(text, '\n'))
     {
-        const std::string line(part);
+        // GenCase for Windows ends lines with CR and LF.
+        const std::string line(part.substr(0, part.find('\r')));
         const std::size_t stage = line.find(end_of_stage);
         if (line.starts_with(warning))
             facts.warnings.push_back(line.substr(warning.size()));

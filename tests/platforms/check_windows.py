@@ -72,8 +72,10 @@ class Windows(unittest.TestCase):
     def test_lines_end_as_those_of_gencase_for_windows(self):
         self.write_case()
         self.run_exe("Case_Def", "out/Case")
-        xml = self.read("out/Case.xml")
-        self.assertEqual(xml.count(b"\r\n"), xml.count(b"\n"))
+        for name in ("out/Case.xml", "out/Case.out"):
+            text = self.read(name)
+            self.assertEqual(text.count(b"\r\n"), text.count(b"\n"))
+            self.assertGreater(text.count(b"\n"), 9)
 
     def test_a_batch_file_of_windows_runs_it(self):
         self.write_case()
@@ -88,8 +90,8 @@ class Windows(unittest.TestCase):
     def test_names_have_blanks_and_letters_of_all_languages(self):
         name = "Fälle 測試 🌊/Damm bruch"
         self.write_case(name + "_Def.xml")
-        self.run_exe(name + "_Def", "Ergebnis ü 水/Fall")
-        self.assertEqual(self.read("Ergebnis ü 水/Fall.bi4"), self.expected(name + "_Def"))
+        self.run_exe(name + "_Def", "Ergebnis ü 水/Case")
+        self.assertEqual(self.read("Ergebnis ü 水/Case.bi4"), self.expected(name + "_Def"))
         text = self.run_exe(name + "_fehlt_Def", "x/Fall", code=4)
         self.assertIn("Fälle 測試 🌊", text)
 
@@ -107,7 +109,7 @@ class Windows(unittest.TestCase):
         self.assertIn("missing.stl", self.run_exe("Case_Def", "out/Case", code=4))
         self.assertEqual(self.read("out/Case.bi4"), old)
         self.assertEqual(self.run_exe("Case_Def", "-nonsense", code=2).count("Error"), 1)
-        self.assertEqual(sorted(os.listdir(self.path("out"))), ["Case.bi4", "Case.xml"] + self.pictures())
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["Case.bi4", "Case.out", "Case.xml"] + self.pictures())
 
     def pictures(self):
         return sorted(name for name in os.listdir(self.path("out")) if name.endswith(".vtk"))

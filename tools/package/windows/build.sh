@@ -69,6 +69,8 @@ compile() {
         # shellcheck disable=SC2016
         sed -i 's/^  IF (${ISA} EQUAL ${ISA_LOWEST_AVX})$/  IF (${ISA} EQUAL ${AVX2})/
             s/^  IF (${ISA} EQUAL ${AVX})$/  IF (${ISA} EQUAL ${AVX2})/' "$folder/$name/source/kernels/CMakeLists.txt"
+        sed -i 's/SELECT_SYMBOL_INIT_AVX(features,/SELECT_SYMBOL_INIT_AVX_AVX2(features,/' \
+            "$folder/$name/source/kernels/bvh/bvh4_factory.cpp" "$folder/$name/source/kernels/bvh/bvh8_factory.cpp"
         # Debian leaves the manual out.
         sed -i '/readme\.pdf/d' "$folder/$name/source/common/cmake/package.cmake"
         # Where GCC speaks to Linux' linker.
