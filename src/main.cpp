@@ -3,12 +3,10 @@
 #include "app/command_line.h"
 #include "app/drop_in.h"
 #include "app/run_log.h"
-#include "app/stop_signals.h"
 #include "app/subcommands.h"
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "platform/start.h"
+#include "platform/stop_signals.h"
+#include "platform/terminal.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -24,15 +22,6 @@ namespace
 /// Whoever asked for JSON lines gets the error as one.
 bool wants_json = false;
 
-/// Whether both streams end in one place, as on a terminal or after 2>&1.
-bool are_one(int a, int b)
-{
-    struct stat first = {};
-    struct stat second = {};
-    return ::fstat(a, &first) == 0 && ::fstat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
-}
-
 /// Tells standard output, where callers of GenCase look for it, and standard error, where scripts
 /// do; once where both are one.
 int fail(const char* text, int code)
@@ -42,7 +31,7 @@ int fail(const char* text, int code)
     else
         std::printf("\n*** Error: %s\n\nFinished execution (code=%d).\n", text, code);
     const bool is_told = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-    if (!is_told || !are_one(STDOUT_FILENO, STDERR_FILENO))
+    if (!is_told || !fppg::are_one(fppg::Stream::Out, fppg::Stream::Error))
         std::fprintf(stderr, "*** Error: %s\n", text);
     return code;
 }
@@ -57,7 +46,7 @@ bool ends_itself = false;
                              " gave up; a larger dp, a smaller domain or fewer -threads need less";
     const int code = fail(text.c_str(), 4);
     std::fflush(stderr);
-    _exit(code);
+    std::_Exit(code);
 }
 
 /// GCC's OpenMP runtime ends the program where it gets no memory or no thread, with exit code 1.
@@ -72,14 +61,6 @@ void tell_terminate()
 {
     if (std::current_exception()) std::abort();
     end_without_memory("Embree");
-}
-
-/// A file that the program opens must not become its standard output because the caller closed
-/// that.
-void open_missing_streams()
-{
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-        if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
 }
 
 int run(const std::vector<std::string>& arguments)
@@ -97,7 +78,7 @@ int run_and_tell(int argc, char** argv)
 {
     try
     {
-        const std::vector<std::string> arguments(argv + 1, argv + argc);
+        const std::vector<std::string> arguments = fppg::program_arguments(argc, argv);
         wants_json =
             std::any_of(arguments.begin(), arguments.end(),
                         [](const std::string& a) { return a == "-log-json" || a == "--log-json"; });
@@ -127,7 +108,7 @@ int run_and_tell(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    open_missing_streams();
+    fppg::prepare_streams();
     fppg::catch_stop_signals();
     std::atexit(tell_foreign_end);
     std::set_terminate(tell_terminate);

@@ -3,6 +3,8 @@
 // machine, and gains nothing on an idle one (tools/bench/NOTES.md has the figures). GCC's runtime
 // reads its policy once, before main. It is a part of the program (see CMakeLists.txt), so that
 // this runs before it.
+#include "platform/start.h"
+
 #include <cstdlib>
 
 namespace
@@ -11,7 +13,8 @@ namespace
 /// What the user chose for OpenMP stays.
 [[gnu::constructor(101)]] void wait_passively()
 {
-    if (std::getenv("GOMP_SPINCOUNT") == nullptr) setenv("OMP_WAIT_POLICY", "passive", 0);
+    if (std::getenv("GOMP_SPINCOUNT") == nullptr)
+        fppg::set_default_variable("OMP_WAIT_POLICY", "passive");
 }
 
 } // namespace

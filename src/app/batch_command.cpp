@@ -2,7 +2,6 @@
 
 #include "app/command_line.h"
 #include "app/drawn_geometry.h"
-#include "app/stop_signals.h"
 #include "app/subcommand_line.h"
 #include "app/threads.h"
 #include "batch/check_case.h"
@@ -11,12 +10,13 @@
 #include "batch/report.h"
 #include "batch/run_batch.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "fppg/error.h"
+#include "platform/memory.h"
+#include "platform/processes.h"
+#include "platform/stop_signals.h"
+#include "platform/terminal.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -103,7 +103,12 @@ bool read_arguments(std::vector<std::string> arguments, BatchCall& call)
     app.add_flag("--summary", call.summary, "only gather the results of the plan in SOURCE")
         .excludes(dry_run);
     call.of_runs = take_run_options(arguments);
-    return app.read(arguments);
+    if (!app.read(arguments)) return false;
+    if ((call.slurm || !call.plan.empty()) && !has_shell())
+        throw UsageError(
+            "--slurm and --plan write for the shell of Linux; on Windows `fppg batch` runs the "
+            "cases itself, several at a time with --jobs");
+    return true;
 }
 
 /// Refuses options of runs that a run would refuse, before anything begins.
@@ -168,7 +173,7 @@ private:
     {
         if (call_.log_json) return ProgressStyle::Json;
         if (call_.quiet) return ProgressStyle::Quiet;
-        return isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::Lines;
+        return is_terminal(Stream::Error) ? ProgressStyle::Bar : ProgressStyle::Lines;
     }
 
     BatchOptions options() const
@@ -321,10 +326,10 @@ private:
         std::fflush(stdout);
         // The first tasks may begin before sbatch ends, and they lock the folder themselves.
         lock.reset();
-        const int status = std::system(shell_word(script).c_str());
-        if (status != 0)
-            throw IoError(fmt::format("{} ended with exit code {}; is sbatch there?", script,
-                                      WIFEXITED(status) ? WEXITSTATUS(status) : status));
+        const int code = run_script(shell_word(script));
+        if (code != 0)
+            throw IoError(
+                fmt::format("{} ended with exit code {}; is sbatch there?", script, code));
         return 0;
     }
 

@@ -1,10 +1,9 @@
 #include "app/build_facts.h"
 
 #include "meshes/embree.h"
+#include "platform/libraries.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <gnu/libc-version.h>
 #include <png.h>
 #include <tinyxml2.h>
 #include <zlib.h>
@@ -36,8 +35,8 @@ std::string numbers(long long major, long long minor, long long patch)
 std::string tbb_version()
 {
     using Version = const char* (*)();
-    // dlsym gives functions as pointers to data.
-    const auto version = reinterpret_cast<Version>(::dlsym(RTLD_DEFAULT, "TBB_runtime_version"));
+    // The system gives functions as pointers to data.
+    const auto version = reinterpret_cast<Version>(library_symbol(nullptr, "TBB_runtime_version"));
     return version != nullptr ? version() : "";
 }
 
@@ -69,8 +68,8 @@ std::string build_facts()
     std::string out = fmt::format("commit {}, built by {} for C++{}, OpenMP {}\n", build_commit,
                                   compiler(), __cplusplus / 100 % 100, _OPENMP);
     out += "libraries:\n";
-    out += library("glibc", ::gnu_get_libc_version(),
-                   fmt::format("{}.{}", __GLIBC__, __GLIBC_MINOR__));
+    const SystemLibrary c = c_library();
+    out += library(c.name, c.loaded, c.built);
     out += library("libstdc++", fmt::format("{}", __GLIBCXX__), "");
     out += library("fmt", numbers(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100),
                    "");

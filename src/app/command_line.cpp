@@ -5,6 +5,7 @@
 #include "fppg/convert.h"
 #include "fppg/error.h"
 #include "fppg/version.h"
+#include "platform/files.h"
 
 #include <fmt/format.h>
 
@@ -238,7 +239,7 @@ void read_option(const std::string& argument, DropInOptions& options)
 
 std::string file_name(const std::string& path)
 {
-    const std::size_t slash = path.find_last_of('/');
+    const std::size_t slash = path.find_last_of(folder_ends());
     return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 

@@ -11,6 +11,7 @@
 #include "app/threads.h"
 #include "batch/rates.h"
 #include "files/output_lock.h"
+#include "platform/files.h"
 
 #include <fmt/format.h>
 
@@ -107,9 +108,9 @@ void write_failed_log(CaseRunState& run, const std::exception& error)
     try
     {
         const auto* known = dynamic_cast<const Error*>(&error);
-        run.files.add(path).append(
+        run.files.add(path).append(with_line_ends(
             fmt::format("{}\n*** Error: {}\n\nFinished execution (code={}).\n", run.log.text(),
-                        error.what(), known != nullptr ? known->exit_code() : 5));
+                        error.what(), known != nullptr ? known->exit_code() : 5)));
         run.files.commit(false);
     }
     catch (const std::exception&)
@@ -152,7 +153,7 @@ int run_case(const DropInOptions& options)
         fmt::format("Time of execution: {:.3f} sec. ({} threads)", total.seconds(), run.threads));
     log.line();
     log.line("Finished execution (code=0).");
-    run.files.add(options.output + ".out").append(log.text());
+    run.files.add(options.output + ".out").append(with_line_ends(log.text()));
     expect_printed();
     run.files.commit(options.save_three_vtk);
     const CaseParticles& particles = made.particles;
@@ -177,7 +178,7 @@ int write_clean_copy(const DropInOptions& options)
 {
     const Element document = read_definition_tree(options.input + ".xml");
     OutputFile file(options.output + ".xml");
-    file.append(print_document(document));
+    file.append(with_line_ends(print_document(document)));
     file.commit();
     fmt::print("{}\n{}.xml\nFinished execution (code=0).\n", full_name(), options.output);
     return 0;

@@ -14,9 +14,10 @@
 #include "fppg/new_case.h"
 #include "fppg/render.h"
 #include "meshes/mesh_formats.h"
+#include "platform/files.h"
+#include "platform/terminal.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -156,8 +157,8 @@ bool read_arguments(const std::vector<std::string>& arguments, NewCall& call)
         throw UsageError("--dp, --particles and --across: expected one of them");
     if (!o.output.ends_with(".xml")) o.output += ".xml";
     if (o.threads == 0) o.threads = default_threads();
-    const bool is_terminal = ::isatty(0) != 0 && ::isatty(1) != 0;
-    if (is_terminal && !call.asks_nothing && !call.as_json) o.ask = ask_at_terminal;
+    const bool can_ask = is_terminal(Stream::In) && is_terminal(Stream::Out);
+    if (can_ask && !call.asks_nothing && !call.as_json) o.ask = ask_at_terminal;
     return true;
 }
 
@@ -165,13 +166,7 @@ bool read_arguments(const std::vector<std::string>& arguments, NewCall& call)
 class ScratchFolder
 {
 public:
-    ScratchFolder()
-    {
-        std::string name = (fs::temp_directory_path() / "fppg-new-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr)
-            throw IoError("cannot make a folder in " + fs::temp_directory_path().string());
-        path_ = name;
-    }
+    ScratchFolder() : path_(make_scratch_folder()) {}
     ~ScratchFolder()
     {
         std::error_code ignored;

@@ -2,13 +2,13 @@
 
 #include "fppg/error.h"
 
-#include "app/stop_signals.h"
-
-#include <unistd.h>
+#include "platform/files.h"
+#include "platform/stop_signals.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace fppg
@@ -17,7 +17,7 @@ namespace fppg
 void ResultFiles::copy(const std::string& source, const std::string& path)
 {
     OutputFile& file = add(path);
-    std::ifstream in(source, std::ios::binary);
+    std::ifstream in(std::filesystem::path(source), std::ios::binary);
     std::string block(1 << 20, '\0');
     while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
         file.append(block.data(), static_cast<std::size_t>(in.gcount()));
@@ -50,7 +50,7 @@ void ResultFiles::remove_old_xml() const
     {
         if (!file.path().ends_with(".bi4")) continue;
         const std::string xml = file.path().substr(0, file.path().size() - 4) + ".xml";
-        if (has(xml) && ::unlink(xml.c_str()) != 0 && errno != ENOENT)
+        if (has(xml) && !remove_file(xml.c_str()) && errno != ENOENT)
             throw IoError(fmt::format("cannot write '{}': {}", xml, std::strerror(errno)));
     }
 }

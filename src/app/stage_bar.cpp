@@ -1,7 +1,8 @@
 #include "app/stage_bar.h"
 
+#include "platform/terminal.h"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -86,7 +87,7 @@ StageBar::StageBar(std::string name, bool is_wanted)
 {
     State& s = state();
     const std::lock_guard lock(s.guard);
-    if (!is_wanted || s.is_there || isatty(STDERR_FILENO) == 0) return;
+    if (!is_wanted || s.is_there || !is_terminal(Stream::Error)) return;
     s.is_there = true;
     s.name = std::move(name);
     s.text.clear();

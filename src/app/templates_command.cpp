@@ -1,8 +1,8 @@
 #include "app/templates_command.h"
 
-#include "core/regular_file.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "platform/regular_file.h"
 
 #include "app/subcommand_line.h"
 #include "app/template_files.h"
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 bool has_bytes(const fs::path& file, std::string_view bytes)
 {
     expect_regular_file(file.string());
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in(std::filesystem::path(file), std::ios::binary);
     const std::string found((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     return found == bytes;
 }

@@ -1,10 +1,10 @@
 #include "app/upgrade_command.h"
 
 #include "app/subcommand_line.h"
-#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "platform/regular_file.h"
 #include "upgrade/upgrade.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ struct UpgradeCall
 std::string read_text(const std::string& path)
 {
     expect_regular_file(path);
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(std::filesystem::path(path), std::ios::binary);
     if (!in || fs::is_directory(path))
         throw IoError(
             fmt::format("{}: cannot open the file: {}", path, std::strerror(in ? EISDIR : errno)));

@@ -1,11 +1,12 @@
 #include "batch/content_hash.h"
 
-#include "core/regular_file.h"
 #include "fppg/error.h"
+#include "platform/regular_file.h"
 
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 
 namespace fppg
@@ -14,7 +15,7 @@ namespace fppg
 std::string content_hash(const std::string& path)
 {
     expect_regular_file(path);
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(std::filesystem::path(path), std::ios::binary);
     if (!in) throw IoError(fmt::format("cannot read '{}'", path));
     std::uint64_t hash = 14695981039346656037U;
     std::uint64_t size = 0;

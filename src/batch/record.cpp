@@ -4,9 +4,9 @@
 #include "fppg/files.h"
 #include "fppg/version.h"
 
-#include "batch/child_process.h"
 #include "batch/content_hash.h"
 #include "core/json.h"
+#include "platform/processes.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "fppg/files.h"
 #include "fppg/version.h"
 
-#include "core/file_map.h"
 #include "core/json.h"
+#include "platform/file_map.h"
 #include "report/html.h"
 #include "report/result_look.h"
 

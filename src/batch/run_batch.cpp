@@ -2,15 +2,14 @@
 
 #include "fppg/error.h"
 
-#include "batch/child_process.h"
 #include "batch/content_hash.h"
 #include "batch/rates.h"
-#include "core/file_map.h"
 #include "core/json.h"
 #include "core/most_particles.h"
+#include "platform/child_process.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>

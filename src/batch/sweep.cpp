@@ -1,8 +1,8 @@
 #include "batch/sweep.h"
 
-#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
+#include "platform/regular_file.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include "casedef/mesh_data.h"
 
 #include "core/binary_items.h"
-#include "core/file_map.h"
 #include "core/finite_number.h"
-#include "core/regular_file.h"
 #include "core/text.h"
 #include "fppg/error.h"
+#include "platform/file_map.h"
+#include "platform/regular_file.h"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -18,7 +19,7 @@ namespace
 std::string name_beside_result(const Program& p, const Element& e)
 {
     std::string name = p.read.text(e, "file");
-    for (const std::string_view folder : split(name, '/'))
+    for (const std::filesystem::path& folder : std::filesystem::path(name))
         if (folder == "..")
             p.read.fail(e,
                         fmt::format("file=\"{}\" leads out of the folder of the result, expected "

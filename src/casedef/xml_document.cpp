@@ -2,8 +2,8 @@
 
 #include "casedef/lenient_xml.h"
 #include "core/nearby_files.h"
-#include "core/regular_file.h"
 #include "fppg/error.h"
+#include "platform/regular_file.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -142,7 +143,7 @@ Element parse_document(std::string text, const std::string& name)
 Element read_document(const std::string& path)
 {
     expect_regular_file(path);
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(std::filesystem::path(path), std::ios::binary);
     if (!in)
     {
         const int why = errno;

@@ -1,7 +1,7 @@
 #include "core/parallel.h"
 
-#include "core/signals_blocked.h"
 #include "fppg/error.h"
+#include "platform/signals_blocked.h"
 
 #include <fmt/format.h>
 #include <omp.h>

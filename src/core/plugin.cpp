@@ -1,8 +1,8 @@
 #include "core/plugin.h"
 
 #include "fppg/error.h"
+#include "platform/libraries.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -17,20 +17,12 @@ namespace
 
 namespace fs = std::filesystem;
 
-fs::path own_folder()
-{
-    Dl_info image = {};
-    if (dladdr(reinterpret_cast<void*>(&own_folder), &image) == 0 || !image.dli_fname) return {};
-    std::error_code failed;
-    return fs::canonical(image.dli_fname, failed).parent_path();
-}
-
 std::vector<fs::path> plugin_folders()
 {
     std::vector<fs::path> folders;
     if (const char* named = std::getenv("FPPG_PLUGINS")) folders.emplace_back(named);
     // The program is in bin, the Python module in lib/python3/dist-packages/fppg.
-    if (const fs::path own = own_folder(); !own.empty())
+    if (const fs::path own(own_folder()); !own.empty())
         for (const char* way : {".", "../" FPPG_LIBRARIES, "../../../../" FPPG_LIBRARIES})
             folders.push_back((own / way).lexically_normal());
     folders.emplace_back(FPPG_PLUGIN_FOLDER);
@@ -51,10 +43,10 @@ void* plugin_function(const std::string& file, const char* symbol, const std::st
             looked_at.push_back(folder.string());
             continue;
         }
-        void* const plugin = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        void* const entry = plugin ? ::dlsym(plugin, symbol) : nullptr;
+        void* const plugin = open_library(path.string());
+        void* const entry = plugin ? library_symbol(plugin, symbol) : nullptr;
         if (entry) return entry;
-        throw IoError(fmt::format("cannot open the plugin {}: {}", path.string(), ::dlerror()));
+        throw IoError(fmt::format("cannot open the plugin {}: {}", path.string(), library_error()));
     }
     throw IoError(fmt::format("there is no plugin {} in {}: {}", file, fmt::join(looked_at, " or "),
                               purpose));

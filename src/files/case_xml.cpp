@@ -22,6 +22,7 @@
 #include "files/vres_xml.h"
 #include "files/xml_tags.h"
 #include "fppg/files.h"
+#include "platform/files.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -461,7 +462,7 @@ void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& p
         execution.children.push_back(user_variables_tag(def.user_variables));
     execution.children.push_back(case_motion(def.motion, particles.blocks));
     execution.children.push_back(vtk_out_tag(def, vtk_out));
-    file.append(print_document(document));
+    file.append(with_line_ends(print_document(document)));
 }
 
 } // namespace fppg

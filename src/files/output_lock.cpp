@@ -1,7 +1,7 @@
 #include "files/output_lock.h"
 
-#include "core/temporary_files.h"
 #include "fppg/error.h"
+#include "platform/temporary_files.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/file_lock.h"
+#include "platform/file_lock.h"
 
 #include <string>
 

@@ -1,9 +1,9 @@
 #include "files/particle_source.h"
 
 #include "casedef/xml_document.h"
-#include "core/file_map.h"
 #include "files/result_pair.h"
 #include "fppg/error.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
 

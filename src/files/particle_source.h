@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/file_map.h"
 #include "files/bi4_view.h"
 #include "files/case_facts.h"
 #include "files/vtk_walk.h"
 #include "fppg/element.h"
 #include "fppg/vec.h"
+#include "platform/file_map.h"
 
 #include <array>
 #include <bit>

@@ -1,13 +1,13 @@
 #include "fppg/read_particles.h"
 
 #include "casedef/xml_document.h"
-#include "core/file_map.h"
 #include "core/parallel.h"
 #include "files/case_facts.h"
 #include "files/particle_readers.h"
 #include "files/result_pair.h"
 #include "files/typical_distance.h"
 #include "fppg/error.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
 #include <algorithm>

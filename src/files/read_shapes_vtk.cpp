@@ -1,7 +1,7 @@
-#include "core/file_map.h"
 #include "core/float32.h"
 #include "fppg/error.h"
 #include "fppg/read_shapes.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
 #include <bit>

@@ -1,7 +1,7 @@
-#include "core/file_map.h"
 #include "core/parallel.h"
 #include "files/particle_readers.h"
 #include "files/vtk_walk.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
 #include <array>

@@ -1,9 +1,9 @@
 #include "fit/near_nodes.h"
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "fppg/error.h"
 #include "meshes/facet_distance.h"
+#include "platform/memory.h"
 
 #include <algorithm>
 #include <bit>

@@ -2,9 +2,9 @@
 
 #include "fppg/error.h"
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "lattice/draw_pattern.h"
+#include "platform/memory.h"
 
 #include <fmt/format.h>
 

@@ -2,12 +2,12 @@
 
 #include "fppg/error.h"
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "lattice/cavity.h"
 #include "lattice/fill_level.h"
 #include "lattice/point_text.h"
+#include "platform/memory.h"
 
 #include <fmt/format.h>
 

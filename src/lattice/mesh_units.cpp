@@ -3,8 +3,8 @@
 #include "fppg/error.h"
 #include "fppg/mesh.h"
 
-#include "core/memory.h"
 #include "core/most_particles.h"
+#include "platform/memory.h"
 #include "scene/surfaces.h"
 #include "shapes/shape.h"
 

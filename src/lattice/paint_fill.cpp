@@ -1,13 +1,13 @@
 // Fills and redraws.
 #include "fppg/error.h"
 
-#include "core/memory.h"
 #include "lattice/cavity_fill.h"
 #include "lattice/fill_level.h"
 #include "lattice/flood.h"
 #include "lattice/limits.h"
 #include "lattice/mesh_units.h"
 #include "lattice/redraw.h"
+#include "platform/memory.h"
 #include "scene/surfaces.h"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 
 #include "fppg/vec.h"
 
-#include "core/file_map.h"
 #include "files/bi4_view.h"
+#include "platform/file_map.h"
 
 #include <string>
 #include <vector>

@@ -3,9 +3,9 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
-#include "core/file_map.h"
 #include "core/text.h"
 #include "meshes/readers.h"
+#include "platform/file_map.h"
 
 #include <algorithm>
 #include <array>

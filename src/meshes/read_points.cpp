@@ -1,9 +1,9 @@
 #include "fppg/error.h"
 #include "fppg/shapes.h"
 
-#include "core/file_map.h"
 #include "meshes/readers.h"
 #include "meshes/text_lines.h"
+#include "platform/file_map.h"
 
 #include <fmt/format.h>
 

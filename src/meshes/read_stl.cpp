@@ -10,12 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "core/file_map.h"
 #include "core/float32.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "fppg/error.h"
 #include "meshes/facet_checks.h"
+#include "platform/file_map.h"
 
 namespace fppg
 {

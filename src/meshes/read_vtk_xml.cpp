@@ -459,7 +459,7 @@ private:
                                     size));
         const std::size_t before = out.size();
         out.resize(before + size);
-        uLongf n = size;
+        auto n = static_cast<uLongf>(size);
         const int status = ::uncompress(reinterpret_cast<Bytef*>(out.data() + before), &n,
                                         reinterpret_cast<const Bytef*>(packed.data()),
                                         static_cast<uLong>(packed.size()));

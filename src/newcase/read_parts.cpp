@@ -95,7 +95,7 @@ std::string relative_name(const fs::path& file, const std::string& definition)
 /// unit.
 std::vector<std::string> comments_of(const fs::path& path)
 {
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(std::filesystem::path(path), std::ios::binary);
     std::string text(2048, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));

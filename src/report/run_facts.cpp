@@ -1,12 +1,13 @@
 #include "report/run_facts.h"
 
-#include "core/regular_file.h"
 #include "core/text.h"
+#include "platform/regular_file.h"
 #include "report/html.h"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -21,7 +22,8 @@ RunFacts read_run_facts(std::string_view text)
     RunFacts facts;
     for (const std::string_view part : split(text, '\n'))
     {
-        const std::string line(part);
+        // GenCase for Windows ends lines with CR and LF.
+        const std::string line(part.substr(0, part.find('\r')));
         const std::size_t stage = line.find(end_of_stage);
         if (line.starts_with(warning))
             facts.warnings.push_back(line.substr(warning.size()));
@@ -41,7 +43,7 @@ std::optional<RunFacts> facts_of_result(const std::string& path)
     for (const std::string_view ending : {".bi4", ".xml", ".vtk", "_All"})
         if (stem.ends_with(ending)) stem.erase(stem.size() - ending.size());
     expect_regular_file(stem + ".out");
-    std::ifstream in(stem + ".out", std::ios::binary);
+    std::ifstream in(std::filesystem::path(stem + ".out"), std::ios::binary);
     if (!in) return std::nullopt;
     return read_run_facts(std::string((std::istreambuf_iterator<char>(in)), {}));
 }

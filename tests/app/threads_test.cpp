@@ -1,4 +1,4 @@
-#include "app/threads.h"
+#include "platform/processors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "core/temporary_files.h"
 #include "files/helpers.h"
 #include "fppg/error.h"
+#include "platform/temporary_files.h"
 
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -3,10 +3,12 @@
 #   cmake -DSOURCE_DIR=<repository> -P check_includes.cmake
 #
 # Every folder of src/ may include itself and the folders listed for it here; folders that do not
-# list one another do not know one another. The plain structs of include/fppg/ may be seen by all
+# list one another do not know one another. `platform` may be seen by all. The plain structs of include/fppg/ may be seen by all
 # but include only each other. Stops with a list of the files and folders at fault.
 cmake_minimum_required(VERSION 3.25)
 
+# All that differs between systems.
+set(platform_may_see)
 set(core_may_see)
 set(report_may_see core)
 # Runs of nodes and their sets.
@@ -80,6 +82,12 @@ set(png_may_be_seen_by render)
 set(CLI_may_be_seen_by app)
 set(nlohmann_may_be_seen_by core)
 
+# Headers of systems, by their beginnings: the rest of the code runs on all of them.
+set(system_headers unistd[.]h sys/ fcntl[.]h dlfcn[.]h dirent[.]h sched[.]h pthread[.]h poll[.]h
+    termios[.]h spawn[.]h pwd[.]h signal[.]h gnu/ linux/ windows[.]h io[.]h process[.]h direct[.]h
+    psapi[.]h shellapi[.]h shlobj[.]h)
+list(JOIN system_headers "|" system_headers)
+
 set(faults)
 
 function(check_file file folder)
@@ -90,7 +98,7 @@ function(check_file file folder)
       set(seen ${CMAKE_MATCH_1})
       if(folder STREQUAL "include" AND NOT seen STREQUAL "fppg")
         list(APPEND found "${file}: a public header may include only fppg/ and std, not ${seen}/")
-      elseif(NOT seen STREQUAL "fppg" AND NOT seen STREQUAL folder
+      elseif(NOT seen STREQUAL "fppg" AND NOT seen STREQUAL folder AND NOT seen STREQUAL "platform"
              AND NOT seen IN_LIST ${folder}_may_see)
         list(APPEND found "${file}: ${folder} may not include ${seen}/")
       endif()
@@ -105,6 +113,9 @@ function(check_file file folder)
       endif()
     elseif(line MATCHES "include[ \t]+\"" AND NOT line MATCHES "include[ \t]+\"tinyxml2")
       list(APPEND found "${file}: name the folder of the header: ${line}")
+    endif()
+    if(line MATCHES "[<\"](${system_headers})" AND NOT folder STREQUAL "platform")
+      list(APPEND found "${file}: only platform may include headers of a system: ${line}")
     endif()
     foreach(library IN LISTS wrapped_libraries)
       if(line MATCHES "[<\"]${library}[0-9]*[/.]" AND NOT file STREQUAL asks_all AND NOT folder IN_LIST ${library}_may_be_seen_by)
@@ -126,7 +137,7 @@ foreach(file IN LISTS files)
   else()
     set(folder main)
   endif()
-  if(folder STREQUAL "include" OR DEFINED ${folder}_may_see OR folder STREQUAL "core")
+  if(folder STREQUAL "include" OR DEFINED ${folder}_may_see OR folder MATCHES "^(core|platform)$")
     check_file(${file} ${folder})
   else()
     list(APPEND faults "${file}: ${folder} has no place among the layers")

@@ -8,7 +8,16 @@ if(TARGET fppg_hdf5)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/app/build_facts.cpp TARGET_DIRECTORY fppg_lib
       PROPERTIES COMPILE_DEFINITIONS "FPPG_HDF5_VERSION=\"${hdf5_version}\"")
 endif()
+execute_process(COMMAND getconf GNU_LIBC_VERSION OUTPUT_VARIABLE glibc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+string(REGEX MATCH "[0-9.]+$" glibc "${glibc}")
 set(loaded "dynamically linked")
+set(link DYNAMIC_LINK)
+set(c_library "glibc|${glibc}|LGPL-2.1-or-later|DYNAMIC_LINK|${loaded}: libc, libm, ld-linux")
+if(WIN32)
+  set(loaded "statically linked")
+  set(link STATIC_LINK)
+  set(c_library "mingw-w64||ZPL-2.1|STATIC_LINK|${loaded}: its runtime and libwinpthread, beside msvcrt.dll of Windows")
+endif()
 if(FPPG_LIBGOMP_IS_INSIDE)
   set(gomp "of it libgomp is inside the program, the rest dynamically linked")
 else()
@@ -16,18 +25,15 @@ else()
 endif()
 
 find_package(nlohmann_json QUIET)
-execute_process(COMMAND getconf GNU_LIBC_VERSION OUTPUT_VARIABLE glibc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-string(REGEX MATCH "[0-9.]+$" glibc "${glibc}")
-
 # name|version|licence|relationship|how, and which libraries of it
 set(materials
-    "fmt|${fmt_VERSION}|MIT|DYNAMIC_LINK|${loaded}: libfmt"
-    "tinyxml2|${tinyxml2_VERSION}|Zlib|DYNAMIC_LINK|${loaded}: libtinyxml2"
-    "embree|${embree_VERSION}|Apache-2.0|DYNAMIC_LINK|${loaded}: libembree3 or libembree4"
-    "libpng|${PNG_VERSION_STRING}|libpng-2.0|DYNAMIC_LINK|${loaded}: libpng16"
-    "zlib|${ZLIB_VERSION_STRING}|Zlib|DYNAMIC_LINK|${loaded}: libz"
-    "gcc-runtime|${CMAKE_CXX_COMPILER_VERSION}|GPL-3.0-or-later WITH GCC-exception-3.1|DYNAMIC_LINK|libstdc++, libgcc_s, libgomp (${gomp})"
-    "glibc|${glibc}|LGPL-2.1-or-later|DYNAMIC_LINK|${loaded}: libc, libm, ld-linux"
+    "fmt|${fmt_VERSION}|MIT|${link}|${loaded}: libfmt"
+    "tinyxml2|${tinyxml2_VERSION}|Zlib|${link}|${loaded}: libtinyxml2"
+    "embree|${embree_VERSION}|Apache-2.0|${link}|${loaded}: libembree3 or libembree4"
+    "libpng|${PNG_VERSION_STRING}|libpng-2.0|${link}|${loaded}: libpng16"
+    "zlib|${ZLIB_VERSION_STRING}|Zlib|${link}|${loaded}: libz"
+    "gcc-runtime|${CMAKE_CXX_COMPILER_VERSION}|GPL-3.0-or-later WITH GCC-exception-3.1|${link}|libstdc++, libgcc_s, libgomp (${gomp})"
+    "${c_library}"
     "CLI11|${CLI11_VERSION}|BSD-3-Clause|CONTAINS|headers"
     "nlohmann_json|${nlohmann_json_VERSION}|MIT|CONTAINS|headers")
 if(hdf5_version)

@@ -1,22 +1,17 @@
-#include "core/file_lock.h"
+#include "platform/file_lock.h"
 
-#include "core/signals_blocked.h"
-#include "core/temporary_files.h"
 #include "fppg/error.h"
+#include "platform/files.h"
+#include "platform/processes.h"
+#include "platform/signals_blocked.h"
+#include "platform/temporary_files.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <thread>
 #include <utility>
 
@@ -32,21 +27,6 @@ using namespace std::chrono_literals;
 /// as soon as it runs its program.
 constexpr auto wait_for_gone = 10s;
 
-std::string name_of_machine()
-{
-    std::array<char, 256> name{};
-    return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "this machine";
-}
-
-/// Who wrote the file of a lock: "process 123 on name".
-std::string owner_in(const std::string& path)
-{
-    std::ifstream in(path);
-    std::string owner;
-    std::getline(in, owner);
-    return owner;
-}
-
 /// Whether a process of this machine is gone.
 bool is_gone(const std::string& owner)
 {
@@ -54,8 +34,8 @@ bool is_gone(const std::string& owner)
     int read = 0;
     if (std::sscanf(owner.c_str(), "process %d on %n", &process, &read) != 1 || read == 0)
         return false;
-    return owner.substr(static_cast<std::size_t>(read)) == name_of_machine() &&
-           ::kill(process, 0) != 0 && errno == ESRCH;
+    return owner.substr(static_cast<std::size_t>(read)) == machine_name() &&
+           is_process_gone(process);
 }
 
 } // namespace
@@ -65,7 +45,7 @@ FileLock::FileLock(std::string path, const FileLockWish& wish) : path_(std::move
     const auto start = std::chrono::steady_clock::now();
     while (!is_taken() && why_.empty())
     {
-        owner_ = owner_in(path_);
+        owner_ = first_line_of_locked_file(path_);
         const auto waited = std::chrono::steady_clock::now() - start;
         if (waited > (is_gone(owner_)
                           ? std::max<std::chrono::milliseconds>(wish_.wait, wait_for_gone)
@@ -85,19 +65,16 @@ bool FileLock::is_taken()
 {
     // A stop between the lock and its entry among the temporary files would leave the file.
     const SignalsBlocked blocked;
-    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    file_ = open_lock_file(path_);
     if (file_ < 0)
         throw IoError(fmt::format("{}: cannot be made: {}", path_, std::strerror(errno)));
-    if (::flock(file_, (wish_.is_shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0)
+    if (!lock_file(file_, wish_.is_shared))
     {
         if (errno != EWOULDBLOCK) why_ = std::strerror(errno);
         close_file();
         return false;
     }
-    struct stat ours = {};
-    struct stat there = {};
-    if (wish_.is_removed && (::fstat(file_, &ours) != 0 || ::stat(path_.c_str(), &there) != 0 ||
-                             ours.st_ino != there.st_ino || ours.st_dev != there.st_dev))
+    if (wish_.is_removed && !has_name(file_, path_))
     {
         close_file();
         return false;
@@ -109,26 +86,23 @@ bool FileLock::is_taken()
 
 void FileLock::tell_owner()
 {
-    const std::string text = fmt::format("process {} on {}\n", ::getpid(), name_of_machine());
-    const bool is_written =
-        ::ftruncate(file_, 0) == 0 &&
-        ::pwrite(file_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-    if (is_written) return;
+    const std::string text = fmt::format("process {} on {}\n", process_id(), machine_name());
+    if (write_locked_file(file_, text)) return;
     const std::string cause = std::strerror(errno);
-    if (wish_.is_removed) ::unlink(path_.c_str());
+    if (wish_.is_removed) remove_file(path_.c_str());
     close_file();
     throw IoError(fmt::format("{}: cannot be written: {}", path_, cause));
 }
 
 void FileLock::close_file()
 {
-    ::close(std::exchange(file_, -1));
+    fppg::close_file(std::exchange(file_, -1));
 }
 
 FileLock::~FileLock()
 {
     if (file_ < 0) return;
-    if (wish_.is_removed) ::unlink(path_.c_str());
+    if (wish_.is_removed) remove_file(path_.c_str());
     unregister_temporary(std::exchange(slot_, -1));
     close_file();
 }

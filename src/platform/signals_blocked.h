@@ -1,7 +1,7 @@
 #pragma once
 
-#include <pthread.h>
-#include <signal.h>
+#include <array>
+#include <cstddef>
 
 namespace fppg
 {
@@ -9,22 +9,17 @@ namespace fppg
 /// Keeps all signals from this thread, and from threads that it starts, while it lives: those are
 /// for the thread of the program, or wait until it may take them. What a thread does to itself, as
 /// reading a file that became shorter, is told to it: the system ends a program that blocks that.
+/// Windows has none: it starts a thread for Ctrl-C.
 class SignalsBlocked
 {
 public:
-    SignalsBlocked()
-    {
-        sigset_t all;
-        sigfillset(&all);
-        for (const int own : {SIGBUS, SIGSEGV, SIGFPE, SIGILL, SIGSYS}) sigdelset(&all, own);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
-    }
-    ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    SignalsBlocked();
+    ~SignalsBlocked();
     SignalsBlocked(const SignalsBlocked&) = delete;
     SignalsBlocked& operator=(const SignalsBlocked&) = delete;
 
 private:
-    sigset_t before_{};
+    alignas(std::max_align_t) std::array<std::byte, 128> before_;
 };
 
 } // namespace fppg

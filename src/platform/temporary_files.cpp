@@ -1,16 +1,12 @@
-#include "core/temporary_files.h"
+#include "platform/temporary_files.h"
 
-#include <dirent.h>
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
+#include "platform/files.h"
+#include "platform/processes.h"
 
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <climits>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -29,10 +25,11 @@ enum SlotState
     Reserved,
     Live,
 };
+constexpr std::size_t longest_path = 4096;
 struct Slot
 {
     std::atomic<int> state{Free};
-    std::array<char, PATH_MAX> path{};
+    std::array<char, longest_path> path{};
 };
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
 std::array<Slot, 1024> slots;
@@ -60,21 +57,11 @@ int process_of(std::string_view name, std::string_view wanted, bool is_stem)
     return error == std::errc() && is_number && process > 0 ? process : 0;
 }
 
-/// Where locks do not work, that a process of this machine is gone has to do.
-bool is_held(const std::string& path)
-{
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
-    if (file < 0) return true;
-    const bool held = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    ::close(file);
-    return held;
-}
-
 } // namespace
 
 int register_temporary(const std::string& path)
 {
-    if (path.size() >= PATH_MAX) return -1;
+    if (path.size() >= longest_path) return -1;
     for (std::size_t i = 0; i < slots.size(); ++i)
     {
         int expected = Free;
@@ -95,23 +82,25 @@ void remove_temporary_files() noexcept
 {
     const int saved_errno = errno;
     for (Slot& slot : slots)
-        if (slot.state.load() == Live) ::unlink(slot.path.data());
+        if (slot.state.load() == Live) remove_file(slot.path.data());
     errno = saved_errno;
 }
 
 void remove_dead_parts(const std::string& folder, const std::string& name, bool is_stem)
 {
-    DIR* const listing = ::opendir(folder.empty() ? "." : folder.c_str());
-    if (listing == nullptr) return;
-    while (const dirent* entry = ::readdir(listing))
+    const std::filesystem::path in(folder.empty() ? "." : folder);
+    std::error_code failed;
+    std::filesystem::directory_iterator entry(in, failed);
+    for (; !failed && entry != std::filesystem::directory_iterator(); entry.increment(failed))
     {
-        if (entry->d_name[0] != '.') continue;
-        const int process = process_of(entry->d_name, name, is_stem);
-        if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
-        const std::string path = (std::filesystem::path(folder) / entry->d_name).string();
-        if (!is_held(path)) ::unlink(path.c_str());
+        const std::string file = entry->path().filename().string();
+        if (!file.starts_with('.')) continue;
+        const int process = process_of(file, name, is_stem);
+        if (process == 0 || !is_process_gone(process)) continue;
+        // Where locks do not work, that a process of this machine is gone has to do.
+        const std::string path = (std::filesystem::path(folder) / file).string();
+        if (!is_locked(path)) remove_file(path.c_str());
     }
-    ::closedir(listing);
 }
 
 } // namespace fppg

@@ -1,6 +1,7 @@
-#include "batch/child_process.h"
+#include "platform/child_process.h"
 
 #include "fppg/error.h"
+#include "platform/processes.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 
 namespace fppg
 {
@@ -29,16 +29,13 @@ double now()
 /// The exit code for what goes wrong between fork and the program, as shells have it.
 constexpr int cannot_start = 127;
 
-} // namespace
-
-std::string program_path()
+/// A process id, which the header keeps in an integer of any system.
+pid_t process_of(std::intptr_t id)
 {
-    std::error_code error;
-    const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error)
-        throw IoError(fmt::format("cannot find the path of this program: {}", error.message()));
-    return path.string();
+    return static_cast<pid_t>(id);
 }
+
+} // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& folder,
                            const std::string& log)
@@ -69,14 +66,14 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std:
     const int error = errno;
     ::close(file);
     if (id_ < 0) throw IoError(fmt::format("cannot start a process: {}", std::strerror(error)));
-    ::setpgid(id_, id_);
+    ::setpgid(process_of(id_), process_of(id_));
 }
 
 ChildProcess::~ChildProcess()
 {
     if (has_ended_) return;
-    ::kill(id_, SIGKILL);
-    ::waitpid(id_, nullptr, 0);
+    ::kill(process_of(id_), SIGKILL);
+    ::waitpid(process_of(id_), nullptr, 0);
 }
 
 bool ChildProcess::has_ended()
@@ -84,7 +81,7 @@ bool ChildProcess::has_ended()
     if (has_ended_) return true;
     int status = 0;
     rusage usage{};
-    if (::wait4(id_, &status, WNOHANG, &usage) != id_) return false;
+    if (::wait4(process_of(id_), &status, WNOHANG, &usage) != id_) return false;
     has_ended_ = true;
     exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     seconds_ = now() - start_;
@@ -94,7 +91,7 @@ bool ChildProcess::has_ended()
 
 void ChildProcess::stop()
 {
-    if (!has_ended_) ::kill(id_, SIGTERM);
+    if (!has_ended_) ::kill(process_of(id_), SIGTERM);
 }
 
 } // namespace fppg

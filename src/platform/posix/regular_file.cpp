@@ -1,4 +1,4 @@
-#include "core/regular_file.h"
+#include "platform/regular_file.h"
 
 #include "fppg/error.h"
 

@@ -1,6 +1,6 @@
-#include "app/stop_signals.h"
+#include "platform/stop_signals.h"
 
-#include "core/temporary_files.h"
+#include "platform/temporary_files.h"
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
-#include "core/file_map.h"
+#include "platform/file_map.h"
 
-#include "core/regular_file.h"
+#include "platform/regular_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -9,10 +9,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "fppg/error.h"
 
@@ -93,18 +89,6 @@ void FileMap::release() const
 FileMap::~FileMap()
 {
     if (mapping_ != nullptr) ::munmap(mapping_, size_);
-}
-
-bool is_file(const std::string& path)
-{
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
-}
-
-std::string read_whole(const std::string& path)
-{
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 } // namespace fppg

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <sys/types.h>
-
 namespace fppg
 {
 
@@ -35,15 +33,12 @@ public:
     std::uint64_t peak_bytes() const { return peak_bytes_; } ///< resident memory
 
 private:
-    pid_t id_ = -1;
+    std::intptr_t id_ = -1; ///< of the process; on Windows its handle
     bool has_ended_ = false;
     int exit_code_ = 0;
     double start_ = 0;
     double seconds_ = 0;
     std::uint64_t peak_bytes_ = 0;
 };
-
-/// The path of this program.
-std::string program_path();
 
 } // namespace fppg
