@@ -1,6 +1,7 @@
 #include "app/estimate_command.h"
 
 #include "app/command_line.h"
+#include "app/measure_speed.h"
 #include "app/stage_bar.h"
 #include "app/threads.h"
 #include "batch/estimate.h"
@@ -38,7 +39,7 @@ int run_estimate(const std::vector<std::string>& arguments)
     }
     if (arguments == std::vector<std::string>{"--calibrate"})
     {
-        const MachineSpeed speed = calibrate_speed();
+        const MachineSpeed speed = keep_machine_speed(measure_speed());
         fmt::print(
             "Body-fitting takes {:.2f} times as long here as on the machine that estimates "
             "were made for; kept in {}.\n",

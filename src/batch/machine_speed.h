@@ -12,14 +12,13 @@ struct MachineSpeed
     std::string file;  ///< that it was read from; empty: none is there
 };
 
-/// What calibrate_speed() wrote; factor 1 where there is none, or none of sense.
+/// What keep_machine_speed() wrote; factor 1 where there is nothing, or nothing of sense.
 MachineSpeed read_machine_speed();
 
-/// Measures the factor, by the processor time of particles laid and relaxed on a ball, the least of
-/// three runs of about half a second each, and writes it to fppg/speed.json in XDG_CONFIG_HOME,
-/// else in .config of HOME, else in APPDATA.
+/// Writes the factor to fppg/speed.json in XDG_CONFIG_HOME, else in .config of HOME, else in
+/// APPDATA.
 ///
 /// throws  IoError
-MachineSpeed calibrate_speed();
+MachineSpeed keep_machine_speed(double factor);
 
 } // namespace fppg
