@@ -161,10 +161,13 @@ void expect_particles_fit(const std::string& path, const CaseOptions& options, c
     if (!law) return;
     const double count = law->at(grid.dp);
     if (count <= clearly_above * limit.most) return;
+    // What no disk could hold does not depend on this one's room.
+    const ParticleLimit of_format;
+    const ParticleLimit& exceeded = count > clearly_above * of_format.most ? of_format : limit;
     const std::string text = fmt::format(
         "the case would have about {:.2g} particles with dp={:g}, {}; dp={:g} and larger ones fit",
-        count, grid.dp, limit.holder, dp_rounded_up(law->dp_of(0.95 * limit.most)));
-    if (limit.is_of_disk) throw IoError(path + ": " + text);
+        count, grid.dp, exceeded.holder, dp_rounded_up(law->dp_of(0.95 * limit.most)));
+    if (exceeded.is_of_disk) throw IoError(path + ": " + text);
     throw CaseError(path, 0, text);
 }
 

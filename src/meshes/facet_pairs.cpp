@@ -1,7 +1,6 @@
 #include "meshes/facet_pairs.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/parallel.h"
 #include "core/predicates.h"
@@ -15,24 +14,41 @@ namespace
 
 using Corners = std::array<Vec3, 3>;
 
-/// Whether a side of `a` has its ends on both sides of `b`'s plane, farther from it than `depth`,
-/// and passes inside the facet.
-bool pierces(const Corners& a, const Corners& b, double depth)
+/// Whether `a` reaches farther than `depth` to both sides of `b`'s plane.
+bool reaches_through(const Corners& a, const Corners& b, double depth)
 {
     const Vec3 normal = cross(b[1] - b[0], b[2] - b[0]);
-    const double near = depth * norm(normal);
-    const auto is_near = [&](const Vec3& p) { return std::abs(dot(p - b[0], normal)) < near; };
+    double lowest = 0, highest = 0;
+    for (const Vec3& p : a)
+    {
+        lowest = std::min(lowest, dot(p - b[0], normal));
+        highest = std::max(highest, dot(p - b[0], normal));
+    }
+    const double least = depth * norm(normal);
+    return lowest < -least && highest > least;
+}
+
+/// Whether a side of `a` has its ends on both sides of `b`'s plane and passes inside the facet.
+bool pierces(const Corners& a, const Corners& b)
+{
     std::array<int, 3> side{};
     for (std::size_t i = 0; i < 3; ++i) side[i] = orient3d(b[0], b[1], b[2], a[i]);
     for (std::size_t i = 0; i < 3; ++i)
     {
         const std::size_t j = (i + 1) % 3;
-        if (side[i] * side[j] >= 0 || is_near(a[i]) || is_near(a[j])) continue;
+        if (side[i] * side[j] >= 0) continue;
         int turns = 0;
         for (std::size_t k = 0; k < 3; ++k) turns += orient3d(a[i], a[j], b[k], b[(k + 1) % 3]);
         if (turns == 3 || turns == -3) return true;
     }
     return false;
+}
+
+/// Whether two facets cross, each reaching farther than `depth` through the other's plane.
+bool cross_deeply(const Corners& a, const Corners& b, double depth)
+{
+    if (depth > 0 && !(reaches_through(a, b, depth) && reaches_through(b, a, depth))) return false;
+    return pierces(a, b) || pierces(b, a);
 }
 
 FacetPairs find_pairs(const SurfaceMesh& mesh, bool of_one_shell, double depth, int threads)
@@ -71,7 +87,7 @@ FacetPairs find_pairs(const SurfaceMesh& mesh, bool of_one_shell, double depth, 
                             mesh.facets[other].end())
                             return;
                     const Corners theirs = corners_of(other);
-                    if (!pierces(own, theirs, depth) && !pierces(theirs, own, depth)) return;
+                    if (!cross_deeply(own, theirs, depth)) return;
                     ++crossed[f];
                     first[f] = std::min(first[f], other);
                 });

@@ -61,6 +61,8 @@ std::vector<fs::path> part_paths(CasePlan& plan)
     for (const std::string& input : plan.options->inputs)
     {
         std::error_code error;
+        if (input.empty())
+            throw UsageError("fppg new: a part without a name, expected a file or a folder");
         if (fs::is_directory(input, error))
             add_folder(input, files, plan);
         else

@@ -133,7 +133,7 @@ class SmallDisk(Limits):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.SIZE}", "tmpfs", disk], check=False).returncode:
             self.skipTest("this system mounts no tmpfs")
         try:
-            for dp, begin in (("0.0005", "the case would have about 8e+09 particles"), ("0.02", "the case has 132651 ")):
+            for dp, begin in (("0.001", "the case would have about 1e+09 particles"), ("0.02", "the case has 132651 ")):
                 self.write_case(SOLID, dp)
                 code, out = self.run_it("Case_Def", "disk/Case")
                 self.assertEqual(code, 4, out)
