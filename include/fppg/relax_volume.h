@@ -97,7 +97,8 @@ struct RelaxVolumeOptions
     /// evenly.
     std::optional<double> wanted{};
     /// With `fit_count`: of two particles that end nearer than this to one another, or to one that
-    /// does not move, one is taken out, dp; 0: none is.
+    /// does not move, one is taken out, dp; 0: none is. Above 0, no more than a quarter of those
+    /// that may move come or go for the number wanted, as others stay around them.
     double least_pair_dp = 0;
     /// Called after every iteration; relaxation ends when it returns false. May be empty.
     std::function<bool(const RelaxVolumeProgress&)> on_iteration;
