@@ -66,7 +66,7 @@ bool relaxes(const CaseDef& def, const RunField& field);
 
 /// Relaxes the fitted walls of a field and the volume beside them, as the settings of their mks and
 /// the fluid bands of the case say: first all surfaces, then the inside of every solid mk, then the
-/// fluid. Places between walls that are narrower than 1.5 dp are left empty of fluid.
+/// fluid. Places between walls that are narrower than 1.5 dp (moving: 2 dp) are left empty.
 ///
 /// The particles of a surface stay on it (relax_surface()); those within 2 dp of a cut are held.
 /// Afterwards no two of all surfaces are nearer than least_pair_dp, but those on both sheets of a

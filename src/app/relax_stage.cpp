@@ -82,7 +82,7 @@ void warn_of_fluid_count(const RelaxedPart& part, const RelaxReport& report, Cas
     if (std::abs(share) < 0.001) return;
     run.warn(fmt::format(
         "{}: <fluidband>: {:+g} particles of fluid near walls ({:+.2f} % of them), so many as fit "
-        "between the walls, none where these are less than 1.5 dp apart; litres of fills keep "
+        "between the walls, none in pockets; litres of fills keep "
         "their "
         "number.",
         file, more, 100 * share));

@@ -29,6 +29,9 @@ constexpr double least_distance_dbc = 0.5;
 /// To walls whose first particles stand half a dp behind the surface.
 constexpr double least_distance_mdbc = 0.2;
 constexpr double reach_of_walls = 2.5;
+/// Nearer particles are pushed apart: so high up that pressures do not.
+constexpr double least_pair = 0.6;
+constexpr double depth_of_pushes = 2;
 /// Below the level of its column; the highest particles start half a dp below it.
 constexpr double least_depth = 0.25;
 /// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
@@ -83,6 +86,7 @@ public:
         set_depth_pressures(rest_, threads_);
         start_ = rest_.positions;
         velocities_.resize(rest_.size());
+        pushes_.resize(rest_.size());
         accelerations_.resize(rest_.size());
         walls_.resize(rest_.size());
         allowed_.assign(rest_.size(), least_distance_ * rest_.dp);
@@ -193,8 +197,24 @@ private:
                     rest_.pressures[i] * Vec3{double{sums.x}, double{sums.y}, double{sums.z}} +
                     Vec3{double{sums.px}, double{sums.py}, double{sums.pz}};
                 accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * push;
+                pushes_[i] = push_apart(i, list_.neighbours(row));
             },
             NeighbourList::rows_per_chunk);
+    }
+
+    /// What pushes a particle near the surface off others that are too near, as an acceleration.
+    Vec3 push_apart(std::uint32_t i, std::span<const std::uint32_t> near) const
+    {
+        Vec3 out;
+        if (rest_.pressures[i] > rest_.pressure(depth_of_pushes * rest_.dp)) return out;
+        for (const std::uint32_t j : near)
+        {
+            const Vec3 away = (rest_.positions[i] - rest_.positions[j]) / rest_.dp;
+            const double distance = norm(away);
+            if (distance < least_pair && distance > 0)
+                out = out + away * ((least_pair - distance) / distance);
+        }
+        return norm(rest_.gravity) * out;
     }
 
     void set_field()
@@ -224,7 +244,7 @@ private:
                 const double scale = step_factor * rest_.h * rest_.h * rest_.rhop0 /
                                      (std::max(rest_.pressures[i], soft / 2) + soft);
                 Vec3& v = velocities_[i];
-                v = momentum * v + scale * accelerations_[i];
+                v = momentum * v + scale * (accelerations_[i] + pushes_[i]);
                 const double length = norm(v);
                 if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
                 rest_.positions[i] = allowed_place(i, rest_.positions[i] + v);
@@ -292,6 +312,7 @@ private:
     double least_distance_;        ///< to a wall, dp
     std::vector<Vec3> velocities_; ///< metres a step
     std::vector<Vec3> accelerations_;
+    std::vector<Vec3> pushes_; ///< besides, only while particles move
     PressureField field_;
     std::vector<Vec3> start_;
     std::vector<Vec3> looked_at_; ///< places when walls were looked for

@@ -153,6 +153,18 @@ void check(Element& e, const AttributeReader& read, std::set<int>& references)
     }
 }
 
+void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
+{
+    for (const Element& c : e.children)
+    {
+        if (c.name != "objreal" && c.name != "obj") continue;
+        const bool moves = is_moved || c.find_child("begin") != nullptr;
+        if (c.name == "objreal" && moves)
+            if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
+        collect_moving(c, moves, out);
+    }
+}
+
 } // namespace
 
 Element evaluated_element(const Element& source, const AttributeReader& read)
@@ -173,6 +185,13 @@ Element evaluated_motion(const Element& motion, const AttributeReader& read)
     Element out = evaluated_element(motion, read);
     std::set<int> references;
     check(out, read, references);
+    return out;
+}
+
+std::set<int> moving_mkbound(const Element& motion)
+{
+    std::set<int> out;
+    collect_moving(motion, false, out);
     return out;
 }
 

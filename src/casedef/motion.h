@@ -4,6 +4,8 @@
 
 #include "casedef/attributes.h"
 
+#include <set>
+
 namespace fppg
 {
 
@@ -17,5 +19,9 @@ Element evaluated_element(const Element& element, const AttributeReader& read);
 ///
 /// throws CaseError for an element that is not known or a number that cannot be read
 Element evaluated_motion(const Element& motion, const AttributeReader& read);
+
+/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay
+/// fixed.
+std::set<int> moving_mkbound(const Element& motion);
 
 } // namespace fppg

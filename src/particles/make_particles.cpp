@@ -2,6 +2,7 @@
 #include "fppg/error.h"
 #include "fppg/particles.h"
 
+#include "casedef/motion.h"
 #include "core/most_particles.h"
 #include "core/parallel.h"
 #include "particles/density.h"
@@ -21,20 +22,6 @@ namespace fppg
 {
 namespace
 {
-
-/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay
-/// fixed.
-void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
-{
-    for (const Element& c : e.children)
-    {
-        if (c.name != "objreal" && c.name != "obj") continue;
-        const bool moves = is_moved || c.find_child("begin") != nullptr;
-        if (c.name == "objreal" && moves)
-            if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
-        collect_moving(c, moves, out);
-    }
-}
 
 class ParticleMaker
 {
@@ -80,8 +67,7 @@ private:
     {
         for (std::uint32_t mk = 1; mk < def_.mk_bound_first; ++mk)
             type_of_mk_[mk] = ParticleType::Fluid;
-        std::set<int> moving;
-        collect_moving(def_.motion, false, moving);
+        const std::set<int> moving = moving_mkbound(def_.motion);
         for (const int mk : moving)
             if (mk + def_.mk_bound_first < 65536)
                 type_of_mk_[static_cast<std::size_t>(mk) + def_.mk_bound_first] =

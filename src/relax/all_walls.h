@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -27,6 +28,7 @@ public:
         std::size_t body = 0;
         bool is_outside = false; ///< on the side where the facet looks
         Vec3 normal;             ///< of the facet
+        std::uint16_t mk = 0;    ///< of the facet, absolute
     };
 
     AllWalls(const std::vector<FittedBody>& bodies, const LatticeGrid& grid, int threads)
@@ -45,6 +47,11 @@ public:
             const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
             normals_.insert(normals_.end(), normals.begin(), normals.end());
             is_of_solid_.resize(normals_.size(), body.is_solid ? 1 : 0);
+            // Lines in the plane of a 2D case are not its facets.
+            if (grid.is_2d || body.facet_mk.empty())
+                mks_.resize(normals_.size(), body.mk);
+            else
+                mks_.insert(mks_.end(), body.facet_mk.begin(), body.facet_mk.end());
         }
         if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
     }
@@ -56,10 +63,14 @@ public:
     {
         const ClosestPoint near = query_->closest_point(p, within);
         if (near.distance == std::numeric_limits<double>::infinity())
-            return {near.point, near.distance, 0, false, {}};
+            return {near.point, near.distance, 0, false, {}, 0};
         const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
-        return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
-                dot(p - near.point, normals_[near.facet]) > 0, normals_[near.facet]};
+        return {near.point,
+                near.distance,
+                static_cast<std::size_t>(after - first_.begin()) - 1,
+                dot(p - near.point, normals_[near.facet]) > 0,
+                normals_[near.facet],
+                mks_[near.facet]};
     }
     Vec3 closest_point(const Vec3& p, double within) const
     {
@@ -81,6 +92,7 @@ public:
 private:
     bool is_2d_ = false;
     std::vector<char> is_of_solid_;  ///< facets
+    std::vector<std::uint16_t> mks_; ///< facets
     std::vector<std::size_t> first_; ///< facet or line of each body
     std::vector<Vec3> normals_;      ///< of all facets or lines
     std::optional<MeshQuery> query_;

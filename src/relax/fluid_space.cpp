@@ -1,5 +1,6 @@
 #include "relax/fluid_space.h"
 
+#include "casedef/motion.h"
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "fit/near_nodes.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 namespace fppg
@@ -18,9 +20,10 @@ namespace
 {
 
 // Lengths in dp.
-constexpr double narrow = 1.5;     ///< between walls: a pocket
-constexpr double touching = 0.05;  ///< between walls: none
-constexpr double off_the_wall = 2; ///< where the fluid is looked for that a place belongs to
+constexpr double narrow = 1.5;      ///< between walls: a pocket
+constexpr double narrow_moving = 2; ///< the same where one of two moves past the other
+constexpr double touching = 0.05;   ///< between walls: none
+constexpr double off_the_wall = 2;  ///< where the fluid is looked for that a place belongs to
 constexpr double reach_of_cell = 0.87;
 /// Walls whose ball is smaller than this may both cut a cell.
 constexpr double near_two_walls = 1.2;
@@ -92,7 +95,8 @@ struct CellSpace
     std::uint16_t owner = 0; ///< mk of the fluid that its volume belongs to
     double owned = 0;        ///< dp^3
     double pocket = 0;       ///< dp^3
-    double narrowest_dp = narrow;
+    Vec3 pocket_moment;      ///< its volume times its middle
+    double narrowest_dp = narrow_moving;
     bool is_in_pocket = false; ///< its middle
 };
 
@@ -102,6 +106,11 @@ public:
     SpaceMeter(const CaseDef& def, RunField& field, const AllWalls& all, int threads)
         : def_(def), field_(field), all_(all), threads_(threads), near_(field, def.mk_bound_first)
     {
+        for (const int mkbound : moving_mkbound(def.motion))
+            moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+        for (const FloatingDef& floating : def.floatings)
+            for (const int mkbound : floating.mkbound)
+                moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
         closest_ = [&](const Vec3& p, double within) { return all_.closest_point(p, within); };
     }
 
@@ -157,6 +166,24 @@ private:
                    : std::uint16_t{};
     }
 
+    /// The fluid that is met on the way from a place to where all walls are 2 dp away. Each step is
+    /// shorter than the distance to the nearest wall, so that it passes through none.
+    std::uint16_t fluid_beside(Vec3 p) const
+    {
+        constexpr int most_steps = 8;
+        const double dp = field_.grid.dp;
+        std::uint16_t mk = fluid_around(p, true);
+        for (int step = 0; step < most_steps && mk == 0; ++step)
+        {
+            const Vec3 off = p - closest_(p, off_the_wall * dp);
+            const double distance = norm(off);
+            if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
+            p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
+            mk = fluid_around(p, false);
+        }
+        return mk;
+    }
+
     /// The fluid of the node nearest to a place, or else of any around it.
     std::uint16_t fluid_around(const Vec3& p, bool all_around) const
     {
@@ -189,19 +216,31 @@ private:
         WallFront out;
         out.width_dp = 2 * ball.radius / dp;
         if (out.width_dp < touching) return out;
-        if (ball.is_opposite && out.width_dp < narrow * (1 - 1e-9))
+        if (ball.is_opposite && out.width_dp < width_of_pockets(near.mk, ball) * (1 - 1e-9))
             // The inside of a thin shell is no place for fluid.
             out.is_pocket = is_before || body.measures.volume <= 0;
         else
-            out.fluid = fluid_around(ball.center, ball.radius < off_the_wall * dp * (1 - 1e-9));
+            out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9)
+                            ? fluid_beside(ball.center)
+                            : fluid_around(ball.center, false);
         return out;
     }
 
-    void add(const WallFront& front, double volume, CellSpace& out) const
+    /// Below which width a place between a wall and that at the other side of a ball is a pocket.
+    double width_of_pockets(std::uint16_t mk, const WallBall& ball) const
+    {
+        if (moving_.empty()) return narrow;
+        const std::uint16_t other = all_.closest(ball.other).mk;
+        return other != mk && (moving_.contains(mk) || moving_.contains(other)) ? narrow_moving
+                                                                                : narrow;
+    }
+
+    void add(const WallFront& front, const Vec3& middle, double volume, CellSpace& out) const
     {
         if (front.is_pocket)
         {
             out.pocket += volume;
+            out.pocket_moment = out.pocket_moment + volume * middle;
             out.narrowest_dp = std::min(out.narrowest_dp, front.width_dp);
         }
         else if (front.fluid != 0)
@@ -245,9 +284,9 @@ private:
         WallFront own = front;
         // Where the fluid itself stands it need not be looked for.
         if (fluid != 0 && !own.is_pocket && !own.is_solid) own.fluid = fluid;
-        add(own, before * volume, out);
+        add(own, p, before * volume, out);
         if (before < 1)
-            add(front_of(near, -1.0 * up, !near.is_outside), (1 - before) * volume, out);
+            add(front_of(near, -1.0 * up, !near.is_outside), p, (1 - before) * volume, out);
     }
 
     CellSpace measure(const NodeIndex& node) const
@@ -305,9 +344,11 @@ private:
             pocket.narrowest_dp =
                 is_new ? cell.narrowest_dp : std::min(pocket.narrowest_dp, cell.narrowest_dp);
             pocket.volume += cell.pocket * dp3;
-            const double weight = cell.pocket + 1e-3; // a node may have next to no volume
-            weights[at->first] += weight;
-            pocket.center = pocket.center + weight * place_of(cell.node, field_.grid);
+            // A node that leaves may have next to no volume.
+            const double more = cell.is_in_pocket ? 1e-3 : 0;
+            weights[at->first] += cell.pocket + more;
+            pocket.center =
+                pocket.center + cell.pocket_moment + more * place_of(cell.node, field_.grid);
             if (cell.is_in_pocket) ++pocket.nodes;
         }
         for (auto& [first, pocket] : found)
@@ -341,6 +382,7 @@ private:
     int threads_;
     FluidNear near_;
     ClosestWallPoint closest_;
+    std::set<std::uint16_t> moving_; ///< mks
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "core/disjoint_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -39,15 +40,15 @@ std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>&
     return out;
 }
 
-Region fluid_region(const CaseDef& def, const FluidSpace& space)
+Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_layers)
 {
     Region region;
     region.what = "fluid";
     region.band.assign(65536, 0);
     region.beside.assign(65536, 0);
     region.left_empty = space.pocket_places;
-    region.fits_count = std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
-                                    [](const FluidBand& band) { return band.fits_count; });
+    const bool is_asked = std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                                      [](const FluidBand& band) { return band.fits_count; });
     for (std::uint32_t number = 1; number < 65536; ++number)
     {
         const auto mk = static_cast<std::uint16_t>(number);
@@ -55,15 +56,22 @@ Region fluid_region(const CaseDef& def, const FluidSpace& space)
         const FluidBand* band = fluid_band(def, mk);
         if (band != nullptr && band->is_active) region.band[mk] = band->width_dp;
     }
-    if (!def.fills_litres()) return region;
-    if (space.nodes.size() > 1)
-        region.fits_count = false;
-    else if (region.fits_count || !region.left_empty.empty())
-    {
-        region.fits_count = true;
-        region.missing = region.left_empty.size();
-    }
+    // Several fluids would have to share what comes and goes, so each keeps what it has.
+    const bool has_litres = def.fills_litres();
+    if (has_litres && space.nodes.size() == 1) region.missing = region.left_empty.size();
+    region.fits_count = has_litres ? region.missing && (is_asked || *region.missing > 0)
+                                   : is_asked || is_before_layers;
     return region;
+}
+
+std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving, double dp)
+{
+    constexpr double most = 0.25;
+    double missing = 0;
+    for (const auto& [mk, volume] : space.missing) missing += volume / (dp * dp * dp);
+    const auto now = static_cast<double>(moving);
+    if (space.missing.empty() || std::abs(missing) > most * now) return std::nullopt;
+    return now + missing;
 }
 
 void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes)

@@ -49,11 +49,18 @@ struct Region
 };
 
 /// All fluid near walls. Where a fill gives it its litres, their number stays what it was before
-/// pockets were emptied, unless several fluids would have to share that.
-Region fluid_region(const CaseDef& def, const FluidSpace& space);
+/// pockets were emptied, unless several fluids would have to share that; else it changes where a
+/// band asks for it and before layers, which leave it a volume that is known.
+Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_layers);
 
 /// The mks of solid bodies, those of one body together; ascending by the first of each.
 std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies);
+
+/// How many particles of fluid make up the volume that layers behind the surface leave to it.
+///
+/// moving   particles that move now
+/// returns  nothing where so many are missing that they cannot come among those that move
+std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving, double dp);
 
 /// Covers nodes of a slab, sorted by (y, z).
 void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes);

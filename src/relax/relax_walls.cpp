@@ -191,7 +191,7 @@ private:
         if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {
             report_.space = measure_fluid_space(def_, field_, all, threads_);
-            const Region region = fluid_region(def_, report_.space);
+            const Region region = fluid_region(def_, report_.space, are_layered());
             std::vector<SlabRun> of_fluid;
             for_each_run(
                 [&](const SlabRun& r)
@@ -458,12 +458,15 @@ private:
         options.fit_count = region.fits_count;
         if (region.missing)
             options.wanted = static_cast<double>(positions.size() + *region.missing);
+        else if (is_before_layers)
+            options.wanted = number_between_layers(report_.space, positions.size(), grid.dp);
         if (region.is_solid)
             options.wanted = wanted_number(field_.walls, region, positions.size(),
                                            count_nodes(region, runs), grid.dp);
         if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
         options.has_free_surface = !is_of_inside;
-        if (options.wanted && !is_of_inside) options.least_pair_dp = least_pair_dp;
+        if (options.wanted && region.is_solid && !is_of_inside)
+            options.least_pair_dp = least_pair_dp;
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations,

@@ -12,6 +12,7 @@ struct WallBall
     Vec3 center;
     double radius = 0;
     bool is_opposite = false; ///< it touches a second wall, on the side opposite to the first
+    Vec3 other;               ///< where it touches that wall
 };
 
 /// The largest ball that touches walls at `foot` and lies on the side of `up`.

@@ -2,14 +2,13 @@
 
 #include "fppg/read_particles.h"
 
-#include "core/json.h"
-
 #include "helpers/case_text.h"
 #include "helpers/run_fppg.h"
 
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +21,7 @@ namespace
 using namespace fppg::test;
 using fppg::ParticleCloud;
 using fppg::Vec3;
-using json = fppg::Json;
+using nlohmann::json;
 
 constexpr double dp = 0.05;
 constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
@@ -31,6 +30,7 @@ struct Result
 {
     int code = 0;
     std::string output;
+    std::string log; ///< Case.out
     ParticleCloud cloud;
     std::vector<json> events;
     double mass_fluid = 0;
@@ -74,8 +74,9 @@ Result make(const CaseText& text)
     const TemporaryFolder folder;
     write_text(folder / "Case_Def.xml", text.text());
     const RunResult done = run(folder, {"Case_Def", "out/Case", "-log-json"});
-    Result out{done.code, done.output, {}, {}, 0};
+    Result out{done.code, done.output, {}, {}, {}, 0};
     if (done.code != 0) return out;
+    out.log = read_text(folder / "out/Case.out");
     out.cloud = fppg::read_particles(folder / "out/Case", false, 1);
     std::istringstream lines(done.output);
     for (std::string line; std::getline(lines, line);)
@@ -86,16 +87,16 @@ Result make(const CaseText& text)
     return out;
 }
 
-/// A tank of sheets, 1.23 x 1.04 x 1 m, with two blocks of 0.4 x 0.4 x 0.2 m in its water, one over
+/// A tank of sheets, 1.23 x 1.04 x 1 m, with two blocks of 0.4 x 0.4 x 0.1 m in its water, one over
 /// the other, so far apart; the nodes at z = 0.55 lie midway between them.
 std::string tank_with_blocks(double apart)
 {
     return fmt::format(
         R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.23" y="1.04" z="1" /></drawbox>
-<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
-<drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.1" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.1" /></drawbox>
 <setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x="2" y="2" z="1.12" /></fillbox>)",
-        0.35 - apart / 2, 0.55 + apart / 2);
+        0.45 - apart / 2, 0.55 + apart / 2);
 }
 
 /// Fluid between the blocks, off their rims.
@@ -128,11 +129,11 @@ TEST(FluidSpace, NarrowPocketsStayEmptyAndAreListedWithPlaceAndVolume)
         EXPECT_GT(pocket["litres"].get<double>(), litres);
         EXPECT_LT(pocket["litres"].get<double>(), 1.1 * litres);
         EXPECT_NEAR(pocket["narrowest_dp"].get<double>(), 1.3, 0.01);
-        EXPECT_NEAR(pocket["center"][0].get<double>(), 0.61, 0.1 * dp);
-        EXPECT_NEAR(pocket["center"][1].get<double>(), 0.52, 0.1 * dp);
+        EXPECT_NEAR(pocket["center"][0].get<double>(), 0.61, 0.2 * dp);
+        EXPECT_NEAR(pocket["center"][1].get<double>(), 0.52, 0.2 * dp);
         EXPECT_NEAR(pocket["center"][2].get<double>(), 0.55, 0.1 * dp);
         EXPECT_GT(pocket["particles"].get<int>(), 40);
-        EXPECT_TRUE(contains(r.output, "Left empty: 1 pocket")) << r.output;
+        EXPECT_TRUE(contains(r.log, "Left empty: 1 pocket")) << r.log;
     }
 }
 
@@ -165,13 +166,13 @@ TEST(FluidSpace, TheVolumeBetweenWallsIsThatOfTheCavity)
     // Up to half a dp above the highest nodes, at z = 0.85, and without the blocks.
     const Result r = make(case_of(tank_with_blocks(0.15), "<bodyfitted />"));
     ASSERT_EQ(r.code, 0) << r.output;
-    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.2);
+    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.1);
     const json space = r.one("fluid_space");
     EXPECT_NEAR(space["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
     const auto particles = static_cast<double>(r.fluid().size());
     EXPECT_EQ(space["particles"].get<double>(), particles);
     EXPECT_NEAR(space["litres"].get<double>(), particles * 1000 * dp * dp * dp, 1e-6 * cavity);
-    EXPECT_TRUE(contains(r.output, "missing")) << r.output;
+    EXPECT_TRUE(contains(r.log, "% missing")) << r.log;
 }
 
 /// A shell full of fluid, with a solid ball in it.
@@ -190,25 +191,22 @@ TEST(FluidSpace, TheVolumeInARoundVesselIsThatOfTheSphere)
     EXPECT_NEAR(r.one("fluid_space")["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
 }
 
-TEST(FluidSpace, BetweenLayersHardlyAnyVolumeIsMissing)
+TEST(FluidSpace, BetweenLayersNoVolumeIsMissing)
 {
-    const Result r =
-        make(case_of(tank_with_blocks(0.15), R"(<bodyfitted boundary="mdbc" /><fluidband />)"));
+    const Result r = make(case_of(tank_with_blocks(0.15), R"(<bodyfitted boundary="mdbc" />)"));
     ASSERT_EQ(r.code, 0) << r.output;
-    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.2);
+    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.1);
     const json space = r.one("fluid_space");
     EXPECT_NEAR(space["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
-    EXPECT_NEAR(space["litres"].get<double>(), cavity, 0.01 * cavity);
+    EXPECT_NEAR(space["litres"].get<double>(), cavity, 0.005 * cavity);
 }
 
-/// An open tank off the lattice's nodes, filled by a `<fill>`.
+/// The tank and the blocks, 1.3 dp apart, filled by a `<fill>`.
 CaseText filled_tank(const std::string& fppg, const std::string& fill)
 {
-    return case_of(
-        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0.01" y="0.02" z="0.017" /><size x="1.23" y="1.04" z="1" /></drawbox>
-<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="0.3" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
-<drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="0.565" /><size x="0.4" y="0.4" z="0.2" /></drawbox>)",
-        fppg + R"(<fill mkfluid="0" seed="0.6,0.1,0.2" )" + fill + " />");
+    const std::string drawn = tank_with_blocks(1.3 * dp);
+    return case_of(drawn.substr(0, drawn.find("<setmkfluid")),
+                   fppg + R"(<fill mkfluid="0" seed="0.6,0.1,0.2" )" + fill + " />");
 }
 
 TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
@@ -216,8 +214,7 @@ TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
     const double asked = 777;
     for (const char* band : {"", "<fluidband />"})
     {
-        const Result r = make(filled_tank(std::string("<bodyfitted />") + band,
-                                          fmt::format(R"(litres="{}")", asked)));
+        const Result r = make(filled_tank(near_walls + band, fmt::format(R"(litres="{}")", asked)));
         ASSERT_EQ(r.code, 0) << r.output;
         EXPECT_GT(r.one("pocket")["particles"].get<int>(), 0);
         const double litres = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;

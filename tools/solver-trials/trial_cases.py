@@ -280,10 +280,11 @@ def ball(dp=0.0125, time=1.0, density=500.0):
                  facts={"water_depth": level, "radius": radius, "density": density, "middle": middle.tolist()})
 
 
-def gears(dp=0.005, gap=3.0, turn=135.0):
+def gears(dp=0.005, gap=3.0, turn=60.0, sound=40.0):
     """Two gears of 12 and 16 teeth that turn in mesh in oil, in the plane y = 0; flanks and tips stay `gap` dp or more apart.
 
-    turn  of the smaller one, degrees
+    turn   of the smaller one, degrees
+    sound  speed of sound over that of the tips
     """
     module, apart, rim = 8 * dp, 3 * dp, 4 * dp
     small, large = 6 * module, 8 * module  # pitch radii
@@ -298,7 +299,7 @@ def gears(dp=0.005, gap=3.0, turn=135.0):
     at_large = at_small + small + large + apart
     meshes, motions = {"tank.stl": tank_mesh}, []
     speed_sound = 20 * math.sqrt(GRAVITY * level)
-    spin = math.degrees(speed_sound / 15 / (small + module))
+    spin = math.degrees(speed_sound / sound / (small + module))
     for mk, (name, teeth, radius, x, turned, speed) in enumerate((
             ("small", 12, small, at_small, 0.0, spin), ("large", 16, large, at_large, 180 / 16, -spin * 12 / 16)), 1):
         mesh = make_meshes.gear(module, teeth, 6 * dp, 2 * (radius - 2.5 * module), backlash=backlash, turned=turned)
