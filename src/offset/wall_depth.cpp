@@ -50,7 +50,12 @@ void WallDepth::take_round_surface(const SurfaceMesh& body,
         round_ = std::make_unique<RoundWall>(body, std::move(round), is_2d);
 }
 
-DepthPlace WallDepth::seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const
+double WallDepth::chord() const
+{
+    return round_ != nullptr ? round_->chord() : cad_ != nullptr ? cad_->chord() : 0;
+}
+
+DepthPlace WallDepth::seen_from(const ExactPlace& place, const Vec3& p, std::uint32_t facet) const
 {
     DepthPlace out;
     out.nearest = place.nearest;
@@ -92,6 +97,9 @@ DepthPlace WallDepth::at(const Vec3& p, double within) const
     const ClosestPoint foot = query().closest_point(p, within);
     if (round_ != nullptr)
         if (const auto exact = round_->at(p, foot.point)) return seen_from(*exact, p, foot.facet);
+    if (cad_ != nullptr)
+        if (const auto exact = cad_->at(mesh_, p, foot.point, foot.facet))
+            return seen_from(*exact, p, foot.facet);
     DepthPlace out;
     out.nearest = foot.point;
     out.foot = foot.point;

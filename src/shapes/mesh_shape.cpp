@@ -1,5 +1,6 @@
 #include "fppg/error.h"
 
+#include "meshes/cad_surface.h"
 #include "shapes/file_polygons.h"
 #include "shapes/kinds.h"
 
@@ -31,6 +32,9 @@ std::vector<ShapeMesh> surfaces_of(const MeshFileOp& file, const ShapeContext& c
     mesh.is_solid = file.autofill || file.fill_inside || file.advanced;
     mesh.soup.vertices.reserve(source.vertices.size());
     for (const Vec3& v : source.vertices) mesh.soup.vertices.push_back(file.transform(v));
+    if (context.mesh->cad != nullptr)
+        mesh.cad =
+            std::make_shared<const CadSource>(CadSource{context.mesh->cad, file.transform});
     const auto& rows = file.transform.linear;
     if (dot(rows[0], cross(rows[1], rows[2])) < 0) flip(mesh.soup);
     return {std::move(mesh)};
