@@ -7,6 +7,9 @@
 namespace fppg
 {
 
+/// How the file is read.
+MeshReading reading_of(const InspectOptions& options);
+
 /// The shape of a closed mesh file and its particles with the defaults of `<bodyfitted>` and of
 /// place="inside".
 ///

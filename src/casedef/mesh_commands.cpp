@@ -8,6 +8,7 @@
 #include "core/transforms.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_library.h"
+#include "meshes/read_step.h"
 #include "shapes/file_polygons.h"
 
 #include <fmt/format.h>
@@ -369,9 +370,6 @@ void read_borders(const Program& p, const Element& grid, BathymetryGrid& bathyme
         }
 }
 
-/// A facet of a CAD model is so far from its surface, dp.
-constexpr double cad_deflection_dp = 0.01;
-
 double largest_scale(const Transform& t)
 {
     double square = 0;
@@ -433,11 +431,11 @@ MeshFormat format_of(const Program& p, const Element& e, const std::string& file
     if (kind == "vtm") return MeshFormat::Vtk;
     if (!kind.empty()) return *mesh_format_named(kind);
     const MeshFormat format = mesh_format_of(file);
-    if (has_heights(format) ||
-        (format == MeshFormat::Stl && !lower_case(file).ends_with(".stl")))
-        p.read.fail(e, fmt::format("file=\"{}\": <drawfile> goes by the ending of the name, expected "
-                                   "one of a mesh or of STEP: {}",
-                                   file, mesh_format_list()));
+    if (has_heights(format) || (format == MeshFormat::Stl && !lower_case(file).ends_with(".stl")))
+        p.read.fail(e,
+                    fmt::format("file=\"{}\": <drawfile> goes by the ending of the name, expected "
+                                "one of a mesh or of STEP: {}",
+                                file, mesh_format_list()));
     return format;
 }
 

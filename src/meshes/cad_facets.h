@@ -41,8 +41,8 @@ struct FacePoint
 /// The exact faces behind the facets of a file: of STEP files. Metres, as the file's facets.
 struct CadFacets
 {
-    TriangleSoup soup;               ///< the facets of the file
-    std::vector<std::uint32_t> face; ///< per facet the face that it stands for
+    TriangleSoup soup;                                    ///< the facets of the file
+    std::vector<std::uint32_t> face;                      ///< per facet the face that it stands for
     std::vector<std::array<std::array<double, 2>, 3>> uv; ///< per facet, of its corners on the face
     std::vector<char> is_plane;                           ///< per facet, whether the face is
     std::vector<CadPart> parts;

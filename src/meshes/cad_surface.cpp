@@ -18,7 +18,7 @@ constexpr int edge_steps = 60;
 /// Facets and surface agree on a distance to this, in chord errors.
 constexpr double same_distance = 1.5;
 /// From the size of a body: what is so near is the same place.
-constexpr double rounding = 1e-9;
+constexpr double place_rounding = 1e-9;
 
 Vec3 turned(const Transform& place, const Vec3& v)
 {
@@ -62,8 +62,7 @@ CadModels::CadModels(std::vector<CadSource> sources, int threads) : sources_(std
     for (const CadSource& source : sources_)
     {
         begin_.push_back(static_cast<std::uint32_t>(all.size()));
-        for (const Vec3& v : source.facets->soup.vertices)
-            all.vertices.push_back(source.place(v));
+        for (const Vec3& v : source.facets->soup.vertices) all.vertices.push_back(source.place(v));
         const auto& rows = source.place.linear;
         sense_.push_back(dot(rows[0], cross(rows[1], rows[2])) < 0 ? -1 : 1);
     }
@@ -256,7 +255,7 @@ CadSurface::Meeting CadSurface::meeting_at(const SurfaceMesh& mesh, const Vec3& 
 {
     Meeting out;
     const auto& corners = mesh.facets[facet];
-    const double room = rounding * size_;
+    const double room = place_rounding * size_;
     for (const std::uint32_t v : corners)
     {
         if (norm(p - mesh.vertices[v]) > room || bent_count_[v] == 0) continue;
@@ -282,7 +281,7 @@ std::optional<FaceFoot> CadSurface::foot(const SurfaceMesh& mesh, const Vec3& p,
 {
     if (!refs_[facet].is_known()) return std::nullopt;
     std::optional<FaceFoot> out = models_.foot(refs_[facet], p, p);
-    if (!out || norm(out->point - p) > 4 * chord_ + rounding * size_) return std::nullopt;
+    if (!out || norm(out->point - p) > 4 * chord_ + place_rounding * size_) return std::nullopt;
     if (dot(out->normal, mesh.normals[facet]) < 0) out->normal = -out->normal;
     return out;
 }
@@ -324,7 +323,7 @@ void CadSurface::project(const SurfaceMesh& mesh, Vec3& p, std::uint32_t facet, 
         if (norm(move) <= 1e-15 * size_) break;
     }
     // Where faces meet at a small angle, their line may be farther from its chord than they.
-    if (norm(at - p) <= 60 * chord_ + rounding * size_) p = at;
+    if (norm(at - p) <= 60 * chord_ + place_rounding * size_) p = at;
 }
 
 std::optional<ExactPlace> CadSurface::on_edge(const Meeting& meeting, const Vec3& p,
@@ -379,8 +378,7 @@ std::optional<ExactPlace> CadSurface::at(const SurfaceMesh& mesh, const Vec3& p,
     const double difference = std::fabs(norm(out->nearest - p) - norm(start - p));
     if (difference > same_distance * chord_ + 1e-12 * size_) return std::nullopt;
     for (std::size_t i = 0; i < meeting.count; ++i)
-        if (dot(out->faces[i], mesh.normals[meeting.facets[i]]) < 0)
-            out->faces[i] = -out->faces[i];
+        if (dot(out->faces[i], mesh.normals[meeting.facets[i]]) < 0) out->faces[i] = -out->faces[i];
     return out;
 }
 

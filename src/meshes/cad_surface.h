@@ -115,7 +115,10 @@ private:
     };
     Meeting meeting_at(const SurfaceMesh& mesh, const Vec3& p, std::uint32_t facet) const;
     Meeting across(const SurfaceMesh& mesh, std::uint32_t edge) const;
-    bool is_bent(std::uint32_t edge) const { return !(bends_[edge] >= 0 && bends_[edge] <= smooth); }
+    bool is_bent(std::uint32_t edge) const
+    {
+        return !(bends_[edge] >= 0 && bends_[edge] <= smooth);
+    }
     double bend_at(const SurfaceMesh& mesh, std::uint32_t edge) const;
     void measure_chord(const SurfaceMesh& mesh, int threads);
     std::optional<ExactPlace> on_edge(const Meeting& meeting, const Vec3& p,
@@ -126,7 +129,7 @@ private:
     CadModels models_;
     std::vector<CadRef> refs_; ///< per facet
     std::vector<float> bends_;
-    std::vector<std::uint32_t> bent_edge_;  ///< per vertex, one that is bent
+    std::vector<std::uint32_t> bent_edge_; ///< per vertex, one that is bent
     std::vector<std::uint8_t> bent_count_; ///< per vertex, up to 255
     double chord_ = 0;
     double size_ = 0; ///< metres: by it rounding is measured

@@ -53,8 +53,7 @@ public:
             part.name = found.name;
             for (const std::string_view name : split(found.path, '\n'))
                 if (!name.empty()) part.path.emplace_back(name);
-            if (found.has_color != 0)
-                part.color = {found.color[0], found.color[1], found.color[2]};
+            if (found.has_color != 0) part.color = {found.color[0], found.color[1], found.color[2]};
         }
     }
     ~StepFile() { step_plugin().close(file_); }
@@ -195,8 +194,8 @@ std::set<std::size_t> chosen_parts(const std::string& path, const std::vector<Ca
     {
         const std::vector<std::size_t> found = parts_named(parts, trimmed(name));
         if (found.empty())
-            throw GeometryError(fmt::format("{}: has no part named '{}': {}", path, trimmed(name),
-                                            list_of(parts)));
+            throw GeometryError(
+                fmt::format("{}: has no part named '{}': {}", path, trimmed(name), list_of(parts)));
         chosen.insert(found.begin(), found.end());
     }
     return chosen;

@@ -14,6 +14,9 @@ namespace fppg
 /// Angles between facets of smooth faces of STEP files, about; radians. Well below feature angles.
 inline constexpr double step_angle = 0.2;
 
+/// Facets of STEP files are so far from their surface in a case, dp.
+inline constexpr double cad_deflection_dp = 0.01;
+
 /// Whether a file is STEP by its ending: .step, .stp.
 bool is_step_file(const std::string& path);
 

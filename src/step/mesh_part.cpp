@@ -174,8 +174,8 @@ void count_edges(const TopoDS_Shape& shape, FppgStepMesh& out)
         const TopoDS_Edge edge = TopoDS::Edge(faces.FindKey(i));
         if (BRep_Tool::Degenerated(edge)) continue;
         const TopTools_ListOfShape& beside = faces(i);
-        if (beside.Extent() == 2 && is_smooth(edge, TopoDS::Face(beside.First()),
-                                              TopoDS::Face(beside.Last())))
+        if (beside.Extent() == 2 &&
+            is_smooth(edge, TopoDS::Face(beside.First()), TopoDS::Face(beside.Last())))
         {
             ++out.smooth_edges;
             continue;
@@ -200,7 +200,8 @@ void measure(const TopoDS_Shape& shape, FppgStepMesh& out)
     out.center[1] = center.Y();
     out.center[2] = center.Z();
     const gp_Mat m = volume.MatrixOfInertia();
-    const std::array<std::pair<int, int>, 6> entries{{{1, 1}, {2, 2}, {3, 3}, {1, 2}, {2, 3}, {1, 3}}};
+    const std::array<std::pair<int, int>, 6> entries{
+        {{1, 1}, {2, 2}, {3, 3}, {1, 2}, {2, 3}, {1, 3}}};
     for (std::size_t e = 0; e < entries.size(); ++e)
         out.inertia[e] = sign * m(entries[e].first, entries[e].second);
 }

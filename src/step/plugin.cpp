@@ -63,12 +63,14 @@ std::size_t part_count(const FppgStepFile* file)
 void part_of(const FppgStepFile* file, std::size_t index, FppgStepPart* out)
 {
     const Part& part = file->file.parts[index];
-    *out = {part.name.c_str(), part.path.c_str(), part.has_color ? 1 : 0,
+    *out = {part.name.c_str(),
+            part.path.c_str(),
+            part.has_color ? 1 : 0,
             {part.color[0], part.color[1], part.color[2]}};
 }
 
-const char* mesh_of(FppgStepFile* file, std::size_t index, double deflection, double angle, void* to,
-                    void (*take)(void* to, const FppgStepMesh* mesh))
+const char* mesh_of(FppgStepFile* file, std::size_t index, double deflection, double angle,
+                    void* to, void (*take)(void* to, const FppgStepMesh* mesh))
 {
     return guarded([&](std::string&)
                    { mesh_part(file->file, index, deflection, angle, to, take); });

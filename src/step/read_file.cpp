@@ -112,8 +112,7 @@ private:
             colors_->GetColor(shape, XCAFDoc_ColorGen, own))
             color = own;
         part.has_color = color.has_value();
-        if (color)
-            color->Values(part.color[0], part.color[1], part.color[2], Quantity_TOC_sRGB);
+        if (color) color->Values(part.color[0], part.color[1], part.color[2], Quantity_TOC_sRGB);
         file_.parts.push_back(part);
     }
 

@@ -11,6 +11,7 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRep_Tool.hxx>
 #include <GC_MakeArcOfCircle.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
@@ -19,7 +20,6 @@
 #include <TCollection_ExtendedString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
-#include <BRep_Tool.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -69,9 +69,9 @@ TopoDS_Shape gear()
         wire.Add(
             BRepBuilderAPI_MakeEdge(at(m::gear_root, a + 2 * half), at(m::gear_tip, a + 2 * half)));
     }
-    const TopoDS_Shape whole =
-        BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Vec(0, 0, m::gear_width))
-            .Shape();
+    const TopoDS_Shape whole = BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(),
+                                                     gp_Vec(0, 0, m::gear_width))
+                                   .Shape();
     return BRepAlgoAPI_Cut(whole, BRepPrimAPI_MakeCylinder(m::gear_bore, m::gear_width).Shape())
         .Shape();
 }
@@ -103,8 +103,7 @@ TopoDS_Shape roof()
                            {m::roof_x, 0, m::roof_z},
                            {m::roof_x / 2, 0, m::roof_z + rise},
                            {0, 0, m::roof_z}};
-    for (int i = 0; i < 5; ++i)
-        wire.Add(BRepBuilderAPI_MakeEdge(corners[i], corners[(i + 1) % 5]));
+    for (int i = 0; i < 5; ++i) wire.Add(BRepBuilderAPI_MakeEdge(corners[i], corners[(i + 1) % 5]));
     return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(),
                                  gp_Vec(0, m::roof_y, 0))
         .Shape();
@@ -211,6 +210,34 @@ void write_assembly(const std::string& folder)
     model.write(folder + "/assembly.step");
 }
 
+/// What the formulas say, as JSON, for the scripts.
+void write_known(const std::string& folder)
+{
+    std::FILE* file = std::fopen((folder + "/known.json").c_str(), "w");
+    if (file == nullptr) std::exit(1);
+    const auto part = [&](const char* name, const m::KnownPart& known, const char* behind)
+    {
+        std::fprintf(file,
+                     "\"%s\": {\"volume\": %.17g, \"area\": %.17g, \"sharp_edges\": %d, "
+                     "\"smooth_edges\": %d, \"sharp_length\": %.17g}%s\n",
+                     name, known.volume, known.area, known.sharp_edges, known.smooth_edges,
+                     known.sharp_length, behind);
+    };
+    std::fprintf(file, "{\n");
+    part("cylinder", m::known_cylinder(), ",");
+    part("torus", m::known_torus(), ",");
+    part("gear", m::known_gear(), ",");
+    part("block", m::known_block(), ",");
+    part("roof", m::known_roof(), ",");
+    std::fprintf(file,
+                 "\"cylinder_radius\": %g, \"cylinder_length\": %g, \"torus_big\": %g, "
+                 "\"torus_small\": %g, \"gear_tip\": %g, \"gear_root\": %g, \"gear_bore\": %g, "
+                 "\"gear_teeth\": %d, \"gear_width\": %g\n}\n",
+                 m::shaft_radius, m::shaft_length, m::torus_big, m::torus_small, m::gear_tip,
+                 m::gear_root, m::gear_bore, m::gear_teeth, m::gear_width);
+    std::fclose(file);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -223,5 +250,6 @@ int main(int argc, char** argv)
     write_one(block(), "block", folder);
     write_one(roof(), "roof", folder);
     write_assembly(folder);
+    write_known(folder);
     return 0;
 }

@@ -53,13 +53,11 @@ inline KnownPart known_gear()
 {
     const double section =
         pi * (gear_tip * gear_tip + gear_root * gear_root) / 2 - pi * gear_bore * gear_bore;
-    const double outline =
-        pi * (gear_tip + gear_root) + 2 * gear_teeth * (gear_tip - gear_root);
+    const double outline = pi * (gear_tip + gear_root) + 2 * gear_teeth * (gear_tip - gear_root);
     const double bore = 2 * pi * gear_bore;
     return {section * gear_width, 2 * section + (outline + bore) * gear_width,
             // Per tooth four edges of the outline at both ends, and four along the width.
-            4 * gear_teeth * 3 + 2, 1,
-            2 * (outline + bore) + 4 * gear_teeth * gear_width};
+            4 * gear_teeth * 3 + 2, 1, 2 * (outline + bore) + 4 * gear_teeth * gear_width};
 }
 
 inline KnownPart known_block()
