@@ -31,7 +31,7 @@ struct ShapeMesh
     TriangleSoup soup;     ///< counter-clockwise from outside; of a surface, as drawn
     bool is_solid = false; ///< the draw fills the inside, not only the surface
     std::shared_ptr<const RoundSurface> round{}; ///< null: the triangles are the shape
-    std::shared_ptr<const CadSource> cad{}; ///< of CAD files, else null
+    std::shared_ptr<const CadSource> cad{};      ///< of CAD files, else null
 };
 
 /// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
@@ -66,7 +66,7 @@ struct FittedBody
     std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
     std::shared_ptr<const RoundSurface> round; ///< null: the triangles are the shape
-    std::shared_ptr<const CadSurface> cad; ///< the same of CAD models
+    std::shared_ptr<const CadSurface> cad;     ///< the same of CAD models
     SurfaceMesh mesh;
     MeshReport report;
     Features features;

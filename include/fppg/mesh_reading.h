@@ -87,7 +87,8 @@ struct MeshReading
     /// Of MeshFormat::Step: names of parts or of assemblies, separated by commas, "bolt#2" the
     /// second of a name; empty: all parts.
     std::string parts{};
-    /// Of MeshFormat::Step: how far facets are from the surface, metres; 0: 1/2000 of a part's size.
+    /// Of MeshFormat::Step: how far facets are from the surface, metres; 0: 1/2000 of a part's
+    /// size.
     double deflection = 0;
     bool operator==(const MeshReading&) const = default;
 };

@@ -71,7 +71,8 @@ constexpr auto attribute_table = std::to_array<NameRow>({
     {"active mkfluid x y z",
 "initials/velocity"},
     {"advanced autofill file reverse",
-"drawfileobj drawfileoff drawfileply drawfilestl drawfilevtk drawfilevtm"},
+"drawfile drawfileobj drawfileoff drawfileply drawfilestep drawfilestl drawfilevtk "
+"drawfilevtm"},
     {"ang",
 "mvcir/vel mvcirace/ace mvcirace/velini mvrot/vel mvrotace/ace mvrotace/velini "
 "rotateline"},

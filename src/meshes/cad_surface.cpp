@@ -124,11 +124,12 @@ std::optional<FaceFoot> CadModels::foot(const CadRef& ref, const Vec3& p, const 
     };
     const double enough = 1e-14 * std::max(largest_coordinate(p), norm(b - a));
     look();
-    bool is_at_rest = false;
+    bool is_at_rest = false, was_at_pole = false;
     for (int step = 0; step < newton_steps && !is_at_rest; ++step)
     {
         double du = 0, dv = 0;
-        if (!newton_step(at, p, du, dv))
+        const bool is_at_pole = !newton_step(at, p, du, dv);
+        if (is_at_pole)
         {
             // The pole of a sphere, the tip of a cone: right beside it.
             const auto [mu, mv] = parameters(ref, (a + b + c) / 3);
@@ -136,7 +137,8 @@ std::optional<FaceFoot> CadModels::foot(const CadRef& ref, const Vec3& p, const 
             dv = 1e-7 * (mv - v);
         }
         if (!std::isfinite(du) || !std::isfinite(dv)) return std::nullopt;
-        is_at_rest = norm(du * at.su + dv * at.sv) <= enough;
+        is_at_rest = is_at_pole ? was_at_pole : norm(du * at.su + dv * at.sv) <= enough;
+        was_at_pole = was_at_pole || is_at_pole;
         u += du;
         v += dv;
         look();
@@ -251,11 +253,10 @@ CadSurface::Meeting CadSurface::across(const SurfaceMesh& mesh, std::uint32_t ed
 }
 
 CadSurface::Meeting CadSurface::meeting_at(const SurfaceMesh& mesh, const Vec3& p,
-                                           std::uint32_t facet) const
+                                           std::uint32_t facet, double room) const
 {
     Meeting out;
     const auto& corners = mesh.facets[facet];
-    const double room = place_rounding * size_;
     for (const std::uint32_t v : corners)
     {
         if (norm(p - mesh.vertices[v]) > room || bent_count_[v] == 0) continue;
@@ -286,9 +287,28 @@ std::optional<FaceFoot> CadSurface::foot(const SurfaceMesh& mesh, const Vec3& p,
     return out;
 }
 
+std::optional<Vec3> CadSurface::edge_normal(const SurfaceMesh& mesh, const Vec3& p,
+                                            std::uint32_t facet) const
+{
+    const Meeting meeting = meeting_at(mesh, p, facet, 4 * chord_ + place_rounding * size_);
+    if (meeting.count != 2) return std::nullopt;
+    Vec3 sum;
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+        const auto foot = models_.foot(meeting.refs[i], p, p);
+        if (!foot) return std::nullopt;
+        sum = sum +
+              (dot(foot->normal, mesh.normals[meeting.facets[i]]) < 0 ? -1.0 : 1.0) * foot->normal;
+    }
+    const double length = norm(sum);
+    // Below this length the direction is that of rounding errors.
+    if (!(length > 1e-6)) return std::nullopt;
+    return sum / length;
+}
+
 void CadSurface::project(const SurfaceMesh& mesh, Vec3& p, std::uint32_t facet, bool is_2d) const
 {
-    const Meeting meeting = meeting_at(mesh, p, facet);
+    const Meeting meeting = meeting_at(mesh, p, facet, place_rounding * size_);
     if (meeting.count == 0) return;
     Vec3 at = p;
     // The smallest step onto the tangent planes of all faces that meet there, until it stays.
@@ -360,7 +380,7 @@ std::optional<ExactPlace> CadSurface::on_edge(const Meeting& meeting, const Vec3
 std::optional<ExactPlace> CadSurface::at(const SurfaceMesh& mesh, const Vec3& p, const Vec3& start,
                                          std::uint32_t facet) const
 {
-    const Meeting meeting = meeting_at(mesh, start, facet);
+    const Meeting meeting = meeting_at(mesh, start, facet, place_rounding * size_);
     if (meeting.count == 0) return std::nullopt;
     if (models_.is_plane(meeting.refs[0]) &&
         (meeting.count == 1 || models_.is_plane(meeting.refs[1])))

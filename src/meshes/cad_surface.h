@@ -92,6 +92,10 @@ public:
     /// The exact face of a facet at the place nearest to p; nothing where there is none.
     std::optional<FaceFoot> foot(const SurfaceMesh& mesh, const Vec3& p, std::uint32_t facet) const;
 
+    /// On an edge between two faces, the mean of their exact normals there; nothing elsewhere.
+    std::optional<Vec3> edge_normal(const SurfaceMesh& mesh, const Vec3& p,
+                                    std::uint32_t facet) const;
+
     /// A point seen from the exact surface.
     ///
     /// start    the place of the facets nearest to p, on `facet`
@@ -113,7 +117,9 @@ private:
         std::array<std::uint32_t, 2> facets{};
         std::size_t count = 0;
     };
-    Meeting meeting_at(const SurfaceMesh& mesh, const Vec3& p, std::uint32_t facet) const;
+    /// room  metres; what is so near to an edge of the facet is on it
+    Meeting meeting_at(const SurfaceMesh& mesh, const Vec3& p, std::uint32_t facet,
+                       double room) const;
     Meeting across(const SurfaceMesh& mesh, std::uint32_t edge) const;
     bool is_bent(std::uint32_t edge) const
     {

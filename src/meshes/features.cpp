@@ -90,9 +90,9 @@ Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     {
         const bool is_known = !bends.empty() && bends[e] >= 0;
-        const bool bends_enough = is_known
-                                      ? bends[e] > options.cad_angle_deg * degree
-                                      : is_feature(mesh, e, (options.angle_deg + spare_deg) * degree);
+        const bool bends_enough =
+            is_known ? bends[e] > options.cad_angle_deg * degree
+                     : is_feature(mesh, e, (options.angle_deg + spare_deg) * degree);
         if (features.is_feature_edge[e] == 0 && !bends_enough) continue;
         features.is_feature_edge[e] = 1;
         features.edges.push_back(static_cast<std::uint32_t>(e));

@@ -10,7 +10,8 @@
 struct FppgStepPart
 {
     const char* name; /* of the instance, else of the part; may be empty */
-    const char* path; /* names of the assemblies above it, of the instance and the part, one a line */
+    const char*
+        path; /* names of the assemblies above it, of the instance and the part, one a line */
     int has_color;
     double color[3]; /* sRGB, 0 to 1 */
 };
@@ -44,8 +45,8 @@ struct FppgStep
     size_t (*part_count)(const struct FppgStepFile* file);
     void (*part)(const struct FppgStepFile* file, size_t index, struct FppgStepPart* out);
     /* Makes the facets of a part and hands them over. Returns an empty text, or what is wrong.
-       deflection: mm, of facets from the surface, 0: 1/2000 of the part's size; angle: radians between facets that meet on a face,
-       about. */
+       deflection: mm, of facets from the surface, 0: 1/2000 of the part's size; angle: radians
+       between facets that meet on a face, about. */
     const char* (*mesh)(struct FppgStepFile* file, size_t index, double deflection, double angle,
                         void* to, void (*take)(void* to, const struct FppgStepMesh* mesh));
     /* A point of a face with its first and second derivatives: S, Su, Sv, Suu, Suv, Svv; not

@@ -337,8 +337,7 @@ Vec3 WetSurface::vector_from(const Vec3& p, double most) const
     if (exact_wall == nullptr) return near.point - p;
     // From the facets to their exact surface. Its nearest place may be on a dry side.
     const Vec3 nearest = exact_wall->at(p).nearest;
-    const bool is_wet_one =
-        std::fabs(norm(nearest - p) - near.distance) <= 2 * exact_wall->chord();
+    const bool is_wet_one = std::fabs(norm(nearest - p) - near.distance) <= 2 * exact_wall->chord();
     return (is_wet_one ? nearest : exact_wall->at(near.point).nearest) - p;
 }
 

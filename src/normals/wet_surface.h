@@ -103,7 +103,8 @@ private:
     std::vector<Piece> pieces_;
     std::vector<ThinWall> thin_walls_;
     std::unique_ptr<MeshQuery> query_;
-    std::vector<const WallDepth*> exact_walls_; ///< per facet of the query: null, or of walls whose surface is exact
+    std::vector<const WallDepth*>
+        exact_walls_; ///< per facet of the query: null, or of walls whose surface is exact
     bool has_dry_sides_ = false;
 };
 

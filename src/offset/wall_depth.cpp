@@ -75,7 +75,14 @@ DepthPlace WallDepth::seen_from(const ExactPlace& place, const Vec3& p, std::uin
     if (!is_on_rim || !(out.depth > 0) || dot(place.faces[0], place.faces[1]) >= turn_) return out;
     const double of_first = -sign_ * dot(way, place.faces[0]);
     const double of_second = -sign_ * dot(way, place.faces[1]);
-    out.depth = std::max(of_first, of_second);
+    const double deepest = std::max(of_first, of_second);
+    if (deepest < out.depth / longest_mitre)
+    {
+        out.depth /= longest_mitre;
+        out.foot = p - out.depth * out.direction;
+        return out;
+    }
+    out.depth = deepest;
     out.direction = -sign_ * place.faces[of_first >= of_second ? 0 : 1];
     out.foot = p - out.depth * out.direction;
     return out;

@@ -43,8 +43,8 @@ FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode&
         if (part.cad != nullptr) sources.push_back(*part.cad);
     if (!sources.empty())
         body.cad = std::make_shared<const CadSurface>(body.mesh, std::move(sources), threads);
-    body.features = find_features(body.mesh, feature_options(settings, grid), result.seams,
-                                  bends_of(body.cad));
+    body.features =
+        find_features(body.mesh, feature_options(settings, grid), result.seams, bends_of(body.cad));
     return body;
 }
 
@@ -130,9 +130,8 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
                        const std::vector<ClipPlane>& clips, int threads)
 {
     CombinedParts combined = combine_parts(parts, tree, grid.dp, threads);
-    FittedDraw out =
-        fit_body(body_of(parts, tree, combined, settings, grid, threads), settings, grid, clips,
-                 threads);
+    FittedDraw out = fit_body(body_of(parts, tree, combined, settings, grid, threads), settings,
+                              grid, clips, threads);
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());
 
     std::vector<SpanSet> sets;

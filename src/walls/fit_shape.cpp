@@ -283,7 +283,8 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     if (body.mesh.facets.empty()) return nothing_of(std::move(body), grid);
     if (shape.cad != nullptr)
         body.cad = std::make_shared<const CadSurface>(body.mesh, std::vector{*shape.cad}, threads);
-    body.features = find_features(body.mesh, feature_options(settings, grid), seams, bends_of(body.cad));
+    body.features =
+        find_features(body.mesh, feature_options(settings, grid), seams, bends_of(body.cad));
     return fit_body(std::move(body), settings, grid, clips, threads);
 }
 
