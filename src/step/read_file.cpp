@@ -1,5 +1,8 @@
 #include "step/step_file.h"
 
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_PrinterOStream.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <TCollection_AsciiString.hxx>
@@ -125,6 +128,8 @@ private:
 
 std::string read_file(const char* path, File& file)
 {
+    // The program says itself what is wrong.
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
     STEPCAFControl_Reader reader;

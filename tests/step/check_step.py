@@ -205,12 +205,10 @@ def exact_of(work, p, mk):
 
 def test_exact_walls(work):
     """Particles on the surface stand on the exact faces and edges; their normals are exact."""
-    normals = """<normals active="true"><norset mkbound="1-5"><normal x="0" y="0" z="0" /></norset></normals>"""
     found = work.case("walls", DRAWS.format(work.models), '<bodyfitted mkbound="1-5" boundary="dbc" />')
     if found.code != 0:
         yield found.text
         return
-    del normals
     for mk, name in ((11, "cylinder"), (12, "torus")):
         own = found.positions[(found.mk == mk) & (found.kind < VOLUME)]
         distance, _ = exact_of(work, own, mk)
@@ -322,7 +320,7 @@ def test_parts_and_faults(work):
 
     def draw(parts, command="drawfilestep"):
         part = f' fppg:part="{parts}"' if parts else ""
-        return f'<setdrawmode mode="full" /><setmkbound mk="1" /><{command} file="{file}"{part} autofill="true" />'
+        return f'<setdrawmode mode="full" /><setmkbound mk="1" /><{command} file="{file}"{part} fppg:fill="inside" />'
 
     counts = {}
     for parts in ("wheel", "axle", "drive1", "drive", "wheel, axle", "gear", ""):
@@ -339,7 +337,7 @@ def test_parts_and_faults(work):
     if not np.array_equal(work.case("parts", draw("wheel", "drawfile"), dp=0.004).positions, counts["wheel"]):
         yield "drawfile draws another part than drawfilestep"
     found = work.case("fault", draw("whel"))
-    for words in ("fault_Def.xml:6:", "<drawfilestep>", "no part named 'whel'", "wheel"):
+    for words in ("fault_Def.xml:7:", "<drawfilestep>", "no part named 'whel'", "wheel"):
         if found.code == 0 or words not in found.text:
             yield f"a part that is not there: \"{words}\" is missing in {found.text}"
     found = work.case("fault", '<drawfilestl file="x.stl" fppg:part="wheel" />')
@@ -348,7 +346,7 @@ def test_parts_and_faults(work):
     with open(os.path.join(work.folder, "wrong.step"), "w", encoding="utf-8") as wrong:
         wrong.write("no STEP\n")
     found = work.case("fault", '<setmkbound mk="1" /><drawfilestep file="wrong.step" />')
-    if "is no STEP file" not in found.text or "fault_Def.xml:6:" not in found.text:
+    if "is no STEP file" not in found.text or "fault_Def.xml:7:" not in found.text:
         yield f"a file that is no STEP: {found.text}"
 
 
@@ -378,10 +376,14 @@ def test_gmsh(work):
             file.write(f"""SetFactory("OpenCASCADE");
 Geometry.OCCTargetUnit = "MM";
 Merge "{work.step(name)}";
-v() = Volume "*"; s() = Surface "*"; c() = Curve "*";
+v() = Volume "*"; s() = Surface "*";
 volume = 0; area = 0;
-For i In {{0:#v()-1}} volume += Mass Volume{{v(i)}}; EndFor
-For i In {{0:#s()-1}} area += Mass Surface{{s(i)}}; EndFor
+For i In {{0:#v()-1}}
+  volume += Mass Volume{{v(i)}};
+EndFor
+For i In {{0:#s()-1}}
+  area += Mass Surface{{s(i)}};
+EndFor
 Printf("found %.17g %.17g %g", volume, area, #v());
 """)
         done = subprocess.run([gmsh, script, "-"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -406,7 +408,7 @@ def test_without_plugin(work):
     work.program = alone
     template = os.path.join(HERE, "..", "..", "xml-templates", "data", "drum_and_ring.step")
     found = work.case("fault", f'<setmkbound mk="1" /><drawfilestep file="{template}" fppg:part="ring" />')
-    for words in ("fault_Def.xml:6:", "<drawfilestep file=", "libfppg_step.so", "OpenCASCADE", "STL"):
+    for words in ("fault_Def.xml:7:", "<drawfilestep file=", "libfppg_step.so", "OpenCASCADE", "STL"):
         if found.code == 0 or words not in found.text:
             yield f"\"{words}\" is missing in: {found.text}"
     code, text = work.run("inspect", template)
