@@ -350,6 +350,29 @@ def test_parts_and_faults(work):
         yield f"a file that is no STEP: {found.text}"
 
 
+def test_new_case(work):
+    """`fppg new` draws each part from the file, in metres, and the case runs."""
+    code, text = work.run("new", work.step("assembly"), "-o", "New_Def.xml", "--kind", "obstacle", "--speed", "1",
+                          "--water", "0.1", "--dp", "0.011", "--no-picture")
+    if code != 0:
+        yield text
+        return
+    with open(os.path.join(work.folder, "New_Def.xml"), encoding="utf-8") as file:
+        xml = file.read()
+    for part in ("wheel", "axle", "ring", "housing1", "lid"):
+        if f'fppg:part="{part}"' not in xml:
+            yield f"the part {part} is not drawn from the STEP file"
+    if "drawscale" in xml or "assembly.step" not in xml:
+        yield "the parts are not drawn in metres, as STEP files are read"
+    code, text = work.run("New_Def", os.path.join("out", "New"), "-save:all")
+    if code != 0:
+        yield text
+        return
+    found = Result(os.path.join(work.folder, "out", "New"), code, text)
+    if len(np.unique(found.mk[found.kind < VOLUME])) < 5:
+        yield "not all five parts have walls"
+
+
 def test_same_bytes(work):
     """Any number of threads gives the same, and so does the next run."""
     results = []
