@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/inspect.h"
+#include "fppg/mesh_reading.h"
 
 #include <vector>
 

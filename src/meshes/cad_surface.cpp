@@ -114,7 +114,8 @@ std::optional<FaceFoot> CadModels::foot(const CadRef& ref, const Vec3& p, const 
     const std::uint32_t face = source.facets->face[ref.facet];
     const auto [a, b, c] = corners(ref);
     const Vec3 flat = cross(b - a, c - a);
-    auto [u, v] = parameters(ref, start);
+    const std::array<double, 2> first = parameters(ref, start);
+    double u = first[0], v = first[1];
     FacePoint at;
     const auto look = [&]
     {
