@@ -52,25 +52,18 @@ struct Proposal
 struct NewCasePart
 {
     std::string name;
-    std::string path; ///< of its mesh
+    std::string path;      ///< of its file
+    std::string step_part; ///< of a STEP file, how `fppg:part` names it
     std::string unit;
     int mkbound = 0;
     std::string role; ///< "housing", "fixed", "moving", "floating" or "inlet"
-};
-
-/// A file that the definition names, and that is to be written.
-struct NewCaseFile
-{
-    std::string path;
-    std::string bytes;
 };
 
 /// A case that runs as it stands.
 struct NewCase
 {
     std::string kind;
-    std::string xml;                ///< the definition
-    std::vector<NewCaseFile> files; ///< the parts of STEP files as meshes (PLY)
+    std::string xml; ///< the definition
     double dp = 0;
     double expected_particles = 0;
     std::vector<NewCasePart> parts;

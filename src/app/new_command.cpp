@@ -230,15 +230,6 @@ std::string picture_name(const NewCall& call)
     return name + ".png";
 }
 
-void write_mesh(const NewCaseFile& mesh)
-{
-    std::error_code error;
-    fs::create_directories(fs::path(mesh.path).parent_path(), error);
-    OutputFile file(mesh.path);
-    file.append(mesh.bytes);
-    file.commit();
-}
-
 /// What inspect says of each part, a line each.
 std::string parts_table(const NewCase& made, int threads)
 {
@@ -250,6 +241,7 @@ std::string parts_table(const NewCase& made, int threads)
         const double metre = metres_of_unit(part.unit);
         InspectOptions options;
         options.path = part.path;
+        options.parts = part.step_part;
         options.dp = made.dp / metre;
         options.unit = part.unit;
         options.threads = threads;
@@ -284,7 +276,6 @@ int run_new(const std::vector<std::string>& arguments)
     if (call.options.ask) bar.reset();
     const NewCase made = propose_case(call.options);
     bar.reset();
-    for (const NewCaseFile& mesh : made.files) write_mesh(mesh);
     file.append(made.xml);
     file.commit();
     fmt::print("{}", call.as_json ? to_json(made) : to_text(made, call.explains));

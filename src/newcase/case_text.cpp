@@ -279,10 +279,11 @@ private:
                                                              : "stands";
         xml_.comment(fmt::format("{}: {}.", part.name, does));
         xml_.line("<setmkbound mk=\"{}\" />", part.mkbound);
-        const std::string command =
-            fmt::format("drawfile{} file=\"{}\"{} fppg:name=\"{}\"", mesh_format_name(part.format),
-                        escaped(part.file),
-                        part.role == PartRole::Floating ? " fppg:fill=\"inside\"" : "", part.name);
+        const std::string command = fmt::format(
+            "drawfile{} file=\"{}\"{}{} fppg:name=\"{}\"", mesh_format_name(part.format),
+            escaped(part.file),
+            part.step_part.empty() ? "" : fmt::format(" fppg:part=\"{}\"", escaped(part.step_part)),
+            part.role == PartRole::Floating ? " fppg:fill=\"inside\"" : "", part.name);
         const char* scale = part.unit == "mm"   ? "Mm"
                             : part.unit == "cm" ? "Cm"
                             : part.unit == "in" ? "Inch"
@@ -351,12 +352,8 @@ private:
         int n = 0;
         for (const NewPart& part : plan_.parts) n = std::max(n, part.mkbound);
         const int first = plan_.water ? 0 : 1;
-        // Facets of smooth CAD faces bend by 6 degrees at most, so less than 30 finds more edges.
-        const bool has_step = std::any_of(plan_.parts.begin(), plan_.parts.end(),
-                                          [](const NewPart& p) { return !p.step.empty(); });
-        xml_.line("<bodyfitted mkbound=\"{}\"{} />",
-                  n == first ? std::to_string(first) : fmt::format("{}-{}", first, n),
-                  has_step ? " featureangle=\"15\"" : "");
+        xml_.line("<bodyfitted mkbound=\"{}\" />",
+                  n == first ? std::to_string(first) : fmt::format("{}-{}", first, n));
         for (const std::vector<std::size_t>& body : bodies_)
         {
             xml_.comment("Parts that touch and keep their places are one body; each keeps its mk.");

@@ -57,10 +57,9 @@ struct Turning
 
 struct NewPart
 {
-    std::string path; ///< for messages: of a STEP file with the part's name
-    std::string file; ///< as the definition writes it
-    std::string step; ///< the STEP file that it is of; empty: it is a mesh file
-    std::size_t step_index = 0;
+    std::string path;
+    std::string file;       ///< as the definition writes it
+    std::string step_part;  ///< of a STEP file, how `fppg:part` names it; empty: it is a mesh file
     std::string step_facts; ///< what its CAD model says: edges, exact volume
     std::string name;       ///< no two parts have the same
     std::string unit;
@@ -195,8 +194,6 @@ double round_nearest(double value, int digits);
 
 /// Reads the files and names the parts.
 void read_parts(CasePlan& plan);
-/// The meshes of parts of STEP files, in facets within 0.01 dp of their surface.
-std::vector<NewCaseFile> step_meshes(const CasePlan& plan);
 /// Finds out what a length in each file is, and scales the meshes to metres.
 void choose_units(CasePlan& plan);
 /// Refuses parts in other units and parts far away, warns of open ones.

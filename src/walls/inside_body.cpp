@@ -96,7 +96,7 @@ double volume_beyond_facets(const FittedBody& body)
     {
         Vec3 p = 0.5 * (mesh.vertices[mesh.edges[e][0]] + mesh.vertices[mesh.edges[e][1]]);
         for (std::uint32_t f : mesh.edge_facets[e])
-            if (f != no_index) project_to_round(body, p, f);
+            if (f != no_index) project_to_exact(body, p, f);
         middles[e] = p;
     }
     double six = 0;
@@ -145,7 +145,7 @@ public:
                                  thickest_plate_dp);
         if (wall_ == nullptr) return;
         FitMeasures& measures = out_.body.measures;
-        if (out_.body.round != nullptr && !grid_.is_2d)
+        if ((out_.body.round != nullptr || out_.body.cad != nullptr) && !grid_.is_2d)
             measures.volume += volume_beyond_facets(out_.body);
         wanted_ = std::round(measures.volume / dp3_);
         make_plan();

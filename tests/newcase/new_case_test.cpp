@@ -11,7 +11,6 @@
 #include "helpers/case_text.h"
 #include "helpers/gears.h"
 #include "helpers/run_fppg.h"
-#include "meshes/read_step.h"
 #include "meshes/test_shapes.h"
 
 namespace fppg
@@ -271,41 +270,6 @@ TEST(NewCase, AsksAtATerminalForWhatIsMissing)
     };
     EXPECT_THAT(propose_case(options).xml, HasSubstr("litres=\"0.12\""));
     EXPECT_THAT(asked, HasSubstr("How much fluid is in housing"));
-}
-
-TEST(NewCase, TakesThePartsOfAnAssemblyInStep)
-{
-    // Made with OpenCASCADE: a cylinder of radius 20 and height 30 mm about y at x = -20, and a
-    // torus of radii 8 and 3 mm about z at (30, 0, 10).
-    const std::string file = FPPG_STEP_FILE;
-    std::vector<StepPart> found;
-    try
-    {
-        found = read_step(file, 0.01, 0.1);
-    }
-    catch (const IoError& error)
-    {
-        EXPECT_THAT(std::string(error.what()), HasSubstr("libfppg_step.so"));
-        GTEST_SKIP() << "built without OpenCASCADE: STEP files are not read";
-    }
-    ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(found[0].name, "drum");
-    EXPECT_EQ(found[1].name, "ring");
-    constexpr double pi = std::numbers::pi;
-    EXPECT_NEAR(found[0].volume / (pi * 400 * 30), 1, 1e-6);
-    EXPECT_NEAR(found[0].area / (2 * pi * 20 * 30 + 2 * pi * 400), 1, 1e-6);
-    EXPECT_NEAR(found[1].volume / (2 * pi * pi * 8 * 9), 1, 1e-6);
-    EXPECT_NEAR(found[1].area / (4 * pi * pi * 8 * 3), 1, 1e-6);
-    EXPECT_EQ(found[0].sharp_edges, 2u);
-    EXPECT_EQ(found[1].sharp_edges, 0u);
-    for (const Vec3& v : found[0].soup.vertices)
-    {
-        const double radius = std::hypot(v.x + 20, v.z);
-        EXPECT_LT(radius, 20 + 1e-9);
-        EXPECT_NEAR(std::abs(v.y) < 15 - 1e-9 ? radius : 20, 20, 1e-6);
-    }
-    for (const Vec3& v : found[1].soup.vertices)
-        EXPECT_NEAR(std::hypot(std::hypot(v.x - 30, v.y) - 8, v.z - 10), 3, 1e-6);
 }
 
 } // namespace fppg
