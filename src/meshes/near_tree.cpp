@@ -490,6 +490,8 @@ NearTree::~NearTree() = default;
 ClosestPoint NearTree::closest(const Vec3& point, double within) const
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
+    const ClosestPoint none{
+        {infinity, infinity, infinity}, std::numeric_limits<std::uint32_t>::max(), infinity};
     const Vec3 unit = (point - centre_) / scale_;
     NearSearch search{
         &soup_,
@@ -498,14 +500,16 @@ ClosestPoint NearTree::closest(const Vec3& point, double within) const
         1 / scale_,
         (1 + norm(unit)) * float_room,
         0,
-        {{infinity, infinity, infinity}, std::numeric_limits<std::uint32_t>::max(), infinity}};
+        none};
     search.set_limit(within);
     // Points are mostly asked for one beside the other: without a bound, the last answer is one.
     thread_local std::uint32_t last = 0;
     if (within == infinity && last < soup_.size()) search.look_at(last);
     (is_avx2_there() ? search_avx2 : search_plain)(nodes_->nodes, nodes_->leaves, search);
     if (search.best.facet < soup_.size()) last = search.best.facet;
-    return search.best;
+    // A point at the limit itself may be computed to be beyond it by a rounding.
+    const double most = within * (1 + float_room) + search.reach * scale_;
+    return search.best.distance <= most ? search.best : none;
 }
 
 } // namespace fppg
