@@ -101,7 +101,9 @@ bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& p
 
 DepthPlace WallDepth::at(const Vec3& p, double within) const
 {
-    const ClosestPoint foot = query().closest_point(p, within);
+    ClosestPoint foot = query().closest_point(p, within);
+    // The facets of a round body may be farther than the exact surface that the bound is of.
+    if (foot.facet >= mesh_.facets.size()) foot = query().closest_point(p);
     if (round_ != nullptr)
         if (const auto exact = round_->at(p, foot.point)) return seen_from(*exact, p, foot.facet);
     if (cad_ != nullptr)
