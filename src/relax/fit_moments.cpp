@@ -4,6 +4,7 @@
 #include "core/principal_axes.h"
 #include "meshes/crowded_points.h"
 #include "offset/wall_depth.h"
+#include "relax/part_pairs.h"
 #include "relax/sliding_walls.h"
 
 #include <algorithm>
@@ -27,6 +28,12 @@ constexpr double centre_tolerance = 1e-3;
 constexpr double moment_tolerance = 2e-4;
 /// Bodies whose particles have another volume by more are cut.
 constexpr double whole = 0.03;
+/// Particles come so far apart where there is room, dp; else least_pair_dp.
+constexpr double even_pair_dp = 0.75;
+/// So often particles are parted and moments fitted in turn.
+constexpr int passes_apart = 4;
+/// Those of the volume that give way stay so far behind the surface, dp.
+constexpr double keeps_depth_dp = 0.5;
 
 /// Centre and second moments about it, per volume.
 struct Moments
@@ -109,8 +116,17 @@ public:
         if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
             std::abs(shape_.volume / body.measures.volume - 1) > whole)
             return;
-        for (int round = 0; round < most_rounds && move(); ++round)
+        for (int pass = 0; pass <= passes_apart; ++pass)
         {
+            apart_ = even_pair_dp * dp_;
+            spread();
+            // What moments cannot have with room between all they have without.
+            if (pass == passes_apart) apart_ = least_pair_dp * dp_;
+            for (int round = 0; round < most_rounds && move(); ++round)
+            {
+            }
+            Matrix off{};
+            if (is_fitted(moments_of_particles(), off)) break;
         }
         put_distances();
     }
@@ -216,7 +232,22 @@ private:
         return distances;
     }
 
-    /// Puts particles back that came nearer to others than least_pair_dp, until there are none.
+    /// Parts particles that are too near to others, those of layers along these.
+    void spread()
+    {
+        std::vector<Vec3> places;
+        for (std::size_t i = 0; i < way_.size(); ++i) places.push_back(place(i));
+        places.insert(places.end(), nodes_.begin(), nodes_.end());
+        part_pairs(
+            places, way_.size(), apart_,
+            [&](std::size_t i, const Vec3& from, const Vec3& to) {
+                return i < of_wall_.size() ? beside_on_layer(i, from, to) : beside_inside(from, to);
+            },
+            threads_);
+        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = places[i];
+    }
+
+    /// Puts particles back that came nearer to others than they may, until there are none.
     void part(const std::vector<double>& distances, const std::vector<Vec3>& before)
     {
         for (int round = 0; round < most_rounds; ++round)
@@ -225,7 +256,7 @@ private:
             bool is_near = false;
             for (std::size_t i = 0; i < way_.size(); ++i)
             {
-                if (now[i] >= std::min(distances[i], least_pair_dp * dp_) * (1 - 1e-9)) continue;
+                if (now[i] >= std::min(distances[i], apart_) * (1 - 1e-9)) continue;
                 is_near = true;
                 place(i) = before[i];
             }
@@ -238,8 +269,6 @@ private:
     void take(const std::vector<Vec3>& steps)
     {
         const std::vector<double> distances = nearest();
-        const ClosestWallPoint closest = [&](const Vec3& p, double within)
-        { return all_.closest_point(p, within); };
         std::vector<Vec3> before(way_.size());
         parallel_for(
             way_.size(), threads_,
@@ -247,20 +276,26 @@ private:
             {
                 before[i] = place(i);
                 const Vec3 normal = across(i);
-                Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
-                if (i < of_wall_.size())
-                {
-                    const Vec3 on = on_layer(of_wall_[i], to, closest);
-                    // Where layers bend within dp the nearest place may be on another face.
-                    const bool jumps =
-                        norm(on - before[i]) > 2 * norm(to - before[i]) + most_jump_dp * dp_;
-                    to = jumps ? before[i] : on;
-                }
-                place(i) = to;
+                const Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
+                place(i) = i < of_wall_.size() ? beside_on_layer(i, before[i], to) : to;
             },
             64);
         part(distances, before);
         for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = way_[i] + (place(i) - before[i]);
+    }
+
+    /// What the particles' moments lack; true: less than is worth a step.
+    bool is_fitted(const Moments& now, Matrix& off) const
+    {
+        double worst = 0, size = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            off[i] = shape_.second[i] - now.second[i];
+            size = std::max(size, shape_.second[i][static_cast<int>(i)]);
+            for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
+        }
+        return norm(shape_.centre - now.centre) < centre_tolerance * dp_ &&
+               worst < moment_tolerance * size;
     }
 
     /// One step; false where it is not needed or leads too far.
@@ -269,14 +304,7 @@ private:
         const Moments now = moments_of_particles();
         const Vec3 shift = shape_.centre - now.centre;
         Matrix off{};
-        double worst = 0, size = 0;
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            off[i] = shape_.second[i] - now.second[i];
-            size = std::max(size, shape_.second[i][static_cast<int>(i)]);
-            for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
-        }
-        if (norm(shift) < centre_tolerance * dp_ && worst < moment_tolerance * size) return false;
+        if (is_fitted(now, off)) return false;
         const Matrix stretch = stretch_for(now.second, off, 0.25 * dp_ * dp_);
         std::vector<Vec3> steps(way_.size());
         double longest = 0;
@@ -302,12 +330,33 @@ private:
         return true;
     }
 
-    Vec3 on_layer(std::uint32_t particle, const Vec3& p, const ClosestWallPoint& closest) const
+    /// The place on its layer that a particle may have near to another.
+    Vec3 beside_on_layer(std::size_t i, const Vec3& from, const Vec3& to) const
     {
         const FittedWalls& walls = field_.walls;
+        const std::uint32_t particle = of_wall_[i];
         const bool is_free = walls.bodies[walls.particles.bodies[particle]].mesh.facets.empty() &&
                              walls.bodies[body_].sheets == 0;
-        return is_free ? p : put_back(walls, particle, p, dp_, closest);
+        if (is_free) return to;
+        const Vec3 on =
+            put_back(walls, particle, to, dp_,
+                     [&](const Vec3& p, double within) { return all_.closest_point(p, within); });
+        // Where layers bend within dp the nearest place may be on another face.
+        return norm(on - from) > 2 * norm(to - from) + most_jump_dp * dp_ ? from : on;
+    }
+
+    /// The place behind the surface that a particle of the volume may have near to another.
+    Vec3 beside_inside(const Vec3& from, const Vec3& to) const
+    {
+        const double depth = keeps_depth_dp * dp_;
+        const AllWalls::Closest near = all_.closest(to, depth);
+        if (!(near.distance < depth)) return to;
+        const Vec3 away = from - near.point;
+        const double was = norm(away);
+        if (near.distance >= was || was == 0) return to;
+        const Vec3 along = to - (dot(to - from, away) / (was * was)) * away;
+        const double least = std::min(was, depth) * (1 - 1e-3);
+        return all_.closest(along, depth).distance >= least ? along : from;
     }
 
     void put_distances()
@@ -329,6 +378,7 @@ private:
     const AllWalls& all_;
     int threads_;
     double dp_;
+    double apart_ = 0; ///< no pair comes nearer than this by fitting, metres
     Moments shape_;
     std::vector<std::uint32_t> of_wall_;
     std::vector<std::uint32_t> of_volume_;

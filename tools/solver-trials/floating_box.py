@@ -122,26 +122,24 @@ def theory():
     return periods
 
 
-def polygon(points):
-    """A filled polygon, m."""
-    rows = "".join(f'<point x="{x:.12g}" y="{y}" z="{z:.12g}" />' for y in (-1, 1) for x, z in points)
-    return f'<drawprism mask="0">{rows}</drawprism>'
-
-
-def box_at(low, high):
+def box_at(low, high, name=""):
+    """A filled box in the plane, m."""
+    words = f' fppg:name="{name}"' if name else ""
     (x, z), (x1, z1) = low, high
-    return polygon(((x, z), (x1, z), (x1, z1), (x, z1)))
+    return f"""<drawbox{words}><boxfill>solid</boxfill><point x="{x:.12g}" y="-1" z="{z:.12g}" />
+<endpoint x="{x1:.12g}" y="1" z="{z1:.12g}" /></drawbox>"""
 
 
 def middle_at_start():
     return np.array((TANK / 2 + 0.0031, LEVEL - DEEPER + HEIGHT / 2 - DRAUGHT))
 
 
-def floating_corners():
-    c, s = math.cos(math.radians(TILT)), math.sin(math.radians(TILT))
+def floating_box():
+    """The box, tilted: <rotate> turns z towards x, so that its angle is the negative of the tilt."""
     x, z = middle_at_start()
-    return [(x + a * c - b * s, z + a * s + b * c) for a, b in
-            ((-BREADTH / 2, -HEIGHT / 2), (BREADTH / 2, -HEIGHT / 2), (BREADTH / 2, HEIGHT / 2), (-BREADTH / 2, HEIGHT / 2))]
+    half = BREADTH / 2, HEIGHT / 2
+    return (f'<statesave /><move x="{x:.12g}" y="0" z="{z:.12g}" /><rotate ang="{-TILT:g}" x="0" y="1" z="0" />' +
+            box_at((-half[0], -half[1]), half) + "<stateload />")
 
 
 def definition(variant, dp):
@@ -153,17 +151,18 @@ def definition(variant, dp):
     inset = dp / 2 if variant == "lattice-dbc" else 0
     inner = (inset, inset), (TANK - inset, RIM + wall)
     half = dp / 2 if is_mdbc else 0
+    # Later draws cut earlier ones: fitted walls cut the water, the water lies in what was cut out of walls on the lattice.
     if is_fitted:
-        tank = ('<setmkbound mk="0" />' + box_at(*outer).replace("<drawprism", '<drawprism fppg:name="outer"') +
-                box_at(*inner).replace("<drawprism", '<drawprism fppg:name="inner"'))
+        tank = '<setmkbound mk="0" />' + box_at(*outer, "outer") + box_at(*inner, "inner")
     else:
         tank = '<setmkbound mk="0" />' + box_at(*outer) + "<setmkvoid />" + box_at(*inner)
     fluid = (inset + half, inset + half) if not is_fitted else (0, 0)
-    water = box_at(fluid, (TANK - fluid[0], LEVEL - 0.25 * dp))
-    body = '<setmkbound mk="1" />' + polygon(floating_corners())
+    water = '<setmkfluid mk="0" />' + box_at(fluid, (TANK - fluid[0], LEVEL - 0.25 * dp))
+    filled_tank = water + tank if is_fitted else tank + water
+    body = '<setmkbound mk="1" />' + floating_box()
     attributes = {"inside": 'place="inside"', "layers": 'boundary="mdbc"'}.get(variant, "")
     fitted = f"""<fppg><bodyfitted mkbound="0-1" {attributes} /><fluidband mkfluid="0" width="3" />
-        <boolean op="difference"><part ref="outer" /><part ref="inner" /></boolean><floatings exact="true" /></fppg>"""
+        <boolean op="difference"><part ref="outer" /><part ref="inner" /></boolean></fppg>"""
     shapes = normals = ""
     if variant == "lattice-mdbc":
         lines = [(0, RIM), (0, 0), (TANK, 0), (TANK, RIM)]
@@ -171,7 +170,7 @@ def definition(variant, dp):
         sheet = f'<drawextrude closed="false">{rows}<extrude x="0" y="2" z="0" /></drawextrude>'
         shapes = f"""<setshapemode>actual | bound</setshapemode><setactive drawpoints="false" drawshapes="true" />
             <setdrawmode mode="face" /><setnormalinvert invert="true" /><setmkbound mk="0" />{sheet}
-            <setnormalinvert invert="false" /><setmkbound mk="1" />{polygon(floating_corners())}
+            <setnormalinvert invert="false" /><setmkbound mk="1" />{floating_box()}
             <shapeout file="surface" /><setactive drawpoints="true" drawshapes="false" /><setdrawmode mode="full" />"""
         normals = """<normals active="true"><norgeometry><geometryfile file="[CaseName]_surface_Actual.vtk" />
             <distanceh v="2" /></norgeometry></normals>"""
@@ -187,7 +186,7 @@ def definition(variant, dp):
 <mkconfig boundcount="240" fluidcount="9" />
 <geometry><definition dp="{dp:.9g}"><pointref x="{half:.9g}" y="0" z="{half:.9g}" />
 <pointmin x="{low[0]:.9g}" y="0" z="{low[1]:.9g}" /><pointmax x="{high[0]:.9g}" y="0" z="{high[1]:.9g}" /></definition>
-<commands><mainlist><setdrawmode mode="full" />{shapes}<setmkfluid mk="0" />{water}{tank}{body}</mainlist></commands></geometry>
+<commands><mainlist><setdrawmode mode="full" />{shapes}{filled_tank}{body}</mainlist></commands></geometry>
 <floatings><floating mkbound="1" rhopbody="{DENSITY:g}" /></floatings>{normals}{fitted if is_fitted else ""}</casedef>
 <execution><parameters>{parameters}<simulationdomain><posmin x="default" y="default" z="default" />
 <posmax x="default" y="default" z="default + 50%" /></simulationdomain></parameters></execution></case>
