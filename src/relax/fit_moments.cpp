@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace fppg
@@ -113,21 +114,21 @@ public:
         collect();
         const double dp3 = dp_ * dp_ * dp_;
         shape_ = moments_of(body.mesh);
+        spread();
         if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
             std::abs(shape_.volume / body.measures.volume - 1) > whole)
-            return;
-        for (int pass = 0; pass <= passes_apart; ++pass)
+            return put_distances();
+        const std::vector<Vec3> start = places();
+        for (int pass = 0; pass < passes_apart && !fit(even_pair_dp); ++pass) spread();
+        // What moments cannot have with room between all they have without.
+        for (const double apart : {0.7, 0.65, least_pair_dp})
         {
-            apart_ = even_pair_dp * dp_;
-            spread();
-            // What moments cannot have with room between all they have without.
-            if (pass == passes_apart) apart_ = least_pair_dp * dp_;
-            for (int round = 0; round < most_rounds && move(); ++round)
-            {
-            }
-            Matrix off{};
-            if (is_fitted(moments_of_particles(), off)) break;
+            if (best_.misfit <= 1) break;
+            put(start);
+            std::fill(way_.begin(), way_.end(), Vec3{});
+            fit(apart);
         }
+        put(best_.places);
         put_distances();
     }
 
@@ -224,27 +225,52 @@ private:
     /// The distance of each particle that moves to the nearest other one, at most dp.
     std::vector<double> nearest()
     {
-        std::vector<Vec3> all;
-        for (std::size_t i = 0; i < way_.size(); ++i) all.push_back(place(i));
+        std::vector<Vec3> all = places();
         all.insert(all.end(), nodes_.begin(), nodes_.end());
         std::vector<double> distances = nearest_distances(all, dp_, threads_);
         distances.resize(way_.size());
         return distances;
     }
 
+    /// Of those that move.
+    std::vector<Vec3> places()
+    {
+        std::vector<Vec3> out;
+        for (std::size_t i = 0; i < way_.size(); ++i) out.push_back(place(i));
+        return out;
+    }
+
+    void put(const std::vector<Vec3>& places)
+    {
+        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = places[i];
+    }
+
+    /// Moves all until the moments are met, none nearer to others than a distance, dp; false where
+    /// they are not. The best that was found is kept in best_.
+    bool fit(double apart_dp)
+    {
+        apart_ = apart_dp * dp_;
+        for (int round = 0; round < most_rounds && move(); ++round)
+        {
+        }
+        Matrix off{};
+        const double misfit = misfit_of(moments_of_particles(), off);
+        if (misfit < best_.misfit) best_ = {misfit, places()};
+        return misfit <= 1;
+    }
+
     /// Parts particles that are too near to others, those of layers along these.
     void spread()
     {
-        std::vector<Vec3> places;
-        for (std::size_t i = 0; i < way_.size(); ++i) places.push_back(place(i));
-        places.insert(places.end(), nodes_.begin(), nodes_.end());
+        std::vector<Vec3> all = places();
+        all.insert(all.end(), nodes_.begin(), nodes_.end());
         part_pairs(
-            places, way_.size(), apart_,
+            all, way_.size(), even_pair_dp * dp_,
             [&](std::size_t i, const Vec3& from, const Vec3& to) {
                 return i < of_wall_.size() ? beside_on_layer(i, from, to) : beside_inside(from, to);
             },
             threads_);
-        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = places[i];
+        put(all);
     }
 
     /// Puts particles back that came nearer to others than they may, until there are none.
@@ -284,8 +310,9 @@ private:
         for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = way_[i] + (place(i) - before[i]);
     }
 
-    /// What the particles' moments lack; true: less than is worth a step.
-    bool is_fitted(const Moments& now, Matrix& off) const
+    /// How far moments are from those of the shape, in tolerances; `off`: what the second ones
+    /// lack.
+    double misfit_of(const Moments& now, Matrix& off) const
     {
         double worst = 0, size = 0;
         for (std::size_t i = 0; i < 3; ++i)
@@ -294,8 +321,8 @@ private:
             size = std::max(size, shape_.second[i][static_cast<int>(i)]);
             for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
         }
-        return norm(shape_.centre - now.centre) < centre_tolerance * dp_ &&
-               worst < moment_tolerance * size;
+        return std::max(norm(shape_.centre - now.centre) / (centre_tolerance * dp_),
+                        worst / (moment_tolerance * size));
     }
 
     /// One step; false where it is not needed or leads too far.
@@ -304,7 +331,7 @@ private:
         const Moments now = moments_of_particles();
         const Vec3 shift = shape_.centre - now.centre;
         Matrix off{};
-        if (is_fitted(now, off)) return false;
+        if (misfit_of(now, off) < 1) return false;
         const Matrix stretch = stretch_for(now.second, off, 0.25 * dp_ * dp_);
         std::vector<Vec3> steps(way_.size());
         double longest = 0;
@@ -384,6 +411,12 @@ private:
     std::vector<std::uint32_t> of_volume_;
     std::vector<Vec3> nodes_;
     std::vector<Vec3> way_; ///< of walls, then of volume particles
+    struct Best
+    {
+        double misfit = std::numeric_limits<double>::infinity();
+        std::vector<Vec3> places;
+    };
+    Best best_;
 };
 
 } // namespace

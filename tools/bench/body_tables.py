@@ -154,8 +154,10 @@ def volume_row(fppg, mesh, dp, mode):
     bodies = [line for line in lines if line.get("event") == "body"]
     if bodies:
         shape, own = bodies[0]["shape"], bodies[0]["particles"]
-        volume, centre, inertia = own["volume"] / shape["volume"], np.subtract(own["centre"], shape["centre"]), (
-            np.max(np.abs(np.array(own["inertia"]) / np.array(shape["inertia"]) - 1)))
+        # Particles on the surface share what nodes leave of the volume; the others stand for dp^3 each.
+        volume = (len(p) * dp**3 if mode == "inside" else own["volume"]) / shape["volume"]
+        centre = np.subtract(own["centre"], shape["centre"])
+        inertia = np.max(np.abs(np.array(own["inertia"]) / np.array(shape["inertia"]) - 1))
         words = [f"{np.linalg.norm(centre) / dp:.4f}", f"{100 * inertia:.2f} %"]
     else:
         volume, words = len(p) * dp**3 / mesh.volume(), ["", ""]

@@ -99,7 +99,7 @@ def definition(beam, place, across, angle):
 <execution><special><flexstrucs><flexstrucbody mkbound="1" mkclamp="0"><density value="{DENSITY}" />
 <youngmod value="{YOUNG}" /><poissratio value="{POISSON}" /><constitmodel value="1" /><hgfactor value="0.1" />
 </flexstrucbody></flexstrucs></special><parameters>{parameters}<simulationdomain>
-<posmin x="default - 0.1" y="default" z="default - 0.1" /><posmax x="default + 0.1" y="default" z="default + 0.1" />
+<posmin x="default - 0.2" y="default" z="default - 0.2" /><posmax x="default + 0.2" y="default" z="default + 0.2" />
 </simulationdomain></parameters></execution></case>
 """
 

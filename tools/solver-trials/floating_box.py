@@ -6,7 +6,7 @@
 
 The box, 0.3 x 0.1 m and half as heavy as water, is let go in a tank 1.5 m wide and 0.3 m deep, tilted by 10 degrees and
 10 mm too deep. It rolls and heaves, sends waves out, and comes to rest level and half in water. Judged are its mass (over the
-true one), draught and tilt (means over the last 0.7 s) and the periods of roll and heave (from where they pass their means).
+true one), draught and tilt (means over the last second) and the periods of roll and heave (from where they pass their means).
 
 Theory: the box's equations of motion with added mass and damping of a wave that goes out from it, in water of that depth,
 by finite volumes of potential flow; roll is coupled with sway. Walls send waves back to the box after about 2 s.
@@ -135,7 +135,7 @@ def middle_at_start():
 
 
 def floating_box():
-    """The box, tilted: <rotate> turns z towards x, so that its angle is the negative of the tilt."""
+    """The box, its side at large x down."""
     x, z = middle_at_start()
     half = BREADTH / 2, HEIGHT / 2
     return (f'<statesave /><move x="{x:.12g}" y="0" z="{z:.12g}" /><rotate ang="{-TILT:g}" x="0" y="1" z="0" />' +
@@ -194,11 +194,11 @@ def definition(variant, dp):
 
 
 def poses(folder, dp):
-    """Times (n), (draught, tilt in degrees) (n, 2) and fluid lost of a run."""
+    """Times (n), (draught, tilt in degrees) (n, 2) and fluid lost of a run; the water's level is its mean over the last second."""
     blocks = read_blocks(os.path.join(folder, "Case.xml"))
     block = next(b for b in blocks if b["type"] == "floating")
     first = min(b["begin"] for b in blocks if b["type"] == "fluid")
-    start, times, out, count = None, [], [], []
+    start, times, heights, tilts, levels, count = None, [], [], [], [], []
     for path in sorted(glob.glob(os.path.join(folder, "sim", "data", "Part_[0-9]*.bi4"))):
         values, arrays = read_bi4(path)
         order = np.argsort(arrays["Idp"])
@@ -215,28 +215,31 @@ def poses(folder, dp):
         column = np.floor(far[:, 0] / dp).astype(int)
         tops = np.full(column.max() - column.min() + 1, -np.inf)
         np.maximum.at(tops, column - column.min(), far[:, 1])
-        # Walls, dynamic ones too, hold particles half a dp or more off: the level is that of the fluid's own particles.
-        level = np.median(tops[np.isfinite(tops)]) + dp / 2
+        # Far from the box; columns there slosh to and fro about their mean.
+        levels.append(tops[np.isfinite(tops)].mean() + dp / 2)
         times.append(values["TimeStep"])
-        out.append((level - middle[1] + HEIGHT / 2, TILT + math.degrees(turn)))
+        heights.append(middle[1])
+        tilts.append(math.degrees(turn) - TILT)
         count.append(len(fluid))
-    return np.array(times), np.array(out), count[0] - count[-1]
+    times = np.array(times)
+    level = np.array(levels)[times > times[-1] - 1].mean()
+    return times, np.stack((level - np.array(heights) + HEIGHT / 2, tilts), 1), count[0] - count[-1]
 
 
-def period_of(times, values):
-    """Twice the mean time between passes through 0; nan where there are fewer than two."""
+def period_of(times, values, most):
+    """Twice the mean time between passes through 0; nan where there are fewer than two; at most so many count."""
     at = np.flatnonzero(values[:-1] * values[1:] < 0)
     passes = times[at] - values[at] * (times[at + 1] - times[at]) / (values[at + 1] - values[at])
-    passes = passes[:3]
+    passes = passes[:most]
     return 2 * (passes[-1] - passes[0]) / (len(passes) - 1) if len(passes) > 1 else math.nan
 
 
 def judge(folder, dp):
     times, rows, lost = poses(folder, dp)
-    last = rows[times > times[-1] - 0.7].mean(0)
+    last = rows[times > times[-1] - 1].mean(0)
     mass = read_xml(os.path.join(folder, "Case.xml")).find("case/execution/particles/floating/massbody").get("value")
-    return {"mass": float(mass) / MASS, "draught": last[0], "tilt": last[1], "roll": period_of(times, rows[:, 1] - last[1]),
-            "heave": period_of(times, rows[:, 0] - last[0]), "lost": lost}
+    return {"mass": float(mass) / MASS, "draught": last[0], "tilt": last[1], "roll": period_of(times, rows[:, 1] - last[1], 3),
+            "heave": period_of(times, rows[:, 0] - last[0], 2), "lost": lost}
 
 
 def run_case(told, variant, dp):
