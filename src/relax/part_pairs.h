@@ -17,8 +17,8 @@ using PutBeside = std::function<Vec3(std::size_t, const Vec3& from, const Vec3& 
 ///
 /// places  metres; the first `moving` of them may move
 /// least   distance to reach, metres
-/// returns the least distance of two points afterwards, at most `least`; it is never less than
-///         before
+/// returns the least distance to others of a point that may move, at most `least`; it is never less
+///         than before
 double part_pairs(std::vector<Vec3>& places, std::size_t moving, double least, const PutBeside& put,
                   int threads);
 

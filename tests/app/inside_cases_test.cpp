@@ -217,7 +217,7 @@ TEST(InsideCase, APlateOfTwoThicknessesHasWholeSheetsInEachHalf)
                 ++count[static_cast<std::size_t>(
                     std::clamp(std::lround(at), 0L, static_cast<long>(sheets - 1)))];
             }
-            for (const int n : count) EXPECT_NEAR(n, 81, 12);
+            for (const int n : count) EXPECT_NEAR(n, 81, 18); // two rows may be beyond the borders
         }
     }
 }
