@@ -528,8 +528,7 @@ private:
         done.sources.resize(count);
     }
 
-    /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
-    /// particle was removed, get the bit of the zone.
+    /// Particles that left their nodes go into walls.volume; nodes left get the bit of the zone.
     void keep_moved(const Region& region, const AllWalls& all, const std::vector<Mover>& movers,
                     const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& sources)
     {
