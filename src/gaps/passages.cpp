@@ -19,8 +19,6 @@ namespace
 
 constexpr double most_nodes = 3e8;
 constexpr double most_places = 3e6;
-/// Nearer surfaces touch: parts that stand on one another have no passage between them.
-constexpr double touching_dp = 0.02;
 
 /// Where fluid of a case can flow, on its lattice.
 class FluidReach

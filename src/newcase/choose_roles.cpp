@@ -187,6 +187,23 @@ void choose_housing(CasePlan& plan)
     part.role_reason = reason;
 }
 
+void choose_speed(CasePlan& plan)
+{
+    plan.speed = plan.options->speed;
+    const bool is_needed = plan.kind == CaseKind::Wading || plan.kind == CaseKind::Obstacle;
+    if (plan.speed || !is_needed) return;
+    const char* of = plan.kind == CaseKind::Wading ? "vehicle" : "stream";
+    if (!plan.options->ask)
+        throw UsageError(
+            fmt::format("--speed is missing: how fast is the {}, metres a second?", of));
+    const std::string answer =
+        plan.options->ask(fmt::format("How fast is the {}, metres a second?", of), "");
+    const Quantity q = split_quantity(answer, "speed", "metres a second, such as 5");
+    if (!q.unit.empty() && q.unit != "m/s")
+        throw UsageError(fmt::format("speed: \"{}\" is invalid, expected metres a second", answer));
+    plan.speed = q.value;
+}
+
 } // namespace
 
 const std::vector<std::string>& new_case_kinds()
@@ -212,6 +229,7 @@ void choose_roles(CasePlan& plan)
     for (const std::string& fixed : plan.options->fixed) (void)part_named(plan, fixed, "--fix");
     choose_floatings(plan);
     choose_housing(plan);
+    choose_speed(plan);
 }
 
 } // namespace fppg
