@@ -91,7 +91,23 @@ TEST(NewCase, RefusesAPartInOtherUnits)
     write_stl(parts.folder / "wheel.stl", gear_mesh({.teeth = 30}, {0.05, 0, 0}));
     const std::string fault = fault_of(parts.options);
     EXPECT_THAT(fault, HasSubstr("wheel.stl"));
+    EXPECT_THAT(fault, HasSubstr("at (5e-05, 0, 0) m"));
     EXPECT_THAT(fault, HasSubstr("--unit wheel=m"));
+}
+
+TEST(NewCase, DoubtsAUnitThatMakesAGearboxOfAHundredMetres)
+{
+    const GearboxParts parts;
+    NewCaseOptions options = parts.options;
+    options.kind = "gearbox";
+    options.unit = "m";
+    options.fill = "oil=50%@housing";
+    const NewCase made = propose_case(options);
+    ASSERT_FALSE(made.warnings.empty());
+    EXPECT_THAT(made.warnings[0], HasSubstr("122 m long; in mm they are 0.122 m long"));
+    EXPECT_THAT(made.warnings[0], HasSubstr(".stl"));
+    options.unit = "mm";
+    EXPECT_EQ(proposal(propose_case(options), "unit").reason, "given");
 }
 
 TEST(NewCase, RefusesAPartFarAway)
@@ -111,15 +127,70 @@ TEST(NewCase, RefusesMoreThanAnOpenHousingHolds)
     const std::string fault = fault_of(parts.options);
     EXPECT_THAT(fault, HasSubstr("housing.stl"));
     EXPECT_THAT(fault, HasSubstr("runs out over z = 0.02"));
+    EXPECT_THAT(fault, HasSubstr(" m near ("));
+    EXPECT_THAT(fault, HasSubstr("Add the lid or close the opening"));
     parts.options.fill = "oil=0.05l";
     EXPECT_EQ(fault_of(parts.options), "");
+}
+
+TEST(NewCase, TellsOfAHoleInTheWallOfAHousing)
+{
+    // Without the facets of both walls at x = -0.026 and -0.03: oil runs out there, from the lowest
+    // place of the hole on.
+    const auto without = [](const TriangleSoup& soup, const std::vector<double>& planes)
+    {
+        TriangleSoup out;
+        for (std::size_t f = 0; f < soup.size(); ++f)
+        {
+            const Vec3* c = &soup.vertices[3 * f];
+            bool is_hole = false;
+            for (const double x : planes)
+                is_hole |= c[0].x == x && c[1].x == x && c[2].x == x &&
+                           std::max({c[0].y, c[1].y, c[2].y}) > 0 && c[0].z + c[1].z + c[2].z > 0;
+            if (!is_hole) out.vertices.insert(out.vertices.end(), c, c + 3);
+        }
+        return out;
+    };
+    const GearboxParts parts;
+    const TriangleSoup whole = test::housing({-0.03, -0.042, -0.02}, {0.092, 0.042, 0.02}, 0.004);
+    write_stl(parts.folder / "housing.stl", without(whole, {-0.03, -0.03 + 0.004}), 1000);
+    NewCaseOptions options = parts.options;
+    options.fill = "oil=0.25l@housing";
+    const std::string fault = fault_of(options);
+    EXPECT_THAT(fault, HasSubstr("housing.stl: the part is open"));
+    EXPECT_THAT(fault, HasSubstr(" m near (-0.0"));
+    EXPECT_THAT(fault, HasSubstr("6 open edges, the first at ("));
+    EXPECT_THAT(fault, HasSubstr("close the opening"));
+    // Of the inner wall alone: it still holds the oil, which is told.
+    write_stl(parts.folder / "housing.stl", without(whole, {-0.03 + 0.004}), 1000);
+    options.fill = "oil=0.1l@housing";
+    const NewCase made = propose_case(options);
+    EXPECT_THAT(made.warnings, ::testing::Contains(::testing::AllOf(
+                                   HasSubstr("housing.stl: the part is no closed solid"),
+                                   HasSubstr("the first at ("), HasSubstr("Close it"))));
+}
+
+TEST(NewCase, WhatTurnsIsNoHousing)
+{
+    const TemporaryFolder folder;
+    write_stl(folder / "gear.stl", gear_mesh({.teeth = 20}), 1000);
+    NewCaseOptions options;
+    options.inputs = {folder / "gear.stl"};
+    options.output = folder / "Case_Def.xml";
+    options.rotations = {"gear=60rpm"};
+    options.water = 0;
+    const NewCase made = propose_case(options);
+    EXPECT_THAT(proposal(made, "gear").value, HasSubstr("turns at 360 deg/s"));
+    EXPECT_THAT(proposal(made, "basin").reason, HasSubstr("no part holds the water"));
 }
 
 TEST(NewCase, RefusesGearsThatOverlap)
 {
     const GearboxParts parts(0.048);
     const std::string fault = fault_of(parts.options);
-    EXPECT_THAT(fault, HasSubstr("overlaps"));
+    EXPECT_THAT(fault, HasSubstr("pinion.stl: the part overlaps"));
+    EXPECT_THAT(fault, HasSubstr("wheel.stl"));
+    EXPECT_THAT(fault, HasSubstr("turn it by part of a tooth"));
     EXPECT_THAT(fault, HasSubstr("deep at (0.0"));
     NewCaseOptions allowed = parts.options;
     allowed.allows_overlap = true;
