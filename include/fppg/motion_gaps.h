@@ -103,7 +103,7 @@ struct NearPlaces
 ///
 /// Passages are looked for at the start, a place a dp^2, along the normals of closed surfaces and
 /// on both sides of sheets, as far as 4 dp, where fluid of the case could flow to through openings
-/// of about two dp.
+/// of about two dp, and through narrower passages from there on.
 ///
 /// definition  Case_Def.xml or Case.xml, its meshes beside it or where it names them
 /// throws      CaseError, GeometryError, IoError as the readers

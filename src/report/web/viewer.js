@@ -143,14 +143,14 @@ class View {
     points.matrixWorldNeedsUpdate = true;
   }
 
-  // Discs at places that are marked, over all else.
-  markObject(set, places) {
+  // Discs at places that are marked; over all else, or where nothing stands before them.
+  markObject(set, places, isOverAll) {
     const low = new THREE.Vector3();
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position',
       new THREE.BufferAttribute(new Float32Array(places.flat()), 3));
     const material = new THREE.ShaderMaterial({
-      vertexShader, fragmentShader, depthTest: false, transparent: true,
+      vertexShader, fragmentShader, depthTest: !isOverAll, transparent: true,
       uniforms: {
         low: { value: low }, extent: { value: new THREE.Vector3(1, 1, 1) }, pixels: { value: 1 },
         colour: { value: new THREE.Vector3(...markColour) },
@@ -173,13 +173,13 @@ class View {
       byFrame.get(mark.frame).push(mark);
     }
     for (const [frame, marks] of byFrame) {
-      const points = this.markObject(set, marks.map((mark) => mark.at));
+      const points = this.markObject(set, marks.map((mark) => mark.at), true);
       Object.assign(points.userData, { frame, frameCount: set.marks.frames, least: 13,
         texts: marks.map((mark) => mark.text) });
       set.group.add(points);
     }
     if (set.marks.start.length === 0) return;
-    const points = this.markObject(set, set.marks.start);
+    const points = this.markObject(set, set.marks.start, false);
     Object.assign(points.userData, { frame: 0, frameCount: set.marks.frames, least: 3, texts: [] });
     set.group.add(points);
   }
