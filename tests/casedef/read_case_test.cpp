@@ -1025,6 +1025,7 @@ TEST(Definition, TurnsZonesOfInOutAsTheSolver)
                               R"(angle="1.5707963267948966" anglesunits="radians")"})
     {
         CaseText text;
+        text.after_geometry = "<fppg><bodyfitted /></fppg>";
         text.execution += fmt::format(
             R"(<special><inout><inoutzone><zone3d><box><point x="0.7" y="0.5" z="0.1" /><size x="0.2" y="0" z="0.4" />)"
             R"(<direction x="0" y="1" z="0" /><rotateaxis {}><point1 x="0.7" y="0.5" z="0" /><point2 x="0.7" y="0.5" z="1" /></rotateaxis></box></zone3d></inoutzone></inout></special>)",
