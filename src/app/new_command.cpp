@@ -109,8 +109,9 @@ void add_options(SubcommandLine& app, NewCall& call)
     app.add_option("--float", o.floatings, "PART=400 (kg/m3) or PART=12kg").may_be_repeated();
     app.add_option("--fill", o.fill, "oil=2.5l, water=60% or oil=0.12m, with @PART in that part");
     app.add_option("--inlet", o.inlets,
-                   "PART=2m/s of a round flat sheet, or PART:-x=3l/min of the round face of a part "
-                   "that looks along -x: fluid comes in there")
+                   "fluid comes in: PART=2m/s through a flat sheet, PART:-x=3l/min through the "
+                   "flat face of a part that looks along -x or 0.8,0,0.6, of any tilt, a disc or a "
+                   "rectangle; of several with @PLACE the nearest")
         .may_be_repeated();
     app.add_option("--water", call.water, "height of the water along z, metres");
     app.add_option("--speed", call.speed, "m/s, of the vehicle or of the stream");

@@ -161,12 +161,35 @@ UnitChoice unit_by_size(const CasePlan& plan)
             is_sure};
 }
 
-UnitChoice common_unit(const CasePlan& plan)
+/// Warns where the sizes speak against the unit that is given, and for another one.
+void doubt_given_unit(CasePlan& plan)
+{
+    const Box3 box = box_of_all(plan.parts);
+    const std::string why = doubt(plan, box, metres_of_unit(plan.options->unit));
+    if (why.empty()) return;
+    for (const char* unit : guessed_units)
+        if (doubt(plan, box, metres_of_unit(unit)).empty())
+        {
+            plan.warnings.push_back(fmt::format(
+                "--unit {}: with it all parts together would be {}; in {} they are {} m long. {} "
+                "is "
+                "the first of them. Expected the unit that they were exported in.",
+                plan.options->unit, why, unit, short_number(longest(box) * metres_of_unit(unit)),
+                plan.parts.front().path));
+            return;
+        }
+}
+
+UnitChoice common_unit(CasePlan& plan)
 {
     const NewCaseOptions& options = *plan.options;
     if (std::all_of(plan.parts.begin(), plan.parts.end(), is_in_metres))
         return {"m", "STEP files name their units, all is read as metres"};
-    if (!options.unit.empty()) return {options.unit, "given"};
+    if (!options.unit.empty())
+    {
+        doubt_given_unit(plan);
+        return {options.unit, "given"};
+    }
     UnitChoice out;
     for (const NewPart& part : plan.parts)
     {

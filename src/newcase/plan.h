@@ -119,14 +119,30 @@ struct VesselFill
     double bottom = 0;
 };
 
-/// A round place through which fluid comes in.
+/// The disc or rectangle that a face is.
+struct FaceOutline
+{
+    bool is_disc = false;
+    Vec3 middle;
+    double radius = 0; ///< of a disc, m
+    Vec3 along;        ///< of a rectangle: along its first sides, of length 1
+    Vec3 across;       ///< along the others: normal x along
+    double length = 0; ///< of the first sides, m
+    double width = 0;
+    double filled = 0; ///< share of the disc or rectangle that the face covers: at least 0.9 of a
+                       ///< disc, 0.97 of a rectangle are near enough
+    bool is_near_enough = false;
+};
+
+/// A flat place through which fluid comes in.
 struct FluidInlet
 {
     std::string name;
-    Vec3 place; ///< the middle of its face
-    Vec3 direction;
-    double radius = 0;
-    double speed = 0; ///< m/s
+    FaceOutline face;
+    Vec3 direction; ///< of the fluid, of length 1
+    double area = 0;
+    double speed = 0;        ///< m/s
+    double litres_per_s = 0; ///< where a flow is asked for; 0: a speed
 };
 
 /// Fluid and walls around the parts where none of them holds it: a basin, or a channel whose ends
@@ -147,6 +163,7 @@ struct CasePlan
     CaseKind kind = CaseKind::Tank;
     std::vector<NewPart> parts;
     std::vector<PartPair> pairs;
+    std::optional<double> speed; ///< of the vehicle or stream, given or answered; m/s
     Liquid liquid;
     std::optional<VesselFill> fill;
     std::optional<WaterBox> water;
