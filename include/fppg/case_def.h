@@ -160,6 +160,8 @@ struct FluidBand
     /// Particles come and go where they are too many or too few for the space between walls. Not
     /// where the case has no `<fluidband>`: fills keep their litres.
     bool fits_count = true;
+    /// `mass="exact"`: all fluid particles together have the mass of the space between walls.
+    bool has_exact_mass = false;
 };
 
 /// Where the solver lets fluid in and out: the zones of `<special><inout>`.
@@ -245,6 +247,9 @@ struct CaseDef
     double h = 0;          ///< smoothing length, given or by its formula
     double mass_bound = 0; ///< of a boundary particle, given or rhop0 * dp^dim
     double mass_fluid = 0;
+    /// mass_fluid over rhop0 times the volume that a particle has: above 1 where fluid that walls
+    /// hold off has the mass of all of their cavity, `<fluidband mass="exact">`.
+    double fluid_fullness = 1;
     int mkbound_count = 0;
     int mkfluid_count = 0;
     std::uint16_t mk_bound_first = 0; ///< mk = mkbound + mk_bound_first
@@ -263,6 +268,8 @@ struct CaseDef
     /// depth below a surface half a dp above its highest particles: gravity and depths give it
     /// pressure, and a band of fluid asks for it.
     bool balances() const;
+    /// Whether a `<fill>` gives a fluid its litres.
+    bool fills_litres() const;
     std::vector<PointFile> point_files; ///< in the order of the file
     /// `<fppg><offlattice hydrostatic="true" />`: fluid of `<setfrdrawmode>` has the density of its
     /// depth, where GenCase v5.4 gives it rhop0.
@@ -297,6 +304,9 @@ struct CaseDef
     std::optional<double> main_surface;
     Box3 particles_around; ///< limits of the particles of the zone around this one
 };
+
+/// The band of a fluid; null: none. `mk` is absolute.
+const FluidBand* fluid_band(const CaseDef& def, std::uint16_t mk);
 
 /// -fit: which walls are body-fitted.
 enum class FitChoice : std::uint8_t

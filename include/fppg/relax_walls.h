@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/fluid_space.h"
 #include "fppg/lattice.h"
 #include "fppg/relax.h"
 #include "fppg/relax_volume.h"
@@ -56,6 +57,7 @@ struct RelaxReport
 {
     std::vector<RelaxedPart> parts;
     std::vector<std::string> warnings; ///< whole sentences
+    FluidSpace space;                  ///< that walls leave to fluid
     bool is_stopped = false;           ///< by the observer
 };
 
@@ -64,7 +66,7 @@ bool relaxes(const CaseDef& def, const RunField& field);
 
 /// Relaxes the fitted walls of a field and the volume beside them, as the settings of their mks and
 /// the fluid bands of the case say: first all surfaces, then the inside of every solid mk, then the
-/// fluid.
+/// fluid. Places between walls that are narrower than 1.5 dp are left empty of fluid.
 ///
 /// The particles of a surface stay on it (relax_surface()); those within 2 dp of a cut are held.
 /// Afterwards no two of all surfaces are nearer than least_pair_dp, but those on both sheets of a

@@ -3,6 +3,7 @@
 #include "fppg/files.h"
 #include "fppg/relax_walls.h"
 
+#include "app/fluid_space_log.h"
 #include "app/run_state.h"
 #include "app/stage_bar.h"
 #include "app/stopwatch.h"
@@ -72,15 +73,18 @@ void log_relaxed(const RelaxedPart& part, RunLog& log)
 }
 
 /// Fluid that is more or less than the case drew or filled.
-void warn_of_fluid_count(const RelaxedPart& part, CaseRunState& run, const std::string& file)
+void warn_of_fluid_count(const RelaxedPart& part, const RelaxReport& report, CaseRunState& run,
+                         const std::string& file)
 {
-    const double more = static_cast<double>(part.inserted) - static_cast<double>(part.removed);
+    double more = static_cast<double>(part.inserted) - static_cast<double>(part.removed);
+    for (const auto& [mk, count] : report.space.left_out) more -= static_cast<double>(count);
     const double share = more / (static_cast<double>(part.particles) - more);
     if (std::abs(share) < 0.001) return;
     run.warn(fmt::format(
         "{}: <fluidband>: {:+g} particles of fluid near walls ({:+.2f} % of them), so many as fit "
-        "between the walls; litres of fills are those before. Without the element their number "
-        "stays.",
+        "between the walls, none where these are less than 1.5 dp apart; litres of fills keep "
+        "their "
+        "number.",
         file, more, 100 * share));
 }
 
@@ -205,8 +209,10 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
     for (const RelaxedPart& part : report.parts)
     {
         log_relaxed(part, run.log);
-        if (part.what == "fluid") warn_of_fluid_count(part, run, made.def.file);
+        if (part.what == "fluid") warn_of_fluid_count(part, report, run, made.def.file);
     }
+    log_fluid_space(report, made, run.log);
+    settle_fluid_mass(report, made, run.log);
     if (snapshots > 0)
         run.log.line(
             fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", made.output, snapshots));

@@ -364,10 +364,9 @@ std::vector<double> bands(const CaseDef& def)
     // Farther from walls than the reach of kernels, fluid lies as even as it was made.
     const double least = 2 * def.h / def.grid.dp + 1.5;
     std::vector<double> out(65536, 0);
-    for (const FluidBand& band : def.fluid_bands)
-        for (std::uint32_t mk = 0; mk < def.mk_bound_first; ++mk)
-            if (band.mk.empty() || std::binary_search(band.mk.begin(), band.mk.end(), mk))
-                out[mk] = band.is_active && band.balances ? std::max(least, band.width_dp) : 0;
+    for (std::uint16_t mk = 0; mk < def.mk_bound_first; ++mk)
+        if (const FluidBand* band = fluid_band(def, mk))
+            out[mk] = band->is_active && band->balances ? std::max(least, band->width_dp) : 0;
     return out;
 }
 

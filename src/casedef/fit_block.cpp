@@ -420,7 +420,7 @@ private:
 
     void read_fluid_band(const Element& e) const
     {
-        require_known(e, {"mkfluid", "width", "active", "balance"}, {});
+        require_known(e, {"mkfluid", "width", "active", "balance", "mass"}, {});
         FluidBand band;
         band.line = e.line;
         band.mk = mks_of(e, MkKind::Fluid);
@@ -429,6 +429,17 @@ private:
             "a width above 0 (times dp)");
         band.is_active = read_.flag_or(e, "active", true);
         band.balances = read_.flag_or(e, "balance", true);
+        if (!band.is_active && e.find_attribute("mass") != nullptr)
+            read_.fail(e,
+                       "has mass and active=\"false\", expected one of them: the space between "
+                       "walls is measured where fluid is relaxed");
+        const std::string mass = read_.text_or(e, "mass", "dp");
+        band.has_exact_mass = mass == "exact";
+        if (mass != "exact" && mass != "dp")
+            read_.fail(e,
+                       fmt::format("mass=\"{}\" is unknown, expected exact (the mass of the space "
+                                   "between walls) or dp (rhop0 dp^3 each)",
+                                   mass));
         def_.fluid_bands.push_back(std::move(band));
     }
 
@@ -516,6 +527,27 @@ const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk)
                                     [mk](const auto& of_mk) { return of_mk.first == mk; });
     if (found != fit.of_mk.rend()) return &found->second;
     return fit.all ? &*fit.all : nullptr;
+}
+
+const FluidBand* fluid_band(const CaseDef& def, std::uint16_t mk)
+{
+    const auto found = std::find_if(
+        def.fluid_bands.rbegin(), def.fluid_bands.rend(),
+        [mk](const FluidBand& band)
+        { return band.mk.empty() || std::binary_search(band.mk.begin(), band.mk.end(), mk); });
+    return mk < def.mk_bound_first && found != def.fluid_bands.rend() ? &*found : nullptr;
+}
+
+bool CaseDef::fills_litres() const
+{
+    return std::any_of(ops.begin(), ops.end(),
+                       [](const DrawOp& op)
+                       {
+                           const auto* edit = std::get_if<Edit>(&op.what);
+                           const auto* fill =
+                               edit != nullptr ? std::get_if<CavityFillOp>(edit) : nullptr;
+                           return fill != nullptr && fill->measure == FillMeasure::Litres;
+                       });
 }
 
 bool CaseDef::balances() const

@@ -5,7 +5,8 @@
 // of
 //   a w within 0.75; or it lies within 0.45 of a w that has no normal.
 // - Through a wall: the segment from s + 0.5 n/|n| to g passes from one side of a w to the other
-//   within 0.71 of it (half the diagonal of its square), or within 0.45 of a w without normal.
+//   within 0.5 of it, or between two w within 0.71 of both (half the diagonal of their squares), or
+//   within 0.45 of a w without normal.
 // - Outside: no fluid can come within 2h of g, and it is outside the domain (over periodic limits
 // it
 //   is put back first).
@@ -19,6 +20,9 @@
 //   radius 0.75 around -n, and the wall is thinner (|n| + t - 0.5) than 2h - 0.5.
 
 #include "check/judge_walls.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace fppg
 {
@@ -99,6 +103,7 @@ bool passes_wall(const WallScene& scene, std::uint32_t i, const Vec3& p, const V
     const Vec3 begin = p + n * (1 + 0.5 * dp / length);
     const Vec3 way = p + n * 2 - begin;
     const Vec3 middle = begin + way * 0.5;
+    std::vector<Vec3> beside;
     const auto is_passed = [&](const Vec3& normal, const Vec3& from)
     {
         const Vec3 a = from - way * 0.5;
@@ -108,7 +113,12 @@ bool passes_wall(const WallScene& scene, std::uint32_t i, const Vec3& p, const V
         const double after = dot(b, normal);
         if ((before < 0) == (after < 0)) return false;
         const Vec3 at = a + (b - a) * (before / (before - after));
-        return dot(at, at) <= 0.71 * 0.71 * dp * dp;
+        if (dot(at, at) > 0.71 * 0.71 * dp * dp) return false;
+        // Along the side of an edge all w stand on one side of the way.
+        const bool is_between = std::any_of(beside.begin(), beside.end(),
+                                            [&](const Vec3& other) { return dot(at, other) < 0; });
+        beside.push_back(at);
+        return is_between || dot(at, at) <= 0.5 * 0.5 * dp * dp;
     };
     return find_walls(scene, i, middle, 0.5 * norm(way) + 0.71 * dp, is_passed);
 }

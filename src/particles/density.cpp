@@ -87,8 +87,8 @@ private:
         if (is_uniform_) return static_cast<float>(c.rhop0);
         // GenCase's surface goes through the highest particles, that of the fluid lies above them.
         if (def_.balances()) depth += def_.grid.dp / 2;
-        return static_cast<float>(c.rhop0 *
-                                  std::pow(1 + c.rhop0 * g_ * depth / constants_.b, 1 / c.gamma));
+        const double pressure = c.rhop0 * g_ * depth / def_.fluid_fullness;
+        return static_cast<float>(c.rhop0 * std::pow(1 + pressure / constants_.b, 1 / c.gamma));
     }
 
     bool raises_roofs() const

@@ -26,9 +26,11 @@ public:
         double distance = 0; ///< metres
         std::size_t body = 0;
         bool is_outside = false; ///< on the side where the facet looks
+        Vec3 normal;             ///< of the facet
     };
 
     AllWalls(const std::vector<FittedBody>& bodies, const LatticeGrid& grid, int threads)
+        : is_2d_(grid.is_2d)
     {
         TriangleSoup soup;
         for (const FittedBody& body : bodies)
@@ -42,6 +44,7 @@ public:
                                  of_body.vertices.end());
             const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
             normals_.insert(normals_.end(), normals.begin(), normals.end());
+            is_of_solid_.resize(normals_.size(), body.is_solid ? 1 : 0);
         }
         if (!soup.vertices.empty()) query_.emplace(std::move(soup), threads);
     }
@@ -53,17 +56,31 @@ public:
     {
         const ClosestPoint near = query_->closest_point(p, within);
         if (near.distance == std::numeric_limits<double>::infinity())
-            return {near.point, near.distance, 0, false};
+            return {near.point, near.distance, 0, false, {}};
         const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
         return {near.point, near.distance, static_cast<std::size_t>(after - first_.begin()) - 1,
-                dot(p - near.point, normals_[near.facet]) > 0};
+                dot(p - near.point, normals_[near.facet]) > 0, normals_[near.facet]};
     }
     Vec3 closest_point(const Vec3& p, double within) const
     {
         return query_->closest_point(p, within).point;
     }
 
+    const TriangleSoup& soup() const { return query_->soup(); }
+    /// Whether a place is in a solid body, also beside its edges; in 2D never.
+    bool is_in_solid(const Vec3& p) const
+    {
+        int votes = 0;
+        for (int axis = 0; axis < 3 && !is_2d_; ++axis)
+            if (query_->line_sums(p, axis, [&](std::uint32_t f) { return is_of_solid_[f] != 0; })
+                    .before > 0)
+                ++votes;
+        return votes >= 2;
+    }
+
 private:
+    bool is_2d_ = false;
+    std::vector<char> is_of_solid_;  ///< facets
     std::vector<std::size_t> first_; ///< facet or line of each body
     std::vector<Vec3> normals_;      ///< of all facets or lines
     std::optional<MeshQuery> query_;

@@ -3,6 +3,7 @@
 #include "core/disjoint_set.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace fppg
@@ -36,6 +37,33 @@ std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>&
         out[group[first]].push_back(static_cast<std::uint16_t>(mk));
     }
     return out;
+}
+
+Region fluid_region(const CaseDef& def, const FluidSpace& space)
+{
+    Region region;
+    region.what = "fluid";
+    region.band.assign(65536, 0);
+    region.beside.assign(65536, 0);
+    region.left_empty = space.pocket_places;
+    region.fits_count = std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                                    [](const FluidBand& band) { return band.fits_count; });
+    for (std::uint32_t number = 1; number < 65536; ++number)
+    {
+        const auto mk = static_cast<std::uint16_t>(number);
+        region.beside[mk] = mk < def.mk_bound_first || fit_settings(def.fit, mk) == nullptr;
+        const FluidBand* band = fluid_band(def, mk);
+        if (band != nullptr && band->is_active) region.band[mk] = band->width_dp;
+    }
+    if (!def.fills_litres()) return region;
+    if (space.nodes.size() > 1)
+        region.fits_count = false;
+    else if (region.fits_count || !region.left_empty.empty())
+    {
+        region.fits_count = true;
+        region.missing = region.left_empty.size();
+    }
+    return region;
 }
 
 void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes)

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/fitted_walls.h"
+#include "fppg/fluid_space.h"
 #include "fppg/lattice.h"
 
 #include <cstdint>
@@ -39,9 +41,16 @@ struct Region
     std::vector<char> beside; ///< per mk: not of the region, but its nodes push
     bool is_solid = false;
     bool fits_count = true; ///< particles come and go (RelaxVolumeOptions::fit_count)
+    /// So many more are wanted than move now, as their number is given; empty: as many as fit.
+    std::optional<std::size_t> missing;
+    std::vector<Vec3> left_empty; ///< where particles would fit that are not wanted, metres
     double h_dp = 1;
     std::optional<int> iterations;
 };
+
+/// All fluid near walls. Where a fill gives it its litres, their number stays what it was before
+/// pockets were emptied, unless several fluids would have to share that.
+Region fluid_region(const CaseDef& def, const FluidSpace& space);
 
 /// The mks of solid bodies, those of one body together; ascending by the first of each.
 std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies);

@@ -6,6 +6,7 @@
 #include "relax/all_walls.h"
 #include "relax/cut_nodes.h"
 #include "relax/fit_moments.h"
+#include "relax/fluid_space.h"
 #include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
 #include "relax/own_lattice.h"
@@ -190,22 +191,8 @@ private:
         }
         if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {
-            Region region;
-            region.what = "fluid";
-            region.fits_count = std::any_of(def_.fluid_bands.begin(), def_.fluid_bands.end(),
-                                            [](const FluidBand& band) { return band.fits_count; });
-            region.band.assign(65536, 0);
-            region.beside.assign(65536, 0);
-            for (std::uint32_t mk = 1; mk < 65536; ++mk)
-            {
-                const bool is_fluid = mk < def_.mk_bound_first;
-                region.beside[mk] =
-                    is_fluid || settings_of(static_cast<std::uint16_t>(mk)) == nullptr;
-                for (const FluidBand& band : def_.fluid_bands)
-                    if (is_fluid && (band.mk.empty() || std::find(band.mk.begin(), band.mk.end(),
-                                                                  mk) != band.mk.end()))
-                        region.band[mk] = band.is_active ? band.width_dp : 0;
-            }
+            report_.space = measure_fluid_space(def_, field_, all, threads_);
+            const Region region = fluid_region(def_, report_.space);
             std::vector<SlabRun> of_fluid;
             for_each_run(
                 [&](const SlabRun& r)
@@ -365,6 +352,9 @@ private:
         const auto chunks = find_in_chunks<Vec3>(runs, look_at, threads_);
         std::vector<Vec3> held;
         for (const auto& chunk : chunks) held.insert(held.end(), chunk.begin(), chunk.end());
+        // What would come into pockets is pushed back as if they were full.
+        for (const Vec3& p : region.left_empty)
+            if (moving.has_nearer(p, reach)) held.push_back(p);
         // What an earlier region took off the lattice pushes as well.
         const VolumeParticles& volume = field_.walls.volume;
         for (std::size_t i = 0; i < volume.size(); ++i)
@@ -468,6 +458,8 @@ private:
             region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = region.fits_count;
+        if (region.missing)
+            options.wanted = static_cast<double>(positions.size() + *region.missing);
         if (region.is_solid)
             options.wanted = wanted_number(field_.walls, region, positions.size(),
                                            count_nodes(region, runs), grid.dp);

@@ -1,4 +1,4 @@
-"""Small cases whose answer is known, as definitions and meshes: rest, tank, wedge, cup, pipe, tilted, gear, vessel, ball.
+"""Small cases whose answer is known, as definitions and meshes: rest, tank, wedge, cup, pipe, tilted, gear, gears, vessel, ball.
 
 Each function named like a case takes keyword arguments (dp and what the case varies, in metres, m/s, degrees) and gives
 a Trial. Geometry is in its final place in the meshes; the definitions only draw it. Walls of closed bodies are 4 dp thick
@@ -280,4 +280,40 @@ def ball(dp=0.0125, time=1.0, density=500.0):
                  facts={"water_depth": level, "radius": radius, "density": density, "middle": middle.tolist()})
 
 
-CASES = {f.__name__: f for f in (rest, tank, wedge, cup, pipe, tilted, gear, vessel, ball)}
+def gears(dp=0.005, gap=3.0, turn=135.0):
+    """Two gears of 12 and 16 teeth that turn in mesh in oil, in the plane y = 0; flanks and tips stay `gap` dp or more apart.
+
+    turn  of the smaller one, degrees
+    """
+    module, apart, rim = 8 * dp, 3 * dp, 4 * dp
+    small, large = 6 * module, 8 * module  # pitch radii
+    # Half of the play is in front of a tooth; the shafts that are moved apart give some of it.
+    backlash = max(0.0, 2 * (gap * dp - apart * math.sin(math.radians(20)))) / math.cos(math.radians(20))
+    length = 2 * (small + large) + apart + 2 * (module + rim)
+    height = 2 * (large + module + rim)
+    axis = height / 2
+    level = axis + 20 * dp
+    tank_mesh = placed(make_meshes.trough([(0, 0), (length, 0)], length, 8 * dp, height, 4 * dp), Y_UP)
+    at_small = rim + module + small
+    at_large = at_small + small + large + apart
+    meshes, motions = {"tank.stl": tank_mesh}, []
+    speed_sound = 20 * math.sqrt(GRAVITY * level)
+    spin = math.degrees(speed_sound / 15 / (small + module))
+    for mk, (name, teeth, radius, x, turned, speed) in enumerate((
+            ("small", 12, small, at_small, 0.0, spin), ("large", 16, large, at_large, 180 / 16, -spin * 12 / 16)), 1):
+        mesh = make_meshes.gear(module, teeth, 6 * dp, 2 * (radius - 2.5 * module), backlash=backlash, turned=turned)
+        meshes[name + ".stl"] = placed(mesh, Y_UP, (x, 0, axis))
+        motions.append(f"""<objreal ref="{mk}"><begin mov="1" start="0" /><mvrot id="1" duration="10" anglesunits="degrees">
+            <vel ang="{speed:.9g}" /><axisp1 x="{x:.9g}" y="0" z="{axis:.9g}" /><axisp2 x="{x:.9g}" y="1" z="{axis:.9g}" />
+            </mvrot></objreal>""")
+
+    def depth(p, shift):
+        return np.maximum.reduce([-p[:, 0], p[:, 0] - length, -p[:, 2]])
+
+    low, high = around((0, 0, 0), (length, 0, height), 30 * dp)
+    return Trial("gears", dp, meshes, ((low[0], 0, low[2]), (high[0], 0, high[2])), (length / 2, 0, 2 * dp), level, turn / spin, 15,
+                 depth, "turning_gear", speed_sound=speed_sound, motion=f"<motion>{''.join(motions)}</motion>",
+                 parameters={"Visco": 0.05}, facts={"water_depth": level})
+
+
+CASES = {f.__name__: f for f in (rest, tank, wedge, cup, pipe, tilted, gear, gears, vessel, ball)}

@@ -1,0 +1,354 @@
+#include "relax/fluid_space.h"
+
+#include "core/disjoint_set.h"
+#include "core/parallel.h"
+#include "fit/near_nodes.h"
+#include "relax/cube_share.h"
+#include "relax/regions.h"
+#include "relax/wall_ball.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+namespace fppg
+{
+namespace
+{
+
+// Lengths in dp.
+constexpr double narrow = 1.5;     ///< between walls: a pocket
+constexpr double touching = 0.05;  ///< between walls: none
+constexpr double off_the_wall = 2; ///< where the fluid is looked for that a place belongs to
+constexpr double reach_of_cell = 0.87;
+/// Walls whose ball is smaller than this may both cut a cell.
+constexpr double near_two_walls = 1.2;
+/// A wall's point whose direction differs more from its facet's normal is on an edge.
+constexpr double along_normal = 0.999;
+constexpr std::int64_t reach_of_fluid = 2; ///< nodes from a cell to the fluid that it is beside
+/// Smaller pockets without a node are slits at edges, dp^3.
+constexpr double least_pocket = 0.1;
+constexpr std::size_t nodes_per_chunk = 64;
+
+/// Where fluid nodes are near, a bit a block of nodes.
+class FluidNear
+{
+public:
+    FluidNear(const RunField& field, std::uint16_t bound_first)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            count_[static_cast<std::size_t>(axis)] =
+                field.grid.n[static_cast<std::size_t>(axis)] / side + 1;
+        words_ = count_[2] / 64 + 1;
+        bits_.assign(std::size_t{count_[0]} * count_[1] * words_, 0);
+        for (std::size_t x = 0; x < field.slabs.size(); ++x)
+            for (const Run& run : field.slabs[x])
+                if (!run.is_covered && run.mk < bound_first) mark(x, run);
+    }
+
+    bool has(std::size_t x, std::uint32_t y, std::uint32_t z) const
+    {
+        const std::size_t bit = z / side;
+        return (bits_[word_of(x / side, y / side) + bit / 64] >> (bit % 64) & 1) != 0;
+    }
+
+private:
+    static constexpr std::uint32_t side = 4;
+
+    std::size_t word_of(std::size_t x, std::size_t y) const { return (x * count_[1] + y) * words_; }
+
+    void mark(std::size_t x, const Run& run)
+    {
+        constexpr auto reach = static_cast<std::uint32_t>(reach_of_fluid);
+        const auto first = [](std::size_t at) { return at < reach ? 0 : (at - reach) / side; };
+        const auto last = [&](std::size_t at, std::size_t axis)
+        { return std::min<std::size_t>(count_[axis] - 1, (at + reach) / side); };
+        for (std::size_t i = first(x); i <= last(x, 0); ++i)
+            for (std::size_t j = first(run.y); j <= last(run.y, 1); ++j)
+                for (std::size_t k = first(run.z_begin); k <= last(run.z_end - 1, 2); ++k)
+                    bits_[word_of(i, j) + k / 64] |= std::uint64_t{1} << (k % 64);
+    }
+
+    std::array<std::uint32_t, 3> count_{};
+    std::size_t words_ = 0;
+    std::vector<std::uint64_t> bits_;
+};
+
+/// What lies on one side of a wall.
+struct WallFront
+{
+    std::uint16_t fluid = 0; ///< mk; 0: none
+    bool is_solid = false;
+    bool is_pocket = false;
+    double width_dp = 0; ///< of a pocket
+};
+
+/// What a cell of the lattice comes to.
+struct CellSpace
+{
+    NodeIndex node;
+    std::uint16_t fluid = 0; ///< mk of the node; 0: it has none
+    std::uint16_t owner = 0; ///< mk of the fluid that its volume belongs to
+    double owned = 0;        ///< dp^3
+    double pocket = 0;       ///< dp^3
+    double narrowest_dp = narrow;
+    bool is_in_pocket = false; ///< its middle
+};
+
+class SpaceMeter
+{
+public:
+    SpaceMeter(const CaseDef& def, RunField& field, const AllWalls& all, int threads)
+        : def_(def), field_(field), all_(all), threads_(threads), near_(field, def.mk_bound_first)
+    {
+        closest_ = [&](const Vec3& p, double within) { return all_.closest_point(p, within); };
+    }
+
+    FluidSpace run()
+    {
+        const std::vector<std::vector<NearNode>> found =
+            find_near_nodes(all_.soup(), field_.grid, threads_);
+        std::vector<NodeIndex> nodes;
+        for (std::uint32_t x = 0; x < found.size(); ++x)
+            for (const NearNode& n : found[x])
+                if (near_.has(x, n.y, n.z)) nodes.push_back({x, n.y, n.z});
+        std::vector<CellSpace> cells(nodes.size());
+        parallel_for(
+            nodes.size(), threads_, [&](std::size_t i) { cells[i] = measure(nodes[i]); },
+            nodes_per_chunk);
+        FluidSpace out;
+        count_nodes(out);
+        const double dp = field_.grid.dp;
+        for (const CellSpace& cell : cells)
+        {
+            // A node in a pocket goes, and with it what it stood for.
+            const bool stays = cell.fluid != 0 && !cell.is_in_pocket;
+            if (cell.owner != 0) out.missing[cell.owner] += cell.owned * dp * dp * dp;
+            if (stays) out.missing[cell.fluid] -= dp * dp * dp;
+        }
+        collect_pockets(cells, out);
+        empty_pockets(cells, out);
+        return out;
+    }
+
+private:
+    /// The run of a node; null: none.
+    const Run* run_at(std::int64_t x, std::int64_t y, std::int64_t z) const
+    {
+        const LatticeGrid& grid = field_.grid;
+        if (x < 0 || y < 0 || z < 0 || x >= std::int64_t{grid.n[0]} ||
+            y >= std::int64_t{grid.n[1]} || z >= std::int64_t{grid.n[2]})
+            return nullptr;
+        const std::vector<Run>& runs = field_.slabs[static_cast<std::size_t>(x)];
+        const auto after = std::upper_bound(
+            runs.begin(), runs.end(), std::pair(y, z),
+            [](const auto& at, const Run& run)
+            { return at < std::pair<std::int64_t, std::int64_t>(run.y, run.z_begin); });
+        if (after == runs.begin()) return nullptr;
+        const Run& run = *(after - 1);
+        return run.y == y && run.z_end > z ? &run : nullptr;
+    }
+    std::uint16_t fluid_at(std::int64_t x, std::int64_t y, std::int64_t z) const
+    {
+        const Run* run = run_at(x, y, z);
+        return run != nullptr && !run->is_covered && run->mk < def_.mk_bound_first
+                   ? run->mk
+                   : std::uint16_t{};
+    }
+
+    /// The fluid of the node nearest to a place, or else of any around it.
+    std::uint16_t fluid_around(const Vec3& p, bool all_around) const
+    {
+        const LatticeGrid& grid = field_.grid;
+        const Vec3 at = (p - grid.origin) / grid.dp;
+        const std::uint16_t nearest =
+            fluid_at(std::llround(at.x), grid.is_2d ? 0 : std::llround(at.y), std::llround(at.z));
+        if (nearest != 0 || !all_around) return nearest;
+        const auto low = [](double v) { return static_cast<std::int64_t>(std::floor(v)); };
+        for (std::int64_t i = 0; i < 8; ++i)
+        {
+            const std::int64_t y = grid.is_2d ? 0 : low(at.y) + (i >> 1 & 1);
+            const std::uint16_t mk = fluid_at(low(at.x) + (i & 1), y, low(at.z) + (i >> 2));
+            if (mk != 0) return mk;
+        }
+        return 0;
+    }
+
+    /// What lies before the wall at `near.point`, seen along `up`.
+    ///
+    /// is_before  whether `up` points to where the wall's facet looks
+    WallFront front_of(const AllWalls::Closest& near, const Vec3& up, bool is_before) const
+    {
+        const double dp = field_.grid.dp;
+        const FittedBody& body = field_.walls.bodies[near.body];
+        const bool is_on_edge = std::abs(dot(up, near.normal)) < along_normal;
+        if (!is_before && !is_on_edge && body.is_solid) return {0, true, false, 0};
+        const WallBall ball = largest_ball(near.point, up, off_the_wall * dp, closest_);
+        if (is_on_edge && all_.is_in_solid(ball.center)) return {0, true, false, 0};
+        WallFront out;
+        out.width_dp = 2 * ball.radius / dp;
+        if (out.width_dp < touching) return out;
+        if (ball.is_opposite && out.width_dp < narrow * (1 - 1e-9))
+            // The inside of a thin shell is no place for fluid.
+            out.is_pocket = is_before || body.measures.volume <= 0;
+        else
+            out.fluid = fluid_around(ball.center, ball.radius < off_the_wall * dp * (1 - 1e-9));
+        return out;
+    }
+
+    void add(const WallFront& front, double volume, CellSpace& out) const
+    {
+        if (front.is_pocket)
+        {
+            out.pocket += volume;
+            out.narrowest_dp = std::min(out.narrowest_dp, front.width_dp);
+        }
+        else if (front.fluid != 0)
+        {
+            out.owner = front.fluid;
+            out.owned += volume;
+        }
+    }
+
+    /// Adds a cube about `p` with sides of `side` dp; cubes that are cut otherwise than by one
+    /// plane are cut up first.
+    ///
+    /// fluid  of the node in whose cell it lies; 0: none
+    void add_cube(const Vec3& p, double side, std::uint16_t fluid, CellSpace& out) const
+    {
+        const double dp = field_.grid.dp;
+        const AllWalls::Closest near = all_.closest(p);
+        const Vec3 off = p - near.point;
+        Vec3 up = near.distance > 1e-9 * dp ? off / near.distance : near.normal;
+        if (field_.grid.is_2d) up.y = 0;
+        const WallFront front = front_of(near, up, near.is_outside || near.distance <= 1e-9 * dp);
+        const bool is_middle = side == 1;
+        if (is_middle) out.is_in_pocket = fluid != 0 && front.is_pocket && is_relaxed(fluid);
+        const bool is_cut = near.distance < reach_of_cell * side * dp;
+        const bool is_plain = front.width_dp == 0 || front.width_dp >= 2 * near_two_walls;
+        if (is_middle && is_cut && (!is_plain || std::abs(dot(up, near.normal)) < along_normal))
+        {
+            for (int part = 0; part < 8; ++part)
+            {
+                if (field_.grid.is_2d && (part & 2) != 0) continue;
+                const Vec3 shift{(part & 1) - 0.5, field_.grid.is_2d ? 0 : (part >> 1 & 1) - 0.5,
+                                 (part >> 2) - 0.5};
+                add_cube(p + 0.5 * dp * shift, 0.5, fluid, out);
+            }
+            return;
+        }
+        const double volume = field_.grid.is_2d ? side * side : side * side * side;
+        const double before =
+            is_cut ? share_of_cube_before(-1.0 * up, near.distance / dp / side, field_.grid.is_2d)
+                   : 1;
+        WallFront own = front;
+        // Where the fluid itself stands it need not be looked for.
+        if (fluid != 0 && !own.is_pocket && !own.is_solid) own.fluid = fluid;
+        add(own, before * volume, out);
+        if (before < 1)
+            add(front_of(near, -1.0 * up, !near.is_outside), (1 - before) * volume, out);
+    }
+
+    CellSpace measure(const NodeIndex& node) const
+    {
+        CellSpace out;
+        out.node = node;
+        out.fluid = fluid_at(node.x, node.y, node.z);
+        add_cube(place_of(node, field_.grid), 1, out.fluid, out);
+        return out;
+    }
+
+    bool is_relaxed(std::uint16_t mk) const
+    {
+        const FluidBand* band = fluid_band(def_, mk);
+        return band != nullptr && band->is_active;
+    }
+
+    void count_nodes(FluidSpace& out) const
+    {
+        for (const std::vector<Run>& slab : field_.slabs)
+            for (const Run& run : slab)
+                if (!run.is_covered && run.mk < def_.mk_bound_first)
+                    out.nodes[run.mk] += run.z_end - run.z_begin;
+    }
+
+    /// Cells in pockets that touch make one.
+    void collect_pockets(const std::vector<CellSpace>& cells, FluidSpace& out) const
+    {
+        std::vector<const CellSpace*> parts;
+        for (const CellSpace& cell : cells)
+            if (cell.pocket > 1e-6 || cell.is_in_pocket) parts.push_back(&cell);
+        const auto key = [](const NodeIndex& n) { return std::tuple(n.x, n.y, n.z); };
+        DisjointSets<std::size_t> sets(parts.size());
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            for (int way = 0; way < 13; ++way) // those before it, of 26
+            {
+                const NodeIndex& n = parts[i]->node;
+                const NodeIndex beside{n.x + static_cast<std::uint32_t>(way / 9 - 1),
+                                       n.y + static_cast<std::uint32_t>(way / 3 % 3 - 1),
+                                       n.z + static_cast<std::uint32_t>(way % 3 - 1)};
+                const auto at = std::lower_bound(parts.begin(), parts.end(), beside,
+                                                 [&](const CellSpace* c, const NodeIndex& other)
+                                                 { return key(c->node) < key(other); });
+                if (at != parts.end() && (*at)->node == beside)
+                    sets.join(static_cast<std::size_t>(at - parts.begin()), i);
+            }
+        const double dp3 = field_.grid.dp * field_.grid.dp * field_.grid.dp;
+        std::map<std::size_t, FluidPocket> found;
+        std::map<std::size_t, double> weights;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+        {
+            const CellSpace& cell = *parts[i];
+            const auto [at, is_new] = found.try_emplace(sets.find(i));
+            FluidPocket& pocket = at->second;
+            pocket.narrowest_dp =
+                is_new ? cell.narrowest_dp : std::min(pocket.narrowest_dp, cell.narrowest_dp);
+            pocket.volume += cell.pocket * dp3;
+            const double weight = cell.pocket + 1e-3; // a node may have next to no volume
+            weights[at->first] += weight;
+            pocket.center = pocket.center + weight * place_of(cell.node, field_.grid);
+            if (cell.is_in_pocket) ++pocket.nodes;
+        }
+        for (auto& [first, pocket] : found)
+        {
+            if (pocket.volume < least_pocket * dp3 && pocket.nodes == 0) continue;
+            pocket.center = pocket.center / weights[first];
+            out.pockets.push_back(pocket);
+        }
+        std::stable_sort(out.pockets.begin(), out.pockets.end(),
+                         [](const FluidPocket& a, const FluidPocket& b)
+                         { return a.volume > b.volume; });
+    }
+
+    void empty_pockets(const std::vector<CellSpace>& cells, FluidSpace& out)
+    {
+        std::vector<std::vector<Mover>> left(field_.slabs.size());
+        for (const CellSpace& cell : cells)
+        {
+            if (!cell.is_in_pocket) continue;
+            left[cell.node.x].push_back({cell.node, cell.fluid});
+            out.pocket_places.push_back(place_of(cell.node, field_.grid));
+            ++out.left_out[cell.fluid];
+            --out.nodes[cell.fluid];
+        }
+        for (std::size_t x = 0; x < left.size(); ++x) cover(field_.slabs[x], left[x]);
+    }
+
+    const CaseDef& def_;
+    RunField& field_;
+    const AllWalls& all_;
+    int threads_;
+    FluidNear near_;
+    ClosestWallPoint closest_;
+};
+
+} // namespace
+
+FluidSpace measure_fluid_space(const CaseDef& def, RunField& field, const AllWalls& all,
+                               int threads)
+{
+    return SpaceMeter(def, field, all, threads).run();
+}
+
+} // namespace fppg

@@ -1,0 +1,260 @@
+// What walls leave to fluid: pockets that stay empty, the volume that is missing, exact masses.
+
+#include "fppg/read_particles.h"
+
+#include "core/json.h"
+
+#include "helpers/case_text.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace
+{
+
+using namespace fppg::test;
+using fppg::ParticleCloud;
+using fppg::Vec3;
+using json = fppg::Json;
+
+constexpr double dp = 0.05;
+constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
+
+struct Result
+{
+    int code = 0;
+    std::string output;
+    ParticleCloud cloud;
+    std::vector<json> events;
+    double mass_fluid = 0;
+
+    std::vector<Vec3> fluid() const
+    {
+        std::vector<Vec3> out;
+        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+            if (cloud.mk[i] < first_bound) out.push_back(cloud.positions[i]);
+        return out;
+    }
+    std::vector<json> all(const std::string& event) const
+    {
+        std::vector<json> out;
+        for (const json& e : events)
+            if (e.value("event", "") == event) out.push_back(e);
+        return out;
+    }
+    json one(const std::string& event) const
+    {
+        const std::vector<json> found = all(event);
+        EXPECT_EQ(found.size(), 1u) << event << ": " << output;
+        return found.empty() ? json{{"litres", 0}, {"cavity_litres", 0}, {"particles", 0}}
+                             : found[0];
+    }
+};
+
+CaseText case_of(const std::string& mainlist, const std::string& fppg)
+{
+    CaseText text;
+    text.dp = "0.05";
+    text.pointmin = R"(<pointmin x="-0.4" y="-0.4" z="-0.4" />)";
+    text.pointmax = R"(<pointmax x="1.7" y="1.5" z="1.5" />)";
+    text.mainlist = R"(<setdrawmode mode="full" />)" + mainlist;
+    text.after_geometry = "<fppg>" + fppg + "</fppg>";
+    return text;
+}
+
+Result make(const CaseText& text)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult done = run(folder, {"Case_Def", "out/Case", "-log-json"});
+    Result out{done.code, done.output, {}, {}, 0};
+    if (done.code != 0) return out;
+    out.cloud = fppg::read_particles(folder / "out/Case", false, 1);
+    std::istringstream lines(done.output);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("{")) out.events.push_back(json::parse(line));
+    const std::string xml = read_text(folder / "out/Case.xml");
+    const std::string name = "<massfluid value=\"";
+    out.mass_fluid = std::stod(xml.substr(xml.find(name) + name.size()));
+    return out;
+}
+
+/// A tank of sheets, 1.23 x 1.04 x 1 m, with two blocks of 0.4 x 0.4 x 0.2 m in its water, one over
+/// the other, so far apart; the nodes at z = 0.55 lie midway between them.
+std::string tank_with_blocks(double apart)
+{
+    return fmt::format(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.23" y="1.04" z="1" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{:.6f}" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x="2" y="2" z="1.12" /></fillbox>)",
+        0.35 - apart / 2, 0.55 + apart / 2);
+}
+
+/// Fluid between the blocks, off their rims.
+std::size_t between_blocks(const Result& r, double apart)
+{
+    const std::vector<Vec3> fluid = r.fluid();
+    return static_cast<std::size_t>(std::count_if(fluid.begin(), fluid.end(),
+                                                  [&](const Vec3& p)
+                                                  {
+                                                      return p.x > 0.46 && p.x < 0.76 &&
+                                                             p.y > 0.37 && p.y < 0.67 &&
+                                                             std::abs(p.z - 0.55) < apart / 2;
+                                                  }));
+}
+
+/// Nodes half a dp from walls stay.
+const std::string near_walls = R"(<bodyfitted clearance="0.5" />)";
+
+TEST(FluidSpace, NarrowPocketsStayEmptyAndAreListedWithPlaceAndVolume)
+{
+    const double apart = 1.3 * dp;
+    for (const char* band : {"", "<fluidband />"})
+    {
+        const Result r = make(case_of(tank_with_blocks(apart), near_walls + band));
+        ASSERT_EQ(r.code, 0) << r.output;
+        EXPECT_EQ(between_blocks(r, apart), 0u);
+        const json pocket = r.one("pocket");
+        // It reaches a little beyond the rims of the blocks.
+        const double litres = 1000 * 0.4 * 0.4 * apart;
+        EXPECT_GT(pocket["litres"].get<double>(), litres);
+        EXPECT_LT(pocket["litres"].get<double>(), 1.1 * litres);
+        EXPECT_NEAR(pocket["narrowest_dp"].get<double>(), 1.3, 0.01);
+        EXPECT_NEAR(pocket["center"][0].get<double>(), 0.61, 0.1 * dp);
+        EXPECT_NEAR(pocket["center"][1].get<double>(), 0.52, 0.1 * dp);
+        EXPECT_NEAR(pocket["center"][2].get<double>(), 0.55, 0.1 * dp);
+        EXPECT_GT(pocket["particles"].get<int>(), 40);
+        EXPECT_TRUE(contains(r.output, "Left empty: 1 pocket")) << r.output;
+    }
+}
+
+TEST(FluidSpace, PocketsWithoutRoomForAParticleAreListedToo)
+{
+    const double apart = 0.6 * dp;
+    const Result r = make(case_of(tank_with_blocks(apart), "<bodyfitted />"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const json pocket = r.one("pocket");
+    const double litres = 1000 * 0.4 * 0.4 * apart;
+    EXPECT_NEAR(pocket["litres"].get<double>(), litres, 0.05 * litres);
+    EXPECT_NEAR(pocket["narrowest_dp"].get<double>(), 0.6, 0.01);
+    EXPECT_EQ(pocket["particles"].get<int>(), 0);
+}
+
+TEST(FluidSpace, WiderPlacesKeepTheirFluid)
+{
+    const double apart = 1.7 * dp;
+    const Result r = make(case_of(tank_with_blocks(apart), near_walls));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_GT(between_blocks(r, apart), 20u);
+    EXPECT_TRUE(r.all("pocket").empty()) << r.output;
+    const Result off =
+        make(case_of(tank_with_blocks(1.3 * dp), near_walls + R"(<fluidband active="false" />)"));
+    EXPECT_GT(between_blocks(off, 1.3 * dp), 20u);
+}
+
+TEST(FluidSpace, TheVolumeBetweenWallsIsThatOfTheCavity)
+{
+    // Up to half a dp above the highest nodes, at z = 0.85, and without the blocks.
+    const Result r = make(case_of(tank_with_blocks(0.15), "<bodyfitted />"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.2);
+    const json space = r.one("fluid_space");
+    EXPECT_NEAR(space["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
+    const auto particles = static_cast<double>(r.fluid().size());
+    EXPECT_EQ(space["particles"].get<double>(), particles);
+    EXPECT_NEAR(space["litres"].get<double>(), particles * 1000 * dp * dp * dp, 1e-6 * cavity);
+    EXPECT_TRUE(contains(r.output, "missing")) << r.output;
+}
+
+/// A shell full of fluid, with a solid ball in it.
+std::string round_vessel()
+{
+    return R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawsphere radius="0.52"><point x="0.613" y="0.521" z="0.537" /></drawsphere>
+<setdrawmode mode="full" /><setmkbound mk="1" /><drawsphere radius="0.2"><point x="0.613" y="0.521" z="0.537" /></drawsphere>
+<setmkfluid mk="0" /><fillpoint x="0.613" y="0.521" z="0.9"><modefill>void</modefill></fillpoint>)";
+}
+
+TEST(FluidSpace, TheVolumeInARoundVesselIsThatOfTheSphere)
+{
+    const double cavity = 4e3 / 3 * std::numbers::pi * (std::pow(0.52, 3) - std::pow(0.2, 3));
+    const Result r = make(case_of(round_vessel(), "<bodyfitted />"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_NEAR(r.one("fluid_space")["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
+}
+
+TEST(FluidSpace, BetweenLayersHardlyAnyVolumeIsMissing)
+{
+    const Result r =
+        make(case_of(tank_with_blocks(0.15), R"(<bodyfitted boundary="mdbc" /><fluidband />)"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const double cavity = 1000 * (1.23 * 1.04 * (0.85 + dp / 2) - 2 * 0.4 * 0.4 * 0.2);
+    const json space = r.one("fluid_space");
+    EXPECT_NEAR(space["cavity_litres"].get<double>(), cavity, 0.002 * cavity);
+    EXPECT_NEAR(space["litres"].get<double>(), cavity, 0.01 * cavity);
+}
+
+/// An open tank off the lattice's nodes, filled by a `<fill>`.
+CaseText filled_tank(const std::string& fppg, const std::string& fill)
+{
+    return case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0.01" y="0.02" z="0.017" /><size x="1.23" y="1.04" z="1" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="0.3" /><size x="0.4" y="0.4" z="0.2" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="0.565" /><size x="0.4" y="0.4" z="0.2" /></drawbox>)",
+        fppg + R"(<fill mkfluid="0" seed="0.6,0.1,0.2" )" + fill + " />");
+}
+
+TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
+{
+    const double asked = 777;
+    for (const char* band : {"", "<fluidband />"})
+    {
+        const Result r = make(filled_tank(std::string("<bodyfitted />") + band,
+                                          fmt::format(R"(litres="{}")", asked)));
+        ASSERT_EQ(r.code, 0) << r.output;
+        EXPECT_GT(r.one("pocket")["particles"].get<int>(), 0);
+        const double litres = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;
+        EXPECT_NEAR(litres, r.one("fill")["litres"].get<double>(), 0.001 * asked);
+        EXPECT_NEAR(litres, asked, 0.03 * asked); // to half a layer
+    }
+}
+
+TEST(FluidSpace, ExactMassIsThatOfTheLitresAskedFor)
+{
+    const Result r =
+        make(filled_tank(R"(<bodyfitted /><fluidband mass="exact" />)", R"(litres="777")"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_NEAR(static_cast<double>(r.fluid().size()) * r.mass_fluid, 777, 1e-3);
+}
+
+TEST(FluidSpace, ExactMassThatCannotBeIsRefused)
+{
+    const auto refused = [](CaseText text, const std::string& reason)
+    {
+        const Result r = make(text);
+        EXPECT_NE(r.code, 0);
+        EXPECT_TRUE(contains(r.output, reason)) << r.output;
+        EXPECT_TRUE(contains(r.output, "Case_Def.xml:")) << r.output;
+    };
+    const std::string tank = tank_with_blocks(0.15);
+    refused(case_of(tank, R"(<bodyfitted /><fluidband mass="more" />)"),
+            "mass=\\\"more\\\" is unknown");
+    refused(case_of(tank, R"(<bodyfitted /><fluidband mass="exact" active="false" />)"),
+            "expected one of them");
+    CaseText two = case_of(tank, R"(<bodyfitted /><fluidband mass="exact" />)");
+    two.constants += R"(<massfluid value="0.125" auto="false" />)";
+    refused(two, "both give the mass");
+    refused(case_of(tank + R"(<setmkfluid mk="1" />)" +
+                        box_command(R"(x="0.1" y="0.1" z="0.6")", R"(x="0.2" y="0.2" z="0.2")"),
+                    R"(<bodyfitted /><fluidband mkfluid="0" mass="exact" />)"),
+            "one mass for all fluid particles");
+}
+
+} // namespace
