@@ -164,7 +164,7 @@ UnitChoice unit_by_size(const CasePlan& plan)
 /// Warns where the sizes speak against the unit that is given, and for another one.
 void doubt_given_unit(CasePlan& plan)
 {
-    const Box3 box = box_of_all(plan.parts);
+    const Box3 box = box_of_meshes(plan.parts);
     const std::string why = doubt(plan, box, metres_of_unit(plan.options->unit));
     if (why.empty()) return;
     for (const char* unit : guessed_units)
