@@ -3,15 +3,17 @@
 #
 #   setup.sh            what fppg is built with (debian-packages-run.txt)
 #   setup.sh develop    and what it is tested, checked and measured with (debian-packages-develop.txt)
+#   setup.sh windows    what package/windows/build.sh needs (debian-packages-windows.txt)
+#   setup.sh arm64      what package/arm64/build.sh needs (debian-packages-arm64.txt)
 #
 # Does nothing when all are there; needs root, or sudo, only when one is not.
 set -eu
 cd "$(dirname "$0")"
 case "${1-run}" in
-run) lists=debian-packages-run.txt ;;
+run | windows | arm64) lists=debian-packages-${1-run}.txt ;;
 develop) lists="debian-packages-run.txt debian-packages-develop.txt" ;;
 *)
-    echo "setup.sh: \"$1\" is unknown, expected run (default) or develop" >&2
+    echo "setup.sh: \"$1\" is unknown, expected run (default), develop, windows or arm64" >&2
     exit 2
     ;;
 esac

@@ -116,6 +116,7 @@ struct FitSettings
 {
     int line = 0;                  ///< of the element; 0: from the command line
     double feature_angle_deg = 30; ///< [0, 180)
+    double cad_angle_deg = 1;      ///< the same of edges of CAD models, between their exact faces
     FitDensity density = FitDensity::Area;
     std::optional<double> clearance_dp; ///< 0.5 to 1; empty: chosen per body from its volume
     /// A plate thinner than this gets one sheet of particles instead of one on each side, dp: no

@@ -3,6 +3,7 @@
 #include "fppg/surface_mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fppg
@@ -20,6 +21,9 @@ struct FeatureOptions
     /// A vertex where a chain of feature edges turns by more than this is a corner, degrees.
     /// Chains that turn less at every vertex count as one line.
     double corner_angle_deg = 45;
+    /// Edges of CAD models whose exact faces bend by more are features, degrees: where a designer
+    /// joined faces smoothly they are tangent.
+    double cad_angle_deg = 1;
 };
 
 /// A chain of feature edges.
@@ -50,11 +54,14 @@ struct Features
 /// that a designer made alike (a rim of twelve sides at 30 degrees) are judged alike.
 ///
 /// always  edges that are features whatever their angle, such as the seams of a BooleanMesh
+/// bends   per edge the angle between the exact faces on both sides, radians, which counts in the
+///         place of the dihedral angle; below 0: not known. Empty: of no edge
 /// throws  GeometryError for an angle out of range
 /// cost    O(edges)
 /// source  FPPG paper, "Feature extraction and feature line particles"
 Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
-                       const std::vector<std::uint32_t>& always = {});
+                       const std::vector<std::uint32_t>& always = {},
+                       std::span<const float> bends = {});
 
 /// A particle on a corner or on a feature line.
 struct FeatureParticle

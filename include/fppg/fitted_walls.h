@@ -18,6 +18,10 @@ namespace fppg
 /// The exact surface behind the triangles of a round body, on which its particles are put
 /// (meshes/round_surface.h).
 struct RoundSurface;
+/// A CAD model in its place in the case, and the exact surface behind a mesh that was made from
+/// such (meshes/cad_surface.h).
+struct CadSource;
+class CadSurface;
 /// How deep points are behind a surface (offset/wall_depth.h).
 class WallDepth;
 
@@ -27,6 +31,7 @@ struct ShapeMesh
     TriangleSoup soup;     ///< counter-clockwise from outside; of a surface, as drawn
     bool is_solid = false; ///< the draw fills the inside, not only the surface
     std::shared_ptr<const RoundSurface> round{}; ///< null: the triangles are the shape
+    std::shared_ptr<const CadSource> cad{};      ///< of CAD files, else null
 };
 
 /// What fitting and relaxing a body came to, for all of its shape: what the domain and later draws
@@ -61,6 +66,7 @@ struct FittedBody
     std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
     std::shared_ptr<const RoundSurface> round; ///< null: the triangles are the shape
+    std::shared_ptr<const CadSurface> cad;     ///< the same of CAD models
     SurfaceMesh mesh;
     MeshReport report;
     Features features;

@@ -3,11 +3,15 @@
 #include "fppg/vec.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace fppg
 {
+
+/// The exact faces behind the facets of a CAD file (meshes/cad_facets.h).
+struct CadFacets;
 
 /// Triangles as a file gives them: every facet with its own three corners, nothing welded.
 /// Facet i has the vertices 3 i, 3 i + 1, 3 i + 2, counter-clockwise seen from outside.
@@ -37,6 +41,9 @@ struct MeshFile
     std::vector<WidePolygon> wide_polygons; ///< by ascending first facet
     std::vector<Vec3> points;               ///< single points, in the order of the file
     std::vector<std::vector<Vec3>> lines;   ///< polylines of two or more points
+
+    /// Of STEP files, whose facets only stand for it; else null. Its facets are those of the soup.
+    std::shared_ptr<const CadFacets> cad;
 };
 
 } // namespace fppg

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace fppg
 {
@@ -19,6 +20,7 @@ enum class MeshFormat : std::uint8_t
     Obj,           ///< Wavefront
     Off,
     Bathymetry, ///< points from which a grid of heights is made
+    Step,       ///< a CAD model
 };
 
 /// Which shapes of a VTK file are taken: `polyselec`.
@@ -83,6 +85,12 @@ struct MeshReading
     MeshFormat format = MeshFormat::Stl;
     ShapeSelection shapes{};
     std::optional<BathymetryGrid> bathymetry{}; ///< of MeshFormat::Bathymetry
+    /// Of MeshFormat::Step: names of parts or of assemblies, separated by commas, "bolt#2" the
+    /// second of a name; empty: all parts.
+    std::string parts{};
+    /// Of MeshFormat::Step: how far facets are from the surface, metres; 0: 1/2000 of a part's
+    /// size.
+    double deflection = 0;
     bool operator==(const MeshReading&) const = default;
 };
 

@@ -67,7 +67,34 @@ struct MotionGaps
     double narrowest_dp = 0;             ///< of these; 0: there is none
     Vec3 narrowest_at;
     double resolving_dp = 0; ///< metres: with it 4 particles stand across nine in ten of them
+    // Particles of the case at its dp, estimated; 0: unknown.
+    double volume_particles = 0;    ///< fluid and floating bodies
+    double wall_particles = 0;      ///< their number grows with the area
     std::vector<std::string> notes; ///< what could not be judged, whole sentences
+
+    /// How many times as many particles of fluid the case has with `resolving_dp`; 1 where its dp
+    /// does.
+    double resolving_factor() const;
+};
+
+/// Two boundary mks that are near each other at a time.
+struct NearPlace
+{
+    std::size_t look = 0; ///< index of the time
+    Vec3 place;           ///< metres, at that time
+    double gap_dp = 0;    ///< 0 where they overlap
+    std::uint16_t first = 0;
+    std::uint16_t second = 0;
+};
+
+/// Where parts of a case are near each other at some times: to be drawn.
+struct NearPlaces
+{
+    std::vector<NearPlace> places;   ///< by times, then by mkbound
+    std::vector<NarrowPlace> narrow; ///< of passages at the start, nearer than asked for
+    std::vector<std::pair<std::uint16_t, std::string>> names; ///< of draws, by mkbound
+    std::uint16_t mk_bound_first = 0;                         ///< absolute mk of mkbound 0
+    std::vector<std::string> notes;
 };
 
 /// Follows the parts of a case through its motion. Surfaces are those of the draws, before any
@@ -76,13 +103,22 @@ struct MotionGaps
 ///
 /// Passages are looked for at the start, a place a dp^2, along the normals of closed surfaces and
 /// on both sides of sheets, as far as 4 dp, where fluid of the case could flow to through openings
-/// of about two dp.
+/// of about two dp, and through narrower passages from there on.
 ///
 /// definition  Case_Def.xml or Case.xml, its meshes beside it or where it names them
 /// throws      CaseError, GeometryError, IoError as the readers
 /// returns     the same for any number of threads
 /// cost        looks times that of a distance of two meshes: some milliseconds for gears
 MotionGaps measure_motion_gaps(const std::string& definition, const MotionGapOptions& options);
+
+/// The place where every two mks are nearest at each of some times, if that is within a gap. Parts
+/// that touch and keep their places are left out: they are one body.
+///
+/// times      seconds
+/// within_dp  the gap, at most 4 dp
+/// throws     as measure_motion_gaps()
+NearPlaces find_near_places(const std::string& definition, const MotionGapOptions& options,
+                            const std::vector<double>& times, double within_dp);
 
 /// For people: a table of pairs and one of passages.
 std::string to_text(const MotionGaps& gaps);

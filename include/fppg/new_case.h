@@ -26,13 +26,14 @@ struct NewCaseOptions
     std::vector<std::string> rotations; ///< NAME[,NAME...]=3000deg/s[@AXIS], rad/s, rpm
     std::vector<std::string> fixed;     ///< parts that stand still, whatever their shape
     std::vector<std::string> floatings; ///< NAME=400 (kg/m3) or NAME=12kg
-    std::vector<std::string> inlets;    ///< PART=2m/s of a flat sheet, PART:-x=3l/min of a face
-    std::string fill;                   ///< LIQUID=2.5l[@HOUSING], LIQUID=60%, LIQUID=0.12m
-    std::optional<double> water;        ///< its level along z
-    std::optional<double> speed;        ///< of the vehicle, or of the stream; m/s
-    std::optional<double> duration;     ///< of the run
-    bool allows_far = false;            ///< parts far from all others
-    bool allows_overlap = false;        ///< parts that move through each other
+    /// PART=2m/s of a flat sheet, PART:-x=3l/min or PART:0.8,0,0.6@PLACE=0.05l/s of a flat face
+    std::vector<std::string> inlets;
+    std::string fill;               ///< LIQUID=2.5l[@HOUSING], LIQUID=60%, LIQUID=0.12m
+    std::optional<double> water;    ///< its level along z
+    std::optional<double> speed;    ///< of the vehicle, or of the stream; m/s
+    std::optional<double> duration; ///< of the run
+    bool allows_far = false;        ///< parts far from all others
+    bool allows_overlap = false;    ///< parts that move through each other
     int threads = 1;
     /// Asks at the terminal; the answer, or what stands there where it is empty. Without a
     /// function nothing is asked: what is missing is an error.
@@ -52,25 +53,18 @@ struct Proposal
 struct NewCasePart
 {
     std::string name;
-    std::string path; ///< of its mesh
+    std::string path;      ///< of its file
+    std::string step_part; ///< of a STEP file, how `fppg:part` names it
     std::string unit;
     int mkbound = 0;
     std::string role; ///< "housing", "fixed", "moving", "floating" or "inlet"
-};
-
-/// A file that the definition names, and that is to be written.
-struct NewCaseFile
-{
-    std::string path;
-    std::string bytes;
 };
 
 /// A case that runs as it stands.
 struct NewCase
 {
     std::string kind;
-    std::string xml;                ///< the definition
-    std::vector<NewCaseFile> files; ///< the parts of STEP files as meshes (PLY)
+    std::string xml; ///< the definition
     double dp = 0;
     double expected_particles = 0;
     std::vector<NewCasePart> parts;

@@ -104,6 +104,8 @@ struct NormalsReport
 /// of norgeometry look that pass within 0.5 dp of it; where there are none, what norgeometry finds,
 /// and outwards where no entry gives it a direction.
 ///
+/// What leads straight to a facet of a CAD model leads to the exact face behind it.
+///
 /// Particles of layers behind a fitted surface, and the nodes under them within 2 h, get the exact
 /// vector to the nearest place that fluid can touch (normals/wet_surface.h), whatever norgeometry
 /// says; the other entries count as for all.

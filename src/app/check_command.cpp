@@ -2,6 +2,8 @@
 
 #include "app/subcommand_line.h"
 #include "app/threads.h"
+#include "batch/estimate.h"
+#include "core/json.h"
 #include "fppg/check.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
@@ -86,12 +88,34 @@ bool has_particles(const std::string& name)
     return !name.ends_with(".xml") && std::filesystem::exists(name + ".bi4", ignored);
 }
 
+/// The particles of a case at its dp, for what another dp would cost.
+void count_particles(const std::string& definition, const CheckCall& call, MotionGaps& gaps)
+{
+    EstimateOptions options;
+    options.case_options.dp = gaps.dp;
+    options.case_options.evars = call.gaps.evars;
+    options.threads = call.threads;
+    try
+    {
+        const Estimate found = estimate_case(definition, options);
+        gaps.wall_particles = static_cast<double>(found.n_fixed + found.n_moving);
+        gaps.volume_particles = static_cast<double>(found.n_fluid + found.n_floating);
+    }
+    catch (const Error& error)
+    {
+        gaps.notes.push_back(
+            fmt::format("The particles of a smaller dp were not counted: {}", error.what()));
+    }
+}
+
 /// Gaps through the motion of the case.
 MotionGaps gaps_of(const CheckCall& call)
 {
     std::string definition = call.definition.empty() ? call.case_name : call.definition;
     if (!definition.ends_with(".xml")) definition += ".xml";
-    return measure_motion_gaps(definition, call.gaps);
+    MotionGaps gaps = measure_motion_gaps(definition, call.gaps);
+    if (gaps.resolving_factor() > 1) count_particles(definition, call, gaps);
+    return gaps;
 }
 
 void write_text_file(const std::string& path, const std::string& text)
@@ -134,11 +158,6 @@ int run_check(const std::vector<std::string>& arguments)
     if (!call.json.empty()) json.emplace(call.json);
     if (!call.vtk.empty()) vtk.emplace(call.vtk);
     const CheckReport report = check_case(call.case_name, call.threads);
-    if (json)
-    {
-        json->append(to_json(report));
-        json->commit();
-    }
     if (vtk)
     {
         vtk->append(to_vtk(report));
@@ -146,12 +165,21 @@ int run_check(const std::vector<std::string>& arguments)
     }
     fmt::print("{}", to_text(report));
     bool is_clean = report.is_clean();
+    std::string numbers = to_json(report);
     if (call.follows_motion)
     {
         const MotionGaps gaps = gaps_of(call);
         if (!call.passages.empty()) write_text_file(call.passages, to_vtk(gaps));
         fmt::print("{}", to_text(gaps));
         is_clean = is_clean && are_clear(gaps);
+        Json both = Json::parse(numbers);
+        both["motion"] = Json::parse(to_json(gaps));
+        numbers = both.text(2) + "\n";
+    }
+    if (json)
+    {
+        json->append(numbers);
+        json->commit();
     }
     if (call.strict && !is_clean)
         throw CaseError(

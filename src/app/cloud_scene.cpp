@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 namespace fppg
@@ -50,6 +51,41 @@ void add_motion(SceneSet& set, const std::vector<MovingBlock>& moving)
             for (std::size_t i = 0; i <= last; i += step) part.frames.push_back(block.places[i]);
             set.end = block.step * static_cast<double>((part.frames.size() - 1) * step);
         }
+}
+
+std::vector<double> frame_times(const SceneSet& set)
+{
+    std::size_t frames = 1;
+    for (const ScenePart& part : set.parts) frames = std::max(frames, part.frames.size());
+    std::vector<double> out(frames);
+    for (std::size_t i = 1; i < frames; ++i)
+        out[i] = set.end * static_cast<double>(i) / static_cast<double>(frames - 1);
+    return out;
+}
+
+void add_marks(SceneSet& set, const NearPlaces& places, double within_dp)
+{
+    constexpr std::size_t most_start_marks = 20000;
+    std::map<std::uint16_t, std::string> names;
+    for (const auto& [mkbound, name] : places.names)
+    {
+        names[mkbound] = name;
+        for (ScenePart& part : set.parts)
+            if (part.mk == mkbound + places.mk_bound_first && !name.empty())
+                part.label += ": " + name;
+    }
+    set.mark_label = fmt::format("gaps below {:g} dp", within_dp);
+    set.frames = frame_times(set).size();
+    for (const NearPlace& place : places.places)
+        set.marks.push_back(
+            {place.look, place.place,
+             fmt::format("{} and {}: {} at ({:.4g}, {:.4g}, {:.4g}) m", names[place.first],
+                         names[place.second],
+                         place.gap_dp > 0 ? fmt::format("{:.2f} dp", place.gap_dp) : "overlap",
+                         place.place.x, place.place.y, place.place.z)});
+    const std::size_t step = places.narrow.size() / most_start_marks + 1;
+    for (std::size_t i = 0; i < places.narrow.size(); i += step)
+        set.start_marks.push_back(places.narrow[i].position);
 }
 
 } // namespace fppg

@@ -1,6 +1,5 @@
 #include "app/drawn_geometry.h"
 
-#include "app/command_line.h"
 #include "batch/wall_geometry.h"
 
 #include <algorithm>
@@ -18,20 +17,26 @@ std::vector<std::string> take_run_options(std::vector<std::string>& arguments)
     return out;
 }
 
-TriangleSoup drawn_geometry(const std::string& definition, const std::vector<std::string>& of_run,
-                            int threads)
+DropInOptions parse_definition(const std::string& definition,
+                               const std::vector<std::string>& of_run)
 {
     std::vector<std::string> words{definition};
     words.insert(words.end(), of_run.begin(), of_run.end());
-    const DropInOptions run = parse_command_line(words);
-    std::string name = run.input;
-    if (name.ends_with(".xml")) name.resize(name.size() - 4);
+    DropInOptions run = parse_command_line(words);
+    if (run.input.ends_with(".xml")) run.input.resize(run.input.size() - 4);
+    return run;
+}
+
+TriangleSoup drawn_geometry(const std::string& definition, const std::vector<std::string>& of_run,
+                            int threads)
+{
+    const DropInOptions run = parse_definition(definition, of_run);
     CaseOptions options;
     options.fit = run.fit;
     options.dp = run.dp;
     options.evars = run.evars;
-    options.case_name = std::filesystem::path(name).filename().string();
-    return wall_geometry(name + ".xml", options, threads);
+    options.case_name = std::filesystem::path(run.input).filename().string();
+    return wall_geometry(run.input + ".xml", options, threads);
 }
 
 } // namespace fppg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/command_line.h"
 #include "fppg/mesh.h"
 
 #include <string>
@@ -10,6 +11,12 @@ namespace fppg
 
 /// Takes what stands behind "--" out of the arguments of a subcommand: options of a run.
 std::vector<std::string> take_run_options(std::vector<std::string>& arguments);
+
+/// A definition and the options that it is run with; `input` is without its extension.
+///
+/// throws  UsageError for options that a run would refuse
+DropInOptions parse_definition(const std::string& definition,
+                               const std::vector<std::string>& of_run);
 
 /// The surfaces of the boundaries that a definition draws, where it draws them.
 ///

@@ -15,6 +15,7 @@
 #include "fppg/features.h"
 #include "fppg/fit.h"
 #include "fppg/shapes.h"
+#include "meshes/cad_surface.h"
 #include "meshes/facing_distance.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_query.h"
@@ -61,10 +62,17 @@ UnitGuess guess_unit(const Box3& bounds, double dp)
                         largest, largest)};
 }
 
-void describe_features(const SurfaceMesh& mesh, Inspection& found)
+void describe_features(const SurfaceMesh& mesh, const std::shared_ptr<const CadFacets>& facets,
+                       Inspection& found)
 {
-    const FeatureOptions options{.angle_deg = found.options.angle_deg, .dp = found.options.dp};
-    const Features features = find_features(mesh, options);
+    const FeatureOptions options{.angle_deg = found.options.angle_deg,
+                                 .dp = found.options.dp,
+                                 .cad_angle_deg = found.options.cad_angle_deg};
+    std::shared_ptr<const CadSurface> cad;
+    if (facets != nullptr)
+        cad = std::make_shared<const CadSurface>(mesh, std::vector{CadSource{facets, Transform{}}},
+                                                 found.options.threads);
+    const Features features = find_features(mesh, options, {}, bends_of(cad));
     found.lines = features.lines.size();
     found.singular_points = features.singular.size();
     for (const FeatureLine& line : features.lines)
@@ -221,8 +229,12 @@ MeshFile read_file(const InspectOptions& options, Inspection& found)
             fmt::format("{}: names other files that hold the meshes, expected one "
                         "of those",
                         options.path));
-    MeshReading reading;
-    reading.format = mesh_format_of(options.path);
+    const MeshReading reading = reading_of(options);
+    if (reading.format == MeshFormat::Step && !options.unit.empty() && options.unit != "m")
+        throw UsageError(
+            fmt::format("{}: --unit {}: STEP files name their unit, and are read as "
+                        "metres, as dp",
+                        options.path, options.unit));
     found.format = mesh_format_name(reading.format);
     return read_mesh_file(options.path, reading, options.threads);
 }
@@ -256,8 +268,10 @@ Inspection inspect_mesh(const InspectOptions& options)
                 found.open_edges.push_back(
                     {mesh.vertices[mesh.edges[e][0]], mesh.vertices[mesh.edges[e][1]]});
         const UnitGuess guess = guess_unit(found.report.bounds, options.dp);
-        found.unit = options.unit.empty() ? guess.unit : options.unit;
-        found.unit_reason = options.unit.empty() ? guess.reason : "";
+        const bool is_known = !options.unit.empty() || file.cad != nullptr;
+        found.unit = file.cad != nullptr ? "m" : is_known ? options.unit : guess.unit;
+        found.unit_reason = is_known ? "" : guess.reason;
+        if (file.cad != nullptr) found.cad_parts = file.cad->parts;
         if (options.dp > 0)
         {
             found.surface_particles = found.report.area / (options.dp * options.dp);
@@ -265,7 +279,7 @@ Inspection inspect_mesh(const InspectOptions& options)
                 std::abs(found.report.volume) / (options.dp * options.dp * options.dp);
             found.question = question_of(found);
         }
-        describe_features(mesh, found);
+        describe_features(mesh, file.cad, found);
         if (options.dp > 0 && found.question.empty())
         {
             find_thin_places(mesh, found);
@@ -285,6 +299,18 @@ namespace
 {
 
 using Line = std::function<void(const char*, const std::string&)>;
+
+void write_table(const std::vector<std::vector<std::string>>& rows, const Line& line)
+{
+    std::string table = text_table(rows, 1, "");
+    while (!table.empty() && table.back() == '\n') table.pop_back();
+    for (std::size_t at = 0; at <= table.size();)
+    {
+        const std::size_t end = std::min(table.find('\n', at), table.size());
+        line("", table.substr(at, end - at));
+        at = end + 1;
+    }
+}
 
 /// Volume, mass, centre and inertia of the shape and of the particles.
 void write_bodies(const Inspection& found, const Line& line)
@@ -310,14 +336,32 @@ void write_bodies(const Inspection& found, const Line& line)
         rows.push_back(std::move(row));
     }
     line("Bodies", "at 1000 kg/m3, with -fit (on the surface) and place=\"inside\":");
-    std::string table = text_table(rows, 1, "");
-    while (!table.empty() && table.back() == '\n') table.pop_back();
-    for (std::size_t at = 0; at <= table.size();)
-    {
-        const std::size_t end = std::min(table.find('\n', at), table.size());
-        line("", table.substr(at, end - at));
-        at = end + 1;
-    }
+    write_table(rows, line);
+}
+
+/// "#rrggbb"; empty: it has none.
+std::string color_text(const CadPart& part)
+{
+    if (!part.color) return "";
+    std::string out = "#";
+    for (const double share : *part.color)
+        out += fmt::format("{:02x}", static_cast<int>(std::lround(255 * share)));
+    return out;
+}
+
+/// By the exact faces, not by facets.
+void write_cad_parts(const Inspection& found, const Line& line)
+{
+    if (found.cad_parts.empty()) return;
+    std::vector<std::vector<std::string>> rows{
+        {"part", "colour", "volume m3", "area m2", "edges that bend", "long m", "tangent edges"}};
+    for (const CadPart& part : found.cad_parts)
+        rows.push_back({fmt::format("{}", fmt::join(part.path, "/")), color_text(part),
+                        fmt::format("{:.9g}", part.volume), fmt::format("{:.9g}", part.area),
+                        std::to_string(part.sharp_edges), fmt::format("{:.9g}", part.sharp_length),
+                        std::to_string(part.smooth_edges)});
+    line("CAD parts", "by their exact faces:");
+    write_table(rows, line);
 }
 
 void write_particles(const Inspection& found, const Lengths& in, const Line& line)
@@ -394,13 +438,15 @@ std::string to_text(const Inspection& found)
                        (report.is_watertight ? "" : " (not watertight: a guess)"));
     line("Area", in.area(report.area) + in_metres(found, report.area, 2));
     line("Crossing facets", fmt::format("{} pairs", report.self_intersections));
-    line("Feature lines",
-         fmt::format("{} ({} closed), {} long, at {:g} degrees", found.lines, found.closed_lines,
-                     in.length(found.line_length), found.options.angle_deg));
+    line("Feature lines", fmt::format("{} ({} closed), {} long, at {:g} degrees", found.lines,
+                                      found.closed_lines, in.length(found.line_length),
+                                      found.cad_parts.empty() ? found.options.angle_deg
+                                                              : found.options.cad_angle_deg));
     if (found.lines > 0)
         line("", fmt::format("shortest {}, longest {}", in.length(found.shortest_line),
                              in.length(found.longest_line)));
     line("Singular points", fmt::format("{}", found.singular_points));
+    write_cad_parts(found, line);
     if (found.options.dp > 0) write_particles(found, in, line);
     for (const std::string& warning : found.file_warnings) line("Warning", warning);
     for (const std::string& warning : report.warnings) line("Warning", warning);
@@ -421,6 +467,23 @@ Json bodies_json(const Inspection& found)
         body["inertia"] = {b.body.inertia[0].x, b.body.inertia[1].y, b.body.inertia[2].z};
         out.push_back(body);
     }
+    return out;
+}
+
+Json cad_parts_json(const Inspection& found)
+{
+    Json out = Json::array();
+    for (const CadPart& part : found.cad_parts)
+        out.push_back({{"name", part.name},
+                       {"path", part.path},
+                       {"color", color_text(part)},
+                       {"volume", part.volume},
+                       {"area", part.area},
+                       {"centre", as_json(part.center)},
+                       {"inertia", part.inertia},
+                       {"sharp_edges", part.sharp_edges},
+                       {"sharp_length", part.sharp_length},
+                       {"smooth_edges", part.smooth_edges}});
     return out;
 }
 
@@ -455,11 +518,16 @@ std::string to_json(const Inspection& found)
     json[found.options.unit.empty() ? "unit_guess" : "unit"] = found.unit;
     if (found.options.unit.empty()) json["unit_reason"] = found.unit_reason;
     if (!found.question.empty()) json["question"] = found.question;
+    if (!found.cad_parts.empty()) json["cad_parts"] = cad_parts_json(found);
     json["volume"] = report.volume;
     json["area"] = report.area;
-    json["features"] = {{"angle_deg", found.options.angle_deg},    {"lines", found.lines},
-                        {"closed_lines", found.closed_lines},      {"length", found.line_length},
-                        {"shortest", found.shortest_line},         {"longest", found.longest_line},
+    json["features"] = {{"angle_deg", found.cad_parts.empty() ? found.options.angle_deg
+                                                              : found.options.cad_angle_deg},
+                        {"lines", found.lines},
+                        {"closed_lines", found.closed_lines},
+                        {"length", found.line_length},
+                        {"shortest", found.shortest_line},
+                        {"longest", found.longest_line},
                         {"singular_points", found.singular_points}};
     if (found.options.dp > 0)
     {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshes/cad_facets.h"
 #include "shapes/moments.h"
 
 #include <array>
@@ -17,9 +18,12 @@ namespace fppg
 struct InspectOptions
 {
     std::string path;
-    double dp = 0; ///< 0: nothing is said about particles and thin places
+    std::string parts{}; ///< MeshReading::parts
+    double dp = 0;       ///< 0: nothing is said about particles and thin places
     double angle_deg = 30;
-    std::string unit{};       ///< of the file: "m", "cm", "mm" or "in"; empty: it is guessed
+    double cad_angle_deg = 1; ///< between the exact faces of STEP files
+    /// Of the file: "m", "cm", "mm" or "in"; empty: it is guessed. STEP files are read as metres.
+    std::string unit{};
     double weld_distance = 0; ///< 0: corners with equal coordinates only
     int threads = 1;
     /// Particles are laid out to count them; without, areas and volumes estimate them.
@@ -43,6 +47,7 @@ struct Inspection
     std::size_t points = 0;    ///< single ones, that a case draws beside the surface
     std::size_t polylines = 0; ///< likewise
     std::vector<std::string> file_warnings;
+    std::vector<CadPart> cad_parts; ///< of STEP files, metres
     std::size_t facets = 0;
     std::size_t vertices = 0;
     std::vector<std::array<Vec3, 2>> open_edges; ///< the first few, by vertices

@@ -1,11 +1,15 @@
 #include "app/inspect_particles.h"
 
+#include "fppg/error.h"
 #include "fppg/particles.h"
 #include "fppg/relax_walls.h"
 #include "fppg/scene.h"
 #include "fppg/shapes.h"
 
 #include "app/body_table.h"
+#include "meshes/read_step.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -39,12 +43,13 @@ CaseDef case_of(const InspectOptions& options, const SurfaceMesh& mesh, Placemen
     def.h = std::sqrt(3.0) * options.dp;
     FitSettings settings;
     settings.feature_angle_deg = options.angle_deg;
+    settings.cad_angle_deg = options.cad_angle_deg;
     settings.place = place;
     if (place == Placement::Inside) settings.depths_dp = {0.5};
     def.fit.all = settings;
     MeshFileOp file;
     file.file = std::filesystem::absolute(options.path).string();
-    file.reading.format = mesh_format_of(options.path);
+    file.reading = reading_of(options);
     file.autofill = true;
     DrawState state;
     state.mk = {MkKind::Bound, wall_mk, 0};
@@ -57,6 +62,17 @@ CaseDef case_of(const InspectOptions& options, const SurfaceMesh& mesh, Placemen
 }
 
 } // namespace
+
+MeshReading reading_of(const InspectOptions& options)
+{
+    MeshReading reading;
+    reading.format = mesh_format_of(options.path);
+    reading.parts = options.parts;
+    if (reading.format == MeshFormat::Step) reading.deflection = cad_deflection_dp * options.dp;
+    if (reading.format != MeshFormat::Step && !options.parts.empty())
+        throw UsageError(fmt::format("{}: --part is possible for STEP files only", options.path));
+    return reading;
+}
 
 std::vector<InspectedBody> inspect_bodies(const InspectOptions& options, const SurfaceMesh& mesh)
 {

@@ -1,11 +1,15 @@
 #pragma once
 
 #include "app/inspect.h"
+#include "fppg/mesh_reading.h"
 
 #include <vector>
 
 namespace fppg
 {
+
+/// How the file is read.
+MeshReading reading_of(const InspectOptions& options);
 
 /// The shape of a closed mesh file and its particles with the defaults of `<bodyfitted>` and of
 /// place="inside".

@@ -109,8 +109,9 @@ void add_options(SubcommandLine& app, NewCall& call)
     app.add_option("--float", o.floatings, "PART=400 (kg/m3) or PART=12kg").may_be_repeated();
     app.add_option("--fill", o.fill, "oil=2.5l, water=60% or oil=0.12m, with @PART in that part");
     app.add_option("--inlet", o.inlets,
-                   "PART=2m/s of a round flat sheet, or PART:-x=3l/min of the round face of a part "
-                   "that looks along -x: fluid comes in there")
+                   "fluid comes in: PART=2m/s through a flat sheet, PART:-x=3l/min through the "
+                   "flat face of a part that looks along -x or 0.8,0,0.6, of any tilt, a disc or a "
+                   "rectangle; of several with @PLACE the nearest")
         .may_be_repeated();
     app.add_option("--water", call.water, "height of the water along z, metres");
     app.add_option("--speed", call.speed, "m/s, of the vehicle or of the stream");
@@ -230,15 +231,6 @@ std::string picture_name(const NewCall& call)
     return name + ".png";
 }
 
-void write_mesh(const NewCaseFile& mesh)
-{
-    std::error_code error;
-    fs::create_directories(fs::path(mesh.path).parent_path(), error);
-    OutputFile file(mesh.path);
-    file.append(mesh.bytes);
-    file.commit();
-}
-
 /// What inspect says of each part, a line each.
 std::string parts_table(const NewCase& made, int threads)
 {
@@ -250,6 +242,7 @@ std::string parts_table(const NewCase& made, int threads)
         const double metre = metres_of_unit(part.unit);
         InspectOptions options;
         options.path = part.path;
+        options.parts = part.step_part;
         options.dp = made.dp / metre;
         options.unit = part.unit;
         options.threads = threads;
@@ -284,7 +277,6 @@ int run_new(const std::vector<std::string>& arguments)
     if (call.options.ask) bar.reset();
     const NewCase made = propose_case(call.options);
     bar.reset();
-    for (const NewCaseFile& mesh : made.files) write_mesh(mesh);
     file.append(made.xml);
     file.commit();
     fmt::print("{}", call.as_json ? to_json(made) : to_text(made, call.explains));

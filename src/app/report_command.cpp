@@ -14,6 +14,7 @@
 #include "fppg/check.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
+#include "fppg/motion_gaps.h"
 #include "fppg/render.h"
 #include "fppg/version.h"
 #include "meshes/mesh_formats.h"
@@ -36,6 +37,8 @@ namespace
 constexpr std::uint64_t particles_at_once = 4000000;
 /// They are checked in memory, about 100 bytes each.
 constexpr std::uint64_t most_checked = 50000000;
+/// Fluid needs as much to flow between parts.
+constexpr double marked_gap_dp = 3;
 
 struct ReportCall
 {
@@ -164,12 +167,17 @@ std::string checked_html(const std::string& name, const ParticleSource& source, 
     }
 }
 
+/// Whether it is a case, not an output of the solver, whose parts have moved already.
+bool is_case(const ParticleSource& source)
+{
+    namespace fs = std::filesystem;
+    return source.xml() && fs::path(source.path()).stem() == fs::path(source.xml_path()).stem();
+}
+
 /// The motion of a case; of an output of the solver, whose parts have moved already, none.
 std::vector<MovingBlock> motion_of_case(const ParticleSource& source, const Box3& bounds)
 {
-    namespace fs = std::filesystem;
-    if (!source.xml() || fs::path(source.path()).stem() != fs::path(source.xml_path()).stem())
-        return {};
+    if (!is_case(source)) return {};
     try
     {
         return read_setup(*source.xml(), source.xml_path(), bounds).moving;
@@ -177,6 +185,40 @@ std::vector<MovingBlock> motion_of_case(const ParticleSource& source, const Box3
     catch (const CaseError&)
     {
         return {}; // the section of the check says what is wrong with the case
+    }
+}
+
+/// Marks where parts of a case are near each other, by the definition or Case.xml. What to say
+/// where that is not possible, or not known, as HTML.
+std::string mark_gaps(SceneSet& set, const ParticleSource& source, const ReportCall& call)
+{
+    if (!is_case(source)) return "";
+    MotionGapOptions options;
+    options.dp = source.dp();
+    options.threads = call.threads;
+    std::string definition = source.xml_path();
+    try
+    {
+        if (!call.definition.empty())
+        {
+            const DropInOptions run = parse_definition(call.definition, call.of_run);
+            definition = run.input + ".xml";
+            options.evars = run.evars;
+        }
+        const NearPlaces places =
+            find_near_places(definition, options, frame_times(set), marked_gap_dp);
+        add_marks(set, places, marked_gap_dp);
+        std::string html;
+        for (const std::string& note : places.notes)
+            html += fmt::format("<p>Gaps: {}</p>\n", escaped_html(note));
+        return html;
+    }
+    catch (const Error& error)
+    {
+        return fmt::format(
+            "<p>Gaps between parts are not marked: {}. --definition names the definition beside "
+            "its meshes.</p>\n",
+            escaped_html(error.what()));
     }
 }
 
@@ -203,9 +245,10 @@ ResultLook look_at(const std::string& name, const TriangleSoup& geometry, const 
                             : thinned_cloud(source, result.bounds.min, result.dp, call.particles),
                         look.name);
         add_motion(set, motion_of_case(source, result.bounds));
+        look.details = mark_gaps(set, source, call);
         look.set = to_json(set);
     }
-    look.details = table_of(result) + histograms_of(result);
+    look.details += table_of(result) + histograms_of(result);
     look.details += checked_html(name, source, call.threads);
     if (const auto facts = facts_of_result(result.path)) look.details += run_facts_html(*facts);
     return look;

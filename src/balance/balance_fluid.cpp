@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace fppg
@@ -32,6 +33,8 @@ constexpr double reach_of_walls = 2.5;
 /// Nearer particles are pushed apart: so high up that pressures do not.
 constexpr double least_pair = 0.6;
 constexpr double depth_of_pushes = 2;
+/// Walls are looked for again where a particle has moved so far, when lists are made anew.
+constexpr double look_again = 0.1;
 /// Below the level of its column; the highest particles start half a dp below it.
 constexpr double least_depth = 0.25;
 /// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
@@ -40,6 +43,7 @@ constexpr double momentum = 0.85;
 constexpr int most_iterations = 160;
 constexpr int iterations_per_look = 10; ///< at mDBC's pressures
 constexpr int iterations_per_check = 20;
+constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.05;
 /// And where it is above this at the first check: in all cases tried those that came to rest were
@@ -90,6 +94,8 @@ public:
         accelerations_.resize(rest_.size());
         walls_.resize(rest_.size());
         allowed_.assign(rest_.size(), least_distance_ * rest_.dp);
+        set_points();
+        looked_at_ = rest_.positions;
         renew_lists(true);
         report.held = hold_free_faces(rest_, list_, threads_);
         renew_pressures();
@@ -101,11 +107,12 @@ public:
         for (int it = 1; it <= most_iterations && report.particles > report.held; ++it)
         {
             step();
-            if (list_.is_outdated(rest_.in_dp(rest_.positions), threads_)) renew_lists(false);
+            set_points();
+            if (list_.is_outdated(field_.points, threads_)) renew_lists(false);
             if (it % iterations_per_look == 0) renew_pressures();
             accelerate();
             report.iterations = it;
-            const double mean = judge().mean;
+            const double mean = mean_acceleration();
             if (on_iteration && !on_iteration({it, most_iterations, mean})) break;
             if (it % iterations_per_check != 0) continue;
             if (it == iterations_per_check && mean > hopeless_mean) break;
@@ -134,6 +141,7 @@ private:
         rest_.pressures = state.pressures;
         for (std::size_t i = 0; i < rest_.size(); ++i)
             rest_.densities[i] = rest_.density(rest_.pressures[i]);
+        set_points();
         renew_lists(false);
         renew_pressures();
         accelerate();
@@ -143,22 +151,33 @@ private:
 
     void renew_lists(bool is_first)
     {
-        const PointArrays points = rest_.in_dp(rest_.positions);
         list_.build(
-            points, threads_, [&](std::size_t i) { return moves(i); },
+            field_.points, threads_, [&](std::size_t i) { return moves(i); },
             [](std::size_t, std::size_t) { return true; });
-        if (has_ghosts_) ghosts_.find_neighbours(rest_, threads_);
-        looked_at_ = rest_.positions;
         parallel_for(
             rest_.size(), threads_,
             [&](std::size_t i)
             {
-                if (!moves(i)) return;
-                walls_[i] =
-                    find_wall_planes(rest_.positions[i], reach_of_walls * rest_.dp, closest_);
-                if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
+                if (moves(i)) look_for_walls(i, is_first);
             },
             64);
+    }
+
+    /// Looks for the walls around a particle again where it may have come near to others.
+    void look_for_walls(std::size_t i, bool is_first)
+    {
+        const double reach = reach_of_walls * rest_.dp;
+        double within = std::numeric_limits<double>::infinity();
+        if (!is_first)
+        {
+            const double moved = norm(rest_.positions[i] - looked_at_[i]);
+            if (moved < look_again * rest_.dp || walls_[i].distance - moved > reach) return;
+            within = (walls_[i].distance + moved) * (1 + 1e-9);
+        }
+        looked_at_[i] = rest_.positions[i];
+        walls_[i] = find_nearest_wall(rest_.positions[i], reach, closest_, within);
+        add_further_walls(walls_[i], rest_.positions[i], reach, closest_);
+        if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
     }
 
     void renew_pressures()
@@ -169,16 +188,6 @@ private:
     /// Pressures of their depth, then accelerations.
     void accelerate()
     {
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (!moves(i)) return;
-                rest_.pressures[i] =
-                    rest_.pressure(rest_.levels[i] - rest_.height(rest_.positions[i]));
-                rest_.densities[i] = rest_.density(rest_.pressures[i]);
-            },
-            1024);
         set_field();
         // Of sums in dp and dp^3 to those in metres.
         const double dp = rest_.dp;
@@ -193,9 +202,7 @@ private:
                 if (!moves(i)) return;
                 const PressureSums sums =
                     pressure_sums(field_, i, list_.neighbours(row), h_dp, rest_.is_cubic);
-                const Vec3 push =
-                    rest_.pressures[i] * Vec3{double{sums.x}, double{sums.y}, double{sums.z}} +
-                    Vec3{double{sums.px}, double{sums.py}, double{sums.pz}};
+                const Vec3 push{double{sums.x}, double{sums.y}, double{sums.z}};
                 accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * push;
                 pushes_[i] = push_apart(i, list_.neighbours(row));
             },
@@ -217,19 +224,43 @@ private:
         return norm(rest_.gravity) * out;
     }
 
+    /// Where the particles are, as the lists and the sums take them.
+    void set_points()
+    {
+        field_.resize(rest_.size());
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                const Vec3 at = (rest_.positions[i] - rest_.origin) / rest_.dp;
+                field_.points.x[i] = static_cast<float>(at.x);
+                field_.points.y[i] = static_cast<float>(at.y);
+                field_.points.z[i] = static_cast<float>(at.z);
+            },
+            1024);
+    }
+
+    /// Of all particles, those that move at the pressures of their depth.
     void set_field()
     {
-        field_.points = rest_.in_dp(rest_.positions);
-        field_.volumes.resize(rest_.size());
-        field_.pressures.resize(rest_.size());
         const double dp = rest_.dp;
         const double unit = rest_.is_2d ? dp * dp : dp * dp * dp;
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-        {
-            const double volume = rest_.masses[i] / rest_.densities[i] / unit;
-            field_.volumes[i] = static_cast<float>(volume);
-            field_.pressures[i] = static_cast<float>(volume * rest_.pressures[i]);
-        }
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (moves(i))
+                {
+                    rest_.pressures[i] =
+                        rest_.pressure(rest_.levels[i] - rest_.height(rest_.positions[i]));
+                    rest_.densities[i] = rest_.density(rest_.pressures[i]);
+                }
+                const double volume = rest_.masses[i] / rest_.densities[i] / unit;
+                field_.packed[i] = PackedPoint{field_.points.x[i], field_.points.y[i],
+                                               field_.points.z[i], static_cast<float>(volume)};
+                field_.pressures[i] = static_cast<float>(rest_.pressures[i]);
+            },
+            1024);
     }
 
     void step()
@@ -267,6 +298,35 @@ private:
         const double above = rest_.height(to) - rest_.levels[i] + least_depth * rest_.dp;
         if (above > 0) to = to + rest_.gravity * (above / norm(rest_.gravity));
         return to;
+    }
+
+    double mean_acceleration() const
+    {
+        struct Sum
+        {
+            double sizes = 0;
+            std::size_t count = 0;
+        };
+        std::vector<Sum> chunks((rest_.size() + chunk_of_sums - 1) / chunk_of_sums);
+        parallel_for(chunks.size(), threads_,
+                     [&](std::size_t c)
+                     {
+                         const std::size_t end = std::min(rest_.size(), (c + 1) * chunk_of_sums);
+                         for (std::size_t i = c * chunk_of_sums; i < end; ++i)
+                         {
+                             if (!moves(i)) continue;
+                             chunks[c].sizes += norm(accelerations_[i]);
+                             ++chunks[c].count;
+                         }
+                     });
+        Sum all;
+        for (const Sum& chunk : chunks)
+        {
+            all.sizes += chunk.sizes;
+            all.count += chunk.count;
+        }
+        return all.sizes / norm(rest_.gravity) /
+               static_cast<double>(std::max<std::size_t>(all.count, 1));
     }
 
     Accelerations judge() const

@@ -30,26 +30,22 @@ template <typename Slope>
 FPPG_LANES PressureSums sum_up(const PressureField& field, std::uint32_t i,
                                std::span<const std::uint32_t> near, float h_dp, const Slope& slope)
 {
-    Lanes x{}, y{}, z{}, px{}, py{}, pz{};
+    Lanes x{}, y{}, z{};
     const Lanes per_h = lanes_of(1 / h_dp);
+    const Lanes own = lanes_of(field.pressures[i]);
     const std::uint32_t* at = near.data();
-    const PointArrays& p = field.points;
-    NeighbourLanes(AxesGather{p.x.data(), p.y.data(), p.z.data()}, i)
+    NeighbourLanes(PackedGather{field.packed.data()}, i)
         .for_each(near.data(), near.size(),
                   [&](const LaneOffsets& o)
                   {
-                      const Lanes s = slope(square_root(o.squared) * per_h);
-                      const Lanes of_volume = s * gathered(field.volumes.data(), at);
-                      const Lanes of_pressure = s * gathered(field.pressures.data(), at);
+                      const Lanes f = slope(square_root(o.squared) * per_h) * o.fourth *
+                                      (own + gathered(field.pressures.data(), at));
                       at += lane_count;
-                      x += of_volume * o.x;
-                      y += of_volume * o.y;
-                      z += of_volume * o.z;
-                      px += of_pressure * o.x;
-                      py += of_pressure * o.y;
-                      pz += of_pressure * o.z;
+                      x += f * o.x;
+                      y += f * o.y;
+                      z += f * o.z;
                   });
-    return {sum_of(x), sum_of(y), sum_of(z), sum_of(px), sum_of(py), sum_of(pz)};
+    return {sum_of(x), sum_of(y), sum_of(z)};
 }
 
 FPPG_LANES PressureSums sum_either(const PressureField& field, std::uint32_t i,

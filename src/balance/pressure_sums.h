@@ -12,17 +12,23 @@ namespace fppg
 /// Of the particles whose pressures push, one entry each in all arrays.
 struct PressureField
 {
-    PointArrays points;           ///< dp from some origin
-    std::vector<float> volumes;   ///< mass over density, dp^3 (2D: dp^2)
-    std::vector<float> pressures; ///< times the volume, Pa dp^3
+    PointArrays points;              ///< dp from some origin
+    std::vector<PackedPoint> packed; ///< these, and mass over density, dp^3 (2D: dp^2)
+    std::vector<float> pressures;    ///< Pa
+
+    void resize(std::size_t n)
+    {
+        points.resize(n);
+        packed.resize(n);
+        pressures.resize(n);
+    }
 };
 
-/// Sums over the neighbours j of particle i, r its offset from j in dp, s the shape (dW/dq) / q of
-/// the kernel at q = |r| / h.
+/// The sum of V_j (p_i + p_j) s r over the neighbours j of particle i, r its offset from j in dp, s
+/// the shape (dW/dq) / q of the kernel at q = |r| / h.
 struct PressureSums
 {
-    float x = 0, y = 0, z = 0;    ///< of V_j s r
-    float px = 0, py = 0, pz = 0; ///< of V_j p_j s r
+    float x = 0, y = 0, z = 0;
 };
 
 /// Adds up pairs by eights, with AVX2 where it is there; the same sums in the same order without.

@@ -137,9 +137,12 @@ void GhostPressures::find_neighbours(const FluidAtRest& rest, int threads)
 {
     first_ghost_ = rest.size();
     std::vector<Vec3> points = rest.positions;
+    points.reserve(points.size() + owners_.size());
     for (const std::uint32_t i : owners_) points.push_back(rest.positions[i] + rest.ghosts[i]);
+    const PointArrays in_dp = rest.in_dp(points);
+    if (!list_.is_outdated(in_dp, threads)) return;
     list_.build(
-        rest.in_dp(points), threads, [&](std::size_t i) { return i >= first_ghost_; },
+        in_dp, threads, [&](std::size_t i) { return i >= first_ghost_; },
         [&](std::size_t, std::size_t j)
         { return j < first_ghost_ && rest.roles[j] != RestRole::Bound; });
 }
@@ -147,33 +150,46 @@ void GhostPressures::find_neighbours(const FluidAtRest& rest, int threads)
 GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, const Vec3& ghost,
                                              std::span<const std::uint32_t> neighbours) const
 {
+    // The matrix is w, -w r; s r, -s r r: its parts are summed once.
+    double weight = 0, density = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    Vec3 weighted, slopes, denser;
     Sums sums;
     sums.matrix.n = rest.is_2d ? 3 : 4;
     const double alpha = rest.alpha();
+    const double of_slope = alpha / (rest.h * rest.h);
+    const double reach = 4 * rest.h * rest.h;
     for (const std::uint32_t j : neighbours)
     {
         const Vec3 away = ghost - rest.positions[j];
-        const double q = norm(away) / rest.h;
-        if (q >= 2) continue;
+        const double squared = dot(away, away);
+        if (squared >= reach) continue;
         sums.has_fluid = true;
+        const double q = std::sqrt(squared) / rest.h;
         const double volume = rest.masses[j] / rest.densities[j];
-        const Vec3 slope = alpha * rest.slope(q) / (rest.h * rest.h) * volume * away;
-        std::array<double, most_rows> rows{alpha * rest.shape(q) * volume, slope.x, slope.y,
-                                           slope.z};
-        std::array<double, most_rows> columns{1, -away.x, -away.y, -away.z};
-        if (rest.is_2d)
-        {
-            rows[2] = rows[3];
-            columns[2] = columns[3];
-        }
-        for (int r = 0; r < sums.matrix.n; ++r)
-        {
-            const double of_row = rows[static_cast<std::size_t>(r)];
-            sums.densities[static_cast<std::size_t>(r)] += of_row * rest.densities[j];
-            for (int c = 0; c < sums.matrix.n; ++c)
-                sums.matrix.at(r, c) += of_row * columns[static_cast<std::size_t>(c)];
-        }
+        const double w = alpha * rest.shape(q) * volume;
+        const Vec3 s = of_slope * rest.slope(q) * volume * away;
+        weight += w;
+        density += w * rest.densities[j];
+        weighted = weighted + w * away;
+        slopes = slopes + s;
+        denser = denser + rest.densities[j] * s;
+        xx += s.x * away.x;
+        xy += s.x * away.y;
+        xz += s.x * away.z;
+        yy += s.y * away.y;
+        yz += s.y * away.z;
+        zz += s.z * away.z;
     }
+    sums.densities = {density, denser.x, denser.y, denser.z};
+    sums.matrix.a = {{{weight, -weighted.x, -weighted.y, -weighted.z},
+                      {slopes.x, -xx, -xy, -xz},
+                      {slopes.y, -xy, -yy, -yz},
+                      {slopes.z, -xz, -yz, -zz}}};
+    if (!rest.is_2d) return sums;
+    // Without y.
+    sums.densities[2] = sums.densities[3];
+    sums.matrix.a[2] = sums.matrix.a[3];
+    for (auto& row : sums.matrix.a) row[2] = row[3];
     return sums;
 }
 
@@ -230,8 +246,9 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
     rest.pressures[i] = rest.pressure_of_density(density);
 }
 
-void GhostPressures::set(FluidAtRest& rest, int threads) const
+void GhostPressures::set(FluidAtRest& rest, int threads)
 {
+    find_neighbours(rest, threads);
     parallel_for(
         list_.rows(), threads,
         [&](std::size_t row)

@@ -22,15 +22,14 @@ class GhostPressures
 {
 public:
     GhostPressures(const FluidAtRest& rest, RestBoundary boundary);
-    /// Makes the lists of fluid around ghost nodes anew; to be called whenever fluid has moved by
-    /// 0.3 dp since.
-    void find_neighbours(const FluidAtRest& rest, int threads);
     /// Sets pressures, densities and masses of boundary particles with ghost nodes. Those without
     /// fluid at their ghost node have no mass (SlipMode 2 and 3).
-    void set(FluidAtRest& rest, int threads) const;
+    void set(FluidAtRest& rest, int threads);
 
 private:
     struct Sums;
+    /// Makes the lists of fluid around ghost nodes anew where fluid has moved too far since.
+    void find_neighbours(const FluidAtRest& rest, int threads);
     Sums sums_at(const FluidAtRest& rest, const Vec3& ghost,
                  std::span<const std::uint32_t> neighbours) const;
     void set_one(FluidAtRest& rest, std::uint32_t i,

@@ -148,6 +148,8 @@ constexpr auto table = std::to_array<CommandRow>({
     {"drawellipsoid", "point+", draw_ellipsoid},
     {"drawextrude", "extrude layers point+", draw_extrude},
     {"drawfigure", "points triangles", draw_figure},
+    {"drawfile", "clipdomain depth drawcenter drawmove drawrotate drawscale layers", draw_mesh_file,
+     true},
     {"drawfilecsv", "clipdomain drawcenter drawmove drawrotate drawscale", draw_mesh_file},
     {"drawfilevtk", "clipdomain depth drawcenter drawmove drawrotate drawscale layers polyselec",
      draw_mesh_file},
@@ -247,7 +249,8 @@ const CommandRow* find_command(std::string_view name)
 
 std::vector<std::string_view> command_names()
 {
-    std::vector<std::string_view> names{"drawfilestl", "drawfileply", "drawfileobj", "drawfileoff"};
+    std::vector<std::string_view> names{"drawfilestl", "drawfileply", "drawfileobj", "drawfileoff",
+                                        "drawfilestep"};
     for (const CommandRow& row : table) names.push_back(row.name);
     return names;
 }

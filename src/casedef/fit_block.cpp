@@ -124,6 +124,7 @@ private:
         s.feature_angle_deg = number_or(
             e, "featureangle", s.feature_angle_deg, [](double v) { return v >= 0 && v < 180; },
             "degrees from 0 to less than 180");
+        if (e.find_attribute("featureangle") != nullptr) s.cad_angle_deg = s.feature_angle_deg;
         s.density = is_first_of(e, "density", "area", "cell") ? FitDensity::Area : FitDensity::Cell;
         if (e.find_attribute("clearance") != nullptr && !is_word(e, "clearance", "auto"))
             s.clearance_dp = number_or(

@@ -42,10 +42,10 @@ Transform turn_of(const Element& shape, const Vec3& first, std::optional<Vec3>& 
     double angle = 0;
     if (const Element* e = shape.find_child("rotate"))
     {
-        // Of lines in x and z; the solver turns x towards z.
+        // Of lines in x and z.
         if (e->find_attribute("centerx") != nullptr)
             centre = {number(e, "centerx"), first.y, number(e, "centerz")};
-        axis = {0, -1, 0};
+        axis = {0, 1, 0};
         angle = angle_of(*e);
     }
     else if (const Element* about = shape.find_child("rotateaxis"))
@@ -57,7 +57,9 @@ Transform turn_of(const Element& shape, const Vec3& first, std::optional<Vec3>& 
     else if (const Element* euler = shape.find_child("rotateadv"))
         by_euler = vector(euler->find_child("center"));
     if (!(norm(axis) > 0)) return {};
-    return translation(centre) * rotation(axis, angle) * translation(-1.0 * centre);
+    // The solver turns clockwise seen from the second point, x towards z about y
+    // (JMatrix4::MatrixRot).
+    return translation(centre) * rotation(axis, -angle) * translation(-1.0 * centre);
 }
 
 /// The corners of a line, box or circle; empty for other shapes.

@@ -71,7 +71,8 @@ constexpr auto attribute_table = std::to_array<NameRow>({
     {"active mkfluid x y z",
 "initials/velocity"},
     {"advanced autofill file reverse",
-"drawfileobj drawfileoff drawfileply drawfilestl drawfilevtk drawfilevtm"},
+"drawfile drawfileobj drawfileoff drawfileply drawfilestep drawfilestl drawfilevtk "
+"drawfilevtm"},
     {"ang",
 "mvcir/vel mvcirace/ace mvcirace/velini mvrot/vel mvrotace/ace mvrotace/velini "
 "rotateline"},
@@ -323,14 +324,17 @@ void look_at_attributes(const Element& e, std::string_view names, const std::str
 {
     const bool is_draw = e.name.starts_with("draw");
     const bool is_file = e.name.starts_with("drawfile");
+    const bool may_be_step = e.name == "drawfile" || e.name == "drawfilestep";
     for (const Element::Attribute& a : e.attributes)
     {
         if (is_listed(names, a.name) || is_remark(e.name, a.name) ||
-            (is_draw && a.name == "fppg:name") || (is_file && a.name == "fppg:fill"))
+            (is_draw && a.name == "fppg:name") || (is_file && a.name == "fppg:fill") ||
+            (may_be_step && a.name == "fppg:part"))
             continue;
         Names known = names.empty() ? Names{} : split(names, ' ');
         if (is_draw) known.push_back("fppg:name");
         if (is_file) known.push_back("fppg:fill");
+        if (may_be_step) known.push_back("fppg:part");
         out.push_back(fmt::format(
             "{}:{}: <{}>: attribute {}=\"{}\" is not known and has no effect{}, expected {}", file,
             e.line, e.name, a.name, a.value, did_you_mean(a.name, known),

@@ -1,17 +1,20 @@
 // Commands that draw files of meshes and heights.
 #include "casedef/command_table.h"
 #include "fppg/error.h"
+#include "fppg/shapes.h"
 
 #include "casedef/xml_document.h"
 #include "core/text.h"
 #include "core/transforms.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_library.h"
+#include "meshes/read_step.h"
 #include "shapes/file_polygons.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -367,6 +370,17 @@ void read_borders(const Program& p, const Element& grid, BathymetryGrid& bathyme
         }
 }
 
+double largest_scale(const Transform& t)
+{
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const Vec3 column{t.linear[0][axis], t.linear[1][axis], t.linear[2][axis]};
+        square = std::max(square, dot(column, column));
+    }
+    return std::sqrt(square);
+}
+
 /// Draws a file as `op` says so far; its format is set.
 void draw_file(Program& p, const Element& e, MeshFileOp op)
 {
@@ -388,6 +402,9 @@ void draw_file(Program& p, const Element& e, MeshFileOp op)
         if (!op.advanced) op.reading.shapes = chosen;
     }
     op.transform = file_transform(p, e);
+    if (op.reading.format == MeshFormat::Step)
+        op.reading.deflection =
+            cad_deflection_dp * p.def.grid.dp / std::max(largest_scale(op.transform), 1e-9);
     if (op.advanced) read_depth(p, e, op);
     // The file's own placement is a later transform: it takes the clips along for this draw (a ball
     // moved by drawmove behind a clipplane, a clipbox and a clipdomain, 9 cases; the template
@@ -407,14 +424,36 @@ void draw_file(Program& p, const Element& e, MeshFileOp op)
     if (moves_clips) p.place_clips();
 }
 
+/// By the name of the command; of `drawfile` by the ending of the file.
+MeshFormat format_of(const Program& p, const Element& e, const std::string& file)
+{
+    const std::string_view kind = std::string_view(e.name).substr(drawfile.size());
+    if (kind == "vtm") return MeshFormat::Vtk;
+    if (!kind.empty()) return *mesh_format_named(kind);
+    const MeshFormat format = mesh_format_of(file);
+    if (has_heights(format) || (format == MeshFormat::Stl && !lower_case(file).ends_with(".stl")))
+        p.read.fail(e,
+                    fmt::format("file=\"{}\": <drawfile> goes by the ending of the name, expected "
+                                "one of a mesh or of STEP: {}",
+                                file, mesh_format_list()));
+    return format;
+}
+
 } // namespace
 
 void draw_mesh_file(Program& p, const Element& e)
 {
     MeshFileOp op;
     op.file = p.read.text(e, "file");
-    const std::string_view kind = std::string_view(e.name).substr(drawfile.size());
-    op.reading.format = kind == "vtm" ? MeshFormat::Vtk : *mesh_format_named(kind);
+    op.reading.format = format_of(p, e, op.file);
+    if (const std::string* parts = e.find_attribute("fppg:part"))
+    {
+        if (op.reading.format != MeshFormat::Step)
+            p.read.fail(e, "fppg:part is possible for STEP files only, expected <drawfilestep>");
+        if (trimmed(*parts).empty())
+            p.read.fail(e, "fppg:part is empty, expected names of parts, separated by commas");
+        op.reading.parts = p.read.text(e, "fppg:part");
+    }
     // A table is a surface without an inside: GenCase does not heed the filling there.
     if (!has_heights(op.reading.format))
         read_filling(p, e, op);

@@ -38,6 +38,9 @@ constexpr ParticleFormat formats[] = {
      write_ls_dyna},
     {"radioss", ".rad", ".rad", "OpenRadioss: /NODE and /SPHCEL, to be included in a starter deck",
      write_radioss},
+    {"tally", "", "_tally.json",
+     "no particles: how many, their volumes and limits, and a checksum, of any number",
+     write_tally},
 };
 
 std::string list_of_formats()

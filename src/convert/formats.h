@@ -29,6 +29,8 @@ void write_lammps_sph(const ParticleFeed&, const std::string& path, int threads,
 void write_ls_dyna(const ParticleFeed&, const std::string& path, int threads, ConvertedFiles& out);
 void write_radioss(const ParticleFeed&, const std::string& path, int threads, ConvertedFiles& out);
 void write_peridigm(const ParticleFeed&, const std::string& path, int threads, ConvertedFiles& out);
+/// What the particles add up to.
+void write_tally(const ParticleFeed&, const std::string& path, int threads, ConvertedFiles& out);
 
 /// Says that volumes are all the same where the feed knows no others. For formats with volumes.
 void say_volumes(const ParticleFeed& feed, ConvertedFiles& out);

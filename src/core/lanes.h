@@ -54,6 +54,20 @@ FPPG_LANES Lanes smaller(const Lanes& a, const Lanes& b)
     return a < b ? a : b;
 }
 
+/// One bit a lane that is set.
+FPPG_LANES unsigned set_lanes(const LaneMask& mask)
+{
+#if defined(__SSE2__)
+    const auto low = reinterpret_cast<__m128>(__builtin_shufflevector(mask, mask, 0, 1, 2, 3));
+    const auto high = reinterpret_cast<__m128>(__builtin_shufflevector(mask, mask, 4, 5, 6, 7));
+    return static_cast<unsigned>(_mm_movemask_ps(low) | _mm_movemask_ps(high) << 4);
+#else
+    unsigned set = 0;
+    for (unsigned l = 0; l < lane_count; ++l) set |= mask[l] != 0 ? 1u << l : 0;
+    return set;
+#endif
+}
+
 FPPG_LANES Lanes square_root(const Lanes& squared)
 {
 #if defined(__SSE2__)
@@ -122,12 +136,14 @@ inline constexpr LaneOrders lane_orders;
 struct LanePoints
 {
     Lanes x, y, z;
+    Lanes fourth{}; ///< of packed points
 };
 
 /// From a point's neighbours to it.
 struct LaneOffsets
 {
     Lanes x, y, z, squared;
+    Lanes fourth; ///< that of packed neighbours
 };
 
 /// Points by index, out of one array an axis.
@@ -168,7 +184,8 @@ struct PackedGather
         const Lanes cd_z = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
         return {__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
                 __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
-                __builtin_shufflevector(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13)};
+                __builtin_shufflevector(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13),
+                __builtin_shufflevector(ab_z, cd_z, 2, 3, 10, 11, 6, 7, 14, 15)};
     }
 
 private:
@@ -212,7 +229,7 @@ private:
     FPPG_LANES LaneOffsets offsets(const std::uint32_t* indices) const
     {
         const LanePoints p = gather_.eight(indices);
-        LaneOffsets o{at_.x - p.x, at_.y - p.y, at_.z - p.z, Lanes{}};
+        LaneOffsets o{at_.x - p.x, at_.y - p.y, at_.z - p.z, Lanes{}, p.fourth};
         o.squared = o.x * o.x + o.y * o.y + o.z * o.z;
         return o;
     }

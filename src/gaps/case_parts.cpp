@@ -1,5 +1,7 @@
 #include "gaps/case_parts.h"
 
+#include "meshes/mesh_library.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +9,35 @@
 
 namespace fppg
 {
+
+namespace
+{
+
+double time_max(const CaseDef& def)
+{
+    double end = 0;
+    for (const Element& e : def.execution)
+        if (e.name == "parameters")
+            for (const Element& p : e.children)
+            {
+                const std::string* key = p.find_attribute("key");
+                if (key != nullptr && *key == "TimeMax") end = number_or(p, "value", end);
+            }
+    return end;
+}
+
+} // namespace
+
+Transform inverse_of(const Transform& t)
+{
+    Transform out;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            out.linear[static_cast<std::size_t>(i)][j] = t.linear[static_cast<std::size_t>(j)][i];
+    out.offset = -Vec3{dot(out.linear[0], t.offset), dot(out.linear[1], t.offset),
+                       dot(out.linear[2], t.offset)};
+    return out;
+}
 
 Transform CasePart::place(double time) const
 {
@@ -58,6 +89,24 @@ std::vector<CasePart> case_parts(const CaseDef& def, const CaseSolids& solids,
         part.tree = std::make_unique<GapTree>(std::move(soup));
         out.push_back(std::move(part));
     }
+    return out;
+}
+
+GapCase read_gap_case(const std::string& definition, const MotionGapOptions& options)
+{
+    CaseOptions case_options;
+    if (options.dp > 0) case_options.dp = options.dp;
+    case_options.evars = options.evars;
+    case_options.meshes = std::make_shared<MeshLibrary>(definition, MeshPlaces::DefinitionFirst);
+    GapCase out;
+    out.def = read_case(definition, case_options);
+    out.solids = case_solids(make_scene(out.def), options.threads);
+    out.end = options.end > 0 ? options.end : time_max(out.def);
+    out.notes = out.solids.notes;
+    out.parts = case_parts(out.def, out.solids, out.notes);
+    if (!(out.end > 0) && !out.def.motion.children.empty())
+        out.notes.push_back(
+            "The case has no TimeMax: parts are judged where they start; --end gives one.");
     return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/motion_gaps.h"
 #include "leak/case_solids.h"
 #include "meshes/surface_gap.h"
 #include "particles/motion_path.h"
@@ -31,5 +32,21 @@ struct CasePart
 /// The boundary mks that draw surfaces, by mkbound.
 std::vector<CasePart> case_parts(const CaseDef& def, const CaseSolids& solids,
                                  std::vector<std::string>& notes);
+
+/// A case whose gaps are asked for.
+struct GapCase
+{
+    CaseDef def;
+    CaseSolids solids;
+    std::vector<CasePart> parts;
+    double end = 0;                 ///< seconds
+    std::vector<std::string> notes; ///< what could not be judged
+};
+
+/// throws  as measure_motion_gaps()
+GapCase read_gap_case(const std::string& definition, const MotionGapOptions& options);
+
+/// Of a rotation and a move.
+Transform inverse_of(const Transform& t);
 
 } // namespace fppg

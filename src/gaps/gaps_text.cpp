@@ -49,7 +49,29 @@ std::vector<std::string> row_of(const MkGap& pair)
                      : ""};
 }
 
+std::string resolving_text(const MotionGaps& gaps)
+{
+    const double more = gaps.resolving_factor();
+    const double more_walls = std::pow(more, 2.0 / 3);
+    std::string out = fmt::format("  dp {:.3g} m puts 4 particles across nine in ten of them: ",
+                                  gaps.resolving_dp);
+    if (!(gaps.volume_particles + gaps.wall_particles > 0))
+        return out + fmt::format(
+                         "{:.3g} times as many particles of fluid, {:.3g} times as many of walls\n",
+                         more, more_walls);
+    const double fluid = gaps.volume_particles * more, walls = gaps.wall_particles * more_walls;
+    return out + fmt::format(
+                     "about {:.2g} particles, {:.2g} of fluid and floating bodies, {:.2g} of "
+                     "walls; {:.2g} now\n",
+                     fluid + walls, fluid, walls, gaps.volume_particles + gaps.wall_particles);
+}
+
 } // namespace
+
+double MotionGaps::resolving_factor() const
+{
+    return resolving_dp > 0 && resolving_dp < dp ? std::pow(dp / resolving_dp, 3) : 1;
+}
 
 std::string to_text(const MotionGaps& gaps)
 {
@@ -79,12 +101,7 @@ std::string to_text(const MotionGaps& gaps)
         if (gaps.narrowest_dp > 0)
             out += fmt::format("  the narrowest: {:.3g} dp near {} m\n", gaps.narrowest_dp,
                                place_of(gaps.narrowest_at));
-        if (gaps.resolving_dp > 0 && gaps.resolving_dp < gaps.dp)
-            out += fmt::format(
-                "  dp {:.3g} m puts 4 particles across nine in ten of them: {:.3g} times as many "
-                "particles of fluid, {:.3g} times as many of walls\n",
-                gaps.resolving_dp, std::pow(gaps.dp / gaps.resolving_dp, 3),
-                std::pow(gaps.dp / gaps.resolving_dp, 2));
+        if (gaps.resolving_factor() > 1) out += resolving_text(gaps);
     }
     for (const std::string& note : gaps.notes) out += "Note: " + note + '\n';
     return out;
@@ -117,11 +134,16 @@ std::string to_json(const MotionGaps& gaps)
         }
         json["pairs"].push_back(one);
     }
-    json["passages"] = {{"area", gaps.area},
-                        {"widths_dp", MotionGaps::widths_dp},
-                        {"narrow_area", gaps.narrow_area},
-                        {"narrowest_dp", gaps.narrowest_dp},
-                        {"resolving_dp", gaps.resolving_dp}};
+    json["passages"] = {
+        {"area", gaps.area},
+        {"widths_dp", MotionGaps::widths_dp},
+        {"narrow_area", gaps.narrow_area},
+        {"narrowest_dp", gaps.narrowest_dp},
+        {"narrowest_at", {gaps.narrowest_at.x, gaps.narrowest_at.y, gaps.narrowest_at.z}},
+        {"resolving_dp", gaps.resolving_dp},
+        {"resolving_particles",
+         gaps.volume_particles * gaps.resolving_factor() +
+             gaps.wall_particles * std::pow(gaps.resolving_factor(), 2.0 / 3)}};
     json["notes"] = gaps.notes;
     return json.text(2) + "\n";
 }

@@ -3,7 +3,6 @@
 #include "core/parallel.h"
 #include "gaps/case_parts.h"
 #include "gaps/passages.h"
-#include "meshes/mesh_library.h"
 
 #include <fmt/format.h>
 
@@ -22,17 +21,6 @@ constexpr int coarse_looks = 400; // for how fast parts are
 constexpr int refining_looks = 40;
 constexpr int depth_looks = 12;
 constexpr std::size_t most_corners = 20000; // that a depth is asked of
-
-Transform inverse_of(const Transform& t)
-{
-    Transform out;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            out.linear[static_cast<std::size_t>(i)][j] = t.linear[static_cast<std::size_t>(j)][i];
-    out.offset = -Vec3{dot(out.linear[0], t.offset), dot(out.linear[1], t.offset),
-                       dot(out.linear[2], t.offset)};
-    return out;
-}
 
 /// The corners farthest along 26 directions: as fast as the fastest of a rigid body, nearly.
 std::vector<Vec3> extremes_of(const TriangleSoup& soup)
@@ -274,38 +262,17 @@ private:
     MkGap out_;
 };
 
-double end_of_run(const CaseDef& def)
-{
-    double end = 0;
-    for (const Element& e : def.execution)
-        if (e.name == "parameters")
-            for (const Element& p : e.children)
-            {
-                const std::string* key = p.find_attribute("key");
-                if (key != nullptr && *key == "TimeMax") end = number_or(p, "value", end);
-            }
-    return end;
-}
-
 } // namespace
 
 MotionGaps measure_motion_gaps(const std::string& definition, const MotionGapOptions& options)
 {
-    CaseOptions case_options;
-    if (options.dp > 0) case_options.dp = options.dp;
-    case_options.evars = options.evars;
-    case_options.meshes = std::make_shared<MeshLibrary>(definition, MeshPlaces::DefinitionFirst);
-    const CaseDef def = read_case(definition, case_options);
-    const CaseSolids solids = case_solids(make_scene(def), options.threads);
+    const GapCase of = read_gap_case(definition, options);
+    const std::vector<CasePart>& parts = of.parts;
     MotionGaps out;
     out.definition = definition;
-    out.dp = def.grid.dp;
-    out.end = options.end > 0 ? options.end : end_of_run(def);
-    out.notes = solids.notes;
-    const std::vector<CasePart> parts = case_parts(def, solids, out.notes);
-    if (!(out.end > 0) && !def.motion.children.empty())
-        out.notes.push_back(
-            "The case has no TimeMax: parts are judged where they start; --end gives one.");
+    out.dp = of.def.grid.dp;
+    out.end = of.end;
+    out.notes = of.notes;
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (std::size_t a = 0; a < parts.size(); ++a)
         for (std::size_t b = a + 1; b < parts.size(); ++b) pairs.emplace_back(a, b);
@@ -316,7 +283,7 @@ MotionGaps measure_motion_gaps(const std::string& definition, const MotionGapOpt
             out.pairs[k] =
                 PairWatch(parts[pairs[k].first], parts[pairs[k].second], out, options).run();
         });
-    if (options.finds_passages) find_passages(def, solids, options.threads, out);
+    if (options.finds_passages) find_passages(of.def, of.solids, options.threads, out);
     return out;
 }
 

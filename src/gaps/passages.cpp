@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "fppg/scene.h"
 #include "meshes/facing_distance.h"
+#include "meshes/point_grid.h"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,6 @@ namespace
 
 constexpr double most_nodes = 3e8;
 constexpr double most_places = 3e6;
-/// Nearer surfaces touch: parts that stand on one another have no passage between them.
-constexpr double touching_dp = 0.02;
 
 /// Where fluid of a case can flow, on its lattice.
 class FluidReach
@@ -166,11 +165,13 @@ std::vector<FacetSpot> spread_places(const BoundaryFacets& facets, double area_o
     return out;
 }
 
-/// What is in front of a place; nothing where fluid does not come.
+/// What is in front of a place.
 struct Front
 {
-    bool is_wet = false;
-    double gap_dp = 0; ///< 0: none within reach
+    bool is_free = false; ///< in no solid
+    bool is_wet = false;  ///< and fluid comes there
+    double gap_dp = 0;    ///< 0: none within reach
+    Vec3 middle;          ///< between the place and what is in front of it
 };
 
 class PassageSearch
@@ -201,6 +202,7 @@ public:
                     fronts[i][1] = look(places[i], FacetSide::Behind);
             },
             64);
+        follow_passages(fronts, 2.2 * std::sqrt(each));
         for (std::size_t i = 0; i < places.size(); ++i)
             for (const Front& front : fronts[i]) count(places[i], front, each, out);
     }
@@ -216,9 +218,59 @@ private:
         const Vec3 middle = from.place + way * (dp_ * (gap > 0 ? gap / 2 : 1));
         Front out;
         if (gap > 0 && gap < touching_dp) return out;
-        out.is_wet = solids_.find(middle, {}) == CaseSolids::none && reach_.is_near(middle);
+        out.is_free = solids_.find(middle, {}) == CaseSolids::none;
+        out.is_wet = out.is_free && reach_.is_near(middle);
         out.gap_dp = gap;
+        out.middle = middle;
         return out;
+    }
+
+    /// Passages of less than two dp may have no node of the lattice in them: they are followed from
+    /// their wet ends, from one middle to the next.
+    void follow_passages(std::vector<std::array<Front, 2>>& fronts, double step) const
+    {
+        PointGrid middles(step, fronts.size());
+        std::vector<Front*> narrow;
+        std::vector<std::uint32_t> wet;
+        for (std::array<Front, 2>& sides : fronts)
+            for (Front& front : sides)
+            {
+                if (!front.is_free || !(front.gap_dp > 0)) continue;
+                if (front.is_wet) wet.push_back(static_cast<std::uint32_t>(narrow.size()));
+                narrow.push_back(&front);
+                middles.add(front.middle);
+            }
+        while (!wet.empty())
+        {
+            const Vec3 from = narrow[wet.back()]->middle;
+            wet.pop_back();
+            middles.for_each_near(from, step,
+                                  [&](std::uint32_t i, double)
+                                  {
+                                      if (narrow[i]->is_wet || !is_clear(from, narrow[i]->middle))
+                                          return;
+                                      narrow[i]->is_wet = true;
+                                      wet.push_back(i);
+                                  });
+        }
+    }
+
+    /// Whether no surface is between two places, by steps as long as their distance to surfaces.
+    bool is_clear(const Vec3& from, const Vec3& to) const
+    {
+        constexpr int most_steps = 200;
+        const double length = norm(to - from);
+        double at = 0;
+        for (int k = 0; k < most_steps; ++k)
+        {
+            const double left = length - at;
+            const Vec3 place = length > 0 ? from + (at / length) * (to - from) : from;
+            const double free = query_.closest_point(place, left + dp_).distance;
+            if (free >= left) return true;
+            if (free < 1e-3 * dp_) return false;
+            at += free;
+        }
+        return false;
     }
 
     void count(const FacetSpot& at, const Front& front, double area, MotionGaps& out) const

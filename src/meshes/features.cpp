@@ -75,7 +75,7 @@ bool is_singular(const SurfaceMesh& mesh, const Fans& fans, std::uint32_t v, dou
 } // namespace
 
 Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
-                       const std::vector<std::uint32_t>& always)
+                       const std::vector<std::uint32_t>& always, std::span<const float> bends)
 {
     if (!(options.angle_deg >= 0 && options.angle_deg < 180))
         throw GeometryError(
@@ -89,9 +89,11 @@ Features find_features(const SurfaceMesh& mesh, const FeatureOptions& options,
     for (const std::uint32_t e : always) features.is_feature_edge[e] = 1;
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     {
-        if (features.is_feature_edge[e] == 0 &&
-            !is_feature(mesh, e, (options.angle_deg + spare_deg) * degree))
-            continue;
+        const bool is_known = !bends.empty() && bends[e] >= 0;
+        const bool bends_enough =
+            is_known ? bends[e] > options.cad_angle_deg * degree
+                     : is_feature(mesh, e, (options.angle_deg + spare_deg) * degree);
+        if (features.is_feature_edge[e] == 0 && !bends_enough) continue;
         features.is_feature_edge[e] = 1;
         features.edges.push_back(static_cast<std::uint32_t>(e));
     }

@@ -4,6 +4,7 @@
 #include "fppg/shapes.h"
 
 #include "core/text.h"
+#include "meshes/read_step.h"
 #include "meshes/readers.h"
 #include "platform/file_map.h"
 
@@ -48,6 +49,11 @@ MeshFile read_stl_file(const std::string& path, const MeshReading&, int threads)
     return read_stl(path, threads);
 }
 
+MeshFile read_step_file(const std::string& path, const MeshReading& reading, int)
+{
+    return read_step(path, reading);
+}
+
 MeshFile read_heights(const std::string& path, const MeshReading& reading, int threads)
 {
     return build_mesh(read_bathymetry_file(path, *reading.bathymetry, threads), reading.shapes,
@@ -61,6 +67,7 @@ constexpr auto table = std::to_array<MeshFormatRow>({
     {MeshFormat::Vtk, "vtk", "VTK (.vtk, .vtp, .vtu)", "vtk vtp vtu", read_with<read_vtk>},
     {MeshFormat::Obj, "obj", "OBJ", "obj", read_with<read_obj>, true},
     {MeshFormat::Off, "off", "OFF", "off", read_with<read_off>, true},
+    {MeshFormat::Step, "step", "STEP", "step stp", read_step_file, true},
     {MeshFormat::CsvBathymetry, "csv", "CSV (heights)", "csv", read_with<read_csv_bathymetry>},
     {MeshFormat::Bathymetry, "", "", "", read_heights},
 });

@@ -57,6 +57,11 @@ const LibraryMesh& MeshLibrary::read(const SourceRef& source, const std::string&
         throw GeometryError(
             fmt::format("{}:{}: <{}>: {}", definition_, source.line, source.command, e.what()));
     }
+    catch (const IoError& e)
+    {
+        throw IoError(fmt::format("{}:{}: <{} file=\"{}\">: {}", definition_, source.line,
+                                  source.command, name, e.what()));
+    }
 }
 
 } // namespace fppg

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "fppg/mesh.h"
+#include "meshes/near_tree.h"
 
 namespace fppg
 {
-
-/// The point of a mesh that is nearest to a given one.
-struct ClosestPoint
-{
-    Vec3 point;
-    std::uint32_t facet = 0; ///< index in the soup; the smallest where several are equally near
-    double distance = 0;     ///< metres, not negative
-};
 
 /// Where a line along an axis passes through a facet.
 struct Crossing

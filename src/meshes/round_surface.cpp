@@ -1,5 +1,7 @@
 #include "meshes/round_surface.h"
 
+#include "meshes/cad_surface.h"
+
 #include <cmath>
 
 namespace fppg
@@ -36,8 +38,9 @@ Vec3 unit(const Vec3& p)
     return length > 0 ? p / length : Vec3{};
 }
 
-void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t facet, bool is_2d)
+void project_to_exact(const FittedBody& body, Vec3& position, std::uint32_t facet, bool is_2d)
 {
+    if (body.cad != nullptr) body.cad->project(body.mesh, position, facet, is_2d);
     if (body.round == nullptr) return;
     const RoundSurface& surface = *body.round;
     const bool has_covers = !(surface.cover_normal == Vec3{});
@@ -65,6 +68,8 @@ void project_to_round(const FittedBody& body, Vec3& position, std::uint32_t face
 Vec3 exact_normal(const FittedBody& body, const Vec3& position, std::uint32_t facet)
 {
     const Vec3& flat = body.mesh.normals[facet];
+    if (body.cad != nullptr)
+        if (const auto foot = body.cad->foot(body.mesh, position, facet)) return foot->normal;
     if (body.round == nullptr || is_cover(body, facet)) return flat;
     const Vec3 normal = unit(body.round->level_at(position).gradient);
     return dot(normal, flat) < 0 ? -normal : normal;
@@ -72,6 +77,9 @@ Vec3 exact_normal(const FittedBody& body, const Vec3& position, std::uint32_t fa
 
 double exact_distance(const FittedBody& body, const Vec3& position, std::uint32_t facet)
 {
+    if (body.cad != nullptr)
+        if (const auto foot = body.cad->foot(body.mesh, position, facet))
+            return dot(position - foot->point, foot->normal);
     if (body.round == nullptr || is_cover(body, facet))
         return dot(position - body.mesh.vertices[body.mesh.facets[facet][0]],
                    body.mesh.normals[facet]);

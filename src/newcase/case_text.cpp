@@ -2,6 +2,7 @@
 
 #include "meshes/mesh_formats.h"
 #include "newcase/words.h"
+#include "newcase/xml_lines.h"
 
 #include <fmt/format.h>
 
@@ -33,46 +34,6 @@ std::string escaped(const std::string& text)
     }
     return out;
 }
-
-std::string number(double value)
-{
-    return short_number(value, 8);
-}
-
-/// Attributes x, y and z.
-std::string xyz(const Vec3& v)
-{
-    return fmt::format("x=\"{}\" y=\"{}\" z=\"{}\"", number(v.x), number(v.y), number(v.z));
-}
-
-/// Lines of XML with their indent.
-class XmlLines
-{
-public:
-    template <typename... Args>
-    void line(fmt::format_string<Args...> text, Args&&... args)
-    {
-        out_ += std::string(4 * static_cast<std::size_t>(depth_), ' ') +
-                fmt::format(text, std::forward<Args>(args)...) + '\n';
-    }
-    template <typename... Args>
-    void open(fmt::format_string<Args...> text, Args&&... args)
-    {
-        line("<{}>", fmt::format(text, std::forward<Args>(args)...));
-        ++depth_;
-    }
-    void close(const char* name)
-    {
-        --depth_;
-        line("</{}>", name);
-    }
-    void comment(const std::string& text) { line("<!-- {} -->", text); }
-    std::string take() { return std::move(out_); }
-
-private:
-    std::string out_;
-    int depth_ = 0;
-};
 
 /// Groups of touching parts that keep their places: each is one body.
 std::vector<std::vector<std::size_t>> bodies_of(const CasePlan& plan)
@@ -152,15 +113,15 @@ private:
     XmlLines xml_;
 
     bool flows() const { return plan_.water && plan_.water->flows; }
-    std::string dp_down(double value) const { return fmt::format("#{}-6*Dp", number(value)); }
-    std::string dp_up(double value) const { return fmt::format("#{}+6*Dp", number(value)); }
+    std::string dp_down(double value) const { return fmt::format("#{}-6*Dp", xml_number(value)); }
+    std::string dp_up(double value) const { return fmt::format("#{}+6*Dp", xml_number(value)); }
 
     void constants()
     {
         xml_.open("constantsdef");
         xml_.line("<gravity x=\"0\" y=\"0\" z=\"-9.81\" units_comment=\"m/s^2\" />");
         xml_.line("<rhop0 value=\"{}\" comment=\"Density: {}\" units_comment=\"kg/m^3\" />",
-                  number(plan_.liquid.rhop0), plan_.liquid.about);
+                  xml_number(plan_.liquid.rhop0), plan_.liquid.about);
         xml_.line(
             "<rhopgradient value=\"2\" comment=\"Density under the weight of the fluid above "
             "each particle\" />");
@@ -171,14 +132,14 @@ private:
         xml_.line(
             "<speedsystem value=\"{}\" auto=\"false\" comment=\"The largest speed: of parts, "
             "of the stream, or of fluid that falls by its depth\" units_comment=\"m/s\" />",
-            number(round_nearest(plan_.fastest, 3)));
+            xml_number(round_nearest(plan_.fastest, 3)));
         xml_.line(
             "<coefsound value=\"10\" comment=\"Speed of sound over that speed: densities "
             "change by 1 % at most\" />");
         xml_.line(
             "<speedsound value=\"{}\" auto=\"false\" comment=\"Ten times the largest speed; "
             "a higher one makes time steps shorter\" units_comment=\"m/s\" />",
-            number(plan_.speed_sound));
+            xml_number(plan_.speed_sound));
         xml_.line(
             "<coefh value=\"1\" comment=\"Smoothing length: h = coefh*sqrt(3*dp^2); walls "
             "get 3 layers\" />");
@@ -209,14 +170,14 @@ private:
             box.min[axis] = std::floor(box.min[axis] / unit) * unit;
             box.max[axis] = std::ceil(box.max[axis] / unit) * unit;
         }
-        xml_.open("definition dp=\"{}\" units_comment=\"m\"", number(plan_.dp));
+        xml_.open("definition dp=\"{}\" units_comment=\"m\"", xml_number(plan_.dp));
         xml_.line("<pointref x=\"0\" y=\"0\" z=\"0\" />");
         if (flows())
         {
             xml_.comment("Along x one period: what leaves at one end comes in at the other.");
-            xml_.line("<pointmin x=\"{}\" y=\"{}\" z=\"{}\" />", number(plan_.water->box.min.x),
+            xml_.line("<pointmin x=\"{}\" y=\"{}\" z=\"{}\" />", xml_number(plan_.water->box.min.x),
                       dp_down(box.min.y), dp_down(box.min.z));
-            xml_.line("<pointmax x=\"{}\" y=\"{}\" z=\"{}\" />", number(plan_.water->box.max.x),
+            xml_.line("<pointmax x=\"{}\" y=\"{}\" z=\"{}\" />", xml_number(plan_.water->box.max.x),
                       dp_up(box.max.y), dp_up(box.max.z));
         }
         else
@@ -236,7 +197,7 @@ private:
             if (plan_.kind == CaseKind::Wading)
                 xml_.comment(
                     "The bed is a dp below the wheels: no particle is squeezed in between.");
-            xml_.line("<newvarcte Ground=\"{}{}\" />", number(plan_.water->box.min.z),
+            xml_.line("<newvarcte Ground=\"{}{}\" />", xml_number(plan_.water->box.min.z),
                       plan_.kind == CaseKind::Wading ? "-Dp" : "");
         }
         xml_.line("<setdrawmode mode=\"full\" />");
@@ -259,15 +220,15 @@ private:
         if (uses("mm")) xml_.line("<newvarcte Mm=\"0.001\" _rem=\"Metres of a millimetre\" />");
         if (uses("cm")) xml_.line("<newvarcte Cm=\"0.01\" _rem=\"Metres of a centimetre\" />");
         if (uses("in")) xml_.line("<newvarcte Inch=\"0.0254\" _rem=\"Metres of an inch\" />");
-        if (plan_.options->speed)
+        if (plan_.speed)
             xml_.line("<newvarcte Speed=\"{}\" _rem=\"m/s, of the {}\" />",
-                      number(*plan_.options->speed),
+                      xml_number(*plan_.speed),
                       plan_.kind == CaseKind::Wading ? "vehicle along x" : "stream against x");
         xml_.line(
             "<newvarcte Boundary=\"2\" _rem=\"Walls 1: dynamic (DBC), 2: modified (mDBC), in "
             "layers; -evars:Boundary=1 changes it\" />");
-        xml_.line("<newvarcte TimeMax=\"{}\" TimeOut=\"{}\" _rem=\"s\" />", number(plan_.duration),
-                  number(plan_.time_out));
+        xml_.line("<newvarcte TimeMax=\"{}\" TimeOut=\"{}\" _rem=\"s\" />",
+                  xml_number(plan_.duration), xml_number(plan_.time_out));
         xml_.close("predefinition");
     }
 
@@ -279,10 +240,11 @@ private:
                                                              : "stands";
         xml_.comment(fmt::format("{}: {}.", part.name, does));
         xml_.line("<setmkbound mk=\"{}\" />", part.mkbound);
-        const std::string command =
-            fmt::format("drawfile{} file=\"{}\"{} fppg:name=\"{}\"", mesh_format_name(part.format),
-                        escaped(part.file),
-                        part.role == PartRole::Floating ? " fppg:fill=\"inside\"" : "", part.name);
+        const std::string command = fmt::format(
+            "drawfile{} file=\"{}\"{}{} fppg:name=\"{}\"", mesh_format_name(part.format),
+            escaped(part.file),
+            part.step_part.empty() ? "" : fmt::format(" fppg:part=\"{}\"", escaped(part.step_part)),
+            part.role == PartRole::Floating ? " fppg:fill=\"inside\"" : "", part.name);
         const char* scale = part.unit == "mm"   ? "Mm"
                             : part.unit == "cm" ? "Cm"
                             : part.unit == "in" ? "Inch"
@@ -307,25 +269,25 @@ private:
         const Vec3 size = w.box.max - w.box.min;
         const std::string beyond = flows() ? "-10*Dp" : "";
         const std::string longer = flows() ? "+20*Dp" : "";
-        const std::string x0 = (flows() ? "#" : "") + number(w.box.min.x) + beyond;
-        const std::string x1 = (flows() ? "#" : "") + number(size.x) + longer;
+        const std::string x0 = (flows() ? "#" : "") + xml_number(w.box.min.x) + beyond;
+        const std::string x1 = (flows() ? "#" : "") + xml_number(size.x) + longer;
         xml_.comment(flows() ? "The bed and its two walls, beyond both ends, which are joined."
                              : "The basin.");
         xml_.line("<setmkbound mk=\"0\" />");
         xml_.open("drawbox");
         xml_.line("<boxfill>{}</boxfill>",
                   flows() ? "bottom | front | back" : "bottom | left | right | front | back");
-        xml_.line("<point x=\"{}\" y=\"{}\" z=\"#Ground\" />", x0, number(w.box.min.y));
-        xml_.line("<size x=\"{}\" y=\"{}\" z=\"#{}-Ground\" />", x1, number(size.y),
-                  number(w.box.max.z));
+        xml_.line("<point x=\"{}\" y=\"{}\" z=\"#Ground\" />", x0, xml_number(w.box.min.y));
+        xml_.line("<size x=\"{}\" y=\"{}\" z=\"#{}-Ground\" />", x1, xml_number(size.y),
+                  xml_number(w.box.max.z));
         xml_.close("drawbox");
         xml_.comment("Water in all that is still empty, up to its level.");
         xml_.line("<setmkfluid mk=\"0\" />");
-        xml_.open("fillbox {}", xyz(w.seed));
+        xml_.open("fillbox {}", xml_place(w.seed));
         xml_.line("<modefill>void</modefill>");
-        xml_.line("<point x=\"{}\" y=\"{}\" z=\"#Ground\" />", x0, number(w.box.min.y));
-        xml_.line("<size x=\"{}\" y=\"{}\" z=\"#{}-Ground\" />", x1, number(size.y),
-                  number(w.level));
+        xml_.line("<point x=\"{}\" y=\"{}\" z=\"#Ground\" />", x0, xml_number(w.box.min.y));
+        xml_.line("<size x=\"{}\" y=\"{}\" z=\"#{}-Ground\" />", x1, xml_number(size.y),
+                  xml_number(w.level));
         xml_.close("fillbox");
     }
 
@@ -338,7 +300,7 @@ private:
         for (const NewPart& part : plan_.parts)
             if (part.role == PartRole::Floating)
                 xml_.line("<floating mkbound=\"{}\" rhopbody=\"{}\" comment=\"{}\" />",
-                          part.mkbound, number(round_nearest(part.rhop_body, 6)), part.name);
+                          part.mkbound, xml_number(round_nearest(part.rhop_body, 6)), part.name);
         xml_.close("floatings");
     }
 
@@ -351,12 +313,8 @@ private:
         int n = 0;
         for (const NewPart& part : plan_.parts) n = std::max(n, part.mkbound);
         const int first = plan_.water ? 0 : 1;
-        // Facets of smooth CAD faces bend by 6 degrees at most, so less than 30 finds more edges.
-        const bool has_step = std::any_of(plan_.parts.begin(), plan_.parts.end(),
-                                          [](const NewPart& p) { return !p.step.empty(); });
-        xml_.line("<bodyfitted mkbound=\"{}\"{} />",
-                  n == first ? std::to_string(first) : fmt::format("{}-{}", first, n),
-                  has_step ? " featureangle=\"15\"" : "");
+        xml_.line("<bodyfitted mkbound=\"{}\" />",
+                  n == first ? std::to_string(first) : fmt::format("{}-{}", first, n));
         for (const std::vector<std::size_t>& body : bodies_)
         {
             xml_.comment("Parts that touch and keep their places are one body; each keeps its mk.");
@@ -377,20 +335,20 @@ private:
     {
         const VesselFill& f = *plan_.fill;
         const std::string amount =
-            f.amount == FluidAmount::Litres    ? fmt::format("litres=\"{}\"", number(f.value))
-            : f.amount == FluidAmount::Percent ? fmt::format("percent=\"{}\"", number(f.value))
-                                               : fmt::format("level=\"{}\"", number(f.value));
+            f.amount == FluidAmount::Litres    ? fmt::format("litres=\"{}\"", xml_number(f.value))
+            : f.amount == FluidAmount::Percent ? fmt::format("percent=\"{}\"", xml_number(f.value))
+                                               : fmt::format("level=\"{}\"", xml_number(f.value));
         xml_.comment(fmt::format("The {} in {}: from a seed in its cavity, up to z = {} m.",
                                  plan_.liquid.name, plan_.parts[f.vessel].name,
                                  short_number(f.level)));
         xml_.open("fill mkfluid=\"0\" {}", amount);
-        xml_.line("<seed {} />", xyz(f.seed));
+        xml_.line("<seed {} />", xml_place(f.seed));
         xml_.close("fill");
     }
 
     void initials()
     {
-        if (!flows() || !plan_.options->speed) return;
+        if (!flows() || !plan_.speed) return;
         xml_.comment(plan_.kind == CaseKind::Wading
                          ? "In the frame of the vehicle the water comes from the front; the bed "
                            "stands."
@@ -421,52 +379,13 @@ private:
             // Longer than the run: a movement that ends with it lets the part stand.
             xml_.open("mvrot id=\"1\" duration=\"#2*TimeMax\" anglesunits=\"degrees\"");
             xml_.line("<vel ang=\"{}\" units_comment=\"degrees/s\" />",
-                      number(part.turning->degrees_per_s));
-            xml_.line("<axisp1 {} />", xyz(axis.point));
-            xml_.line("<axisp2 {} />", xyz(other));
+                      xml_number(part.turning->degrees_per_s));
+            xml_.line("<axisp1 {} />", xml_place(axis.point));
+            xml_.line("<axisp2 {} />", xml_place(other));
             xml_.close("mvrot");
             xml_.close("objreal");
         }
         xml_.close("motion");
-    }
-
-    /// Zones of the solver where fluid comes in.
-    void special()
-    {
-        if (plan_.inlets.empty()) return;
-        xml_.open("special");
-        xml_.open("inout");
-        for (const FluidInlet& inlet : plan_.inlets)
-        {
-            // Its particles reach back from the zone, and walls stand behind the face. The
-            // outermost stand half a dp within its rim, so that their number times dp^2 is the
-            // area.
-            const Vec3 place = inlet.place + inlet.direction * (5 * plan_.dp);
-            xml_.comment(fmt::format("{}: 5 dp before its face.", inlet.name));
-            xml_.open("inoutzone");
-            xml_.line(
-                "<refilling value=\"0\" comment=\"0: full, 1: below the surface, 2: advanced\" />");
-            xml_.line(
-                "<inputtreatment value=\"0\" comment=\"0: particles that come in stay as they "
-                "are\" />");
-            xml_.line("<layers value=\"4\" comment=\"Of particles that are pushed in\" />");
-            xml_.open("zone3d");
-            xml_.open("circle");
-            xml_.line("<point {} />", xyz(place));
-            xml_.line("<radius v=\"{}\" />",
-                      number(std::max(inlet.radius - plan_.dp / 2, plan_.dp / 2)));
-            xml_.line("<direction {} />", xyz(inlet.direction));
-            xml_.close("circle");
-            xml_.close("zone3d");
-            xml_.open("imposevelocity mode=\"0\" comment=\"0: fixed\"");
-            xml_.line("<velocity v=\"{}\" units_comment=\"m/s\" />",
-                      number(round_nearest(inlet.speed, 4)));
-            xml_.close("imposevelocity");
-            xml_.line("<imposerhop mode=\"0\" comment=\"0: rhop0\" />");
-            xml_.close("inoutzone");
-        }
-        xml_.close("inout");
-        xml_.close("special");
     }
 
     void parameter(const char* key, const std::string& value, const std::string& comment)
@@ -477,7 +396,7 @@ private:
     void execution()
     {
         xml_.open("execution");
-        special();
+        write_inlet_zones(plan_, xml_);
         xml_.open("parameters");
         parameter("SavePosDouble", "0", "Output positions in single precision");
         parameter("Boundary", "#Boundary", "Walls: 1 dynamic (DBC), 2 modified (mDBC)");
@@ -487,7 +406,7 @@ private:
         parameter("Kernel", "2", "1: cubic spline, 2: Wendland");
         parameter("ViscoTreatment", "1", "1: artificial, 2: laminar and SPS, 3: laminar");
         parameter(
-            "Visco", number(plan_.visco),
+            "Visco", xml_number(plan_.visco),
             fmt::format(
                 "Of the artificial viscosity: stands for {} m2/s at this dp, {} has {}",
                 short_number(plan_.visco * std::sqrt(3.0) * plan_.dp * plan_.speed_sound / 10, 2),
@@ -505,8 +424,10 @@ private:
         parameter("TimeMax", "#TimeMax", "End of the run, s");
         parameter("TimeOut", "#TimeOut", "Time between two outputs, s");
         if (flows()) parameter("XPeriodicIncZ", "0", "Periodic in x");
-        parameter("RhopOutMin", number(0.7 * plan_.liquid.rhop0), "Smallest density kept, kg/m3");
-        parameter("RhopOutMax", number(1.3 * plan_.liquid.rhop0), "Largest density kept, kg/m3");
+        parameter("RhopOutMin", xml_number(0.7 * plan_.liquid.rhop0),
+                  "Smallest density kept, kg/m3");
+        parameter("RhopOutMax", xml_number(1.3 * plan_.liquid.rhop0),
+                  "Largest density kept, kg/m3");
         simulation_domain();
         xml_.close("parameters");
         xml_.close("execution");
@@ -521,7 +442,7 @@ private:
                           : "The box of the particles: nothing leaves the housing");
         xml_.line("<posmin x=\"default\" y=\"default\" z=\"default\" />");
         xml_.line("<posmax x=\"default\" y=\"default\" z=\"default{}\" />",
-                  is_open ? fmt::format(" + {}", number(height)) : "");
+                  is_open ? fmt::format(" + {}", xml_number(height)) : "");
         xml_.close("simulationdomain");
     }
 };

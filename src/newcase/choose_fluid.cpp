@@ -159,7 +159,7 @@ void fill_vessel(CasePlan& plan, std::size_t vessel, VesselFill fill)
     if (!part.report.is_watertight)
         plan.warnings.push_back(fmt::format(
             "{}: the part is no closed solid{}: its walls are sheets, whose particles stand on the "
-            "side away from the fluid.",
+            "side away from the fluid. Close it where it was made for walls as thick as they are.",
             part.path, open_edges_text(part)));
 }
 

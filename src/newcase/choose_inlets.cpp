@@ -1,4 +1,4 @@
-#include "newcase/plan.h"
+#include "newcase/flat_faces.h"
 
 #include "fppg/error.h"
 #include "newcase/words.h"
@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace fppg
 {
@@ -15,62 +14,31 @@ namespace fppg
 namespace
 {
 
-/// Facets of a flat face look the same way, to about a degree.
-constexpr double same_way = 0.9998;
-/// A face that fills less of the circle round it is no disc.
-constexpr double least_disc = 0.9;
+/// A direction names the faces that look along it, to about two degrees.
+constexpr double named_way = 0.9994;
+/// Smaller faces beside the largest of one direction are no openings.
+constexpr double least_face_share = 0.02;
+constexpr std::size_t most_listed = 6;
 
-struct FlatFace
+std::string way_text(const Vec3& way)
 {
-    Vec3 middle;
-    Vec3 normal;
-    double area = 0;   ///< m2
-    double radius = 0; ///< m, of its farthest corner from the middle
-};
-
-/// The facets that look along a direction and lie farthest along it.
-FlatFace face_along(const NewPart& part, const Vec3& direction)
-{
-    const SurfaceMesh& mesh = part.mesh;
-    const double size = norm(part.box().max - part.box().min);
-    const auto middle_of = [&](std::size_t f)
-    {
-        const auto& c = mesh.facets[f];
-        return (mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]) / 3;
-    };
-    double farthest = -1e300;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        if (dot(mesh.normals[f], direction) > same_way)
-            farthest = std::max(farthest, dot(middle_of(f), direction));
-    FlatFace out;
-    out.normal = direction;
-    std::vector<std::size_t> facets;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-        if (dot(mesh.normals[f], direction) > same_way &&
-            dot(middle_of(f), direction) > farthest - 1e-3 * size)
-        {
-            facets.push_back(f);
-            out.area += mesh.areas[f];
-            out.middle = out.middle + mesh.areas[f] * middle_of(f);
-        }
-    if (!(out.area > 0)) return out;
-    out.middle = out.middle / out.area;
-    for (const std::size_t f : facets)
-        for (const std::uint32_t v : mesh.facets[f])
-            out.radius = std::max(out.radius, norm(mesh.vertices[v] - out.middle));
-    return out;
+    return fmt::format("{},{},{}", short_number(way.x, 5), short_number(way.y, 5),
+                       short_number(way.z, 5));
 }
 
-/// A part that is one flat sheet is the face itself.
-FlatFace face_of_sheet(const NewPart& part)
+std::string face_text(const FlatFace& face)
 {
-    const FlatFace face = face_along(part, part.mesh.normals.front());
-    if (face.area < 0.999 * part.report.area)
-        throw UsageError(fmt::format(
-            "--inlet: {} is no flat sheet; name the face by where it looks: {}:-x=2m/s (x, y, z or "
-            "a direction such as 0,0,1)",
-            part.name, part.name));
-    return face;
+    return fmt::format("{} ({} mm2 at {})", way_text(face.normal), short_number(1e6 * face.area, 3),
+                       place_text(face.middle));
+}
+
+/// The faces of a part that can be chosen, for messages.
+std::string faces_text(const std::vector<FlatFace>& faces)
+{
+    std::string out;
+    for (std::size_t k = 0; k < std::min(faces.size(), most_listed); ++k)
+        out += (k > 0 ? "; " : "") + face_text(faces[k]);
+    return out;
 }
 
 Vec3 direction_of(const std::string& text)
@@ -87,18 +55,91 @@ Vec3 direction_of(const std::string& text)
     return out / length;
 }
 
+bool is_sheet(const NewPart& part, const std::vector<FlatFace>& faces)
+{
+    return !faces.empty() && faces.front().area > 0.999 * part.report.area;
+}
+
+/// The face of a part that looks along a direction, the farthest one; with a place behind @ the
+/// nearest to it.
+///
+/// text  "-x" or "0.7,0,0.7@0.1,0,0.2"
+FlatFace face_named(const NewPart& part, const std::vector<FlatFace>& faces,
+                    const std::string& text)
+{
+    const std::size_t at = text.find('@');
+    const Vec3 direction = direction_of(text.substr(0, at));
+    std::vector<FlatFace> found;
+    for (const FlatFace& face : faces)
+        if (dot(face.normal, direction) > named_way &&
+            (found.empty() || face.area > least_face_share * found.front().area))
+            found.push_back(face);
+    if (found.empty())
+        throw GeometryError(
+            fmt::format("{}: no flat face of the part looks along {}; expected one of its faces, "
+                        "the largest look along {}",
+                        part.path, text.substr(0, at), faces_text(faces)));
+    if (at != std::string::npos)
+    {
+        const Vec3 place = vector_of(text.substr(at + 1), "--inlet");
+        return *std::min_element(found.begin(), found.end(),
+                                 [&](const FlatFace& a, const FlatFace& b)
+                                 { return norm(a.middle - place) < norm(b.middle - place); });
+    }
+    const auto along = [&](const FlatFace& face) { return dot(face.middle, direction); };
+    std::stable_sort(found.begin(), found.end(),
+                     [&](const FlatFace& a, const FlatFace& b) { return along(a) > along(b); });
+    const double size = norm(part.box().max - part.box().min);
+    if (found.size() > 1 && along(found[0]) - along(found[1]) < 1e-3 * size)
+        throw UsageError(fmt::format(
+            "--inlet: faces of {} look along {} side by side: {}; a place names one: {}:{}@{}",
+            part.name, text, faces_text(found), part.name, text, way_text(found[0].middle)));
+    return found.front();
+}
+
+/// The face of a part that is one flat sheet. It looks into the case: to the middle of what holds
+/// the fluid, or of all other parts.
+FlatFace face_of_sheet(const CasePlan& plan, const NewPart& part,
+                       const std::vector<FlatFace>& faces)
+{
+    if (!is_sheet(part, faces))
+        throw UsageError(fmt::format(
+            "--inlet: {0} is no flat sheet; name its face by where it looks: {0}:-x=2m/s (x, y, z "
+            "or a direction such as 0,0,1). Its largest flat faces look along {1}",
+            part.name, faces_text(faces)));
+    FlatFace face = faces.front();
+    Box3 room;
+    for (const NewPart& other : plan.parts)
+        if (&other != &part && other.role == PartRole::Housing) room = other.box();
+    for (const NewPart& other : plan.parts)
+        if (&other != &part && room.is_empty())
+        {
+            room.add(other.box().min);
+            room.add(other.box().max);
+        }
+    if (room.is_empty()) return face;
+    const Vec3 inwards = (room.min + room.max) * 0.5 - face.middle;
+    if (dot(inwards, face.normal) < -1e-3 * norm(inwards)) face.normal = face.normal * -1.0;
+    return face;
+}
+
 /// "2m/s", or a flow through the area: "3l/min", "0.05l/s".
-double speed_of(const std::string& text, double area)
+void read_speed(const std::string& text, FluidInlet& inlet)
 {
     const char* expected = "2m/s, 3l/min or 0.05l/s";
     const Quantity q = split_quantity(text, "--inlet", expected);
-    const double speed = q.unit == "m/s"     ? q.value
-                         : q.unit == "l/s"   ? q.value / 1000 / area
-                         : q.unit == "l/min" ? q.value / 60000 / area
-                                             : 0;
-    if (!(speed > 0))
+    if (q.unit == "l/s" || q.unit == "l/min")
+        inlet.litres_per_s = q.unit == "l/s" ? q.value : q.value / 60;
+    inlet.speed = q.unit == "m/s" ? q.value : inlet.litres_per_s / 1000 / inlet.area;
+    if (!(inlet.speed > 0))
         throw UsageError(fmt::format("--inlet: \"{}\" is invalid, expected {}", text, expected));
-    return speed;
+}
+
+std::string outline_text(const FaceOutline& o)
+{
+    return o.is_disc ? fmt::format("a disc of radius {} mm", short_number(1000 * o.radius))
+                     : fmt::format("a rectangle of {} x {} mm", short_number(1000 * o.length),
+                                   short_number(1000 * o.width));
 }
 
 void add_inlet(CasePlan& plan, const std::string& entry)
@@ -110,37 +151,54 @@ void add_inlet(CasePlan& plan, const std::string& entry)
             entry));
     const std::string left = entry.substr(0, equal);
     const std::size_t colon = left.find(':');
-    const std::size_t p = part_named(plan, left.substr(0, colon), "--inlet");
-    NewPart& part = plan.parts[p];
+    NewPart& part = plan.parts[part_named(plan, left.substr(0, colon), "--inlet")];
+    const std::vector<FlatFace> faces = flat_faces(part);
     const FlatFace face = colon == std::string::npos
-                              ? face_of_sheet(part)
-                              : face_along(part, direction_of(left.substr(colon + 1)));
-    if (!(face.area > 0))
-        throw GeometryError(fmt::format("{}: no flat face of the part looks along {}", part.path,
-                                        left.substr(colon + 1)));
-    const double disc = face.area / (std::numbers::pi * face.radius * face.radius);
-    if (disc < least_disc)
-        throw GeometryError(fmt::format(
-            "{}: the face at {} is no disc: it fills {:.0f} % of the circle round it. Only round "
-            "faces can be inlets; others are written by hand (<inoutzone> with a box)",
-            part.path, place_text(face.middle), 100 * disc));
-    if (colon == std::string::npos) part.role = PartRole::Inlet;
+                              ? face_of_sheet(plan, part, faces)
+                              : face_named(part, faces, left.substr(colon + 1));
     FluidInlet inlet;
     inlet.name = left;
-    inlet.place = face.middle;
+    inlet.face = outline_of(part, face);
     inlet.direction = face.normal;
-    inlet.radius = face.radius;
-    inlet.speed = speed_of(entry.substr(equal + 1), face.area);
-    plan.propose("inlet " + left,
-                 fmt::format("{} m/s along ({}, {}, {})", short_number(inlet.speed),
-                             short_number(inlet.direction.x), short_number(inlet.direction.y),
-                             short_number(inlet.direction.z)),
-                 fmt::format("through a disc of radius {} mm at {}, {} l/min",
-                             short_number(1000 * inlet.radius), place_text(inlet.place),
-                             short_number(60000 * inlet.speed * face.area)),
-                 "The zone stands 5 dp before the face, as its 4 layers of particles reach back "
-                 "from it.");
+    inlet.area = face.area;
+    if (!inlet.face.is_near_enough)
+        throw GeometryError(fmt::format(
+            "{}: the face at {} is no disc and no rectangle: it fills {:.0f} % of {} round it. The "
+            "solver lets fluid in through discs and rectangles; expected a face of such a shape, "
+            "or "
+            "a sheet of one that is drawn into the opening",
+            part.path, place_text(face.middle), 100 * inlet.face.filled, outline_text(inlet.face)));
+    if (colon == std::string::npos) part.role = PartRole::Inlet;
+    read_speed(entry.substr(equal + 1), inlet);
+    plan.propose(
+        "inlet " + left,
+        fmt::format("{} m/s along ({})", short_number(inlet.speed), way_text(inlet.direction)),
+        fmt::format("through {} at {}, {} l/min", outline_text(inlet.face),
+                    place_text(inlet.face.middle), short_number(60000 * inlet.speed * face.area)),
+        "The zone stands 5 dp before the face, as its 4 layers of particles reach back from it.");
     plan.inlets.push_back(inlet);
+}
+
+/// Flat sheets that are called inlets, and that no --inlet names.
+void add_called_inlets(CasePlan& plan)
+{
+    for (std::size_t p = 0; p < plan.parts.size(); ++p)
+    {
+        const NewPart& part = plan.parts[p];
+        if (part.role != PartRole::Fixed || !has_word(part.name, {"inlet", "inflow"}) ||
+            !is_sheet(part, flat_faces(part)))
+            continue;
+        const std::string missing = fmt::format(
+            "--inlet {}=2m/s is missing: {} is a flat sheet whose name says that fluid "
+            "comes in there; how fast (2m/s, 3l/min or 0.05l/s)?",
+            part.name, part.path);
+        if (!plan.options->ask) throw UsageError(missing);
+        const std::string answer = plan.options->ask(
+            fmt::format("How fast does fluid come in through {} (2m/s, 3l/min or 0.05l/s)?",
+                        part.name),
+            "1m/s");
+        add_inlet(plan, part.name + "=" + answer);
+    }
 }
 
 } // namespace
@@ -148,6 +206,7 @@ void add_inlet(CasePlan& plan, const std::string& entry)
 void choose_inlets(CasePlan& plan)
 {
     for (const std::string& entry : plan.options->inlets) add_inlet(plan, entry);
+    add_called_inlets(plan);
     int mkbound = 0;
     for (NewPart& part : plan.parts) part.mkbound = part.role == PartRole::Inlet ? 0 : ++mkbound;
     if (mkbound == 0) throw UsageError("--inlet: no part is left that is a wall");

@@ -117,35 +117,47 @@ void turn(CasePlan& plan, std::size_t p, const Turning& turning, const std::stri
         "PART=3000deg/s@AXIS decides, --fix PART lets it stand.");
 }
 
+void apply_rotation(CasePlan& plan, const std::string& entry)
+{
+    const std::size_t equal = entry.find('=');
+    if (equal == std::string::npos || equal == 0)
+        throw UsageError(fmt::format(
+            "--rotate: \"{}\" is invalid, expected PART=3000deg/s or PART=3000deg/s@AXIS", entry));
+    const std::size_t at = entry.find('@', equal);
+    Turning turning;
+    turning.degrees_per_s = degrees_per_s(
+        entry.substr(equal + 1, at == std::string::npos ? std::string::npos : at - equal - 1));
+    const std::vector<std::string> names = names_of_list(entry.substr(0, equal));
+    std::string reason = "given";
+    const std::string axis = at == std::string::npos ? "" : entry.substr(at + 1);
+    for (std::size_t k = 0; k < names.size(); ++k)
+    {
+        const std::size_t p = part_named(plan, names[k], "--rotate");
+        if (k == 0)
+            turning.axis = axis.empty() || axis == "axis" ? axis_found(plan, p, reason)
+                                                          : axis_wanted(plan, p, axis);
+        if (plan.parts[p].role == PartRole::Housing)
+            throw UsageError(fmt::format(
+                "--rotate: {} holds the fluid and stands; --housing chooses another part",
+                plan.parts[p].name));
+        turn(plan, p, turning, k == 0 ? reason : "with " + names[0]);
+    }
+}
+
 void apply_rotations(CasePlan& plan)
 {
-    for (const std::string& entry : plan.options->rotations)
-    {
-        const std::size_t equal = entry.find('=');
-        if (equal == std::string::npos || equal == 0)
-            throw UsageError(fmt::format(
-                "--rotate: \"{}\" is invalid, expected PART=3000deg/s or PART=3000deg/s@AXIS",
-                entry));
-        const std::size_t at = entry.find('@', equal);
-        Turning turning;
-        turning.degrees_per_s = degrees_per_s(
-            entry.substr(equal + 1, at == std::string::npos ? std::string::npos : at - equal - 1));
-        const std::vector<std::string> names = names_of_list(entry.substr(0, equal));
-        std::string reason = "given";
-        const std::string axis = at == std::string::npos ? "" : entry.substr(at + 1);
-        for (std::size_t k = 0; k < names.size(); ++k)
-        {
-            const std::size_t p = part_named(plan, names[k], "--rotate");
-            if (k == 0)
-                turning.axis = axis.empty() || axis == "axis" ? axis_found(plan, p, reason)
-                                                              : axis_wanted(plan, p, axis);
-            if (plan.parts[p].role == PartRole::Housing)
-                throw UsageError(fmt::format(
-                    "--rotate: {} holds the fluid and stands; --housing chooses another part",
-                    plan.parts[p].name));
-            turn(plan, p, turning, k == 0 ? reason : "with " + names[0]);
-        }
-    }
+    for (const std::string& entry : plan.options->rotations) apply_rotation(plan, entry);
+    if (plan.kind != CaseKind::Gearbox || !plan.options->rotations.empty()) return;
+    std::vector<std::string> names;
+    for (const NewPart& part : plan.parts)
+        if (part.role == PartRole::Fixed) names.push_back(part.name);
+    if (!plan.options->ask)
+        throw UsageError(fmt::format(
+            "--rotate PART=3000deg/s is missing: in a gearbox something turns; which of {}?",
+            fmt::join(names, ", ")));
+    apply_rotation(
+        plan, plan.options->ask(
+                  fmt::format("What turns, as PART=3000deg/s ({})?", fmt::join(names, ", ")), ""));
 }
 
 bool is_same_line(const AxisLine& a, const AxisLine& b, double within)
@@ -219,7 +231,7 @@ void follow_movers(CasePlan& plan)
 /// Wheels of a vehicle: round about y, and down to the ground.
 void roll_wheels(CasePlan& plan)
 {
-    if (plan.kind != CaseKind::Wading || !plan.options->speed) return;
+    if (plan.kind != CaseKind::Wading || !plan.speed) return;
     double ground = plan.parts[0].box().min.z;
     for (const NewPart& part : plan.parts) ground = std::min(ground, part.box().min.z);
     for (std::size_t p = 0; p < plan.parts.size(); ++p)
@@ -240,11 +252,10 @@ void roll_wheels(CasePlan& plan)
             continue;
         }
         const double radius = found->line.point.z - part.box().min.z;
-        turn(plan, p, {found->line, *plan.options->speed / radius * 180 / std::numbers::pi},
+        turn(plan, p, {found->line, *plan.speed / radius * 180 / std::numbers::pi},
              fmt::format("a wheel: it stands on the ground and {}; it rolls at {} m/s, its radius "
                          "is {} m",
-                         times_text(*found), short_number(*plan.options->speed),
-                         short_number(radius)));
+                         times_text(*found), short_number(*plan.speed), short_number(radius)));
     }
 }
 
@@ -269,10 +280,6 @@ void choose_motion(CasePlan& plan)
     roll_wheels(plan);
     follow_movers(plan);
     list_fixed(plan);
-    if (plan.kind == CaseKind::Gearbox &&
-        std::none_of(plan.parts.begin(), plan.parts.end(),
-                     [](const NewPart& p) { return p.turning.has_value(); }))
-        throw UsageError("--rotate PART=3000deg/s is missing: in a gearbox something turns");
 }
 
 } // namespace fppg

@@ -189,7 +189,7 @@ void choose_constants(CasePlan& plan)
             by_parts = moving_speed(part);
             fastest_part = part.name;
         }
-    const double stream = std::abs(plan.options->speed.value_or(0));
+    const double stream = std::abs(plan.speed.value_or(0));
     double by_inlets = 0;
     for (const FluidInlet& inlet : plan.inlets) by_inlets = std::max(by_inlets, inlet.speed);
     plan.fastest = std::max({by_depth, by_parts, stream, by_inlets});

@@ -1,6 +1,7 @@
 #include "newcase/plan.h"
 
 #include "core/nearest_word.h"
+#include "core/text.h"
 #include "fppg/error.h"
 #include "newcase/words.h"
 
@@ -156,6 +157,26 @@ std::pair<double, double> housing_rank(const CasePlan& plan, std::size_t h)
     return {rank, size.x * size.y * size.z};
 }
 
+/// What floats, turns or is a sheet that lets fluid in is no housing.
+bool may_hold_fluid(const CasePlan& plan, const NewPart& part)
+{
+    const auto is_named = [&](const std::vector<std::string>& entries)
+    {
+        return std::any_of(entries.begin(), entries.end(),
+                           [&](const std::string& entry)
+                           {
+                               const std::vector<std::string> names =
+                                   names_of_list(entry.substr(0, entry.find('=')));
+                               return std::any_of(
+                                   names.begin(), names.end(),
+                                   [&](const std::string& name)
+                                   { return lower_case(name) == lower_case(part.name); });
+                           });
+    };
+    return part.role != PartRole::Floating && !is_named(plan.options->rotations) &&
+           !is_named(plan.options->inlets);
+}
+
 void choose_housing(CasePlan& plan)
 {
     const NewCaseOptions& o = *plan.options;
@@ -174,8 +195,13 @@ void choose_housing(CasePlan& plan)
     {
         const bool is_needed = plan.kind == CaseKind::Gearbox || plan.kind == CaseKind::Tank;
         if (!is_needed) return;
-        for (std::size_t i = 1; i < plan.parts.size(); ++i)
-            if (housing_rank(plan, i) > housing_rank(plan, housing)) housing = i;
+        housing = plan.parts.size();
+        for (std::size_t i = 0; i < plan.parts.size(); ++i)
+            if (may_hold_fluid(plan, plan.parts[i]) &&
+                (housing == plan.parts.size() ||
+                 housing_rank(plan, i) > housing_rank(plan, housing)))
+                housing = i;
+        if (housing == plan.parts.size()) return;
         reason = plan.parts.size() == 1
                      ? "the only part"
                      : "its box holds most of the other parts, or its name says so";
@@ -185,6 +211,23 @@ void choose_housing(CasePlan& plan)
         throw UsageError(fmt::format("{} cannot float and hold the fluid", part.name));
     part.role = PartRole::Housing;
     part.role_reason = reason;
+}
+
+void choose_speed(CasePlan& plan)
+{
+    plan.speed = plan.options->speed;
+    const bool is_needed = plan.kind == CaseKind::Wading || plan.kind == CaseKind::Obstacle;
+    if (plan.speed || !is_needed) return;
+    const char* of = plan.kind == CaseKind::Wading ? "vehicle" : "stream";
+    if (!plan.options->ask)
+        throw UsageError(
+            fmt::format("--speed is missing: how fast is the {}, metres a second?", of));
+    const std::string answer =
+        plan.options->ask(fmt::format("How fast is the {}, metres a second?", of), "");
+    const Quantity q = split_quantity(answer, "speed", "metres a second, such as 5");
+    if (!q.unit.empty() && q.unit != "m/s")
+        throw UsageError(fmt::format("speed: \"{}\" is invalid, expected metres a second", answer));
+    plan.speed = q.value;
 }
 
 } // namespace
@@ -212,6 +255,7 @@ void choose_roles(CasePlan& plan)
     for (const std::string& fixed : plan.options->fixed) (void)part_named(plan, fixed, "--fix");
     choose_floatings(plan);
     choose_housing(plan);
+    choose_speed(plan);
 }
 
 } // namespace fppg

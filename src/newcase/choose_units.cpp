@@ -71,11 +71,19 @@ double longest(const Box3& box)
     return std::max({size.x, size.y, size.z});
 }
 
-Box3 box_of_all(const std::vector<NewPart>& parts)
+/// STEP files name their unit, and are read as metres.
+bool is_in_metres(const NewPart& part)
+{
+    return !part.step_part.empty();
+}
+
+/// Of the files whose unit is looked for.
+Box3 box_of_meshes(const std::vector<NewPart>& parts)
 {
     Box3 box;
     for (const NewPart& part : parts)
     {
+        if (is_in_metres(part)) continue;
         box.add(part.box().min);
         box.add(part.box().max);
     }
@@ -121,7 +129,7 @@ struct UnitChoice
 
 UnitChoice unit_by_size(const CasePlan& plan)
 {
-    const Box3 box = box_of_all(plan.parts);
+    const Box3 box = box_of_meshes(plan.parts);
     const double size = longest(box);
     std::vector<std::string> fits;
     std::vector<std::string> not_so;
@@ -153,10 +161,35 @@ UnitChoice unit_by_size(const CasePlan& plan)
             is_sure};
 }
 
-UnitChoice common_unit(const CasePlan& plan)
+/// Warns where the sizes speak against the unit that is given, and for another one.
+void doubt_given_unit(CasePlan& plan)
+{
+    const Box3 box = box_of_meshes(plan.parts);
+    const std::string why = doubt(plan, box, metres_of_unit(plan.options->unit));
+    if (why.empty()) return;
+    for (const char* unit : guessed_units)
+        if (doubt(plan, box, metres_of_unit(unit)).empty())
+        {
+            plan.warnings.push_back(fmt::format(
+                "--unit {}: with it all parts together would be {}; in {} they are {} m long. {} "
+                "is "
+                "the first of them. Expected the unit that they were exported in.",
+                plan.options->unit, why, unit, short_number(longest(box) * metres_of_unit(unit)),
+                plan.parts.front().path));
+            return;
+        }
+}
+
+UnitChoice common_unit(CasePlan& plan)
 {
     const NewCaseOptions& options = *plan.options;
-    if (!options.unit.empty()) return {options.unit, "given"};
+    if (std::all_of(plan.parts.begin(), plan.parts.end(), is_in_metres))
+        return {"m", "STEP files name their units, all is read as metres"};
+    if (!options.unit.empty())
+    {
+        doubt_given_unit(plan);
+        return {options.unit, "given"};
+    }
     UnitChoice out;
     for (const NewPart& part : plan.parts)
     {
@@ -225,6 +258,11 @@ void choose_units(CasePlan& plan)
     for (std::size_t i = 0; i < plan.parts.size(); ++i)
     {
         NewPart& part = plan.parts[i];
+        if (is_in_metres(part))
+        {
+            scale_part(part, "m");
+            continue;
+        }
         if (plan.options->units.empty())
         {
             const std::string named = unit_in_comments(part);
@@ -236,7 +274,12 @@ void choose_units(CasePlan& plan)
             plan.propose(part.name, "in " + of_part[i],
                          plan.options->units.empty() ? "its file says so" : "given");
     }
-    const Box3 box = box_of_all(plan.parts);
+    Box3 box;
+    for (const NewPart& part : plan.parts)
+    {
+        box.add(part.box().min);
+        box.add(part.box().max);
+    }
     const Vec3 size = box.max - box.min;
     plan.propose("unit", common.unit, common.reason,
                  fmt::format("The parts fill a box of {} x {} x {} m. --unit mm decides for all "

@@ -57,10 +57,9 @@ struct Turning
 
 struct NewPart
 {
-    std::string path; ///< for messages: of a STEP file with the part's name
-    std::string file; ///< as the definition writes it
-    std::string step; ///< the STEP file that it is of; empty: it is a mesh file
-    std::size_t step_index = 0;
+    std::string path;
+    std::string file;       ///< as the definition writes it
+    std::string step_part;  ///< of a STEP file, how `fppg:part` names it; empty: it is a mesh file
     std::string step_facts; ///< what its CAD model says: edges, exact volume
     std::string name;       ///< no two parts have the same
     std::string unit;
@@ -120,14 +119,30 @@ struct VesselFill
     double bottom = 0;
 };
 
-/// A round place through which fluid comes in.
+/// The disc or rectangle that a face is.
+struct FaceOutline
+{
+    bool is_disc = false;
+    Vec3 middle;
+    double radius = 0; ///< of a disc, m
+    Vec3 along;        ///< of a rectangle: along its first sides, of length 1
+    Vec3 across;       ///< along the others: normal x along
+    double length = 0; ///< of the first sides, m
+    double width = 0;
+    double filled = 0; ///< share of the disc or rectangle that the face covers: at least 0.9 of a
+                       ///< disc, 0.97 of a rectangle are near enough
+    bool is_near_enough = false;
+};
+
+/// A flat place through which fluid comes in.
 struct FluidInlet
 {
     std::string name;
-    Vec3 place; ///< the middle of its face
-    Vec3 direction;
-    double radius = 0;
-    double speed = 0; ///< m/s
+    FaceOutline face;
+    Vec3 direction; ///< of the fluid, of length 1
+    double area = 0;
+    double speed = 0;        ///< m/s
+    double litres_per_s = 0; ///< where a flow is asked for; 0: a speed
 };
 
 /// Fluid and walls around the parts where none of them holds it: a basin, or a channel whose ends
@@ -148,6 +163,7 @@ struct CasePlan
     CaseKind kind = CaseKind::Tank;
     std::vector<NewPart> parts;
     std::vector<PartPair> pairs;
+    std::optional<double> speed; ///< of the vehicle or stream, given or answered; m/s
     Liquid liquid;
     std::optional<VesselFill> fill;
     std::optional<WaterBox> water;
@@ -195,8 +211,6 @@ double round_nearest(double value, int digits);
 
 /// Reads the files and names the parts.
 void read_parts(CasePlan& plan);
-/// The meshes of parts of STEP files, in facets within 0.01 dp of their surface.
-std::vector<NewCaseFile> step_meshes(const CasePlan& plan);
 /// Finds out what a length in each file is, and scales the meshes to metres.
 void choose_units(CasePlan& plan);
 /// Refuses parts in other units and parts far away, warns of open ones.

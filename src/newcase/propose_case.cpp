@@ -53,17 +53,15 @@ NewCase propose_case(const NewCaseOptions& options)
     NewCase out;
     out.kind = new_case_kinds()[static_cast<std::size_t>(plan.kind)];
     out.xml = case_text(plan);
-    out.files = step_meshes(plan);
     out.dp = plan.dp;
     out.expected_particles = plan.expected;
-    const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
     for (const NewPart& part : plan.parts)
     {
-        const std::string mesh = part.step.empty() ? part.path : (folder / part.file).string();
-        out.parts.push_back({part.name, mesh, part.unit, part.mkbound, role_name(part.role)});
-        if (!part.step.empty())
-            plan.propose(part.name, "from " + part.step, part.step_facts,
-                         "Written as facets within 0.01 dp of its surface.");
+        out.parts.push_back(
+            {part.name, part.path, part.step_part, part.unit, part.mkbound, role_name(part.role)});
+        if (!part.step_part.empty())
+            plan.propose(part.name, "from " + part.path, part.step_facts,
+                         "Walls stand on its exact faces; its edges that bend are feature edges.");
     }
     out.proposals = std::move(plan.proposals);
     out.warnings = std::move(plan.warnings);

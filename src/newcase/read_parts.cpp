@@ -9,10 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <set>
 
 namespace fppg
@@ -148,68 +146,46 @@ void name_part(NewPart& part, const std::string& stem, std::set<std::string>& na
         part.name = fmt::format("{}_{}", stem, n);
 }
 
-/// Angles between facets of smooth faces, radians: well below a feature angle.
-constexpr double step_angle = 0.1;
-/// For a first look, before dp is known; mm.
-constexpr double first_deflection = 0.05;
-
-/// CASE_parts, the folder of the meshes of STEP files.
-std::string parts_folder(const std::string& definition)
+/// The name by which `fppg:part` asks for one part of a file.
+std::string part_reference(const std::vector<CadPart>& parts, std::size_t index)
 {
-    std::string stem = fs::path(definition).stem().string();
-    if (stem.ends_with("_Def")) stem.resize(stem.size() - 4);
-    return stem + "_parts";
+    const std::string& name = parts[index].name;
+    if (name.empty()) return fmt::format("#{}", index + 1);
+    std::size_t same = 0, before = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+        const std::vector<std::string>& path = parts[i].path;
+        if (std::find(path.begin(), path.end(), name) == path.end()) continue;
+        ++same;
+        if (i <= index) ++before;
+    }
+    return same == 1 ? name : fmt::format("{}#{}", name, before);
 }
 
 void add_step_parts(const fs::path& path, CasePlan& plan, std::set<std::string>& names)
 {
-    std::vector<StepPart> parts = read_step(path.string(), first_deflection, step_angle);
+    const std::vector<CadPart> parts = step_parts(path.string());
     for (std::size_t i = 0; i < parts.size(); ++i)
     {
         NewPart part;
-        const StepPart& one = parts[i];
-        name_part(part, clean_name(one.name.empty() ? path.stem().string() : one.name), names);
-        part.path = fmt::format("{} ({})", path.string(), part.name);
-        part.step = path.string();
-        part.step_index = i;
-        part.format = MeshFormat::Ply;
-        part.file = parts_folder(plan.options->output) + "/" + part.name + ".ply";
-        part.comments = {"unit mm"}; // the reader turns every unit into it
+        name_part(part, clean_name(parts[i].name.empty() ? path.stem().string() : parts[i].name),
+                  names);
+        part.path = path.string();
+        part.file = relative_name(path, plan.options->output);
+        part.format = MeshFormat::Step;
+        part.step_part = part_reference(parts, i);
+        MeshReading reading;
+        reading.format = part.format;
+        reading.parts = part.step_part;
+        const MeshFile file = read_step(part.path, reading);
+        const CadPart& found = file.cad->parts.front();
         part.step_facts =
-            fmt::format("{} CAD edges that bend, {} tangent ones; exact area {:.9g} mm2{}",
-                        one.sharp_edges, one.smooth_edges, one.area,
-                        one.volume > 0 ? fmt::format(", volume {:.9g} mm3", one.volume) : "");
-        take_in(part, one.soup, plan.options->threads);
+            fmt::format("{} CAD edges that bend, {} tangent ones; exact area {:.9g} m2{}",
+                        found.sharp_edges, found.smooth_edges, found.area,
+                        found.volume > 0 ? fmt::format(", volume {:.9g} m3", found.volume) : "");
+        take_in(part, file.soup, plan.options->threads);
         plan.parts.push_back(std::move(part));
     }
-}
-
-void append_number(std::string& out, double value)
-{
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// A PLY file in double: STL would round the corners to float32.
-std::string ply_bytes(const TriangleSoup& soup)
-{
-    std::map<std::array<double, 3>, std::uint32_t> index;
-    std::string points, facets;
-    for (std::size_t c = 0; c < soup.vertices.size(); ++c)
-    {
-        const Vec3& v = soup.vertices[c];
-        const auto next = static_cast<std::uint32_t>(index.size());
-        const auto [at, is_new] = index.try_emplace({v.x, v.y, v.z}, next);
-        if (is_new)
-            for (int axis = 0; axis < 3; ++axis) append_number(points, v[axis]);
-        if (c % 3 == 0) facets += '\3';
-        facets.append(reinterpret_cast<const char*>(&at->second), sizeof at->second);
-    }
-    return fmt::format(
-               "ply\nformat binary_little_endian 1.0\ncomment unit mm\nelement vertex {}\n"
-               "property double x\nproperty double y\nproperty double z\nelement face {}\n"
-               "property list uchar int vertex_indices\nend_header\n",
-               index.size(), soup.size()) +
-           points + facets;
 }
 
 } // namespace
@@ -236,23 +212,6 @@ void read_parts(CasePlan& plan)
                                      plan.parts.size(), most_parts));
     for (std::size_t i = 0; i < plan.parts.size(); ++i)
         plan.parts[i].mkbound = static_cast<int>(i) + 1;
-}
-
-std::vector<NewCaseFile> step_meshes(const CasePlan& plan)
-{
-    std::vector<NewCaseFile> out;
-    const double deflection = std::min(0.01 * plan.dp * 1000, first_deflection);
-    std::map<std::string, std::vector<StepPart>> files;
-    for (const NewPart& part : plan.parts)
-    {
-        if (part.step.empty()) continue;
-        if (!files.contains(part.step))
-            files[part.step] = read_step(part.step, deflection, step_angle);
-        const fs::path folder = fs::path(plan.options->output).parent_path();
-        out.push_back(
-            {(folder / part.file).string(), ply_bytes(files[part.step].at(part.step_index).soup)});
-    }
-    return out;
 }
 
 } // namespace fppg

@@ -120,21 +120,38 @@ void VesselSpace::find_spills()
     const std::size_t nz = grid_.n[2], ny = grid_.n[1], slab = nz * ny;
     spill_.assign(count(), never);
     std::vector<std::vector<std::uint32_t>> waiting(nz);
-    const auto reach = [&](std::size_t node, std::size_t height)
+    way_out_.assign(count(), 0);
+    const auto reach = [&](std::size_t node, std::size_t height, std::size_t from)
     {
         if (state_[node] != 0 || spill_[node] != never) return;
         spill_[node] = static_cast<std::uint16_t>(std::max(height, node % nz));
+        way_out_[node] = static_cast<std::uint32_t>(from);
         waiting[spill_[node]].push_back(static_cast<std::uint32_t>(node));
     };
     for (std::size_t node = 0; node < count(); ++node)
     {
         const std::size_t x = node / slab, y = node / nz % ny, z = node % nz;
         if (x == 0 || y == 0 || z == 0 || x + 1 == grid_.n[0] || y + 1 == ny || z + 1 == nz)
-            reach(node, z);
+            reach(node, z, node);
     }
     for (std::size_t height = 0; height < nz; ++height)
         for (std::size_t k = 0; k < waiting[height].size(); ++k)
-            for_each_beside(waiting[height][k], [&](std::size_t beside) { reach(beside, height); });
+        {
+            const std::size_t node = waiting[height][k];
+            for_each_beside(node, [&](std::size_t beside) { reach(beside, height, node); });
+        }
+}
+
+/// Where the way out of a node is highest: the outermost place of that height.
+Vec3 VesselSpace::spill_place(std::size_t node) const
+{
+    std::size_t last = node;
+    while (true)
+    {
+        const std::size_t next = way_out_[last];
+        if (next == last || spill_[next] < spill_[node]) return place(last);
+        last = next;
+    }
 }
 
 /// The largest set of joined nodes from which the way out leads over higher ones.
@@ -187,13 +204,10 @@ void VesselSpace::find_largest()
     is_closed_ = rim == never;
     bottom_ = grid_.origin.z + (static_cast<double>(low) - 0.5) * grid_.dp;
     rim_ = grid_.origin.z + (static_cast<double>(is_closed_ ? high : rim) + 0.5) * grid_.dp;
-    for (const std::uint32_t node : nodes_)
-        for_each_beside(node,
-                        [&](std::size_t beside)
-                        {
-                            if (!is_closed_ && state_[beside] == 0 && beside % nz == rim)
-                                rim_place_ = place(beside);
-                        });
+    if (!is_closed_)
+        rim_place_ = spill_place(*std::max_element(nodes_.begin(), nodes_.end(),
+                                                   [&](std::uint32_t a, std::uint32_t b)
+                                                   { return spill_[a] < spill_[b]; }));
 }
 
 double VesselSpace::volume_below(double z) const

@@ -36,6 +36,7 @@ private:
     void mark_surface(const TriangleSoup& soup);
     void find_spills();
     void find_largest();
+    Vec3 spill_place(std::size_t node) const;
     template <typename Visit>
     void for_each_beside(std::size_t node, const Visit& visit) const;
 
@@ -43,6 +44,7 @@ private:
     std::vector<std::uint8_t> state_; ///< bit 0: in a solid, bit 1: a surface passes
     /// For each node that is free the lowest height over which a way leads out, in nodes.
     std::vector<std::uint16_t> spill_;
+    std::vector<std::uint32_t> way_out_;   ///< the next node on that way; its own where it ends
     std::vector<std::uint32_t> nodes_;     ///< of the room
     std::vector<std::uint32_t> at_height_; ///< nodes of the room and its rim, by their z
     bool is_closed_ = false;

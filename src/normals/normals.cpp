@@ -7,6 +7,7 @@
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
+#include "normals/cad_normals.h"
 #include "normals/geometry_normals.h"
 #include "normals/part_normals.h"
 #include "normals/wet_surface.h"
@@ -238,6 +239,7 @@ private:
                             def_.file, geometry.line, geometry.file));
         if (geometry.save_shapes) report_.shapes = picture(facets);
         const GeometryQuery query(std::move(facets), reach, def_.grid.dp, threads_);
+        const CadNormals cad(def_, threads_);
         const double limit = geometry.max_size_h * def_.h;
         std::vector<std::uint64_t> candidates(places_.size(), 0);
         std::vector<std::uint64_t> resized(places_.size(), 0);
@@ -245,6 +247,7 @@ private:
             [&](std::size_t r, const Vec3& p, Float3& normal)
             {
                 GeometryQuery::Answer answer = query.at(p);
+                answer.normal = cad.exact(p, answer.normal);
                 candidates[r] += answer.candidates;
                 const Vec3 own = own_normal(r, normal);
                 if (const int side = own == Vec3{} ? 0 : query.side_at(p, own, 0.5 * def_.grid.dp);

@@ -128,7 +128,7 @@ WetSurface::WetSurface(const RunField& field, std::uint16_t first_bound, double 
             continue;
         }
         wet.vertices.insert(wet.vertices.end(), piece.corners.begin(), piece.corners.end());
-        round_walls_.push_back(piece.round_wall);
+        exact_walls_.push_back(piece.exact_wall);
     }
     note_thin_walls(field);
     pieces_.clear();
@@ -147,7 +147,7 @@ void WetSurface::cut_pieces(const RunField& field)
         Piece piece;
         piece.body = bodies[b].owner;
         piece.is_closed = bodies[piece.body].measures.volume > 0;
-        piece.round_wall = bodies[b].wall->round() != nullptr ? bodies[b].wall.get() : nullptr;
+        piece.exact_wall = bodies[b].wall->is_exact() ? bodies[b].wall.get() : nullptr;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
             for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
@@ -333,13 +333,12 @@ Vec3 WetSurface::vector_from(const Vec3& p, double most) const
     if (query_ == nullptr) return {};
     const ClosestPoint near = query_->closest_point(p, most);
     if (!(near.distance <= most)) return {};
-    const WallDepth* round_wall = round_walls_[near.facet];
-    if (round_wall == nullptr) return near.point - p;
+    const WallDepth* exact_wall = exact_walls_[near.facet];
+    if (exact_wall == nullptr) return near.point - p;
     // From the facets to their exact surface. Its nearest place may be on a dry side.
-    const Vec3 nearest = round_wall->at(p).nearest;
-    const bool is_wet_one =
-        std::fabs(norm(nearest - p) - near.distance) <= 2 * round_wall->round()->chord();
-    return (is_wet_one ? nearest : round_wall->at(near.point).nearest) - p;
+    const Vec3 nearest = exact_wall->at(p).nearest;
+    const bool is_wet_one = std::fabs(norm(nearest - p) - near.distance) <= 2 * exact_wall->chord();
+    return (is_wet_one ? nearest : exact_wall->at(near.point).nearest) - p;
 }
 
 } // namespace fppg

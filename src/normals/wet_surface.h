@@ -74,7 +74,7 @@ private:
         std::array<Vec3, 3> corners;
         Vec3 normal; ///< to the fluid
         std::uint32_t body = 0;
-        const WallDepth* round_wall = nullptr;
+        const WallDepth* exact_wall = nullptr;
         bool is_closed = false;
         char state = 0;
         double thickness = 0; ///< metres; 0: no other side was found
@@ -103,7 +103,8 @@ private:
     std::vector<Piece> pieces_;
     std::vector<ThinWall> thin_walls_;
     std::unique_ptr<MeshQuery> query_;
-    std::vector<const WallDepth*> round_walls_; ///< per facet of the query: null, or of round walls
+    std::vector<const WallDepth*>
+        exact_walls_; ///< per facet of the query: null, or of walls whose surface is exact
     bool has_dry_sides_ = false;
 };
 

@@ -153,7 +153,7 @@ Vec3 RoundWall::tube_normal(const Vec3& p) const
     return sense_ * unit(level_in_plane(p).gradient);
 }
 
-std::optional<RoundPlace> RoundWall::at(const Vec3& p, const Vec3& start) const
+std::optional<ExactPlace> RoundWall::at(const Vec3& p, const Vec3& start) const
 {
     const std::array<Candidate, 3> candidates{on_tube(p, start), on_cover(p, 0), on_cover(p, 1)};
     std::size_t best = candidates.size();
@@ -170,7 +170,7 @@ std::optional<RoundPlace> RoundWall::at(const Vec3& p, const Vec3& start) const
     if (std::fabs(least - norm(start - p)) > same_distance * chord_ + 1e-12 * round_->size)
         return std::nullopt;
     const Candidate& found = candidates[best];
-    RoundPlace out;
+    ExactPlace out;
     out.nearest = found.point;
     const auto normal_of_cover = [&](int end)
     {

@@ -2,6 +2,7 @@
 
 #include "fppg/surface_mesh.h"
 
+#include "meshes/exact_place.h"
 #include "meshes/round_surface.h"
 
 #include <array>
@@ -10,16 +11,6 @@
 
 namespace fppg
 {
-
-/// A point seen from the exact surface of a round body.
-struct RoundPlace
-{
-    Vec3 nearest;
-    /// Unit normals, as the facets look, of the faces that meet there: one, on a rim two.
-    std::array<Vec3, 2> faces;
-    int face_count = 1;
-    bool is_beyond_rim = false; ///< the surface ends there, and the point is not over it
-};
 
 /// The exact surface of a round body with its plane covers, where these meet in circles.
 class RoundWall
@@ -32,7 +23,7 @@ public:
     /// start     the place of the facets nearest to p
     /// returns   nothing where the facets are not as far from p as the exact surface, as where they
     ///           are a part of it only
-    std::optional<RoundPlace> at(const Vec3& p, const Vec3& start) const;
+    std::optional<ExactPlace> at(const Vec3& p, const Vec3& start) const;
     /// How far facets are from the exact surface, metres.
     double chord() const { return chord_; }
 

@@ -50,7 +50,12 @@ void WallDepth::take_round_surface(const SurfaceMesh& body,
         round_ = std::make_unique<RoundWall>(body, std::move(round), is_2d);
 }
 
-DepthPlace WallDepth::seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const
+double WallDepth::chord() const
+{
+    return round_ != nullptr ? round_->chord() : cad_ != nullptr ? cad_->chord() : 0;
+}
+
+DepthPlace WallDepth::seen_from(const ExactPlace& place, const Vec3& p, std::uint32_t facet) const
 {
     DepthPlace out;
     out.nearest = place.nearest;
@@ -70,7 +75,14 @@ DepthPlace WallDepth::seen_from(const RoundPlace& place, const Vec3& p, std::uin
     if (!is_on_rim || !(out.depth > 0) || dot(place.faces[0], place.faces[1]) >= turn_) return out;
     const double of_first = -sign_ * dot(way, place.faces[0]);
     const double of_second = -sign_ * dot(way, place.faces[1]);
-    out.depth = std::max(of_first, of_second);
+    const double deepest = std::max(of_first, of_second);
+    if (deepest < out.depth / longest_mitre)
+    {
+        out.depth /= longest_mitre;
+        out.foot = p - out.depth * out.direction;
+        return out;
+    }
+    out.depth = deepest;
     out.direction = -sign_ * place.faces[of_first >= of_second ? 0 : 1];
     out.foot = p - out.depth * out.direction;
     return out;
@@ -89,9 +101,14 @@ bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& p
 
 DepthPlace WallDepth::at(const Vec3& p, double within) const
 {
-    const ClosestPoint foot = query().closest_point(p, within);
+    ClosestPoint foot = query().closest_point(p, within);
+    // The facets of a round body may be farther than the exact surface that the bound is of.
+    if (foot.facet >= mesh_.facets.size()) foot = query().closest_point(p);
     if (round_ != nullptr)
         if (const auto exact = round_->at(p, foot.point)) return seen_from(*exact, p, foot.facet);
+    if (cad_ != nullptr)
+        if (const auto exact = cad_->at(mesh_, p, foot.point, foot.facet))
+            return seen_from(*exact, p, foot.facet);
     DepthPlace out;
     out.nearest = foot.point;
     out.foot = foot.point;

@@ -2,6 +2,7 @@
 
 #include "fppg/surface_mesh.h"
 
+#include "meshes/cad_surface.h"
 #include "meshes/inside_test.h"
 #include "meshes/pseudo_normals.h"
 #include "offset/round_wall.h"
@@ -60,8 +61,15 @@ public:
     /// body  the mesh that the round surface belongs to
     void take_round_surface(const SurfaceMesh& body, std::shared_ptr<const RoundSurface> round,
                             bool is_2d);
-    /// Null for bodies that are not round.
-    const RoundWall* round() const { return round_.get(); }
+    /// Of a body that was made from CAD models; its mesh is the wall's.
+    void take_cad_surface(std::shared_ptr<const CadSurface> cad)
+    {
+        if (!asks_inside_) cad_ = std::move(cad);
+    }
+    /// Whether places are those of an exact surface, not of the facets.
+    bool is_exact() const { return round_ != nullptr || cad_ != nullptr; }
+    /// How far facets are from the exact surface, metres.
+    double chord() const;
 
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
@@ -77,7 +85,7 @@ public:
 private:
     const MeshQuery& query() const { return test_.query(); }
     bool is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const;
-    DepthPlace seen_from(const RoundPlace& place, const Vec3& p, std::uint32_t facet) const;
+    DepthPlace seen_from(const ExactPlace& place, const Vec3& p, std::uint32_t facet) const;
     void mitre(const Vec3& p, std::uint32_t facet, const FacetPlace& place, DepthPlace& out) const;
 
     SurfaceMesh mesh_;
@@ -90,6 +98,7 @@ private:
     double turn_ = 0;                   ///< cosine of the angle from which edges are sharp
     std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
     std::unique_ptr<RoundWall> round_;
+    std::shared_ptr<const CadSurface> cad_;
 };
 
 } // namespace fppg

@@ -1,5 +1,6 @@
 #include "particles/wall_surfaces.h"
 
+#include "meshes/cad_surface.h"
 #include "meshes/round_surface.h"
 #include "offset/wall_depth.h"
 
@@ -44,7 +45,13 @@ SurfacePlace WallSurfaces::at(std::size_t particle) const
     }
     Vec3 normal = exact_normal(walls_.bodies[b], p, facet);
     const FitKind kind = particles.kinds[particle];
-    if (kind == FitKind::Corner || kind == FitKind::Edge)
+    const auto& cad = walls_.bodies[b].cad;
+    const auto of_edge = cad != nullptr && kind == FitKind::Edge
+                             ? cad->edge_normal(walls_.bodies[b].mesh, p, facet)
+                             : std::nullopt;
+    if (of_edge)
+        normal = *of_edge;
+    else if (kind == FitKind::Corner || kind == FitKind::Edge)
     {
         const PseudoNormals& normals = *normals_[b];
         const Vec3 mean = kind == FitKind::Corner

@@ -158,7 +158,7 @@ private:
             {
                 const FittedBody& body = walls.bodies[particles.bodies[i]];
                 if (!body.is_layer())
-                    project_to_round(body, particles.positions[i], particles.facets[i]);
+                    project_to_exact(body, particles.positions[i], particles.facets[i]);
                 else if (particles.kinds[i] == FitKind::Surface)
                     particles.positions[i] =
                         project_to_depth(*body.wall, particles.positions[i], body.depth);

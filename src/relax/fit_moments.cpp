@@ -4,12 +4,14 @@
 #include "core/principal_axes.h"
 #include "meshes/crowded_points.h"
 #include "offset/wall_depth.h"
+#include "relax/part_pairs.h"
 #include "relax/sliding_walls.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace fppg
@@ -27,6 +29,12 @@ constexpr double centre_tolerance = 1e-3;
 constexpr double moment_tolerance = 2e-4;
 /// Bodies whose particles have another volume by more are cut.
 constexpr double whole = 0.03;
+/// Particles come so far apart where there is room, dp; else least_pair_dp.
+constexpr double even_pair_dp = 0.75;
+/// So often particles are parted and moments fitted in turn.
+constexpr int passes_apart = 4;
+/// Those of the volume that give way stay so far behind the surface, dp.
+constexpr double keeps_depth_dp = 0.5;
 
 /// Centre and second moments about it, per volume.
 struct Moments
@@ -106,12 +114,21 @@ public:
         collect();
         const double dp3 = dp_ * dp_ * dp_;
         shape_ = moments_of(body.mesh);
+        spread();
         if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
             std::abs(shape_.volume / body.measures.volume - 1) > whole)
-            return;
-        for (int round = 0; round < most_rounds && move(); ++round)
+            return put_distances();
+        const std::vector<Vec3> start = places();
+        for (int pass = 0; pass < passes_apart && !fit(even_pair_dp); ++pass) spread();
+        // What moments cannot have with room between all they have without.
+        for (const double apart : {0.7, 0.65, least_pair_dp})
         {
+            if (best_.misfit <= 1) break;
+            put(start);
+            std::fill(way_.begin(), way_.end(), Vec3{});
+            fit(apart);
         }
+        put(best_.places);
         put_distances();
     }
 
@@ -208,15 +225,55 @@ private:
     /// The distance of each particle that moves to the nearest other one, at most dp.
     std::vector<double> nearest()
     {
-        std::vector<Vec3> all;
-        for (std::size_t i = 0; i < way_.size(); ++i) all.push_back(place(i));
+        std::vector<Vec3> all = places();
         all.insert(all.end(), nodes_.begin(), nodes_.end());
         std::vector<double> distances = nearest_distances(all, dp_, threads_);
         distances.resize(way_.size());
         return distances;
     }
 
-    /// Puts particles back that came nearer to others than least_pair_dp, until there are none.
+    /// Of those that move.
+    std::vector<Vec3> places()
+    {
+        std::vector<Vec3> out;
+        for (std::size_t i = 0; i < way_.size(); ++i) out.push_back(place(i));
+        return out;
+    }
+
+    void put(const std::vector<Vec3>& places)
+    {
+        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = places[i];
+    }
+
+    /// Moves all until the moments are met, none nearer to others than a distance, dp; false where
+    /// they are not. The best that was found is kept in best_.
+    bool fit(double apart_dp)
+    {
+        apart_ = apart_dp * dp_;
+        for (int round = 0; round < most_rounds && move(); ++round)
+        {
+        }
+        Matrix off{};
+        const double misfit = misfit_of(moments_of_particles(), off);
+        if (misfit < best_.misfit) best_ = {misfit, places()};
+        return misfit <= 1;
+    }
+
+    /// Parts particles that are too near to others, those of layers along these.
+    void spread()
+    {
+        std::vector<Vec3> all = places();
+        all.insert(all.end(), nodes_.begin(), nodes_.end());
+        part_pairs(
+            all, way_.size(), even_pair_dp * dp_,
+            [&](std::size_t i, const Vec3& from, const Vec3& to) {
+                return i < of_wall_.size() ? beside_on_layer(i, from, to) : beside_inside(from, to);
+            },
+            threads_);
+        put(all);
+    }
+
+    /// Puts particles back that came nearer to others than they may, until there are none.
     void part(const std::vector<double>& distances, const std::vector<Vec3>& before)
     {
         for (int round = 0; round < most_rounds; ++round)
@@ -225,7 +282,7 @@ private:
             bool is_near = false;
             for (std::size_t i = 0; i < way_.size(); ++i)
             {
-                if (now[i] >= std::min(distances[i], least_pair_dp * dp_) * (1 - 1e-9)) continue;
+                if (now[i] >= std::min(distances[i], apart_) * (1 - 1e-9)) continue;
                 is_near = true;
                 place(i) = before[i];
             }
@@ -238,8 +295,6 @@ private:
     void take(const std::vector<Vec3>& steps)
     {
         const std::vector<double> distances = nearest();
-        const ClosestWallPoint closest = [&](const Vec3& p, double within)
-        { return all_.closest_point(p, within); };
         std::vector<Vec3> before(way_.size());
         parallel_for(
             way_.size(), threads_,
@@ -247,20 +302,27 @@ private:
             {
                 before[i] = place(i);
                 const Vec3 normal = across(i);
-                Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
-                if (i < of_wall_.size())
-                {
-                    const Vec3 on = on_layer(of_wall_[i], to, closest);
-                    // Where layers bend within dp the nearest place may be on another face.
-                    const bool jumps =
-                        norm(on - before[i]) > 2 * norm(to - before[i]) + most_jump_dp * dp_;
-                    to = jumps ? before[i] : on;
-                }
-                place(i) = to;
+                const Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
+                place(i) = i < of_wall_.size() ? beside_on_layer(i, before[i], to) : to;
             },
             64);
         part(distances, before);
         for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = way_[i] + (place(i) - before[i]);
+    }
+
+    /// How far moments are from those of the shape, in tolerances; `off`: what the second ones
+    /// lack.
+    double misfit_of(const Moments& now, Matrix& off) const
+    {
+        double worst = 0, size = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            off[i] = shape_.second[i] - now.second[i];
+            size = std::max(size, shape_.second[i][static_cast<int>(i)]);
+            for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
+        }
+        return std::max(norm(shape_.centre - now.centre) / (centre_tolerance * dp_),
+                        worst / (moment_tolerance * size));
     }
 
     /// One step; false where it is not needed or leads too far.
@@ -269,14 +331,7 @@ private:
         const Moments now = moments_of_particles();
         const Vec3 shift = shape_.centre - now.centre;
         Matrix off{};
-        double worst = 0, size = 0;
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            off[i] = shape_.second[i] - now.second[i];
-            size = std::max(size, shape_.second[i][static_cast<int>(i)]);
-            for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(off[i][j]));
-        }
-        if (norm(shift) < centre_tolerance * dp_ && worst < moment_tolerance * size) return false;
+        if (misfit_of(now, off) < 1) return false;
         const Matrix stretch = stretch_for(now.second, off, 0.25 * dp_ * dp_);
         std::vector<Vec3> steps(way_.size());
         double longest = 0;
@@ -302,12 +357,33 @@ private:
         return true;
     }
 
-    Vec3 on_layer(std::uint32_t particle, const Vec3& p, const ClosestWallPoint& closest) const
+    /// The place on its layer that a particle may have near to another.
+    Vec3 beside_on_layer(std::size_t i, const Vec3& from, const Vec3& to) const
     {
         const FittedWalls& walls = field_.walls;
+        const std::uint32_t particle = of_wall_[i];
         const bool is_free = walls.bodies[walls.particles.bodies[particle]].mesh.facets.empty() &&
                              walls.bodies[body_].sheets == 0;
-        return is_free ? p : put_back(walls, particle, p, dp_, closest);
+        if (is_free) return to;
+        const Vec3 on =
+            put_back(walls, particle, to, dp_,
+                     [&](const Vec3& p, double within) { return all_.closest_point(p, within); });
+        // Where layers bend within dp the nearest place may be on another face.
+        return norm(on - from) > 2 * norm(to - from) + most_jump_dp * dp_ ? from : on;
+    }
+
+    /// The place behind the surface that a particle of the volume may have near to another.
+    Vec3 beside_inside(const Vec3& from, const Vec3& to) const
+    {
+        const double depth = keeps_depth_dp * dp_;
+        const AllWalls::Closest near = all_.closest(to, depth);
+        if (!(near.distance < depth)) return to;
+        const Vec3 away = from - near.point;
+        const double was = norm(away);
+        if (near.distance >= was || was == 0) return to;
+        const Vec3 along = to - (dot(to - from, away) / (was * was)) * away;
+        const double least = std::min(was, depth) * (1 - 1e-3);
+        return all_.closest(along, depth).distance >= least ? along : from;
     }
 
     void put_distances()
@@ -329,11 +405,18 @@ private:
     const AllWalls& all_;
     int threads_;
     double dp_;
+    double apart_ = 0; ///< no pair comes nearer than this by fitting, metres
     Moments shape_;
     std::vector<std::uint32_t> of_wall_;
     std::vector<std::uint32_t> of_volume_;
     std::vector<Vec3> nodes_;
     std::vector<Vec3> way_; ///< of walls, then of volume particles
+    struct Best
+    {
+        double misfit = std::numeric_limits<double>::infinity();
+        std::vector<Vec3> places;
+    };
+    Best best_;
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "meshes/point_grid.h"
 #include "relax/all_surfaces.h"
 #include "relax/all_walls.h"
+#include "relax/cut_nodes.h"
 #include "relax/fit_moments.h"
 #include "relax/fluid_space.h"
 #include "relax/lattice_strips.h"
@@ -260,6 +261,7 @@ private:
         for (const Vec3& p : walls.cut) cut.add(p);
         if (!region.is_solid || !is_inside(walls, region))
             for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        if (region.is_solid) add_cut_nodes(field_, region, all, threads_, cut);
         const std::optional<LatticeStrips> strips =
             region.is_solid ? std::nullopt
                             : std::optional<LatticeStrips>(std::in_place, def_, field_);
@@ -474,8 +476,8 @@ private:
                             p.shepard_variation, p.largest_step_dp});
         };
         RelaxVolumeReport done = relax_volume(positions, surroundings, options, threads_);
-        const std::size_t before = movers.size() + sliding.particles.size();
-        const double more = static_cast<double>(positions.size()) - static_cast<double>(before);
+        const double more = static_cast<double>(positions.size()) -
+                            static_cast<double>(movers.size() + sliding.particles.size());
         const std::size_t relaxed = positions.size();
         if (!sliding.particles.empty()) keep_slid(sliding, movers.size(), positions, done);
         keep_moved(region, all, movers, positions, done.sources);
@@ -492,8 +494,7 @@ private:
         report_.parts.push_back(part);
     }
 
-    /// Wall particles that slid are put to their new places; those of the volume stay in
-    /// `positions`.
+    /// Puts wall particles that slid to their new places; those of the volume stay in `positions`.
     void keep_slid(const SlidingWalls& sliding, std::size_t nodes, std::vector<Vec3>& positions,
                    RelaxVolumeReport& done)
     {
@@ -522,8 +523,7 @@ private:
         done.sources.resize(count);
     }
 
-    /// Particles that left their nodes go into walls.volume; nodes that were left, or whose
-    /// particle was removed, get the bit of the zone.
+    /// Particles that left their nodes go into walls.volume; nodes left get the bit of the zone.
     void keep_moved(const Region& region, const AllWalls& all, const std::vector<Mover>& movers,
                     const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& sources)
     {

@@ -46,6 +46,26 @@ Json frames_json(const std::vector<Transform>& frames)
     return out;
 }
 
+/// Six digits of what is as large as the scene.
+Json place_json(const Vec3& p, double size)
+{
+    const double scale = size > 0 ? std::pow(10, 6 - std::floor(std::log10(size))) : 1;
+    Json out = Json::array();
+    for (int axis = 0; axis < 3; ++axis) out.push_back(std::round(p[axis] * scale) / scale);
+    return out;
+}
+
+Json marks_json(const SceneSet& set, double size)
+{
+    Json marks = Json::array();
+    for (const SceneMark& mark : set.marks)
+        marks.push_back(
+            {{"frame", mark.frame}, {"at", place_json(mark.place, size)}, {"text", mark.text}});
+    Json start = Json::array();
+    for (const Vec3& p : set.start_marks) start.push_back(place_json(p, size));
+    return {{"label", set.mark_label}, {"frames", set.frames}, {"places", marks}, {"start", start}};
+}
+
 } // namespace
 
 std::string to_json(const SceneSet& set)
@@ -72,11 +92,13 @@ std::string to_json(const SceneSet& set)
                 bytes += static_cast<char>(value >> 8U);
             }
     }
+    const double size = norm(box.max - box.min);
     return text_of({{"name", set.name},
                     {"dp", set.dp},
                     {"box", {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}},
                     {"end", set.end},
                     {"parts", parts},
+                    {"marks", set.mark_label.empty() ? Json() : marks_json(set, size)},
                     {"positions", base64(bytes)}});
 }
 

@@ -24,12 +24,24 @@ struct ScenePart
     std::vector<Transform> frames{};
 };
 
+/// A place that the view marks, in one frame of the motion.
+struct SceneMark
+{
+    std::size_t frame = 0;
+    Vec3 place;
+    std::string text; ///< what is there
+};
+
 struct SceneSet
 {
     std::string name;
     double dp = 0; ///< diameter of a particle, metres
     std::vector<ScenePart> parts;
-    double end = 0; ///< seconds, of the motion; 0: nothing moves
+    double end = 0;                  ///< seconds, of the motion; 0: nothing moves
+    std::string mark_label;          ///< what marks mean, for the legend; empty: there are none
+    std::size_t frames = 1;          ///< of the marks, at times evenly from 0 to `end`
+    std::vector<SceneMark> marks{};  ///< by frames
+    std::vector<Vec3> start_marks{}; ///< places without words that are marked at 0 s
 };
 
 /// A set as JSON: coordinates of 16 bits in the box of the set, base64, the parts behind one

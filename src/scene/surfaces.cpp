@@ -63,6 +63,7 @@ ShapeMesh surface_of_part(const Scene& scene, const Combination& combination, st
             joined.soup.vertices.insert(joined.soup.vertices.end(), shape.soup.vertices.begin(),
                                         shape.soup.vertices.end());
             joined.is_solid = joined.is_solid || shape.is_solid;
+            if (shape.cad != nullptr) joined.cad = shape.cad;
         }
     }
     catch (const GeometryError& e)

@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "core/parallel.h"
+#include "meshes/cad_surface.h"
 #include "nodes/cell_nodes.h"
 #include "walls/fit_shape.h"
 
@@ -19,7 +20,8 @@ namespace
 
 /// The body of a combination, with its features.
 FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                   CombinedParts& combined, const FitSettings& settings, const LatticeGrid& grid)
+                   CombinedParts& combined, const FitSettings& settings, const LatticeGrid& grid,
+                   int threads)
 {
     const std::vector<char> stays = staying_parts(tree, parts.size());
     BooleanMesh& result = combined.result;
@@ -36,7 +38,13 @@ FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode&
     body.report.facets_read = combined.facets_read;
     // Faults of the parts are told with their names.
     body.report.warnings.clear();
-    body.features = find_features(body.mesh, feature_options(settings, grid), result.seams);
+    std::vector<CadSource> sources;
+    for (const BooleanWallPart& part : parts)
+        if (part.cad != nullptr) sources.push_back(*part.cad);
+    if (!sources.empty())
+        body.cad = std::make_shared<const CadSurface>(body.mesh, std::move(sources), threads);
+    body.features =
+        find_features(body.mesh, feature_options(settings, grid), result.seams, bends_of(body.cad));
     return body;
 }
 
@@ -83,7 +91,7 @@ std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination
         ShapeMesh surface = surface_of_part(scene, combination, p, as, threads);
         parts.push_back({name_of(combination.parts[p]->source), std::move(surface.soup),
                          combination.mks[p].mk, surface.is_solid,
-                         combination.boolean->parts[p].is_sheet});
+                         combination.boolean->parts[p].is_sheet, std::move(surface.cad)});
     }
     return parts;
 }
@@ -122,8 +130,8 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
                        const std::vector<ClipPlane>& clips, int threads)
 {
     CombinedParts combined = combine_parts(parts, tree, grid.dp, threads);
-    FittedDraw out =
-        fit_body(body_of(parts, tree, combined, settings, grid), settings, grid, clips, threads);
+    FittedDraw out = fit_body(body_of(parts, tree, combined, settings, grid, threads), settings,
+                              grid, clips, threads);
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());
 
     std::vector<SpanSet> sets;

@@ -21,6 +21,7 @@ struct BooleanWallPart
     std::uint16_t mk = 0;  ///< absolute, that its particles get
     bool is_solid = false; ///< the draw fills its inside
     bool may_be_sheet = false;
+    std::shared_ptr<const CadSource> cad{}; ///< of CAD files
 };
 
 /// The parts of a combination of a scene by their true shapes.
@@ -48,6 +49,7 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
 ///
 /// Spheres, cylinders and ellipsoids take part by their facets: particles are within
 /// chord_error_dp (0.005 dp) of the true surface, not on it as those of a round shape by itself.
+/// Those of CAD models are on the exact faces, and where these meet.
 ///
 /// Edges where surfaces of different parts meet are feature lines. Nodes of the inside are those of
 /// boolean_spans(), less the zone of the wall; each belongs to the first of its parts, as

@@ -5,6 +5,7 @@
 #include "fppg/section.h"
 
 #include "core/parallel.h"
+#include "meshes/cad_surface.h"
 #include "meshes/crowded_points.h"
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
@@ -160,11 +161,11 @@ void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threa
         out.second_sheet = of_body(keep_one_sheet(
             body.mesh, body.features, {grid.dp, settings.one_sheet_dp}, surface, threads));
     if (grid.is_2d) drop_crowded_in_plane(settings, grid.dp, threads, surface, body);
-    if (body.round != nullptr)
+    if (body.round != nullptr || body.cad != nullptr)
         parallel_for(
             surface.positions.size(), threads,
             [&](std::size_t i)
-            { project_to_round(body, surface.positions[i], surface.facets[i], grid.is_2d); },
+            { project_to_exact(body, surface.positions[i], surface.facets[i], grid.is_2d); },
             particles_per_chunk);
     out.particles = of_body(std::move(surface));
 }
@@ -262,6 +263,7 @@ FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& g
 {
     FeatureOptions options;
     options.angle_deg = settings.feature_angle_deg;
+    options.cad_angle_deg = settings.cad_angle_deg;
     options.dp = grid.dp;
     return options;
 }
@@ -279,7 +281,10 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     std::vector<std::uint32_t> seams;
     if (extent == BodyExtent::NearDomain) seams = cut_to_domain(body, settings, grid, threads);
     if (body.mesh.facets.empty()) return nothing_of(std::move(body), grid);
-    body.features = find_features(body.mesh, feature_options(settings, grid), seams);
+    if (shape.cad != nullptr)
+        body.cad = std::make_shared<const CadSurface>(body.mesh, std::vector{*shape.cad}, threads);
+    body.features =
+        find_features(body.mesh, feature_options(settings, grid), seams, bends_of(body.cad));
     return fit_body(std::move(body), settings, grid, clips, threads);
 }
 

@@ -12,6 +12,8 @@
 #include "walls/layer_builder.h"
 #include "walls/wall_layers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -32,6 +34,8 @@ constexpr double nearly = 0.22;
 /// ... and it is no bar: 2 V / A of a plate without rims is its thickness, that of a bar half of
 /// it.
 constexpr double bar_ratio = 1.7;
+/// A body has one thickness where no more of its surface has another one, of what has any.
+constexpr double most_of_other = 0.2;
 /// Nodes farther than this from all particles of layers stay before others, dp, and none stays
 /// that is nearer than the second.
 constexpr double far_dp = 1.5;
@@ -52,6 +56,7 @@ struct Thickness
 {
     double middle = 0; ///< median, metres
     double share = 0;  ///< of the surface that has nearly that
+    double other = 0;  ///< of what is not thicker than was looked for, that has not
 };
 
 /// How thick a body is over its surface, as far as it is thinner than `most`, metres.
@@ -66,6 +71,7 @@ Thickness thickness_of(const WallDepth& wall, double most, int threads)
     const auto near = std::count_if(
         first, found.end(), [&](double t) { return std::abs(t / out.middle - 1) < nearly; });
     out.share = static_cast<double>(near) / static_cast<double>(thickness_samples);
+    out.other = 1 - static_cast<double>(near) / static_cast<double>(found.end() - first);
     return out;
 }
 
@@ -96,7 +102,7 @@ double volume_beyond_facets(const FittedBody& body)
     {
         Vec3 p = 0.5 * (mesh.vertices[mesh.edges[e][0]] + mesh.vertices[mesh.edges[e][1]]);
         for (std::uint32_t f : mesh.edge_facets[e])
-            if (f != no_index) project_to_round(body, p, f);
+            if (f != no_index) project_to_exact(body, p, f);
         middles[e] = p;
     }
     double six = 0;
@@ -145,7 +151,7 @@ public:
                                  thickest_plate_dp);
         if (wall_ == nullptr) return;
         FitMeasures& measures = out_.body.measures;
-        if (out_.body.round != nullptr && !grid_.is_2d)
+        if ((out_.body.round != nullptr || out_.body.cad != nullptr) && !grid_.is_2d)
             measures.volume += volume_beyond_facets(out_.body);
         wanted_ = std::round(measures.volume / dp3_);
         make_plan();
@@ -171,7 +177,8 @@ private:
         if (mean < thin_dp * grid_.dp) plan_.cell_dp = 0.5 * offset_cell_dp;
         if (!settings_.across && mean > thickest_plate_dp * grid_.dp) return;
         const Thickness t = thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), threads_);
-        const bool is_plate = t.share >= plate_share && t.middle < bar_ratio * mean &&
+        const bool is_even = t.other <= most_of_other;
+        const bool is_plate = is_even && t.share >= plate_share && t.middle < bar_ratio * mean &&
                               t.middle <= thickest_plate_dp * grid_.dp;
         if (!is_plate && !settings_.across) return;
         if (!(t.middle > 0))
@@ -186,7 +193,14 @@ private:
         plan_.middle_dp = body.sheets % 2 == 1 ? 0.65 * t.middle / grid_.dp : 0;
         plan_.spacing_dp = std::pow(1 / step, power());
         under_layers_ = (body.sheets / 2) * step * grid_.dp;
-        if (body.sheets % 2 == 1) plan_.number = static_cast<std::size_t>(wanted_);
+        if (!is_even)
+            out_.warnings.push_back(fmt::format(
+                "across: the sheets are those of a thickness of {:.4g} m, and {:.0f} % of the "
+                "surface has another; there they are not whole. Parts of different thickness want "
+                "an mkbound each; without across every part gets what its thickness has room for.",
+                t.middle, 100 * t.other));
+        // Where a body is thicker elsewhere, the sheet in the middle cannot make up for that.
+        if (body.sheets % 2 == 1 && is_even) plan_.number = static_cast<std::size_t>(wanted_);
         if (body.sheets == 1) plan_.off_edges_dp = std::hypot(0.5, 0.5 * step / plan_.spacing_dp);
     }
 

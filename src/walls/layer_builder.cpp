@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "fit/wall_section.h"
+#include "meshes/cad_surface.h"
 #include "meshes/connect_mesh.h"
 #include "meshes/crowded_points.h"
 #include "offset/layer_place.h"
@@ -168,6 +169,7 @@ std::shared_ptr<const WallDepth> LayerBuilder::wall_of(WallSide side, bool is_cl
         auto wall = std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
                                                 sharp_angle_deg, threads_);
         wall->take_round_surface(body.mesh, body.round, false);
+        wall->take_cad_surface(body.cad);
         return wall;
     }
     MeshReport report;
@@ -224,7 +226,8 @@ MergedSheetOptions LayerBuilder::sheet_options() const
 /// Where a part is too thin for a layer of each side.
 void LayerBuilder::find_thin_parts(const WallDepth& wall)
 {
-    sharp_ = find_features(wall.mesh(), feature_options(settings_, grid_));
+    sharp_ = find_features(wall.mesh(), feature_options(settings_, grid_), {},
+                           grid_.is_2d ? bends_of(nullptr) : bends_of(out_.body.cad));
     middle_ = find_middle(wall, sharp_, sheet_options(), threads_);
     near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, middle_.size());
     for (const MiddlePoint& p : middle_) near_middle_->add(p.position);

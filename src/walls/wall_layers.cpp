@@ -99,7 +99,7 @@ std::vector<Spans> deep_nodes_2d(const std::vector<Spans>& inside, const FittedB
               });
     const double wanted =
         out.body.measures.volume / std::pow(grid.dp, 3) - static_cast<double>(out.particles.size());
-    while (static_cast<double>(found.size()) > wanted + 0.5 &&
+    while (!found.empty() && static_cast<double>(found.size()) > wanted + 0.5 &&
            found.back().depth < innermost.depth + grid.dp)
         found.pop_back();
     nodes = found.size();

@@ -1017,5 +1017,26 @@ TEST(Definition, IsFlatWhereTheLimitsOfYAreEqual)
     EXPECT_DOUBLE_EQ(def.h, std::sqrt(2.0) * 0.1);
 }
 
+// The solver v5.4 turns zones clockwise seen from point2: a zone along x, turned by 90 degrees
+// about z, goes to -y, also where its box is told in radians.
+TEST(Definition, TurnsZonesOfInOutAsTheSolver)
+{
+    for (const char* angle : {R"(angle="90" anglesunits="degrees")",
+                              R"(angle="1.5707963267948966" anglesunits="radians")"})
+    {
+        CaseText text;
+        text.after_geometry = "<fppg><bodyfitted /></fppg>";
+        text.execution += fmt::format(
+            R"(<special><inout><inoutzone><zone3d><box><point x="0.7" y="0.5" z="0.1" /><size x="0.2" y="0" z="0.4" />)"
+            R"(<direction x="0" y="1" z="0" /><rotateaxis {}><point1 x="0.7" y="0.5" z="0" /><point2 x="0.7" y="0.5" z="1" /></rotateaxis></box></zone3d></inoutzone></inout></special>)",
+            angle);
+        const CaseDef def = read(text);
+        ASSERT_EQ(def.solver.inout.boxes.size(), 1u);
+        const Box3& box = def.solver.inout.boxes[0];
+        EXPECT_LT(norm(box.min - Vec3{0.7, 0.3, 0.1}), 1e-12);
+        EXPECT_LT(norm(box.max - Vec3{0.7, 0.5, 0.5}), 1e-12);
+    }
+}
+
 } // namespace
 } // namespace fppg

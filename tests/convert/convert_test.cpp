@@ -9,6 +9,7 @@
 #include "helpers/case_text.h"
 #include "helpers/run_fppg.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -440,6 +441,50 @@ TEST(Convert, TheSameBytesComeFromAnyNumberOfThreads)
         }
         EXPECT_EQ(files[0], files[1]) << ending;
         EXPECT_EQ(files[0], files[2]) << ending;
+    }
+}
+
+/// The sum that tools/bench/README.md describes, over the particles of a .bi4.
+std::uint64_t checksum_of(const Reference& particles)
+{
+    std::uint64_t all = 0;
+    for (std::size_t i = 0; i < particles.ids.size(); ++i)
+    {
+        std::uint64_t one = 0x9E3779B97F4A7C15;
+        const double* at = &particles.positions[3 * i];
+        for (const std::uint64_t word :
+             {std::uint64_t{particles.ids[i]}, std::bit_cast<std::uint64_t>(at[0]),
+              std::bit_cast<std::uint64_t>(at[1]), std::bit_cast<std::uint64_t>(at[2]),
+              std::uint64_t{std::bit_cast<std::uint32_t>(particles.density[i])}})
+        {
+            one = (one ^ word) * 0xD6E8FEB86659FD93;
+            one ^= one >> 32;
+        }
+        all += one;
+    }
+    return all;
+}
+
+TEST(Convert, ATallyIsThatOfTheParticlesWhetherTheyAreWrittenOrNot)
+{
+    const TemporaryFolder folder;
+    CaseText text = tank_with_bodies();
+    text.dp = "0.02"; // several pieces
+    make_case(folder, text, {"-to:tally"});
+    const std::string with_file = read_text(folder / "out/Case_tally.json");
+    const Reference particles(folder / "out/Case.bi4");
+    EXPECT_THAT(with_file, HasSubstr(fmt::format("\"particles\": {},", particles.ids.size())));
+    EXPECT_THAT(with_file,
+                HasSubstr(fmt::format("\"checksum\": \"{:016x}\"", checksum_of(particles))));
+    EXPECT_THAT(with_file, HasSubstr("\"ids_in_order\": true"));
+    EXPECT_THAT(with_file, HasSubstr("\"not_finite\": 0"));
+    EXPECT_THAT(with_file, HasSubstr("\"name\": \"raft\", \"mk\": 12, \"type\": \"floating\""));
+    for (const char* threads : {"-threads:1", "-threads:3", "-threads:16"})
+    {
+        fs::remove_all(folder / "out");
+        make_case(folder, text, {"-save:-all", "-to:tally", threads});
+        EXPECT_EQ(read_text(folder / "out/Case_tally.json"), with_file) << threads;
+        EXPECT_FALSE(fs::exists(folder / "out/Case.bi4"));
     }
 }
 

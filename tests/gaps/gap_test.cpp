@@ -1,5 +1,6 @@
 #include "fppg/motion_gaps.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -84,8 +85,8 @@ TEST(SurfaceGap, OfTwoGearsIsTheirBacklashAtEveryAngle)
 namespace
 {
 
-/// A wall, and a box that moves to it by `vel` for a second: gaps of `dp` 0.1.
-MotionGaps gaps_of(const TemporaryFolder& folder, const std::string& motion)
+/// A wall at x = 1, and half a metre before it a box that moves; dp 0.1.
+void write_moving_box(const TemporaryFolder& folder, const std::string& motion)
 {
     CaseText text;
     text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
@@ -95,6 +96,11 @@ MotionGaps gaps_of(const TemporaryFolder& folder, const std::string& motion)
     text.after_geometry = "<motion><objreal ref=\"1\"><begin mov=\"1\" start=\"0\" />" + motion +
                           "</objreal></motion>";
     test::write_text(folder / "Case_Def.xml", text.text());
+}
+
+MotionGaps gaps_of(const TemporaryFolder& folder, const std::string& motion)
+{
+    write_moving_box(folder, motion);
     MotionGapOptions options;
     options.finds_passages = false;
     return measure_motion_gaps(folder / "Case_Def.xml", options);
@@ -127,6 +133,87 @@ TEST(MotionGaps, SayWhenPartsOverlapAndHowDeep)
     EXPECT_NEAR(pair.overlap_time, 0.5 / 0.6, 0.05);
     EXPECT_NEAR(pair.depth_dp, 1, 0.3);
     EXPECT_EQ(pair.least_dp, 0);
+}
+
+namespace
+{
+
+/// Pairs of blocks of a cubic metre in water, 1.5, 2.5 and 3.5 dp of 0.1 m apart, and a pair 1.5 dp
+/// apart in a closed box, where water does not come.
+CaseText pairs_in_water()
+{
+    CaseText text;
+    text.pointmax = R"(<pointmax x="4.5" y="6.5" z="5.5" />)";
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkfluid mk="0" />)" +
+                    test::box_command(R"(x="0" y="0" z="0")", R"(x="4" y="6" z="2")") +
+                    R"(<setmkbound mk="0" />)" +
+                    test::box_command(R"(x="0" y="0" z="2.5")", R"(x="4" y="2" z="2.5")",
+                                      "bottom | top | left | right | front | back") +
+                    R"(<setmkbound mk="1" />)" +
+                    test::box_command(R"(x="0.5" y="0.5" z="3.25")", R"(x="1" y="1" z="1")") +
+                    R"(<setmkbound mk="2" />)" +
+                    test::box_command(R"(x="1.65" y="0.5" z="3.25")", R"(x="1" y="1" z="1")");
+    const std::array<const char*, 3> seconds{"1.65", "1.75", "1.85"};
+    for (std::size_t i = 0; i < seconds.size(); ++i)
+    {
+        const std::string y = std::to_string(0.5 + 2 * static_cast<double>(i));
+        text.mainlist +=
+            R"(<setmkbound mk="3" />)" +
+            test::box_command(R"(x="0.5" y=")" + y + R"(" z="0.5")", R"(x="1" y="1" z="1")") +
+            R"(<setmkbound mk="4" />)" +
+            test::box_command(std::string("x=\"") + seconds[i] + R"(" y=")" + y + R"(" z="0.5")",
+                              R"(x="1" y="1" z="1")");
+    }
+    return text;
+}
+
+} // namespace
+
+TEST(Passages, AreFoundWhereFluidComesByTheirWidth)
+{
+    const TemporaryFolder folder;
+    test::write_text(folder / "Case_Def.xml", pairs_in_water().text());
+    MotionGaps gaps = measure_motion_gaps(folder / "Case_Def.xml", {});
+    // Two faces of a square metre each, a place a dp^2; of the places at their rims some see past.
+    EXPECT_NEAR(gaps.narrow_area[0], 2, 0.1);
+    EXPECT_NEAR(gaps.narrow_area[1], 4, 0.2);
+    EXPECT_NEAR(gaps.narrow_area[2], 6, 0.3);
+    EXPECT_NEAR(gaps.narrowest_dp, 1.5, 1e-6);
+    EXPECT_NEAR(gaps.resolving_dp, 0.15 / 4, 1e-6);
+    for (const NarrowPlace& place : gaps.places)
+    {
+        EXPECT_LT(place.position.z, 2);
+        EXPECT_TRUE(place.mkbound == 3 || place.mkbound == 4) << place.mkbound;
+        // Of each pair by its y: 1.5, 2.5 and 3.5 dp.
+        EXPECT_NEAR(place.gap_dp, 1.5 + std::floor(place.position.y / 2), 1e-5);
+    }
+    EXPECT_TRUE(to_vtk(gaps).find("POINTS " + std::to_string(gaps.places.size()) + " float") !=
+                std::string::npos);
+    // (0.1 / 0.0375)^3 times 1e4, and its square for walls of 1e3.
+    gaps.volume_particles = 1e4;
+    gaps.wall_particles = 1e3;
+    EXPECT_TRUE(to_text(gaps).find("about 2e+05 particles, 1.9e+05 of fluid and floating bodies, "
+                                   "7.1e+03 of walls; 1.1e+04 now") != std::string::npos)
+        << to_text(gaps);
+}
+
+TEST(NearPlaces, FollowPartsThatMove)
+{
+    // A box that comes to a wall at 0.5 m in a second: 0.2 m, or two dp, are left.
+    const TemporaryFolder folder;
+    write_moving_box(folder,
+                     R"(<mvrect id="1" duration="10"><vel x="0.3" y="0" z="0" /></mvrect>)");
+    MotionGapOptions options;
+    options.finds_passages = false;
+    const NearPlaces found =
+        find_near_places(folder / "Case_Def.xml", options, {0, 0.5, 0.75, 1}, 3);
+    ASSERT_EQ(found.places.size(), 2u);
+    EXPECT_EQ(found.places[0].look, 2u);
+    EXPECT_NEAR(found.places[0].gap_dp, (0.5 - 0.225) / 0.1, 1e-6);
+    EXPECT_EQ(found.places[1].look, 3u);
+    EXPECT_NEAR(found.places[1].gap_dp, 2, 1e-6);
+    EXPECT_NEAR(found.places[1].place.x, 0.9, 1e-9);
+    EXPECT_EQ(found.mk_bound_first, 10);
 }
 
 TEST(MotionGaps, TurnAsTheSolverDoes)

@@ -188,6 +188,28 @@ TEST(FindFeatures, TwelveSidesAtThirtyDegreesAreJudgedAlike)
     EXPECT_EQ(find_features(taken_in(soup), {.angle_deg = 30}).edges.size(), 24u);
 }
 
+TEST(FindFeatures, BendsOfACadModelCountInThePlaceOfFacetAngles)
+{
+    // Twelve sides at 30 degrees that stand for a round tube: only its rims bend, and of those one
+    // edge is not known.
+    const SurfaceMesh mesh = taken_in(cylinder(12));
+    std::vector<float> bends(mesh.edges.size(), 0);
+    std::vector<std::size_t> rims;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        const auto& facets = mesh.edge_facets[e];
+        if (std::fabs(dot(mesh.normals[facets[0]], mesh.normals[facets[1]])) < 0.1)
+            rims.push_back(e);
+    }
+    ASSERT_EQ(rims.size(), 24u);
+    EXPECT_TRUE(find_features(mesh, {.angle_deg = 5}, {}, bends).edges.empty());
+    for (const std::size_t e : rims) bends[e] = static_cast<float>(2 * pi / 180);
+    bends[rims[0]] = -1;
+    EXPECT_EQ(find_features(mesh, {.angle_deg = 5}, {}, bends).edges.size(), 24u);
+    EXPECT_EQ(find_features(mesh, {.angle_deg = 5, .cad_angle_deg = 3}, {}, bends).edges.size(),
+              1u);
+}
+
 TEST(FindFeatures, OpenEdgesAreFeaturesHoweverFlat)
 {
     TriangleSoup sheet;

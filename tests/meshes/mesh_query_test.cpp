@@ -1,6 +1,8 @@
 #include "meshes/mesh_query.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -113,6 +115,41 @@ TEST(ClosestPoint, AgreesWithAPlainSearchAmongLongObliqueFacets)
     }
     test::add_facet(soup, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
     expect_nearest(soup, random_points(1000, 2), 1e-10);
+}
+
+/// Lines of a plane section and of edges are facets without an area.
+TEST(ClosestPoint, AgreesWithAPlainSearchAmongLines)
+{
+    TriangleSoup soup;
+    const std::vector<Vec3> ends = random_points(300, 1);
+    for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
+        test::add_facet(soup, ends[k], ends[k + 1], ends[k + 1]);
+    const MeshQuery query(soup);
+    for (const Vec3& p : random_points(500, 1.5))
+    {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
+        {
+            const Vec3 along = ends[k + 1] - ends[k];
+            const double t = std::clamp(dot(p - ends[k], along) / dot(along, along), 0.0, 1.0);
+            least = std::min(least, norm(p - ends[k] - t * along));
+        }
+        EXPECT_NEAR(query.closest_point(p).distance, least, 1e-14);
+    }
+}
+
+TEST(ClosestPoint, IsTheSameWithinALimitAndNoneBeyondIt)
+{
+    const MeshQuery query(sphere(3));
+    for (const Vec3& p : random_points(500, 2))
+    {
+        const ClosestPoint all = query.closest_point(p);
+        const ClosestPoint near = query.closest_point(p, all.distance);
+        EXPECT_EQ(near.facet, all.facet);
+        EXPECT_EQ(near.point, all.point);
+        EXPECT_EQ(query.closest_point(p, 0.99 * all.distance).distance,
+                  std::numeric_limits<double>::infinity());
+    }
 }
 
 TEST(ClosestPoint, GivesTheSmallestFacetOfATie)

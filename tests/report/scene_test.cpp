@@ -41,6 +41,22 @@ TEST(SceneSet, HoldsWhereItsPartsAreOverTime)
               nlohmann::json({1.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}));
 }
 
+TEST(SceneSet, HoldsWhatIsMarkedInWhichFrame)
+{
+    SceneSet set{"A", 0.5, {{"mk 1", "#ff0000", {{0, 0, 0}, {1, 2, 2}}}}};
+    EXPECT_TRUE(nlohmann::json::parse(to_json(set)).at("marks").is_null());
+    set.mark_label = "gaps below 3 dp";
+    set.frames = 4;
+    set.marks = {{2, {1.0 / 3, 0, 1}, "a and b: 1.2 dp"}};
+    set.start_marks = {{0, 2, 0}};
+    const auto marks = nlohmann::json::parse(to_json(set)).at("marks");
+    EXPECT_EQ(marks.at("frames"), 4);
+    EXPECT_EQ(marks.at("places").at(0).at("frame"), 2);
+    EXPECT_EQ(marks.at("places").at(0).at("at"), nlohmann::json({0.333333, 0.0, 1.0}));
+    EXPECT_EQ(marks.at("places").at(0).at("text"), "a and b: 1.2 dp");
+    EXPECT_EQ(marks.at("start"), nlohmann::json::array({{0.0, 2.0, 0.0}}));
+}
+
 TEST(SceneSet, DoesNotEndTheScriptThatItStandsIn)
 {
     const SceneSet set{"</script><b>", 1, {}};

@@ -58,7 +58,7 @@ double depth_of(const FittedBody& body)
                 const Vec3 p = v[corners[0]] * (i / 6.0) + v[corners[1]] * (j / 6.0) +
                                v[corners[2]] * ((6 - i - j) / 6.0);
                 Vec3 exact = p;
-                project_to_round(body, exact, f);
+                project_to_exact(body, exact, f);
                 depth = std::max(depth, norm(exact - p));
             }
     return depth;
@@ -173,7 +173,7 @@ TEST(ProjectToRound, MovesEveryFacetOntoTheExactSurface)
             const auto& v = body->mesh.vertices;
             const Vec3 before = (v[corners[0]] + v[corners[1]] + v[corners[2]]) / 3;
             Vec3 p = before;
-            project_to_round(*body, p, f);
+            project_to_exact(*body, p, f);
             EXPECT_LT(norm(p - before), 1.01 * chord_error_dp * dp);
             const double off = body == &sphere ? norm(p - Vec3{1, 2, 3}) - 0.1
                                : body == &tube ? distance_to_line({}, {1, 1, 0}, p) - 0.1
@@ -193,7 +193,7 @@ TEST(ProjectToRound, KeepsCoversPlaneAndPutsRimParticlesOnTheCircle)
         for (const std::uint32_t facet : body.mesh.edge_facets[particle.edge])
         {
             Vec3 p = particle.position;
-            project_to_round(body, p, facet);
+            project_to_exact(body, p, facet);
             EXPECT_NEAR(std::hypot(p.x, p.y), 0.1, 1e-15);
             EXPECT_EQ(p.z, particle.position.z);
         }
@@ -204,7 +204,7 @@ TEST(ProjectToRound, KeepsCoversPlaneAndPutsRimParticlesOnTheCircle)
             const auto& v = body.mesh.vertices;
             const Vec3 middle = (v[corners[0]] + v[corners[1]] + v[corners[2]]) / 3;
             Vec3 p = middle;
-            project_to_round(body, p, f);
+            project_to_exact(body, p, f);
             EXPECT_EQ(p, middle);
         }
 }
@@ -215,7 +215,7 @@ TEST(ProjectToRound, KeepsYInTwoDimensions)
     const auto& corners = body.mesh.facets[7];
     Vec3 p = body.mesh.vertices[corners[0]] * 0.5 + body.mesh.vertices[corners[1]] * 0.5;
     const double y = p.y;
-    project_to_round(body, p, 7, true);
+    project_to_exact(body, p, 7, true);
     EXPECT_EQ(p.y, y);
     EXPECT_NEAR(norm(p - Vec3{0, 0.05, 0}), 0.1, 1e-15);
 }
@@ -231,7 +231,7 @@ TEST(ProjectToRound, KeepsTheCornersOfASlantedSectionOnTheirCovers)
     for (std::size_t i = 0; i < section.positions.size(); ++i)
     {
         Vec3 p = section.positions[i];
-        project_to_round(body, p, section.facets[i], true);
+        project_to_exact(body, p, section.facets[i], true);
         EXPECT_EQ(p.y, 0.05);
         if (section.kinds[i] != FitKind::Corner) continue;
         ++corners;

@@ -62,7 +62,7 @@ class Schema:
                 if child.get("name") not in self.common:
                     self.elements[path].add(child.get("name"))
             elif child.tag == XS + "anyAttribute" and has_inside(name):
-                self.elements[path].add("fppg:fill")
+                self.elements[path] |= {"fppg:fill"} | ({"fppg:part"} if name in ("drawfile", "drawfilestep") else set())
             elif child.tag == XS + "element":
                 self.read(child, name)
             elif child.tag == XS + "group":

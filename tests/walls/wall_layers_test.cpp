@@ -165,6 +165,15 @@ TEST(WallLayers, AreLinesIn2D)
     }
 }
 
+TEST(WallLayers, OfAPlateIn2DWithoutRoomForNodesHaveNone)
+{
+    Drawing drawing = layered(true);
+    drawing.box({-0.93, -1, -0.04}, {1.8, 2, 0.4});
+    const RunField field = relaxed(drawing);
+    EXPECT_NEAR(static_cast<double>(field.walls.particles.size()), 1.8 * 0.4 / (dp * dp), 6);
+    EXPECT_EQ(field.walls.volume.size(), 0U);
+}
+
 /// Under DBC, where the first stands on the surface, with half of its volume outside.
 TEST(WallLayers, StandForTheVolumeOfTheBodyHalfAsMuchOnItsSurface)
 {

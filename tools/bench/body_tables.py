@@ -100,6 +100,8 @@ def definition(mesh, dp, fitted, more="", normals=""):
     v = np.array(mesh.vertices)
     low, high = v.min(0) - 8 * dp, v.max(0) + 8 * dp
     box = ["".join(f' {a}="{x:.9g}"' for a, x in zip("xyz", p)) for p in (low, high)]
+    # Without this the solver's domain would end at the body, and fluid could not come to its faces.
+    room = ["".join(f' {a}="default {sign} {8 * dp:.9g}"' for a in "xyz") for sign in "-+"]
     return f"""<?xml version="1.0" encoding="UTF-8" ?>
 <case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" /><rhopgradient value="1" />
 <hswl value="1" auto="false" /><gamma value="7" /><speedsystem value="1" auto="false" /><coefsound value="20" />
@@ -108,7 +110,8 @@ def definition(mesh, dp, fitted, more="", normals=""):
 </definition><commands><mainlist><setdrawmode mode="full" /><setmkbound mk="0" />
 <drawfilestl file="body.stl" autofill="true" />{more}</mainlist></commands></geometry>{normals}{fitted}</casedef>
 <execution><parameters><parameter key="Boundary" value="{2 if normals or 'mdbc' in fitted else 1}" />
-<parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /></parameters></execution></case>"""
+<parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" />
+<simulationdomain><posmin{room[0]} /><posmax{room[1]} /></simulationdomain></parameters></execution></case>"""
 
 
 def run(fppg, folder, mesh, text, options=()):
@@ -151,8 +154,10 @@ def volume_row(fppg, mesh, dp, mode):
     bodies = [line for line in lines if line.get("event") == "body"]
     if bodies:
         shape, own = bodies[0]["shape"], bodies[0]["particles"]
-        volume, centre, inertia = own["volume"] / shape["volume"], np.subtract(own["centre"], shape["centre"]), (
-            np.max(np.abs(np.array(own["inertia"]) / np.array(shape["inertia"]) - 1)))
+        # Particles on the surface share what nodes leave of the volume; the others stand for dp^3 each.
+        volume = (len(p) * dp**3 if mode == "inside" else own["volume"]) / shape["volume"]
+        centre = np.subtract(own["centre"], shape["centre"])
+        inertia = np.max(np.abs(np.array(own["inertia"]) / np.array(shape["inertia"]) - 1))
         words = [f"{np.linalg.norm(centre) / dp:.4f}", f"{100 * inertia:.2f} %"]
     else:
         volume, words = len(p) * dp**3 / mesh.volume(), ["", ""]

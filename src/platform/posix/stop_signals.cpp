@@ -1,11 +1,11 @@
 #include "platform/stop_signals.h"
 
+#include "platform/stop_request.h"
 #include "platform/temporary_files.h"
 
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <csignal>
 #include <cstring>
 
@@ -14,24 +14,9 @@ namespace fppg
 namespace
 {
 
-std::atomic<bool> is_ignored{false};
-std::atomic<bool> asks_first{false};
-std::atomic<int> asked_by{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
-
 constexpr std::array stops{SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGXCPU,
                            SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM};
 constexpr std::array crashes{SIGSEGV, SIGFPE, SIGILL, SIGABRT, SIGSYS};
-
-void print_end(const char* before, const char* what)
-{
-    constexpr const char* after = "; no output file was changed.\n";
-    for (const char* text : {before, what, after})
-    {
-        const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
-        static_cast<void>(written);
-    }
-}
 
 const char* name_of_stop(int signal)
 {
@@ -54,11 +39,8 @@ const char* name_of_stop(int signal)
 
 extern "C" void stop(int signal)
 {
-    if (is_ignored.load()) return;
-    int none = 0;
-    if (asks_first.load() && asked_by.compare_exchange_strong(none, signal)) return;
-    remove_temporary_files();
-    print_end("\n*** Stopped by ", name_of_stop(signal));
+    if (is_stop_put_off(signal)) return;
+    clean_up_after_stop(name_of_stop(signal));
     _exit(128 + signal);
 }
 
@@ -72,14 +54,14 @@ extern "C" void clean_up(int signal)
 /// Of files that are read as memory: the part that another program cuts off meanwhile is gone.
 extern "C" void lose_input(int signal, siginfo_t* info, void* /*context*/)
 {
-    remove_temporary_files();
     if (info->si_code != BUS_ADRERR)
     {
+        remove_temporary_files();
         std::signal(signal, SIG_DFL);
         raise(signal);
         return;
     }
-    print_end("*** Error: ", "a file became shorter while it was read, or its disk failed");
+    clean_up_after_lost_input();
     _exit(4);
 }
 
@@ -108,36 +90,10 @@ void catch_stop_signals()
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void drop_unfinished_files()
+void write_to_standard_error(const char* text)
 {
-    remove_temporary_files();
-}
-
-StopSignalsIgnored::StopSignalsIgnored()
-{
-    is_ignored.store(true);
-}
-StopSignalsIgnored::~StopSignalsIgnored()
-{
-    is_ignored.store(false);
-}
-
-StopSignalsAsk::StopSignalsAsk()
-{
-    asked_by.store(0);
-    asks_first.store(true);
-}
-StopSignalsAsk::~StopSignalsAsk()
-{
-    asks_first.store(false);
-}
-bool StopSignalsAsk::is_asked() const
-{
-    return asked_by.load() != 0;
-}
-int StopSignalsAsk::signal() const
-{
-    return asked_by.load();
+    const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+    static_cast<void>(written);
 }
 
 } // namespace fppg

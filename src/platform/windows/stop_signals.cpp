@@ -1,12 +1,11 @@
 #include "platform/stop_signals.h"
 
+#include "platform/stop_request.h"
 #include "platform/temporary_files.h"
 
 #include <windows.h>
 
-#include <atomic>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 
 namespace fppg
@@ -14,42 +13,26 @@ namespace fppg
 namespace
 {
 
-std::atomic<bool> is_ignored{false};
-std::atomic<bool> asks_first{false};
-std::atomic<int> asked_by{0};
-
-void print_end(const char* before, const char* what)
-{
-    constexpr const char* after = "; no output file was changed.\n";
-    for (const char* text : {before, what, after})
-    {
-        DWORD written = 0;
-        ::WriteFile(::GetStdHandle(STD_ERROR_HANDLE), text, static_cast<DWORD>(std::strlen(text)),
-                    &written, nullptr);
-    }
-}
-
 /// Windows calls it in a thread of its own. Ctrl-Break is what a batch sends to its runs.
 BOOL WINAPI stop(DWORD event)
 {
     const int signal = event == CTRL_C_EVENT ? SIGINT : SIGTERM;
-    if (is_ignored.load()) return TRUE;
-    int none = 0;
-    if (asks_first.load() && asked_by.compare_exchange_strong(none, signal)) return TRUE;
-    remove_temporary_files();
-    print_end("\n*** Stopped by ", signal == SIGINT            ? "the user"
-                                   : event == CTRL_BREAK_EVENT ? "Ctrl-Break"
-                                                               : "the end of its session");
+    if (is_stop_put_off(signal)) return TRUE;
+    clean_up_after_stop(signal == SIGINT            ? "the user"
+                        : event == CTRL_BREAK_EVENT ? "Ctrl-Break"
+                                                    : "the end of its session");
     ::ExitProcess(static_cast<UINT>(128 + signal));
     return TRUE;
 }
 
 LONG WINAPI clean_up(EXCEPTION_POINTERS* what)
 {
-    remove_temporary_files();
     if (what->ExceptionRecord->ExceptionCode != EXCEPTION_IN_PAGE_ERROR)
+    {
+        remove_temporary_files();
         return EXCEPTION_CONTINUE_SEARCH;
-    print_end("*** Error: ", "a file became shorter while it was read, or its disk failed");
+    }
+    clean_up_after_lost_input();
     ::TerminateProcess(::GetCurrentProcess(), 4);
     return EXCEPTION_EXECUTE_HANDLER;
 }
@@ -72,36 +55,11 @@ void catch_stop_signals()
     ::SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX | SEM_NOOPENFILEERRORBOX);
 }
 
-void drop_unfinished_files()
+void write_to_standard_error(const char* text)
 {
-    remove_temporary_files();
-}
-
-StopSignalsIgnored::StopSignalsIgnored()
-{
-    is_ignored.store(true);
-}
-StopSignalsIgnored::~StopSignalsIgnored()
-{
-    is_ignored.store(false);
-}
-
-StopSignalsAsk::StopSignalsAsk()
-{
-    asked_by.store(0);
-    asks_first.store(true);
-}
-StopSignalsAsk::~StopSignalsAsk()
-{
-    asks_first.store(false);
-}
-bool StopSignalsAsk::is_asked() const
-{
-    return asked_by.load() != 0;
-}
-int StopSignalsAsk::signal() const
-{
-    return asked_by.load();
+    DWORD written = 0;
+    ::WriteFile(::GetStdHandle(STD_ERROR_HANDLE), text, static_cast<DWORD>(std::strlen(text)),
+                &written, nullptr);
 }
 
 } // namespace fppg

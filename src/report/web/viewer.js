@@ -32,6 +32,9 @@ const directions = {
   iso: [0.45, -0.78, 0.43], front: [0, -1, 0], right: [1, 0, 0], above: [0, -1e-4, 1],
 };
 
+const markHex = '#e6007e';
+const markColour = [0.9, 0, 0.49];
+
 function uint16s(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
@@ -95,6 +98,8 @@ class View {
     this.canvasHome.appendChild(this.renderer.domElement);
     this.titles = element(this.canvasHome, 'div', undefined, { class: 'titles' });
     this.legend = element(home, 'div', undefined, { class: 'legend' });
+    if (this.sets.some((set) => set.marks))
+      this.markText = element(home, 'p', '', { class: 'marks' });
   }
 
   // Where sets have a motion: a slider of its time, and a button that plays it.
@@ -138,6 +143,53 @@ class View {
     points.matrixWorldNeedsUpdate = true;
   }
 
+  // Discs at places that are marked; over all else, or where nothing stands before them.
+  markObject(set, places, isOverAll) {
+    const low = new THREE.Vector3();
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position',
+      new THREE.BufferAttribute(new Float32Array(places.flat()), 3));
+    const material = new THREE.ShaderMaterial({
+      vertexShader, fragmentShader, depthTest: !isOverAll, transparent: true,
+      uniforms: {
+        low: { value: low }, extent: { value: new THREE.Vector3(1, 1, 1) }, pixels: { value: 1 },
+        colour: { value: new THREE.Vector3(...markColour) },
+        cutAxis: { value: new THREE.Vector3() }, cutAt: { value: 0 },
+      },
+    });
+    const points = new THREE.Points(geometry, material);
+    points.frustumCulled = false;
+    points.matrixAutoUpdate = false;
+    points.renderOrder = 1;
+    points.userData = { label: set.marks.label, dp: set.dp };
+    return points;
+  }
+
+  // An object a frame that has marks, and one of the start.
+  addMarks(set) {
+    const byFrame = new Map();
+    for (const mark of set.marks.places) {
+      if (!byFrame.has(mark.frame)) byFrame.set(mark.frame, []);
+      byFrame.get(mark.frame).push(mark);
+    }
+    for (const [frame, marks] of byFrame) {
+      const points = this.markObject(set, marks.map((mark) => mark.at), true);
+      Object.assign(points.userData, { frame, frameCount: set.marks.frames, least: 13,
+        texts: marks.map((mark) => mark.text) });
+      set.group.add(points);
+    }
+    if (set.marks.start.length === 0) return;
+    const points = this.markObject(set, set.marks.start, false);
+    Object.assign(points.userData, { frame: 0, frameCount: set.marks.frames, least: 3, texts: [] });
+    set.group.add(points);
+  }
+
+  // Whether it is no mark, or one of the frame that is shown.
+  isNow(points) {
+    const of = points.userData;
+    return of.frame === undefined || of.frame === Math.round(this.time * (of.frameCount - 1));
+  }
+
   // Particles of one set, an object a part, so that a part can be hidden.
   objects(index) {
     const set = this.sets[index];
@@ -168,6 +220,7 @@ class View {
       points.userData = { label: part.label, dp: set.dp, frames: part.frames, end: set.end };
       set.group.add(points);
     }
+    if (set.marks) this.addMarks(set);
     return set.group;
   }
 
@@ -201,8 +254,11 @@ class View {
     this.legend.textContent = '';
     this.hidden.clear();
     const known = new Map();
-    for (const index of this.view.sets)
+    for (const index of this.view.sets) {
       for (const part of this.sets[index].parts) known.set(part.label, part);
+      const marks = this.sets[index].marks;
+      if (marks) known.set(marks.label, { colour: markHex });
+    }
     for (const [label, part] of known) {
       const button = element(this.legend, 'button', undefined,
         { type: 'button', 'aria-pressed': 'true', title: 'hide or show', 'data-label': label });
@@ -273,19 +329,22 @@ class View {
     const cutAxis = new THREE.Vector3();
     cutAxis[axis] = sign;
     const cutAt = sign * (low + this.cut.share * (high - low));
+    const texts = [];
     this.panels.forEach((scene, i) => {
       for (const points of scene.children[0].children) {
         const uniforms = points.material.uniforms;
-        uniforms.pixels.value = metre * points.userData.dp;
+        uniforms.pixels.value = Math.max(metre * points.userData.dp, points.userData.least || 0);
         uniforms.cutAxis.value.copy(cutAxis);
         uniforms.cutAt.value = cutAt;
-        points.visible = !this.hidden.has(points.userData.label);
+        points.visible = !this.hidden.has(points.userData.label) && this.isNow(points);
+        if (points.visible && points.userData.texts) texts.push(...points.userData.texts);
         this.place(points);
       }
       this.renderer.setViewport(i * width, 0, width, height);
       this.renderer.setScissor(i * width, 0, width, height);
       this.renderer.render(scene, this.camera);
     });
+    if (this.markText) this.markText.textContent = texts.join('; ');
   }
 }
 

@@ -3,7 +3,7 @@
 #
 #   tools/package/arm64/build.sh [FOLDER]     default: build/arm64
 #
-# Installs the compiler where it is missing. The libraries of arm64 are unpacked into FOLDER/root,
+# Installs the packages that are missing (setup.sh arm64). The libraries of arm64 are unpacked into FOLDER/root,
 # from the packages of this system's sources: nothing else of the system changes. With qemu-user,
 # `qemu-aarch64 -L FOLDER/root FOLDER/fppg/fppg` runs the program.
 set -eu
@@ -13,21 +13,6 @@ folder=${1-$top/build/arm64}
 mkdir -p "$folder/packages" "$folder/root"
 folder=$(cd "$folder" && pwd)
 root=$folder/root
-
-install_compiler() {
-    missing=
-    for package in g++-aarch64-linux-gnu libcli11-dev nlohmann-json3-dev cmake ninja-build; do
-        status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-        [ "$status" = installed ] || missing="$missing $package"
-    done
-    [ -n "$missing" ] || return 0
-    as_root=
-    [ "$(id -u)" -eq 0 ] || as_root="sudo env DEBIAN_FRONTEND=noninteractive"
-    export DEBIAN_FRONTEND=noninteractive
-    $as_root apt-get update
-    # shellcheck disable=SC2086
-    $as_root apt-get install -y --no-install-recommends $missing
-}
 
 # What the program is linked with, and what that needs to run under qemu.
 unpack_libraries() {
@@ -52,7 +37,7 @@ END
     touch "$folder/unpacked"
 }
 
-install_compiler
+"$top/tools/setup.sh" arm64
 unpack_libraries
 # dpkg-shlibdeps knows the libraries of packages that are installed, which these are not.
 cmake -G Ninja -S "$top" -B "$folder/fppg" -DCMAKE_TOOLCHAIN_FILE="$here/toolchain.cmake" \

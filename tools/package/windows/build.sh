@@ -3,7 +3,7 @@
 #
 #   tools/package/windows/build.sh [FOLDER]     default: build/windows
 #
-# Installs the packages that are missing (packages.txt). Libraries that Debian has no package of for
+# Installs the packages that are missing (setup.sh windows). Libraries that Debian has no package of for
 # Windows are compiled from its source packages; sources.sha256 says what their files must be. A
 # second call compiles what changed.
 set -eu
@@ -13,22 +13,6 @@ folder=${1-$root/build/windows}
 mkdir -p "$folder/sources" "$folder/libraries"
 folder=$(cd "$folder" && pwd)
 libraries=$folder/libraries
-
-install_missing() {
-    missing=
-    # shellcheck disable=SC2013
-    for package in $(cat "$here/packages.txt"); do
-        status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-        [ "$status" = installed ] || missing="$missing $package"
-    done
-    [ -n "$missing" ] || return 0
-    as_root=
-    [ "$(id -u)" -eq 0 ] || as_root="sudo env DEBIAN_FRONTEND=noninteractive"
-    export DEBIAN_FRONTEND=noninteractive
-    $as_root apt-get update
-    # shellcheck disable=SC2086
-    $as_root apt-get install -y --no-install-recommends $missing
-}
 
 # Sources of packages from where this system has its packages, in lists of their own.
 fetch_sources() {
@@ -101,7 +85,7 @@ compile_libraries() {
     cp -r /usr/share/cmake/CLI11 /usr/share/cmake/nlohmann_json "$libraries/share/cmake"
 }
 
-install_missing
+"$root/tools/setup.sh" windows
 fetch_sources
 compile_libraries
 cmake -G Ninja -S "$root" -B "$folder/fppg" -DCMAKE_TOOLCHAIN_FILE="$here/toolchain.cmake" \
