@@ -1,5 +1,7 @@
 #include "casedef/motion.h"
 
+#include "fppg/moving_parts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,8 +4,6 @@
 
 #include "casedef/attributes.h"
 
-#include <set>
-
 namespace fppg
 {
 
@@ -19,9 +17,5 @@ Element evaluated_element(const Element& element, const AttributeReader& read);
 ///
 /// throws CaseError for an element that is not known or a number that cannot be read
 Element evaluated_motion(const Element& motion, const AttributeReader& read);
-
-/// mkbound of all objreal with a `<begin>` of their own or of an object around them; others stay
-/// fixed.
-std::set<int> moving_mkbound(const Element& motion);
 
 } // namespace fppg

@@ -1,8 +1,8 @@
 #include "fppg/case_def.h"
 #include "fppg/error.h"
+#include "fppg/moving_parts.h"
 #include "fppg/particles.h"
 
-#include "casedef/motion.h"
 #include "core/most_particles.h"
 #include "core/parallel.h"
 #include "particles/density.h"

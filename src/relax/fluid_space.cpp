@@ -1,6 +1,7 @@
 #include "relax/fluid_space.h"
 
-#include "casedef/motion.h"
+#include "fppg/moving_parts.h"
+
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "fit/near_nodes.h"

@@ -386,11 +386,9 @@ private:
         auto next = sliding.particles.begin();
         for (std::uint32_t i = 0; i < particles.size(); ++i)
         {
-            if (next != sliding.particles.end() && *next == i)
-            {
-                ++next;
-                continue;
-            }
+            const bool is_sliding = next != sliding.particles.end() && *next == i;
+            if (is_sliding) ++next;
+            if (is_sliding) continue;
             const Vec3& p = particles.positions[i];
             bool is_near = true;
             for (int axis = 0; axis < 3; ++axis)
@@ -407,6 +405,18 @@ private:
         for (const SlabRun& r : runs)
             if (region.band[r.run.mk] > 0) count += r.run.z_end - r.run.z_begin;
         return count;
+    }
+
+    /// How many particles are wanted in the end; nothing: as many as fit.
+    std::optional<double> number_wanted(const Region& region, const std::vector<SlabRun>& runs,
+                                        std::size_t moving) const
+    {
+        const double dp = field_.grid.dp;
+        if (region.is_solid)
+            return wanted_number(field_.walls, region, moving, count_nodes(region, runs), dp);
+        if (region.missing) return static_cast<double>(moving + *region.missing);
+        if (are_layered()) return number_between_layers(report_.space, moving, dp);
+        return std::nullopt;
     }
 
     /// runs  of the region, and of what is beside it, in their order in the field
@@ -458,13 +468,7 @@ private:
             region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
         options.is_2d = grid.is_2d;
         options.fit_count = region.fits_count;
-        if (region.missing)
-            options.wanted = static_cast<double>(positions.size() + *region.missing);
-        else if (is_before_layers)
-            options.wanted = number_between_layers(report_.space, positions.size(), grid.dp);
-        if (region.is_solid)
-            options.wanted = wanted_number(field_.walls, region, positions.size(),
-                                           count_nodes(region, runs), grid.dp);
+        options.wanted = number_wanted(region, runs, positions.size());
         if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
         options.has_free_surface = !is_of_inside;
         if (options.wanted && region.is_solid && !is_of_inside)
