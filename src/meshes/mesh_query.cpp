@@ -76,7 +76,8 @@ struct MeshQuery::Scene
 
     void make_ray_scene()
     {
-        device.reset(new_embree_device(threads));
+        // Released after memory ran out, Embree waits without end for threads that never started.
+        device.reset(new_embree_device(1));
         scene.reset(rtcNewScene(device.get()));
         rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
         const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);

@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "fppg/error.h"
 #include "meshes/step_plugin.h"
+#include "platform/regular_file.h"
 
 #include <fmt/format.h>
 
@@ -118,6 +119,7 @@ private:
 /// open stays so until none needs it.
 std::shared_ptr<StepFile> open_step(const std::string& path)
 {
+    expect_regular_file(path);
     std::error_code failed;
     if (!fs::is_regular_file(path, failed))
         throw IoError(fmt::format("cannot open '{}': no such file", path));

@@ -133,6 +133,12 @@ void choose_floatings(CasePlan& plan)
     }
 }
 
+bool is_called_housing(const NewPart& part)
+{
+    return has_word(part.name,
+                    {"hous", "casing", "case", "tank", "vessel", "basin", "gearbox", "bath"});
+}
+
 /// How well a part would do as the one that holds the fluid, and the volume of its box.
 std::pair<double, double> housing_rank(const CasePlan& plan, std::size_t h)
 {
@@ -149,15 +155,14 @@ std::pair<double, double> housing_rank(const CasePlan& plan, std::size_t h)
         if (is_in) ++rank;
     }
     const Vec3 size = box.max - box.min;
-    if (has_word(plan.parts[h].name,
-                 {"hous", "casing", "case", "tank", "vessel", "basin", "gearbox", "bath"}))
-        rank += static_cast<double>(plan.parts.size());
+    if (is_called_housing(plan.parts[h])) rank += static_cast<double>(plan.parts.size());
     if (has_word(plan.parts[h].name, {"lid", "cover", "gear1", "shaft", "wheel", "bearing"}))
         rank -= static_cast<double>(plan.parts.size());
     return {rank, size.x * size.y * size.z};
 }
 
-/// What floats, turns or is a sheet that lets fluid in is no housing.
+/// What floats, turns or is a sheet that lets fluid in is no housing. One that is called a housing
+/// and is to turn stays one here: the choice of motions says that it cannot.
 bool may_hold_fluid(const CasePlan& plan, const NewPart& part)
 {
     const auto is_named = [&](const std::vector<std::string>& entries)
@@ -173,8 +178,8 @@ bool may_hold_fluid(const CasePlan& plan, const NewPart& part)
                                    { return lower_case(name) == lower_case(part.name); });
                            });
     };
-    return part.role != PartRole::Floating && !is_named(plan.options->rotations) &&
-           !is_named(plan.options->inlets);
+    return part.role != PartRole::Floating && !is_named(plan.options->inlets) &&
+           (is_called_housing(part) || !is_named(plan.options->rotations));
 }
 
 void choose_housing(CasePlan& plan)

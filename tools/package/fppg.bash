@@ -16,7 +16,7 @@ _fppg()
                 --tolerance-constants --examples --memory --quiet --threads --help" ;;
         *:convert) options="--output --to --case-xml --threads --help" ;;
         *:estimate) options="--json --calibrate -dp: -evars: -fit -save: -threads: --help" ;;
-        *:inspect) options="--dp --unit --angle --weld --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
+        *:inspect) options="--dp --unit --angle --weld --part --json --threads --help" endings="stl ply vtk vtp vtu obj off csv" ;;
         *:leak) options="--json --plot --definition --evars --tolerance --threads --help" ;;
         *:new)
             options="--output --kind --unit --up --dp --particles --across --housing --rotate --fix --float --fill --inlet --water
