@@ -14,16 +14,41 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <new>
 
 namespace fppg
 {
 
+/// Whether Embree ever ran out of memory in this process: it keeps locks then, and releasing any
+/// device waits for them without end (Embree 3.13.5).
+inline std::atomic<bool> embree_ran_out_of_memory{false};
+
+struct ReleaseEmbreeDevice
+{
+    void operator()(RTCDevice device) const
+    {
+        if (!embree_ran_out_of_memory) rtcReleaseDevice(device);
+    }
+};
+
+struct ReleaseEmbreeScene
+{
+    void operator()(RTCScene scene) const
+    {
+        if (!embree_ran_out_of_memory) rtcReleaseScene(scene);
+    }
+};
+
 /// throws  std::bad_alloc, or Error, where Embree failed at what was asked of it last
 inline void expect_embree_worked(RTCDevice device)
 {
     const RTCError why = rtcGetDeviceError(device);
-    if (why == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (why == RTC_ERROR_OUT_OF_MEMORY)
+    {
+        embree_ran_out_of_memory = true;
+        throw std::bad_alloc();
+    }
     if (why != RTC_ERROR_NONE)
         throw Error(fmt::format("Embree failed with error {}", static_cast<int>(why)));
 }

@@ -27,23 +27,14 @@ constexpr double rounding_room = 1.0 / (1 << 20);
 /// are made when they are needed first.
 struct MeshQuery::Scene
 {
-    struct ReleaseDevice
-    {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    };
-    struct ReleaseScene
-    {
-        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-    };
-
     TriangleSoup soup;
     Vec3 centre;
     double scale = 1; ///< half the largest extent of the mesh
     int threads = 1;
     std::once_flag needs_near, needs_rays;
     std::unique_ptr<NearTree> near;
-    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
-    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
+    std::unique_ptr<RTCDeviceTy, ReleaseEmbreeDevice> device;
+    std::unique_ptr<RTCSceneTy, ReleaseEmbreeScene> scene;
 
     Scene(TriangleSoup mesh, int n) : soup(std::move(mesh)), threads(n)
     {
@@ -76,8 +67,7 @@ struct MeshQuery::Scene
 
     void make_ray_scene()
     {
-        // Released after memory ran out, Embree waits without end for threads that never started.
-        device.reset(new_embree_device(1));
+        device.reset(new_embree_device(threads));
         scene.reset(rtcNewScene(device.get()));
         rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
         const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);

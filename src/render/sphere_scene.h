@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshes/embree.h"
 #include "render/embree_packets.h"
 
 #include <cstdint>
@@ -24,16 +25,8 @@ public:
     RTCScene handle() const { return scene_.get(); }
 
 private:
-    struct ReleaseDevice
-    {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    };
-    struct ReleaseScene
-    {
-        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-    };
-    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
-    std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+    std::unique_ptr<RTCDeviceTy, ReleaseEmbreeDevice> device_;
+    std::unique_ptr<RTCSceneTy, ReleaseEmbreeScene> scene_;
 };
 
 } // namespace fppg
