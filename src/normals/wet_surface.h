@@ -77,9 +77,10 @@ private:
         const WallDepth* exact_wall = nullptr;
         bool is_closed = false;
         char state = 0;
-        double thickness = 0; ///< metres; 0: no other side was found
-        double way = 0;       ///< of fluid to it, dp
-        double other_way = 0; ///< of fluid to the other side
+        double thickness = 0;     ///< metres; 0: no other side was found
+        bool is_straight = false; ///< the other side is behind it, not aside beyond an edge
+        double way = 0;           ///< of fluid to it, dp
+        double other_way = 0;     ///< of fluid to the other side
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
     };
