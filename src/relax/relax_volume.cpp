@@ -179,22 +179,22 @@ bool slides(VolumeMotion motion)
 Vec3 along_walls(const Band& band, std::size_t i, Vec3 step)
 {
     constexpr float little_more = 0.3f;
-    std::array<Vec3, 3> across;
+    std::array<Vec3, 3> sideways;
     std::size_t count = 0;
     const auto take = [&](const BandPlane& plane, float distance)
     {
-        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == across.size() ||
+        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == sideways.size() ||
                           distance > band.wall_distances[i] + little_more))
             return;
         Vec3 normal{plane.x, plane.y, plane.z};
         for (std::size_t k = 0; k < count; ++k)
-            normal = normal - dot(normal, across[k]) * across[k];
+            normal = normal - dot(normal, sideways[k]) * sideways[k];
         const double size = norm(normal);
-        if (size > 0.2) across[count++] = normal / size;
+        if (size > 0.2) sideways[count++] = normal / size;
     };
     for_each_wall(band, i, take);
-    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, across[k]) * across[k];
-    return count < across.size() ? step : Vec3{};
+    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, sideways[k]) * sideways[k];
+    return count < sideways.size() ? step : Vec3{};
 }
 
 ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
