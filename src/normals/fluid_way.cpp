@@ -15,14 +15,10 @@ constexpr std::int64_t most_cells = std::int64_t{1} << 25;
 
 } // namespace
 
-FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const Vec3& gravity)
+template <typename IsBound>
+FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const IsBound& is_bound)
     : grid_(field.grid)
 {
-    for (int axis = 0; axis < 3; ++axis)
-        if (gravity[axis] != 0 &&
-            (up_axis_ < 0 || std::fabs(gravity[axis]) > std::fabs(gravity[up_axis_])))
-            up_axis_ = axis;
-    is_up_negative_ = up_axis_ >= 0 && gravity[up_axis_] > 0;
     const auto cells = [&](int axis)
     { return (std::int64_t{grid_.n[static_cast<std::size_t>(axis)]} + side_ - 1) / side_; };
     while (cells(0) * cells(1) * cells(2) > most_cells) ++side_;
@@ -30,22 +26,41 @@ FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const Vec3&
     steps_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), never);
     for (std::int64_t x = 0; x < std::int64_t{grid_.n[0]}; ++x)
         for (const Run& run : field.slabs[static_cast<std::size_t>(x)])
-            mark(x / side_, run, run.mk >= first_bound);
+        {
+            if (run.mk < first_bound)
+                mark(x / side_, run, 0);
+            else if (is_bound(run.mk))
+                mark(x / side_, run, blocked);
+        }
     has_fluid_ = std::find(steps_.begin(), steps_.end(), 0) != steps_.end();
+}
+
+FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const Vec3& gravity)
+    : FluidWay(field, first_bound, [](std::uint16_t) { return true; })
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (gravity[axis] != 0 &&
+            (up_axis_ < 0 || std::fabs(gravity[axis]) > std::fabs(gravity[up_axis_])))
+            up_axis_ = axis;
+    is_up_negative_ = up_axis_ >= 0 && gravity[up_axis_] > 0;
     measure_heights();
     measure_lengths();
     find_what_runs_out(field.grid);
 }
 
-void FluidWay::mark(std::int64_t x, const Run& run, bool is_bound)
+FluidWay FluidWay::around(const RunField& field, std::uint16_t first_bound, std::uint16_t mk)
+{
+    FluidWay out(field, first_bound, [mk](std::uint16_t of) { return of == mk; });
+    out.measure_lengths();
+    return out;
+}
+
+void FluidWay::mark(std::int64_t x, const Run& run, std::uint16_t steps)
 {
     for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
     {
         std::uint16_t& cell = steps_[index(x, run.y / side_, z)];
-        if (is_bound)
-            cell = blocked;
-        else if (cell == never)
-            cell = 0;
+        if (steps == blocked || cell == never) cell = steps;
     }
 }
 
@@ -178,7 +193,6 @@ FluidWay::Way FluidWay::to(const Vec3& p) const
     }
     std::uint16_t steps = never;
     std::uint16_t highest = never;
-    bool is_free = false;
     Way out;
     for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
         for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
@@ -187,16 +201,17 @@ FluidWay::Way FluidWay::to(const Vec3& p) const
                 if (x < 0 || y < 0 || z < 0 || x >= n_[0] || y >= n_[1] || z >= n_[2]) continue;
                 const std::size_t cell = index(x, y, z);
                 if (steps_[cell] == blocked) continue;
-                is_free = true;
-                out.runs_out = out.runs_out || runs_out_[cell] != 0;
+                out.is_free = true;
                 if (steps_[cell] < blocked) steps = std::min(steps, steps_[cell]);
+                if (heights_.empty()) continue;
+                out.runs_out = out.runs_out || runs_out_[cell] != 0;
                 highest = std::min(highest, heights_[cell]);
             }
-    if (!is_free) out.runs_out = true;
     if (!has_fluid_) return out;
     out.length = steps == never ? std::numeric_limits<double>::infinity()
                                 : static_cast<double>(side_) * steps;
-    if (highest > top_) out.rise = static_cast<double>(side_) * (highest - top_);
+    if (!heights_.empty() && highest > top_)
+        out.rise = static_cast<double>(side_) * (highest - top_);
     return out;
 }
 

@@ -20,11 +20,15 @@ public:
     ///              side of the lattice can be reached from runs out
     FluidWay(const RunField& field, std::uint16_t first_bound, const Vec3& gravity);
 
+    /// As if the particles of one mk were the only wall; lengths only.
+    static FluidWay around(const RunField& field, std::uint16_t first_bound, std::uint16_t mk);
+
     /// What fluid does to come to a place (to the free cell nearest to it, within about a cell).
     struct Way
     {
         double length = 0;     ///< dp; infinite where fluid cannot come
         double rise = 0;       ///< dp above the highest fluid, on the way that needs the least
+        bool is_free = false;  ///< some cell there has no wall
         bool runs_out = false; ///< from there it would leave the lattice, down or sideways
     };
     /// Without fluid all lengths and rises are 0.
@@ -32,6 +36,9 @@ public:
 
 private:
     using Cells = std::vector<std::size_t>;
+
+    template <typename IsBound>
+    FluidWay(const RunField& field, std::uint16_t first_bound, const IsBound& is_bound);
 
     std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
     {
@@ -45,7 +52,7 @@ private:
     template <typename Visit>
     void for_each_beside(std::size_t cell, const Visit& visit) const;
 
-    void mark(std::int64_t x, const Run& run, bool is_bound);
+    void mark(std::int64_t x, const Run& run, std::uint16_t steps);
     void measure_lengths();
     void measure_heights();
     void find_what_runs_out(const LatticeGrid& grid);

@@ -293,7 +293,8 @@ private:
         for (const ParticleBlock& block : particles_.blocks)
             if (block.type == ParticleType::Moving) is_moving[block.mk] = 1;
         const WetSurface wet(
-            field_, {def_.mk_bound_first, def_.constants.gravity, reach, std::move(is_moving)}, threads_);
+            field_, {def_.mk_bound_first, def_.constants.gravity, reach, std::move(is_moving)},
+            threads_);
         if (wet.is_empty()) return;
         const auto visit = [&](std::size_t r)
         {

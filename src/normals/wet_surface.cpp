@@ -84,8 +84,8 @@ void WetSurface::cut_pieces(const RunField& field)
             for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
             piece.normal = bodies[b].wall->sign() * mesh.normals[f];
             const FittedBody& owner = bodies[piece.body];
-            piece.is_moving =
-                setup_.is_moving[owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f]] != 0;
+            piece.mk = owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f];
+            piece.is_moving = setup_.is_moving[piece.mk] != 0;
             add_pieces(piece, piece.is_closed ? longest : std::numeric_limits<double>::infinity());
         }
     }
@@ -132,8 +132,28 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         BodyWall& wall = walls[body.owner];
         wall.depth = body.wall.get();
         wall.is_closed = field.walls.bodies[body.owner].measures.volume > 0;
+        wall.is_moving = setup_.is_moving[body.mk] != 0;
         if (wall.box.is_empty())
             for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
+    }
+    const auto before = [&](const Piece& piece)
+    { return piece.middle() + (off_surface_dp * dp) * piece.normal; };
+    std::vector<char> is_closed_in(65536, 0);
+    for (Piece& piece : pieces_)
+    {
+        if (!piece.is_closed) continue;
+        piece.way = way.to(before(piece));
+        if (piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
+    }
+    // What others are too near to at the start gets free when it moves.
+    for (std::size_t mk = 0; mk < is_closed_in.size(); ++mk)
+    {
+        if (is_closed_in[mk] == 0) continue;
+        const FluidWay alone =
+            FluidWay::around(field, setup_.first_bound, static_cast<std::uint16_t>(mk));
+        for (Piece& piece : pieces_)
+            if (piece.is_closed && piece.mk == mk && !piece.way.is_free)
+                piece.way = alone.to(before(piece));
     }
     parallel_for(
         pieces_.size(), threads,
@@ -141,7 +161,6 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         {
             Piece& piece = pieces_[i];
             if (!piece.is_closed) return;
-            piece.way = way.to(piece.middle() + (off_surface_dp * dp) * piece.normal);
             if (is_covered(piece, walls, dp))
                 piece.state = is_dry;
             else
@@ -164,7 +183,9 @@ bool WetSurface::is_covered(const Piece& piece, const std::vector<BodyWall>& wal
     for (std::size_t b = 0; b < walls.size(); ++b)
     {
         const BodyWall& wall = walls[b];
-        if (b == piece.body || wall.depth == nullptr || !wall.is_closed) continue;
+        if (b == piece.body || wall.depth == nullptr || !wall.is_closed ||
+            wall.is_moving != piece.is_moving)
+            continue;
         bool is_in_box = true;
         for (int axis = 0; axis < 3; ++axis)
             is_in_box =

@@ -60,6 +60,7 @@ private:
         std::uint32_t body = 0;
         const WallDepth* exact_wall = nullptr;
         bool is_closed = false;
+        std::uint16_t mk = 0;
         bool is_moving = false;
         char state = 0;
         double thickness = 0; ///< metres; 0: no other side was found
@@ -73,6 +74,7 @@ private:
     {
         const WallDepth* depth = nullptr;
         bool is_closed = false;
+        bool is_moving = false;
         Box3 box;
     };
     void cut_pieces(const RunField& field);
