@@ -257,13 +257,18 @@ void WetSurface::dry_to_the_rims()
 /// near to a dry piece is dry too.
 void WetSurface::dry_along_edges()
 {
+    const auto is_far_from_fluid = [](const Piece& piece)
+    {
+        return piece.way.length > longer_way_dp &&
+               (piece.way.runs_out || (!piece.is_moving && piece.way.rise > higher_way_dp));
+    };
     PointGrid dry(2 * reach_, pieces_.size() / 4);
     for (const Piece& piece : pieces_)
         if (piece.state == is_dry) dry.add(piece.middle());
     if (dry.points().empty()) return;
     for (Piece& piece : pieces_)
         if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
-            piece.way.length > longer_way_dp && dry.has_nearer(piece.middle(), 2 * reach_))
+            is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
             piece.state = is_dry;
 }
 
