@@ -212,11 +212,16 @@ def spread(near):
 
 
 def layers_row(fppg, mesh, dp, mode):
-    fitted = {"lattice": "", "layers": '<fppg><bodyfitted boundary="mdbc" /></fppg>'}[mode]
+    fitted = {"lattice": "", "layers": '<fppg><bodyfitted boundary="mdbc" /><fluidband active="false" /></fppg>'}[mode]
     # The lattice gets its normals as v5.4's examples do, from the mesh itself.
     normals = "" if mode == "layers" else (
         '<normals><distanceh value="2.0" /><geometryfile file="[CaseName]_hdp_Actual.vtk" /></normals>')
     more = "" if mode == "layers" else '<shapeout file="hdp" />'
+    # Fluid all round: without any, `fppg check` takes the box of the body for the room that fluid has.
+    v = np.array(mesh.vertices)
+    low, high = v.min(0) - 8 * dp, v.max(0) + 8 * dp
+    box = ["".join(f' {a}="{x:.9g}"' for a, x in zip("xyz", p)) for p in (low + 2 * dp, low, high - low)]
+    more += f'<setmkfluid mk="0" /><fillbox{box[0]}><modefill>void</modefill><point{box[1]} /><size{box[2]} /></fillbox>'
     with tempfile.TemporaryDirectory() as folder:
         run(fppg, folder, mesh, definition(mesh, dp, fitted, more, normals), ("-save:vtkall",))
         check = os.path.join(folder, "check.json")
@@ -227,7 +232,8 @@ def layers_row(fppg, mesh, dp, mode):
         names = read_vtk(os.path.join(folder, "Body_All.vtk"))
     n = np.array(arrays["BoundNor"], float)
     has = np.linalg.norm(n, axis=1) > 0
-    layer = np.array(names["Layer"]).ravel().astype(int) if "Layer" in names else np.zeros(len(p), int)
+    p = p[:len(n)]
+    layer = np.array(names["Layer"]).ravel().astype(int)[:len(n)] if "Layer" in names else np.zeros(len(p), int)
     order = np.random.default_rng(1).permutation(np.flatnonzero(has & (layer > 0 if "Layer" in names else has)))[:SAMPLE]
     exact = nearest_points(p[order], mesh) - p[order]
     depth = np.linalg.norm(exact, axis=1)
@@ -249,7 +255,7 @@ def layers_row(fppg, mesh, dp, mode):
         of = layer[order] == k
         if of.any():
             depths.append(f"{np.median(depth[of]) / dp:.2f}")
-    f = found["mks"][0]
+    f = next(m for m in found["mks"] if m["type"] != "fluid")
     bad = f["faults"]
     near = max(1, f["near_fluid"])
     good = 1 - (bad["weak_kernel"] + bad["ill_conditioned"]) / near
