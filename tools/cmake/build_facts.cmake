@@ -4,6 +4,7 @@
 #   cmake -DSOURCE=FOLDER -DSHEET=FILE -DBILL=FILE -DCODE=FILE -P build_facts.cmake
 #
 # SHEET  of tools/cmake/materials.cmake: the bill but for @COMMIT@ and @CREATED@
+cmake_policy(VERSION 3.25)
 set(COMMIT unknown)
 string(TIMESTAMP CREATED "%Y-%m-%dT%H:%M:%SZ" UTC)
 find_program(git git)
