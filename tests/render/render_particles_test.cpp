@@ -258,6 +258,23 @@ TEST(RenderParticles, ColoursByKindWhereTheFileHasIt)
     EXPECT_TRUE(has_hue(image.at(170, 50), colour_of_kind(2)));
 }
 
+TEST(RenderParticles, PartsOfCadModelsHaveTheirColourUnlessRolesAreAskedFor)
+{
+    ParticleCloud cloud = two_spheres();
+    cloud.type = {3, 0};
+    cloud.colours[12] = {20, 160, 40};
+    RenderOptions options = small_front();
+    options.has_legend = true;
+    Image image = render_particles({cloud}, options, 1);
+    EXPECT_TRUE(has_hue(image.at(30, 50), colour_of_mk(1, 3)));
+    EXPECT_TRUE(has_hue(image.at(170, 50), {20, 160, 40}));
+    EXPECT_THAT(image.pixels, testing::Contains(Rgb{20, 160, 40})); // the legend, without shade
+    options.colour = RenderColour::Role;
+    image = render_particles({cloud}, options, 1);
+    EXPECT_THAT(image.pixels, testing::Not(testing::Contains(Rgb{20, 160, 40})));
+    EXPECT_FALSE(has_hue(image.at(170, 50), {20, 160, 40}));
+}
+
 TEST(RenderParticles, SeesASmallCaseFarFromTheOrigin)
 {
     ParticleCloud near = two_spheres();
