@@ -100,7 +100,10 @@ TEST_P(PlateOverWater, LooksUpAndDown)
     for_each_in_layers(cloud, body_mk,
                        [&](const Vec3& p, int layer, const Vec3& n)
                        {
-                           if (layer == 1) EXPECT_NEAR(norm(n), 0.5, 1e-3) << p.x << ' ' << p.z;
+                           if (layer == 1)
+                           {
+                               EXPECT_NEAR(norm(n), 0.5, 1e-3) << p.x << ' ' << p.z;
+                           }
                            if (std::abs(p.x) > 0.3 || std::abs(p.y) > 0.15 || layer > 2) return;
                            EXPECT_EQ(n.z > 0, p.z > 0.45) << p.z;
                            up += n.z > 0 ? 1 : 0;
@@ -129,10 +132,10 @@ TEST_P(PlateOverWater, IsInATankWhoseWallsLookInside)
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, PlateOverWater, testing::Combine(testing::Bool(), testing::Bool()),
-                         [](const auto& info)
+                         [](const auto& test)
                          {
-                             return std::string(std::get<0>(info.param) ? "In2D" : "In3D") +
-                                    (std::get<1>(info.param) ? "Moving" : "Fixed");
+                             return std::string(std::get<0>(test.param) ? "In2D" : "In3D") +
+                                    (std::get<1>(test.param) ? "Moving" : "Fixed");
                          });
 
 /// The surface of a shape in 2D goes on across the plane of the case, where no fluid comes.
@@ -142,9 +145,9 @@ TEST(BlockOverWaterIn2D, LooksOutEverywhere)
     const std::size_t count = for_each_in_layers(cloud, body_mk,
                                                  [](const Vec3& p, int layer, const Vec3& n)
                                                  {
-                                                     if (layer == 1)
-                                                         EXPECT_NEAR(norm(n), 0.5, 1e-3)
-                                                             << p.x << ' ' << p.z;
+                                                     if (layer != 1) return;
+                                                     EXPECT_NEAR(norm(n), 0.5, 1e-3)
+                                                         << p.x << ' ' << p.z;
                                                  });
     EXPECT_GT(count, 100u);
 }
