@@ -210,6 +210,8 @@ void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidW
     }
     if (dot(other_normal, piece.normal) > opposing) return;
     piece.thickness = dot(middle - other.nearest, piece.normal);
+    piece.is_straight =
+        norm(middle - piece.thickness * piece.normal - other.nearest) < piece.thickness;
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
     const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
@@ -277,7 +279,7 @@ void WetSurface::note_thin_walls(const RunField& field)
     const double enough = reach_ - 0.5 * field.grid.dp;
     for (const Piece& piece : pieces_)
     {
-        if (piece.state != is_thin || !(piece.thickness < enough)) continue;
+        if (piece.state != is_thin || !piece.is_straight || !(piece.thickness < enough)) continue;
         const std::uint16_t mk = field.walls.bodies[piece.body].mk;
         auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
                                   [&](const ThinWall& wall) { return wall.mk == mk; });

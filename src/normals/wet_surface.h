@@ -63,9 +63,10 @@ private:
         std::uint16_t mk = 0;
         bool is_moving = false;
         char state = 0;
-        double thickness = 0; ///< metres; 0: no other side was found
-        FluidWay::Way way;    ///< of fluid to it
-        double other_way = 0; ///< the length of that to the other side, dp
+        double thickness = 0;     ///< metres; 0: no other side was found
+        bool is_straight = false; ///< the other side is behind it, not aside beyond an edge
+        FluidWay::Way way;        ///< of fluid to it
+        double other_way = 0;     ///< the length of that to the other side, dp
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
     };

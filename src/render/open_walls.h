@@ -8,8 +8,9 @@
 namespace fppg
 {
 
-/// Takes out the walls between the camera and the rest. Each side of the box around the fixed
-/// particles that looks to the camera is taken away, 4.5 dp deep, where some of it hides a particle
+/// Takes out the walls between the camera and the rest; fixed mks whose outline in the picture is
+/// less than a quarter of that of the rest are no walls and stay. Each side of the box around the
+/// walls that looks to the camera is taken away, 4.5 dp deep, where some of it hides a particle
 /// that is not fixed; where more than half of these stay hidden (a round tank), all fixed particles
 /// that hide one. Nothing is done without types, or without particles that are not fixed.
 ///

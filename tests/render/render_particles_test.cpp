@@ -342,6 +342,32 @@ TEST(RenderParticles, OpensTheWallsInFrontOfTheFluid)
     EXPECT_EQ(render_particles({cloud}, options, 1).pixels, plain.pixels);
 }
 
+TEST(RenderParticles, LeavesAFixedPartThatStandsInTheFluidWhole)
+{
+    ParticleCloud cloud = tank_of_water();
+    for (int i = 0; i < 27; ++i) // above the water, before it as seen from the front
+    {
+        cloud.positions.push_back({9.0 + i / 9, 6.0 + i / 3 % 3, 8.0 + i % 3});
+        cloud.mk.push_back(11);
+        cloud.type.push_back(0);
+    }
+    cloud.colours[11] = {20, 160, 40};
+    RenderOptions options = small_front();
+    const auto green = [&]
+    {
+        const Image image = render_particles({cloud}, options, 1);
+        return std::count_if(image.pixels.begin(), image.pixels.end(),
+                             [](const Rgb& p) { return p[1] > p[0] + 30 && p[1] > p[2] + 30; });
+    };
+    EXPECT_EQ(green(), 0); // behind the wall
+    options.opens_walls = true;
+    const auto with_tank = green();
+    EXPECT_GT(with_tank, 100);
+    options.mks = {1, 11};
+    options.opens_walls = false;
+    EXPECT_GT(green(), 100);
+}
+
 TEST(RenderParticles, ColoursByRoleFirst)
 {
     const auto [r, g, b] = colour_of_mk(14, 3);

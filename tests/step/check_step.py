@@ -267,6 +267,44 @@ def test_exact_layers(work):
             yield f"{name}: a normal is {deep.max()} dp too long or short"
 
 
+def test_exact_layers_2d(work):
+    """In a plane case layers see the lines in which exact faces meet it: a circle, an ellipse, and that of a torus."""
+    known, fluid = work.known, """<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="-0.19" y="-1" z="-0.19" />
+<size x="0.38" y="2" z="0.02" /></drawbox>"""
+    half, dp = known["cylinder_length"] / 2000, 0.002
+    for degrees in (90, 40):
+        turn = np.radians(degrees)
+        axis, middle = np.array((0, -np.sin(turn), np.cos(turn))), np.array((0, 0, 0.05))
+        move = middle - half * axis
+        draws = f"""<setdrawmode mode="full" /><setmkbound mk="1" />
+<drawfilestep file="{work.models}/cylinder.step" autofill="true"><drawmove x="0" y="{move[1]}" z="{move[2]}" />
+<drawrotate angx="{degrees}" angy="0" angz="0" /></drawfilestep><setmkbound mk="2" />
+<drawfilestep file="{work.models}/torus.step" autofill="true"><drawmove x="0" y="0.009" z="-0.05" /></drawfilestep>"""
+        found = work.case("plane", draws + fluid, '<bodyfitted mkbound="1-2" boundary="mdbc" />', dp=dp,
+                          box=((-0.2, 0, -0.2), (0.2, 0, 0.2)))
+        if found.code != 0:
+            yield found.text
+            return
+        for mk, name in ((11, f"cylinder cut at {degrees} degrees"), (12, "torus")):
+            at = (found.mk == mk) & (found.kind < VOLUME)
+            given = found.normals[np.flatnonzero(at)]
+            foot = found.positions[at] + given
+            if mk == 11:
+                own = foot - middle
+                across = own - np.outer(own @ axis, axis)
+                distance, normal = np.linalg.norm(across, axis=1) - known["cylinder_radius"] / 1000, unit(across)
+            else:
+                distance, normal = of_torus(foot - (0, 0.009, -0.05), known["torus_big"] / 1000, known["torus_small"] / 1000)
+            slope = np.hypot(normal[:, 0], normal[:, 2])
+            off = degrees_between(given, normal * (1, 0, 1))
+            beside = np.abs(distance / slope) / dp
+            note(f"2D, {name}: normals of layers off, degrees (largest of {len(off)})", f"{off.max():.1e}")
+            if len(off) < 40 or off.max() > 0.01:
+                yield f"{name}: a normal of {len(off)} is {off.max()} degrees off"
+            if beside.max() > 1e-6:
+                yield f"{name}: a normal ends {beside.max()} dp beside the exact line"
+
+
 def test_lattice_normals(work):
     """norgeometry on the lattice: facets of the shape file stand for exact faces."""
     draw = """<setdrawmode mode="full" /><setshapemode>actual | bound</setshapemode>
