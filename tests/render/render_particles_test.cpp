@@ -368,6 +368,35 @@ TEST(RenderParticles, LeavesAFixedPartThatStandsInTheFluidWhole)
     EXPECT_GT(green(), 100);
 }
 
+TEST(RenderParticles, CutsFluidThatHidesAllParts)
+{
+    ParticleCloud cloud = tank_of_water();
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        const Vec3& p = cloud.positions[i];
+        const bool is_inner = p.x > 8 && p.x < 12 && p.y > 8 && p.y < 12 && p.z > 3 && p.z < 6;
+        if (!is_inner) continue;
+        cloud.mk[i] = 11;
+        cloud.type[i] = 1;
+    }
+    cloud.colours[11] = {20, 160, 40};
+    for (const char* view : {"front", "iso"})
+    {
+        RenderOptions options = small_front();
+        options.view = parse_view(view);
+        const auto count = [&](auto&& has)
+        {
+            const Image image = render_particles({cloud}, options, 1);
+            return std::count_if(image.pixels.begin(), image.pixels.end(), has);
+        };
+        const auto is_green = [](const Rgb& p) { return p[1] > p[0] + 30 && p[1] > p[2] + 30; };
+        EXPECT_EQ(count(is_green), 0) << view;
+        options.opens_walls = true;
+        EXPECT_GT(count(is_green), 50) << view;
+        EXPECT_GT(count([](const Rgb& p) { return p[2] > p[0] + 30; }), 200) << view;
+    }
+}
+
 TEST(RenderParticles, ColoursByRoleFirst)
 {
     const auto [r, g, b] = colour_of_mk(14, 3);
