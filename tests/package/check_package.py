@@ -76,6 +76,17 @@ def check_python(root, files):
     assert text.strip() == "21001", text
 
 
+def check_step(root, package, work):
+    """The plugin is in no package but its own, and makes the program read STEP files."""
+    case = os.path.join(root, "usr/share/fppg/xml-templates/DrawFileStep_Def")
+    command = [os.path.join(root, "usr/bin/fppg"), case, os.path.join(work, "step/Case")]
+    done = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    assert done.returncode == 4 and "libfppg_step.so" in done.stdout, done.stdout
+    run("dpkg-deb", "--extract", package, root)
+    run(*command)
+    assert "libocct-data-exchange" in run("dpkg-deb", "--field", package, "Depends")
+
+
 def check_lintian(packages):
     """Debian's own check finds no error; its warnings are printed."""
     if not shutil.which("lintian"):
@@ -93,7 +104,8 @@ def main(cpack, build, source, work, has_python_module):
     os.makedirs(work)
     run(cpack, "-G", "DEB", "-B", work, "--config", os.path.join(build, "CPackConfig.cmake"))
     packages = {os.path.basename(path).split("_")[0]: path for path in glob.glob(os.path.join(work, "*.deb"))}
-    assert set(packages) == {"fppg", "fppg-gencase-link"}, packages
+    has_step = os.path.exists(os.path.join(build, "libfppg_step.so"))
+    assert set(packages) == {"fppg", "fppg-gencase-link"} | ({"fppg-step"} if has_step else set()), packages
 
     files = files_of(packages["fppg"])
     for wanted in WANTED:
@@ -106,9 +118,15 @@ def main(cpack, build, source, work, has_python_module):
     if shutil.which("dpkg-shlibdeps"):
         assert "libtinyxml2" in run("dpkg-deb", "--field", packages["fppg"], "Depends")
 
+    if os.path.exists(os.path.join(build, "libfppg_hdf5.so")):
+        assert any(name.endswith("/fppg/libfppg_hdf5.so") for name in files), "no plugin for HDF5"
+
     root = os.path.join(work, "root")
-    for package in packages.values():
-        run("dpkg-deb", "--extract", package, root)
+    for name, package in packages.items():
+        if name != "fppg-step":
+            run("dpkg-deb", "--extract", package, root)
+    if has_step:
+        check_step(root, packages["fppg-step"], work)
     assert "GenCase" in run(os.path.join(root, "usr/bin/GenCase_linux64"), "-ver")
     case = os.path.join(root, "usr/share/fppg/cases/dambreak2d/CaseDambreak2D_Def")
     run(os.path.join(root, "usr/bin/GenCase_linux64"), case, os.path.join(work, "out/Case"))

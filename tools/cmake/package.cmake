@@ -1,7 +1,12 @@
 # What is installed besides the program and the library, and the packages that cpack makes of it:
-# fppg, and fppg-gencase-link, a link that lets the program be called as GenCase_linux64.
+# fppg; fppg-gencase-link, a link that lets the program be called as GenCase_linux64; and fppg-step, the
+# plugin that reads STEP files, which needs OpenCASCADE and by it some 120 other packages, X11 among them.
 #
 # `cmake --install` leaves the link out; `cmake --install DIR --component fppg-gencase-link` makes it.
+set(packages fppg fppg-gencase-link)
+if(TARGET fppg_step)
+  list(APPEND packages fppg-step)
+endif()
 find_program(FPPG_GZIP gzip)
 if(FPPG_GZIP)
   set(man_page ${PROJECT_BINARY_DIR}/fppg.1.gz)
@@ -18,7 +23,6 @@ endif()
 install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT fppg)
 install(FILES tools/package/fppg.bash RENAME fppg COMPONENT fppg
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES tools/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES SECURITY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
 install(FILES tools/paraview/fppg_reader.py tools/particle_files.py tools/case_xml.py COMPONENT fppg
@@ -33,12 +37,9 @@ file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/gencase-link)
 file(CREATE_LINK fppg ${link} SYMBOLIC)
 install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fppg-gencase-link
     EXCLUDE_FROM_ALL)
-# A package has a folder of its own for its licence.
-install(FILES tools/package/copyright COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg-gencase-link)
 
-# What Debian asks of a package: a changelog of its own form, and a word on what its checks say that
-# stays: there is no address to write to.
+# What Debian asks of a package: its licence, a changelog of its own form, and a word on what its checks
+# say that stays: there is no address to write to.
 if(FPPG_GZIP)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog CONTENT "fppg (@PROJECT_VERSION@) unstable; urgency=medium
 
@@ -48,20 +49,25 @@ if(FPPG_GZIP)
 " @ONLY)
   execute_process(COMMAND ${FPPG_GZIP} -9nc ${PROJECT_BINARY_DIR}/changelog
       OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
-  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg COMPONENT fppg)
-  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
-      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fppg-gencase-link)
 endif()
-foreach(package fppg fppg-gencase-link)
+foreach(package IN LISTS packages)
   file(WRITE ${PROJECT_BINARY_DIR}/lintian/${package} "# There is no list to write to.
 ${package}: bogus-mail-host *
 ${package}: bogus-mail-host-in-debian-changelog *
 ")
+  set(only_in_package EXCLUDE_FROM_ALL)
+  if(package STREQUAL "fppg")
+    set(only_in_package)
+  endif()
+  install(FILES tools/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
+      COMPONENT ${package} ${only_in_package})
+  install(FILES ${PROJECT_BINARY_DIR}/lintian/${package} DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
+      COMPONENT ${package} ${only_in_package})
+  if(FPPG_GZIP)
+    install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
+        COMPONENT ${package} ${only_in_package})
+  endif()
 endforeach()
-install(FILES ${PROJECT_BINARY_DIR}/lintian/fppg DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
-    COMPONENT fppg)
-install(FILES ${PROJECT_BINARY_DIR}/lintian/fppg-gencase-link COMPONENT fppg-gencase-link EXCLUDE_FROM_ALL
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides)
 
 # Archives are not stripped with the programs; with debug information the library has 400 MB.
 install(CODE "if(CMAKE_INSTALL_DO_STRIP)
@@ -75,7 +81,7 @@ set(CPACK_PACKAGE_VENDOR fppg)
 set(CPACK_PACKAGE_CONTACT "The authors of fppg <fppg@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL fppg fppg-gencase-link)
+set(CPACK_COMPONENTS_ALL ${packages})
 set(CPACK_COMPONENTS_IGNORE_GROUPS ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -90,7 +96,13 @@ and cases. It reads the case definitions of DualSPHysics' GenCase.")
 find_program(FPPG_SHLIBDEPS dpkg-shlibdeps)
 if(FPPG_SHLIBDEPS)
   set(CPACK_DEBIAN_FPPG_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_FPPG-STEP_PACKAGE_SHLIBDEPS ON)
 endif()
+set(CPACK_DEBIAN_FPPG_PACKAGE_SUGGESTS fppg-step)
+set(CPACK_DEBIAN_FPPG-STEP_PACKAGE_NAME fppg-step)
+set(CPACK_DEBIAN_FPPG-STEP_PACKAGE_DEPENDS "fppg (= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_FPPG-STEP_DESCRIPTION "fppg's plugin for STEP files
+With it fppg draws and body-fits CAD models in STEP files, by OpenCASCADE.")
 set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_NAME fppg-gencase-link)
 set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_FPPG-GENCASE-LINK_PACKAGE_DEPENDS fppg)
