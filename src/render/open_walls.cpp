@@ -55,14 +55,15 @@ std::vector<char> walls_of(const ParticleCloud& cloud, const std::vector<std::ui
     return out;
 }
 
-/// Cuts fluid that hides all parts, down to the middle of these, as seen along the ground.
-void open_fluid(const ParticleCloud& cloud, const PictureAxes& axes,
+/// Cuts fluid that hides all parts, down to the middle of these, as seen along the ground. Returns
+/// whether it did.
+bool open_fluid(const ParticleCloud& cloud, const PictureAxes& axes,
                 const std::vector<char>& is_wall, std::vector<std::uint32_t>& chosen)
 {
     Box3 parts;
     for (const std::uint32_t i : chosen)
         if (is_part(cloud, i, is_wall)) parts.add(cloud.positions[i]);
-    if (parts.is_empty()) return;
+    if (parts.is_empty()) return false;
     const double cell = 1.2 * cloud.dp;
     const auto cell_of = [&](std::uint32_t i)
     {
@@ -85,12 +86,14 @@ void open_fluid(const ParticleCloud& cloud, const PictureAxes& axes,
         if (at != part_depths.end() && dot(cloud.positions[i], axes.towards) > at->second)
             hidden.insert(at->first);
     }
-    if (static_cast<double>(hidden.size()) < 0.95 * static_cast<double>(part_depths.size())) return;
+    if (static_cast<double>(hidden.size()) < 0.95 * static_cast<double>(part_depths.size()))
+        return false;
     Vec3 way{axes.towards.x, axes.towards.y, 0};
     if (norm(way) < least_slope) way = axes.towards;
     const double middle = dot(0.5 * (parts.min + parts.max), way);
     std::erase_if(chosen, [&](std::uint32_t i)
                   { return cloud.type[i] == fluid && dot(cloud.positions[i], way) > middle; });
+    return true;
 }
 
 /// Of cells of the picture, the depth of the farthest particle that is not fixed.
@@ -172,7 +175,11 @@ void open_walls(const ParticleCloud& cloud, const Vec3& towards, const Vec3& rig
     Box3 walls;
     for (const std::uint32_t i : chosen)
         if (is_wall(i)) walls.add(cloud.positions[i]);
-    if (walls.is_empty()) return open_fluid(cloud, {towards, right, up}, is_wall_mk, chosen);
+    if (walls.is_empty())
+    {
+        open_fluid(cloud, {towards, right, up}, is_wall_mk, chosen);
+        return;
+    }
 
     const HiddenDepths depths(cloud, chosen, towards, right, up);
     for (int axis = 0; axis < 3; ++axis)
@@ -188,9 +195,9 @@ void open_walls(const ParticleCloud& cloud, const Vec3& towards, const Vec3& rig
                         [&](std::uint32_t i) { return is_at_side(i) && depths.hides(i); }))
             std::erase_if(chosen, is_at_side);
     }
-    if (depths.hidden_share(chosen, is_wall_mk) > 0.5)
+    const bool stays_hidden = depths.hidden_share(chosen, is_wall_mk) > 0.5;
+    if (open_fluid(cloud, {towards, right, up}, is_wall_mk, chosen) || stays_hidden)
         std::erase_if(chosen, [&](std::uint32_t i) { return is_wall(i) && depths.hides(i); });
-    open_fluid(cloud, {towards, right, up}, is_wall_mk, chosen);
 }
 
 } // namespace fppg
