@@ -127,8 +127,8 @@ bool slides(VolumeMotion motion)
     return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
 }
 
-/// Particles that slide along a wall are put back to their depth after each step; steps need keep
-/// them no farther from it, dp.
+/// Particles that slide along a wall are put back to their depth after each step; a step may bring
+/// them this near to it, dp.
 constexpr double limit_of_sliding_dp = 0.4;
 
 /// A step that may come too near to a wall: checked with the exact distance, taken back where it
