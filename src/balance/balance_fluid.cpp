@@ -38,11 +38,14 @@ constexpr double look_again = 0.1;
 /// Below the level of its column; the highest particles start half a dp below it.
 constexpr double least_depth = 0.25;
 /// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
-constexpr double step_factor = 0.0167;
+constexpr double step_factor = 0.05;
 constexpr double momentum = 0.85;
-constexpr int most_iterations = 160;
+/// What stays of a particle's momentum that leads it against the force on it.
+constexpr double against_force = 0.5;
+constexpr int most_iterations = 100;
 constexpr int iterations_per_look = 10; ///< at mDBC's pressures
-constexpr int iterations_per_check = 20;
+constexpr int iterations_per_check = 10;
+constexpr int first_judged = 20;
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.1;
@@ -115,7 +118,7 @@ public:
             const double mean = mean_acceleration();
             if (on_iteration && !on_iteration({it, most_iterations, mean})) break;
             if (it % iterations_per_check != 0) continue;
-            if (it == iterations_per_check && mean > hopeless_mean) break;
+            if (it == first_judged && mean > hopeless_mean) break;
             // What is left does not fall any more: currents that the boundary condition drives.
             if (mean > 0.95 * best.mean && it - last_best >= 2 * iterations_per_check) break;
             if (mean < 0.95 * best.mean) last_best = it;
@@ -275,7 +278,8 @@ private:
                 const double scale = step_factor * rest_.h * rest_.h * rest_.rhop0 /
                                      (std::max(rest_.pressures[i], soft / 2) + soft);
                 Vec3& v = velocities_[i];
-                v = momentum * v + scale * (accelerations_[i] + pushes_[i]);
+                const Vec3 force = accelerations_[i] + pushes_[i];
+                v = momentum * (dot(v, force) < 0 ? against_force : 1.0) * v + scale * force;
                 const double length = norm(v);
                 if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
                 rest_.positions[i] = allowed_place(i, rest_.positions[i] + v);

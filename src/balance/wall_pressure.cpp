@@ -114,7 +114,8 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
 }
 
 /// What the solver sums over the fluid around a ghost node. Rows: of the kernel and of the
-/// components of its gradient; columns: of the density there and of its gradient.
+/// components of its gradient; columns: of the density there and of its gradient. Densities are
+/// those over rhop0: a fit of densities that are all the same is exact.
 struct GhostPressures::Sums
 {
     SmallMatrix matrix;
@@ -133,75 +134,75 @@ GhostPressures::GhostPressures(const FluidAtRest& rest, RestBoundary boundary)
         }
 }
 
-void GhostPressures::find_neighbours(const FluidAtRest& rest, int threads)
+void GhostPressures::set_field(const FluidAtRest& rest, int threads)
 {
     first_ghost_ = rest.size();
-    std::vector<Vec3> points = rest.positions;
-    points.reserve(points.size() + owners_.size());
-    for (const std::uint32_t i : owners_) points.push_back(rest.positions[i] + rest.ghosts[i]);
-    const PointArrays in_dp = rest.in_dp(points);
-    if (!list_.is_outdated(in_dp, threads)) return;
+    field_.resize(rest.size() + owners_.size());
+    const double unit = rest.is_2d ? rest.dp * rest.dp : rest.dp * rest.dp * rest.dp;
+    parallel_for(
+        field_.packed.size(), threads,
+        [&](std::size_t i)
+        {
+            const bool is_ghost = i >= first_ghost_;
+            const std::size_t of = is_ghost ? owners_[i - first_ghost_] : i;
+            const Vec3 place = is_ghost ? rest.positions[of] + rest.ghosts[of] : rest.positions[i];
+            const Vec3 at = (place - rest.origin) / rest.dp;
+            field_.points.x[i] = static_cast<float>(at.x);
+            field_.points.y[i] = static_cast<float>(at.y);
+            field_.points.z[i] = static_cast<float>(at.z);
+            const double volume = rest.masses[of] / rest.densities[of] / unit;
+            field_.packed[i] = PackedPoint{field_.points.x[i], field_.points.y[i],
+                                           field_.points.z[i], static_cast<float>(volume)};
+            field_.pressures[i] = static_cast<float>(rest.densities[of] - rest.rhop0);
+        },
+        1024);
+    if (!list_.is_outdated(field_.points, threads)) return;
     list_.build(
-        in_dp, threads, [&](std::size_t i) { return i >= first_ghost_; },
+        field_.points, threads, [&](std::size_t i) { return i >= first_ghost_; },
         [&](std::size_t, std::size_t j)
         { return j < first_ghost_ && rest.roles[j] != RestRole::Bound; });
 }
 
-GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, const Vec3& ghost,
+GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, std::uint32_t ghost,
                                              std::span<const std::uint32_t> neighbours) const
 {
+    const DensitySums dimless = density_sums(field_, ghost, neighbours,
+                                             static_cast<float>(rest.h / rest.dp), rest.is_cubic);
+    // Of sums in dp and dp^3 to those in metres.
+    const double dp = rest.dp;
+    const double of_w = rest.alpha() * (rest.is_2d ? dp * dp : dp * dp * dp);
+    const double of_s = of_w / (rest.h * rest.h) * dp;
     // The matrix is w, -w r; s r, -s r r: its parts are summed once.
-    double weight = 0, density = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-    Vec3 weighted, slopes, denser;
+    constexpr std::array<std::array<std::size_t, 3>, 3> pairs{{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
     Sums sums;
+    sums.has_fluid = dimless.w > 0;
+    const std::array<std::size_t, 3> axes{0, rest.is_2d ? 2U : 1U, 2}; // 2D: without y
     sums.matrix.n = rest.is_2d ? 3 : 4;
-    const double alpha = rest.alpha();
-    const double of_slope = alpha / (rest.h * rest.h);
-    const double reach = 4 * rest.h * rest.h;
-    for (const std::uint32_t j : neighbours)
+    sums.matrix.at(0, 0) = of_w * double{dimless.w};
+    sums.densities[0] = of_w * double{dimless.w_e};
+    for (int r = 1; r < sums.matrix.n; ++r)
     {
-        const Vec3 away = ghost - rest.positions[j];
-        const double squared = dot(away, away);
-        if (squared >= reach) continue;
-        sums.has_fluid = true;
-        const double q = std::sqrt(squared) / rest.h;
-        const double volume = rest.masses[j] / rest.densities[j];
-        const double w = alpha * rest.shape(q) * volume;
-        const Vec3 s = of_slope * rest.slope(q) * volume * away;
-        weight += w;
-        density += w * rest.densities[j];
-        weighted = weighted + w * away;
-        slopes = slopes + s;
-        denser = denser + rest.densities[j] * s;
-        xx += s.x * away.x;
-        xy += s.x * away.y;
-        xz += s.x * away.z;
-        yy += s.y * away.y;
-        yz += s.y * away.z;
-        zz += s.z * away.z;
+        const std::size_t a = axes[static_cast<std::size_t>(r - 1)];
+        sums.densities[static_cast<std::size_t>(r)] = of_s * double{dimless.s_e_r[a]};
+        sums.matrix.at(0, r) = -of_w * dp * double{dimless.w_r[a]};
+        sums.matrix.at(r, 0) = of_s * double{dimless.s_r[a]};
+        for (int c = 1; c < sums.matrix.n; ++c)
+            sums.matrix.at(r, c) =
+                -of_s * dp * double{dimless.s_r_r[pairs[a][axes[static_cast<std::size_t>(c - 1)]]]};
     }
-    sums.densities = {density, denser.x, denser.y, denser.z};
-    sums.matrix.a = {{{weight, -weighted.x, -weighted.y, -weighted.z},
-                      {slopes.x, -xx, -xy, -xz},
-                      {slopes.y, -xy, -yy, -yz},
-                      {slopes.z, -xz, -yz, -zz}}};
-    if (!rest.is_2d) return sums;
-    // Without y.
-    sums.densities[2] = sums.densities[3];
-    sums.matrix.a[2] = sums.matrix.a[3];
-    for (auto& row : sums.matrix.a) row[2] = row[3];
     return sums;
 }
 
-void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
+void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t point,
                              std::span<const std::uint32_t> neighbours) const
 {
+    const std::uint32_t i = owners_[point - first_ghost_];
     // Of JSphCpu_mdbc.cpp.
     constexpr double least_determinant = 1e-3;
     constexpr double least_sum = 0.1;
     constexpr double largest_condition = 50;
     const Vec3 ghost = rest.ghosts[i];
-    const Sums sums = sums_at(rest, rest.positions[i] + ghost, neighbours);
+    const Sums sums = sums_at(rest, point, neighbours);
     const bool is_new = boundary_ == RestBoundary::Mdbc2;
     if (!sums.has_fluid)
     {
@@ -210,7 +211,7 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
         if (is_new) rest.masses[i] = 0;
         return;
     }
-    const double shepard = sums.densities[0] / sums.matrix.at(0, 0);
+    const double shepard = rest.rhop0 + sums.densities[0] / sums.matrix.at(0, 0);
     double density = shepard;
     std::array<double, most_rows> fit{};
     bool has_fit = false;
@@ -227,7 +228,7 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
             for (int c = 0; c < sums.matrix.n; ++c)
                 fit[static_cast<std::size_t>(r)] +=
                     inverse.at(r, c) * sums.densities[static_cast<std::size_t>(c)];
-        density = fit[0];
+        density = rest.rhop0 + fit[0];
     }
     if (is_new)
     {
@@ -248,14 +249,13 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t i,
 
 void GhostPressures::set(FluidAtRest& rest, int threads)
 {
-    find_neighbours(rest, threads);
+    set_field(rest, threads);
     parallel_for(
         list_.rows(), threads,
         [&](std::size_t row)
         {
             const std::uint32_t point = list_.point(row);
-            if (point >= first_ghost_)
-                set_one(rest, owners_[point - first_ghost_], list_.neighbours(row));
+            if (point >= first_ghost_) set_one(rest, point, list_.neighbours(row));
         },
         NeighbourList::rows_per_chunk);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "balance/fluid_at_rest.h"
+#include "balance/pressure_sums.h"
 
 namespace fppg
 {
@@ -28,15 +29,18 @@ public:
 
 private:
     struct Sums;
-    /// Makes the lists of fluid around ghost nodes anew where fluid has moved too far since.
-    void find_neighbours(const FluidAtRest& rest, int threads);
-    Sums sums_at(const FluidAtRest& rest, const Vec3& ghost,
+    /// Takes over where the fluid is, and makes the lists around ghost nodes anew where it has
+    /// moved too far since.
+    void set_field(const FluidAtRest& rest, int threads);
+    Sums sums_at(const FluidAtRest& rest, std::uint32_t ghost,
                  std::span<const std::uint32_t> neighbours) const;
-    void set_one(FluidAtRest& rest, std::uint32_t i,
+    /// point  that of a ghost node in the field
+    void set_one(FluidAtRest& rest, std::uint32_t point,
                  std::span<const std::uint32_t> neighbours) const;
 
     RestBoundary boundary_;
     NeighbourList list_;
+    PressureField field_;               ///< of all particles, then the ghost nodes
     std::vector<std::uint32_t> owners_; ///< of every ghost node
     std::vector<double> masses_;        ///< of their particles
     std::size_t first_ghost_ = 0;
