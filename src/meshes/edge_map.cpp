@@ -12,6 +12,8 @@ namespace fppg
 namespace
 {
 
+constexpr std::size_t vertices_per_block = 4096;
+
 /// A side of a facet, at its vertex of smaller index.
 struct EdgeSide
 {
@@ -66,33 +68,56 @@ void build_edges(SurfaceMesh& mesh, int threads)
 {
     const SidesOfVertices of = sort_sides(mesh, threads);
     const std::vector<EdgeSide>& sides = of.sides;
-    const std::size_t n = mesh.facets.size();
-    mesh.edges.clear();
-    mesh.edge_facets.clear();
-    mesh.is_manifold.clear();
-    mesh.edges.reserve(sides.size() / 2 + 1);
-    mesh.edge_facets.reserve(sides.size() / 2 + 1);
-    mesh.is_manifold.reserve(sides.size() / 2 + 1);
-    mesh.neighbours.assign(n, {no_index, no_index, no_index});
-    mesh.facet_edges.assign(n, {no_index, no_index, no_index});
-    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
-        for (std::size_t i = of.first[v]; i < of.first[v + 1];)
-        {
-            std::size_t end = i + 1;
-            while (end < of.first[v + 1] && sides[end].larger == sides[i].larger) ++end;
-            const auto edge = static_cast<std::uint32_t>(mesh.edges.size());
-            const std::uint32_t first = sides[i].side;
-            const std::uint32_t second = end > i + 1 ? sides[i + 1].side : no_index;
-            mesh.edges.push_back({v, sides[i].larger});
-            mesh.edge_facets.push_back({first / 3, second == no_index ? no_index : second / 3});
-            mesh.is_manifold.push_back(end - i <= 2 ? 1 : 0);
-            if (end - i == 2)
+    const std::size_t blocks = (mesh.vertices.size() + vertices_per_block - 1) / vertices_per_block;
+    // Calls visit(vertex, begin, end) for the sides of each edge of a block's vertices.
+    const auto for_each_edge = [&](std::size_t block, const auto& visit)
+    {
+        const std::size_t last = std::min(mesh.vertices.size(), (block + 1) * vertices_per_block);
+        for (std::size_t v = block * vertices_per_block; v < last; ++v)
+            for (std::size_t i = of.first[v]; i < of.first[v + 1];)
             {
-                mesh.neighbours[first / 3][first % 3] = second / 3;
-                mesh.neighbours[second / 3][second % 3] = first / 3;
+                std::size_t end = i + 1;
+                while (end < of.first[v + 1] && sides[end].larger == sides[i].larger) ++end;
+                visit(static_cast<std::uint32_t>(v), i, end);
+                i = end;
             }
-            for (; i < end; ++i) mesh.facet_edges[sides[i].side / 3][sides[i].side % 3] = edge;
-        }
+    };
+    std::vector<std::size_t> first(blocks + 1, 0); // edge of each block
+    parallel_for(
+        blocks, threads,
+        [&](std::size_t b)
+        { for_each_edge(b, [&](std::uint32_t, std::size_t, std::size_t) { ++first[b + 1]; }); });
+    for (std::size_t b = 0; b < blocks; ++b) first[b + 1] += first[b];
+    mesh.edges.resize(first.back());
+    mesh.edge_facets.resize(first.back());
+    mesh.is_manifold.resize(first.back());
+    mesh.neighbours.assign(mesh.facets.size(), {no_index, no_index, no_index});
+    mesh.facet_edges.resize(mesh.facets.size());
+    parallel_for(
+        blocks, threads,
+        [&](std::size_t b)
+        {
+            std::size_t edge = first[b];
+            for_each_edge(
+                b,
+                [&](std::uint32_t v, std::size_t begin, std::size_t end)
+                {
+                    const std::uint32_t one = sides[begin].side;
+                    const std::uint32_t two = end > begin + 1 ? sides[begin + 1].side : no_index;
+                    mesh.edges[edge] = {v, sides[begin].larger};
+                    mesh.edge_facets[edge] = {one / 3, two == no_index ? no_index : two / 3};
+                    mesh.is_manifold[edge] = end - begin <= 2 ? 1 : 0;
+                    if (end - begin == 2)
+                    {
+                        mesh.neighbours[one / 3][one % 3] = two / 3;
+                        mesh.neighbours[two / 3][two % 3] = one / 3;
+                    }
+                    for (std::size_t i = begin; i < end; ++i)
+                        mesh.facet_edges[sides[i].side / 3][sides[i].side % 3] =
+                            static_cast<std::uint32_t>(edge);
+                    ++edge;
+                });
+        });
 }
 
 } // namespace fppg

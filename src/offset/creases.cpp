@@ -1,6 +1,7 @@
 #include "offset/creases.h"
 
 #include "core/parallel.h"
+#include "core/raw_array.h"
 #include "offset/crease_mesh.h"
 #include "offset/quadric.h"
 #include "offset/slivers.h"
@@ -92,11 +93,13 @@ private:
     }
 
     /// Whether the direction of the depth turns across an edge by more than the feature angle.
-    bool turns(std::uint32_t e) const
+    ///
+    /// normals  of all facets
+    bool turns(std::uint32_t e, const RawArray<Vec3>& normals) const
     {
         const auto& facets = on_.mesh.edge_facets[e];
         if (facets[1] == no_index || on_.mesh.is_manifold[e] == 0) return false;
-        if (dot(on_.normal_of(facets[0]), on_.normal_of(facets[1])) > looked_at) return false;
+        if (dot(normals[facets[0]], normals[facets[1]]) > looked_at) return false;
         const Vec3 middle = 0.5 * (on_.mesh.vertices[on_.mesh.edges[e][0]] +
                                    on_.mesh.vertices[on_.mesh.edges[e][1]]);
         std::array<Vec3, 2> directions;
@@ -115,6 +118,11 @@ private:
     /// everywhere  else only at edges one of whose ends is on a crease
     void find(bool everywhere)
     {
+        RawArray<Vec3> normals(on_.mesh.facets.size());
+        parallel_for(
+            on_.mesh.facets.size(), on_.threads,
+            [&](std::size_t f) { normals[f] = on_.normal_of(static_cast<std::uint32_t>(f)); },
+            1024);
         std::vector<char> found(on_.mesh.edges.size(), 0);
         parallel_for(
             on_.mesh.edges.size(), on_.threads,
@@ -123,7 +131,7 @@ private:
                 const auto e = static_cast<std::uint32_t>(i);
                 if (everywhere || has_crease(on_.mesh.edges[e][0]) ||
                     has_crease(on_.mesh.edges[e][1]))
-                    found[e] = turns(e) ? 1 : 0;
+                    found[e] = turns(e, normals) ? 1 : 0;
             },
             256);
         is_crease_ = std::move(found);
@@ -175,7 +183,7 @@ private:
     /// of each of their sides that cross it one end is pulled onto it.
     void pull_cut_creases()
     {
-        std::vector<std::optional<DepthPlace>> places(on_.mesh.vertices.size());
+        std::vector<std::uint32_t> place_of(on_.mesh.vertices.size(), no_index);
         std::vector<std::uint32_t> near;
         for (std::size_t e = 0; e < on_.mesh.edges.size(); ++e)
         {
@@ -185,16 +193,17 @@ private:
                 continue;
             for (const std::uint32_t f : facets)
                 for (const std::uint32_t v : on_.mesh.facets[f])
-                    if (!places[v])
+                    if (place_of[v] == no_index)
                     {
-                        places[v] = DepthPlace{};
+                        place_of[v] = static_cast<std::uint32_t>(near.size());
                         near.push_back(v);
                     }
         }
+        std::vector<DepthPlace> places(near.size());
         parallel_for(
             near.size(), on_.threads,
-            [&](std::size_t i) { places[near[i]] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
-        const std::vector<std::uint32_t> cut = edges_with_creases(places);
+            [&](std::size_t i) { places[i] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
+        const std::vector<std::uint32_t> cut = edges_with_creases(place_of, places);
         std::vector<std::array<std::optional<Vec3>, 2>> on_crease(cut.size());
         parallel_for(
             cut.size(), on_.threads,
@@ -220,8 +229,10 @@ private:
 
     /// Of the edges between vertices whose places are given, those with a crease between their
     /// ends, but for those that end on one.
-    std::vector<std::uint32_t> edges_with_creases(
-        const std::vector<std::optional<DepthPlace>>& places) const
+    ///
+    /// place_of  per vertex, or no_index
+    std::vector<std::uint32_t> edges_with_creases(const std::vector<std::uint32_t>& place_of,
+                                                  const std::vector<DepthPlace>& places) const
     {
         const std::vector<std::array<std::uint32_t, 2>>& edges = on_.mesh.edges;
         std::vector<char> is_cut(edges.size(), 0);
@@ -230,10 +241,10 @@ private:
             [&](std::size_t e)
             {
                 const auto [a, b] = edges[e];
-                if (!places[a] || !places[b]) return;
+                if (place_of[a] == no_index || place_of[b] == no_index) return;
                 if (!was_placed_.empty() && (was_placed_[a] != 0 || was_placed_[b] != 0)) return;
-                is_cut[e] = has_crease_between(*places[a], *places[b], on_.mesh.vertices[a],
-                                               on_.mesh.vertices[b])
+                is_cut[e] = has_crease_between(places[place_of[a]], places[place_of[b]],
+                                               on_.mesh.vertices[a], on_.mesh.vertices[b])
                                 ? 1
                                 : 0;
             },
