@@ -21,7 +21,7 @@ namespace
 {
 
 // Lengths in dp.
-constexpr double list_skin = 0.3;
+constexpr double list_skin = 0.5;
 constexpr double longest_step = 0.05;
 constexpr double farthest = 1.0;
 /// To walls whose particles stand on the surface; nearer, fluid is squeezed between these where it
