@@ -59,6 +59,8 @@ public:
     RunField take();
 
 private:
+    /// What other zones of `<vres>` have is cut out of walls as by a draw of void.
+    void cut_to_zone();
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans);
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans, const MkValue& mk);
 

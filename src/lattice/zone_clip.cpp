@@ -1,6 +1,4 @@
-#include "fppg/vres.h"
-
-#include "nodes/spans.h"
+#include "lattice/zone_clip.h"
 
 #include <algorithm>
 #include <array>
@@ -71,38 +69,21 @@ NodeBox nodes_within(const ZoneBox& box, const LatticeGrid& grid)
     return out;
 }
 
-void erase_box(const NodeBox& box, RunField& field)
+/// The nodes of a slab with particles that are in a turned box, or with `is_outside` that are not.
+Spans nodes_in(const BoxTest& is_inside, bool is_outside, const LatticeGrid& grid, std::uint32_t x,
+               const std::vector<Run>& runs)
 {
-    if (box.is_empty()) return;
-    for (std::int64_t x = box.begin[0]; x < box.end[0]; ++x)
-    {
-        std::vector<Run>& runs = field.slabs[static_cast<std::size_t>(x)];
-        const Spans inside = clip_to_box(occupied(runs), box);
-        if (!inside.empty()) paint(runs, inside, 0);
-    }
-}
-
-/// Takes out the nodes that are in a turned box, or with `keep` those that are not.
-void erase_nodes(const ZoneBox& box, bool keep, RunField& field)
-{
-    const BoxTest is_inside(box, field.grid.is_2d);
     Spans out;
-    for (std::size_t x = 0; x < field.slabs.size(); ++x)
-    {
-        out.clear();
-        for (const Span& span : occupied(field.slabs[x]))
-            for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
-            {
-                const bool inside =
-                    is_inside(node_place(field.grid, static_cast<std::uint32_t>(x), span.y, z));
-                if (inside == keep) continue;
-                if (!out.empty() && out.back().y == span.y && out.back().z_end == z)
-                    ++out.back().z_end;
-                else
-                    out.push_back({span.y, z, z + 1});
-            }
-        if (!out.empty()) paint(field.slabs[x], out, 0);
-    }
+    for (const Span& span : occupied(runs))
+        for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+        {
+            if (is_inside(node_place(grid, x, span.y, z)) == is_outside) continue;
+            if (!out.empty() && out.back().y == span.y && out.back().z_end == z)
+                ++out.back().z_end;
+            else
+                out.push_back({span.y, z, z + 1});
+        }
+    return out;
 }
 
 /// Takes out the particles off the lattice whose nearest node is one of a box, or that are nearer
@@ -142,23 +123,47 @@ bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d)
     return BoxTest(box, is_2d)(p);
 }
 
-void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
+std::vector<Spans> nodes_beyond_zone(const VresDef& vres, std::size_t zone, const RunField& field)
 {
+    std::vector<Spans> out(field.slabs.size());
+    const auto add = [&](const auto& nodes_of_slab)
+    {
+        for (std::size_t x = 0; x < out.size(); ++x)
+            out[x] = unite(out[x], nodes_of_slab(static_cast<std::uint32_t>(x)));
+    };
+    const auto add_turned = [&](const ZoneBox& box, bool is_outside)
+    {
+        const BoxTest test(box, field.grid.is_2d);
+        add([&](std::uint32_t x)
+            { return nodes_in(test, is_outside, field.grid, x, field.slabs[x]); });
+    };
     const VresZone& own = vres.zones[zone];
-    if (zone > 0 && !own.inner.is_plain)
-        erase_nodes(resized(own.buffer, own.dp, vres.is_2d), true, field);
+    if (zone > 0 && !own.inner.is_plain) add_turned(resized(own.buffer, own.dp, vres.is_2d), true);
     for (const VresZone& inner : vres.zones)
     {
         if (inner.parent != static_cast<int>(zone)) continue;
-        if (inner.outer_end.is_plain)
-        {
-            const NodeBox box = nodes_within(inner.outer_end, field.grid);
-            erase_box(box, field);
-            erase_off_lattice(box, field.grid, field.walls.volume);
-        }
-        else
-            erase_nodes(resized(inner.outer_end, -own.dp, vres.is_2d), false, field);
+        if (!inner.outer_end.is_plain)
+            add_turned(resized(inner.outer_end, -own.dp, vres.is_2d), false);
+        else if (const NodeBox box = nodes_within(inner.outer_end, field.grid); !box.is_empty())
+            add(
+                [&](std::uint32_t x)
+                {
+                    const bool is_in = x >= box.begin[0] && x < box.end[0];
+                    return is_in ? clip_to_box(occupied(field.slabs[x]), box) : Spans{};
+                });
     }
+    return out;
+}
+
+void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
+{
+    const std::vector<Spans> beyond = nodes_beyond_zone(vres, zone, field);
+    for (std::size_t x = 0; x < beyond.size(); ++x)
+        if (!beyond[x].empty()) paint(field.slabs[x], beyond[x], 0);
+    for (const VresZone& inner : vres.zones)
+        if (inner.parent == static_cast<int>(zone) && inner.outer_end.is_plain)
+            erase_off_lattice(nodes_within(inner.outer_end, field.grid), field.grid,
+                              field.walls.volume);
 }
 
 } // namespace fppg
