@@ -115,9 +115,10 @@ void Canvas::cut_to_zone()
     parallel_for(beyond.size(), threads_,
                  [&](std::size_t x)
                  {
-                     walls_.paint_over(x, beyond[x], 0, false);
                      if (!beyond[x].empty()) fppg::paint(field_.slabs[x], beyond[x], 0);
                  });
+    walls_.cut_where([&](const Vec3& p)
+                     { return is_beyond_zone(def_.vres, def_.zone, field_.grid, p); });
 }
 
 RunField Canvas::take()

@@ -59,7 +59,7 @@ public:
     RunField take();
 
 private:
-    /// What other zones of `<vres>` have is cut out of walls as by a draw of void.
+    /// Cuts what other zones of `<vres>` have out of the walls and their nodes.
     void cut_to_zone();
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans);
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans, const MkValue& mk);

@@ -86,6 +86,19 @@ Spans nodes_in(const BoxTest& is_inside, bool is_outside, const LatticeGrid& gri
     return out;
 }
 
+/// Whether the nearest node of a place is one of a box.
+bool is_nearest_in(const NodeBox& box, const LatticeGrid& grid, const Vec3& p)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto k = static_cast<std::size_t>(axis);
+        const double node = std::round((p[axis] - grid.origin[axis]) / grid.dp);
+        if (node < static_cast<double>(box.begin[k]) || node >= static_cast<double>(box.end[k]))
+            return false;
+    }
+    return true;
+}
+
 /// Takes out the particles off the lattice whose nearest node is one of a box, or that are nearer
 /// than 0.75 dp to one, as void nodes drawn later do (60 random cases of three zones in 2D, in
 /// order of ids, and 20 in 3D, in GenCase v5.4.354).
@@ -96,7 +109,6 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
     for (std::size_t i = 0; i < off_lattice.size(); ++i)
     {
         double squared = 0;
-        bool is_nearest = true; // its nearest node is one of the box
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
@@ -104,9 +116,8 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
             const double node = std::clamp(std::round(steps), static_cast<double>(box.begin[k]),
                                            static_cast<double>(box.end[k] - 1));
             squared += (steps - node) * (steps - node);
-            is_nearest = is_nearest && node == std::round(steps);
         }
-        if (is_nearest || squared < 0.75 * 0.75) continue;
+        if (is_nearest_in(box, grid, off_lattice.positions[i]) || squared < 0.75 * 0.75) continue;
         off_lattice.positions[kept] = off_lattice.positions[i];
         off_lattice.mk[kept] = off_lattice.mk[i];
         off_lattice.distances[kept++] = off_lattice.distances[i];
@@ -153,6 +164,27 @@ std::vector<Spans> nodes_beyond_zone(const VresDef& vres, std::size_t zone, cons
                 });
     }
     return out;
+}
+
+bool is_beyond_zone(const VresDef& vres, std::size_t zone, const LatticeGrid& grid, const Vec3& p)
+{
+    Vec3 node = p;
+    for (int axis = 0; axis < 3; ++axis)
+        node[axis] =
+            grid.origin[axis] + grid.dp * std::round((p[axis] - grid.origin[axis]) / grid.dp);
+    const VresZone& own = vres.zones[zone];
+    if (zone > 0 && !own.inner.is_plain &&
+        !is_within(resized(own.buffer, own.dp, vres.is_2d), node, vres.is_2d))
+        return true;
+    return std::any_of(vres.zones.begin(), vres.zones.end(),
+                       [&](const VresZone& inner)
+                       {
+                           if (inner.parent != static_cast<int>(zone)) return false;
+                           if (inner.outer_end.is_plain)
+                               return is_nearest_in(nodes_within(inner.outer_end, grid), grid, p);
+                           const ZoneBox box = resized(inner.outer_end, -own.dp, vres.is_2d);
+                           return is_within(box, node, vres.is_2d);
+                       });
 }
 
 void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)

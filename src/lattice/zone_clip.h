@@ -17,4 +17,7 @@ namespace fppg
 /// cost  O(runs + columns of the boxes); where a box is turned, its nodes
 std::vector<Spans> nodes_beyond_zone(const VresDef& vres, std::size_t zone, const RunField& field);
 
+/// The same of a particle off the lattice: its nearest node decides.
+bool is_beyond_zone(const VresDef& vres, std::size_t zone, const LatticeGrid& grid, const Vec3& p);
+
 } // namespace fppg
