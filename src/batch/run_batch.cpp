@@ -334,7 +334,8 @@ private:
 
     void take_run(Job& job, const ChildProcess& child)
     {
-        const std::string text = read_whole(job.log());
+        std::string text = read_whole(job.log());
+        std::erase(text, '\r'); // Windows ends lines with two characters
         RunRecord& record = job.record;
         record.np = 0;
         read_printed(text, record);

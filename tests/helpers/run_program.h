@@ -24,6 +24,15 @@ struct RunResult
     std::string output;
 };
 
+/// The program to start: FPPG_PROGRAM_OF_OTHER_SYSTEM in the place of FPPG_PROGRAM_OF_THIS_ONE where
+/// tests/platforms has set both.
+inline std::string program_to_start(const std::string& program)
+{
+    const char* const here = std::getenv("FPPG_PROGRAM_OF_THIS_ONE");
+    const char* const there = std::getenv("FPPG_PROGRAM_OF_OTHER_SYSTEM");
+    return here && there && program == here ? there : program;
+}
+
 /// A program that runs in a folder, its output going to a file there.
 class Process
 {
@@ -42,10 +51,12 @@ public:
         ::dup2(file, 2);
         if (::chdir(folder.c_str()) != 0) ::_exit(127);
         for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-        std::vector<char*> words{const_cast<char*>(program.c_str())};
-        for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
+        std::vector<std::string> texts{program_to_start(program)};
+        for (const std::string& a : arguments) texts.push_back(program_to_start(a));
+        std::vector<char*> words;
+        for (std::string& text : texts) words.push_back(text.data());
         words.push_back(nullptr);
-        ::execv(program.c_str(), words.data());
+        ::execv(words.front(), words.data());
         ::_exit(127);
     }
 
@@ -62,6 +73,8 @@ public:
         ::waitpid(id_, &status, 0);
         RunResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
                          read_text(output_)};
+        // Windows ends lines with two characters.
+        if (std::getenv("FPPG_PROGRAM_OF_OTHER_SYSTEM")) std::erase(result.output, '\r');
         std::filesystem::remove(output_);
         return result;
     }

@@ -30,6 +30,10 @@ END
     # shellcheck disable=SC2046
     APT_CONFIG=$apt/apt.conf apt-get download $(sed 's/$/:arm64/' "$here/packages.txt")
     for package in *.deb; do dpkg-deb -x "$package" "$root"; done
+    # Links from / on are meant from the root on: libz.so would lead out of it.
+    find "$root" -type l -lname '/*' | while read -r link; do
+        ln -sfrT "$root$(readlink "$link")" "$link"
+    done
     # These are headers alone, the same for all systems.
     mkdir -p "$root/usr/include" "$root/usr/share/cmake"
     cp -r /usr/include/CLI /usr/include/nlohmann "$root/usr/include"
