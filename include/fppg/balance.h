@@ -55,7 +55,7 @@ struct BalanceReport
 /// it was, none higher than 0.25 dp below its level.
 ///
 /// Fluid of a free face that is not level stays, with all within 2h of it: it is meant to fall, as
-/// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.05 g
+/// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.1 g
 /// in the mean, all fluid stays: a single sheet of DBC, behind which nothing pushes, holds none at
 /// rest (raising its pressures as the solver does made a tank of sheets worse: mean speed 0.12
 /// instead of 0.076 m/s).

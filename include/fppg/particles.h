@@ -2,11 +2,13 @@
 
 #include "fppg/initials.h"
 #include "fppg/lattice.h"
+#include "fppg/rgb.h"
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,6 +90,7 @@ struct ParticleBlock
     bool run_descending = false; ///< a run's nodes follow one another downwards in z
     ParticleRuns runs;           ///< in id order; their counts add up to `count`
     std::string property;        ///< names joined with '+', or empty
+    std::optional<Rgb> colour;   ///< of the CAD model that it was drawn from
     int ref_motion = -1;         ///< moving: index in the motion of Case.xml
     /// What `<initials>` does to its particles; nothing in them is empty. Runs and densities are
     /// those before it.

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "fppg/rgb.h"
 #include "fppg/vec.h"
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,9 +19,10 @@ struct ParticleCloud
     std::string file; ///< that the positions were read from
     double dp = 0;    ///< metres
     std::vector<Vec3> positions;
-    std::vector<std::uint16_t> mk;  ///< absolute
-    std::vector<std::uint8_t> type; ///< as ParticleType; empty where the file does not say
-    std::vector<std::uint8_t> kind; ///< as FitKind; empty where the file does not say
+    std::vector<std::uint16_t> mk;        ///< absolute
+    std::vector<std::uint8_t> type;       ///< as ParticleType; empty where the file does not say
+    std::map<std::uint16_t, Rgb> colours; ///< of mks whose CAD model has one, by Case.xml
+    std::vector<std::uint8_t> kind;       ///< as FitKind; empty where the file does not say
     /// Of fitted walls, 1 nearest to the surface; 0: in none; empty where the file does not say.
     std::vector<std::uint8_t> layer;
     std::vector<std::array<float, 3>> normals; ///< of walls, zero where there is none; as `kind`

@@ -2,6 +2,7 @@
 
 #include "fppg/files.h"
 #include "fppg/read_particles.h"
+#include "fppg/rgb.h"
 
 #include <array>
 #include <cstdint>
@@ -11,8 +12,6 @@
 
 namespace fppg
 {
-
-using Rgb = std::array<std::uint8_t, 3>;
 
 /// Pixels, rows from the top, each row from the left.
 struct Image
@@ -47,7 +46,8 @@ struct CutPlane
 
 enum class RenderColour : std::uint8_t
 {
-    Mk,
+    Mk,   ///< ParticleCloud::colours where they have one, else Role
+    Role, ///< colour_of_mk()
     Kind,
     Layer,
 };

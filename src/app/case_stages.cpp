@@ -19,6 +19,7 @@
 #include "lattice/mesh_units.h"
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
+#include "scene/part_colours.h"
 
 #include <fmt/format.h>
 
@@ -218,6 +219,10 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   std::vector<std::string> warnings;
                   made.particles =
                       make_particles(made.def, made.field, run.threads, made.constants, warnings);
+                  const auto colours = colours_of_parts(made.scene);
+                  for (ParticleBlock& block : made.particles.blocks)
+                      if (const auto own = colours.find(block.mk); own != colours.end())
+                          block.colour = own->second;
                   made.particles.volumes = volumes_of_bodies(run, made);
                   std::vector<std::string> periods;
                   set_period(made.def, made.particles, periods);

@@ -10,11 +10,6 @@
 namespace fppg
 {
 
-std::string hex_of(const Rgb& colour)
-{
-    return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
-}
-
 SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
 {
     std::map<std::uint16_t, ScenePart> parts;
@@ -23,8 +18,7 @@ SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name)
         ScenePart& part = parts[cloud.mk[i]];
         if (part.positions.empty())
         {
-            part.colour = hex_of(
-                colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]));
+            part.colour = hex_of(colour_of(cloud, i, RenderColour::Mk));
             part.mk = cloud.mk[i];
             part.label = fmt::format("mk {}", cloud.mk[i]);
             if (!cloud.type.empty())

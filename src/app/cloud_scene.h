@@ -19,9 +19,6 @@ inline constexpr std::size_t most_in_scene = 200000;
 /// Particles of one result that the picture of a page shows at most.
 inline constexpr std::size_t most_in_picture = 1500000;
 
-/// "#rrggbb"
-std::string hex_of(const Rgb& colour);
-
 /// The particles of a cloud as a set of the 3-D view, a part an mk, by mk.
 SceneSet scene_by_mk(const ParticleCloud& cloud, const std::string& name);
 

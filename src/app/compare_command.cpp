@@ -189,15 +189,20 @@ std::string view_of(const Comparison& comparison)
 }
 
 /// The mks of both files with their colours.
-std::vector<std::pair<std::string, std::string>> mk_legend(const Comparison& comparison)
+std::vector<std::pair<std::string, std::string>> mk_legend(const Comparison& comparison,
+                                                           const std::vector<ParticleCloud>& clouds)
 {
     std::vector<std::pair<std::string, std::string>> legend;
     for (const MkComparison& of : comparison.mks)
     {
         // What it is in A, or where A has none in B.
         const int type = of.type[0] >= 0 ? of.type[0] : of.type[1];
+        Rgb colour = colour_of_mk(of.mk, type < 0 ? unknown_type : static_cast<std::uint8_t>(type));
+        for (const std::size_t f : {1U, 0U})
+            if (const auto own = clouds[f].colours.find(of.mk); own != clouds[f].colours.end())
+                colour = own->second;
         legend.emplace_back(
-            hex_of(colour_of_mk(of.mk, type < 0 ? unknown_type : static_cast<std::uint8_t>(type))),
+            hex_of(colour),
             fmt::format("mk {}{}", of.mk,
                         type < 0 ? "" : fmt::format(" {}", particle_type_name(type))));
     }
@@ -219,7 +224,7 @@ std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
                                   clouds[0].dp / comparison.dp);
         if (clouds[0].positions.empty() && clouds[1].positions.empty()) return pictures;
         pictures.push_back({"A on the left, B on the right, by mk" + thinned + ":",
-                            mk_legend(comparison),
+                            mk_legend(comparison, clouds),
                             png_bytes(render_particles(clouds, options, threads), true)});
         Box3 bounds;
         for (const ComparedFile& file : comparison.files)
@@ -235,7 +240,7 @@ std::vector<ComparePicture> draw_pictures(const Comparison& comparison)
             options.cuts = {{1, true, middle}};
             options.view = parse_view("front");
             pictures.push_back({fmt::format("Cut at y = {:.4g} m", middle) + thinned + ":",
-                                mk_legend(comparison),
+                                mk_legend(comparison, clouds),
                                 png_bytes(render_particles(clouds, options, threads), true)});
         }
     }

@@ -342,11 +342,7 @@ void write_bodies(const Inspection& found, const Line& line)
 /// "#rrggbb"; empty: it has none.
 std::string color_text(const CadPart& part)
 {
-    if (!part.color) return "";
-    std::string out = "#";
-    for (const double share : *part.color)
-        out += fmt::format("{:02x}", static_cast<int>(std::lround(255 * share)));
-    return out;
+    return part.color ? hex_of(*part.color) : "";
 }
 
 /// By the exact faces, not by facets.

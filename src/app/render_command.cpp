@@ -118,8 +118,9 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
                    "degrees; a case in the plane of x and z is seen from the front by default");
     app.add_option(
         "--color,--colour", colour,
-        "mk (default), kind (corner, edge, surface, volume) or layer (of walls, 1 next to "
-        "the surface)");
+        "mk (default; parts of CAD models that have a colour have it), role (fixed, moving, "
+        "floating, fluid), kind (corner, edge, surface, volume) or layer (of walls, 1 next to the "
+        "surface)");
     app.add_option("--mk", mks, "only these, such as 1,11-13");
     app.add_option("--cut", cuts, "keeps what is on one side: y>0.3 or z<1; may be repeated")
         .may_be_repeated();
@@ -150,8 +151,10 @@ bool read_arguments(const std::vector<std::string>& arguments, RenderCall& call)
         options.colour = RenderColour::Kind;
     else if (colour == "layer")
         options.colour = RenderColour::Layer;
+    else if (colour == "role")
+        options.colour = RenderColour::Role;
     else if (colour != "mk")
-        refuse("--color", colour, "mk, kind or layer");
+        refuse("--color", colour, "mk, role, kind or layer");
     if (call.threads < 0 || call.threads > 4096)
         throw UsageError(
             fmt::format("--threads: {} is out of range, expected 0 to 4096", call.threads));
@@ -195,7 +198,7 @@ int run_render(const std::vector<std::string>& arguments)
     std::vector<ParticleCloud> clouds;
     for (const std::string& name : call.cases)
         clouds.push_back(
-            read_particles(name, call.options.colour != RenderColour::Mk, call.threads));
+            read_particles(name, call.options.colour >= RenderColour::Kind, call.threads));
     if (!call.has_view && std::all_of(clouds.begin(), clouds.end(), is_in_plane))
         call.options.view = parse_view("front");
     const Image image = render_particles(clouds, call.options, call.threads);

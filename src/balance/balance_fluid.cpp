@@ -45,7 +45,7 @@ constexpr int iterations_per_look = 10; ///< at mDBC's pressures
 constexpr int iterations_per_check = 20;
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
-constexpr double calm_mean = 0.05;
+constexpr double calm_mean = 0.1;
 /// And where it is above this at the first check: in all cases tried those that came to rest were
 /// below 0.09 then, the others above 0.4.
 constexpr double hopeless_mean = 0.25;

@@ -13,7 +13,7 @@
 // - Looks away: no fluid can come within 2h of g, in the domain; or the fluid within 2h of p is
 // behind
 //   it: the mean of the cosines between n and the ways to it is below -0.2 (before a flat wall 0.5,
-//   before a sheet that is wet on both sides 0).
+//   before a sheet that is wet on both sides 0); or the nearest fluid is nearer by 1 than |n|.
 //   Such a w counts as one without a normal in the rules above.
 // - Weak kernel and ill-conditioned as in fit_at_ghost(), with the limits of the solver.
 // - Both sides, where n leads to fluid: fluid can come to the back too, t behind p in a cylinder of
@@ -135,7 +135,8 @@ std::uint16_t judge_normal(const WallScene& scene, std::uint32_t i, const Vec3& 
     const GhostFit fit = fit_at_ghost(scene.fluid, ghost, setup);
     if (fit.kernel_sum <= 0)
         return bit_of(is_outside(setup, ghost) ? Fault::GhostOutside : Fault::LooksAway);
-    if (around.looks_away) return bit_of(Fault::LooksAway);
+    if (around.looks_away || norm(n) > double{around.nearest} + setup.dp)
+        return bit_of(Fault::LooksAway);
     if (fit.kernel_sum < least_kernel_sum) return bit_of(Fault::WeakKernel);
     if (!(fit.condition <= most_condition)) return bit_of(Fault::IllConditioned);
     return 0;

@@ -86,6 +86,14 @@ CaseFacts case_facts(const Element& root, const std::string& path)
             range.mk = static_cast<std::uint16_t>(whole_number(block, "mk", UINT16_MAX, path));
             range.type = *type;
             facts.ranges.push_back(range);
+            const std::string* color = block.find_attribute("fppg:color");
+            if (color == nullptr) continue;
+            const std::optional<Rgb> rgb = rgb_of_hex(*color);
+            if (!rgb)
+                throw CaseError(path, block.line,
+                                fmt::format("<{} fppg:color=\"{}\">: expected a colour as #1a99e6",
+                                            block.name, *color));
+            facts.colours[range.mk] = *rgb;
         }
     }
     std::sort(facts.ranges.begin(), facts.ranges.end(),

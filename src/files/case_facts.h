@@ -2,8 +2,10 @@
 
 #include "fppg/element.h"
 #include "fppg/particles.h"
+#include "fppg/rgb.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,9 @@ struct IdRange
 /// What Case.xml says of the particles.
 struct CaseFacts
 {
-    std::vector<IdRange> ranges; ///< sorted
-    double dp = 0;               ///< metres; 0 where it does not say
+    std::vector<IdRange> ranges;          ///< sorted
+    std::map<std::uint16_t, Rgb> colours; ///< of absolute mks: `fppg:color`
+    double dp = 0;                        ///< metres; 0 where it does not say
     Box3 limits; ///< of the places of all particles, metres; empty where it does not say
 };
 

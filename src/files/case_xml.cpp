@@ -228,6 +228,7 @@ Element block_tag(const CaseDef& def, const CaseParticles& particles, std::size_
     out.set_attribute("begin", integer(block.begin));
     out.set_attribute("count", integer(block.count));
     if (!block.property.empty()) out.set_attribute("property", block.property);
+    if (block.colour) out.set_attribute("fppg:color", hex_of(*block.colour));
     if (block.type == ParticleType::Moving)
         out.set_attribute("refmotion", fmt::format("{}", block.ref_motion));
     if (block.type == ParticleType::Floating)
@@ -451,7 +452,9 @@ void write_case_xml(OutputFile& file, const CaseDef& def, const CaseParticles& p
     root.set_attribute("app", origin.app_name);
     root.set_attribute("date", origin.date);
     // Readers that know of namespaces refuse a prefix that nobody declares.
-    if (uses_own_prefix(def.casedef)) root.set_attribute("xmlns:fppg", "urn:fppg");
+    const bool has_colours = std::any_of(particles.blocks.begin(), particles.blocks.end(),
+                                         [](const ParticleBlock& b) { return b.colour; });
+    if (has_colours || uses_own_prefix(def.casedef)) root.set_attribute("xmlns:fppg", "urn:fppg");
     content_of(root, "casedef") = def.casedef;
     Element& execution = content_of(root, "execution");
     execution.children = taken_over(def);

@@ -63,6 +63,7 @@ ParticleCloud read_case(const std::string& stem, int threads)
     expect_one_run({cloud.file, xml}, facts, view);
     copy_particles(view, cloud, idp, threads);
     set_mk_and_type(facts, xml, idp, cloud, threads);
+    cloud.colours = facts.colours;
     cloud.dp = facts.dp > 0 ? facts.dp : guess_dp(cloud.positions, threads);
     return cloud;
 }
@@ -75,7 +76,11 @@ ParticleCloud read_particles_vtk(const std::string& path, int threads)
     for (const char* end : {"_All.vtk", "_Bound.vtk", "_Fluid.vtk"})
         if (const std::optional<std::string> stem = without(path, end))
             if (is_file(*stem + ".xml"))
-                cloud.dp = case_facts(read_xml(*stem + ".xml"), *stem + ".xml").dp;
+            {
+                CaseFacts facts = case_facts(read_xml(*stem + ".xml"), *stem + ".xml");
+                cloud.dp = facts.dp;
+                cloud.colours = std::move(facts.colours);
+            }
     if (cloud.dp == 0) cloud.dp = guess_dp(cloud.positions, threads);
     return cloud;
 }

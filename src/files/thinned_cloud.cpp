@@ -38,6 +38,7 @@ std::optional<ParticleCloud> one_of_every_cube(const ParticleSource& source, con
     if (step == 1 && source.size() > most) return std::nullopt;
     ParticleCloud cloud;
     cloud.file = source.path();
+    cloud.colours = source.facts().colours;
     cloud.dp = dp * static_cast<double>(step);
     std::unordered_set<MkCube, MkCubeHash> taken;
     for (std::size_t i = 0; i < source.size(); ++i)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/mesh.h"
+#include "fppg/rgb.h"
 
 #include <array>
 #include <cstddef>
@@ -19,8 +20,8 @@ struct CadPart
     std::string name; ///< of the instance, else of the part; may be empty
     /// From the top: names of the assemblies above it, of the instance and the part.
     std::vector<std::string> path;
-    std::optional<std::array<double, 3>> color; ///< sRGB, 0 to 1
-    std::size_t first_facet = 0;                ///< of the file's facets
+    std::optional<Rgb> color;
+    std::size_t first_facet = 0; ///< of the file's facets
     std::size_t facet_count = 0;
     double volume = 0; ///< of the exact solid; 0: it is a shell
     double area = 0;   ///< of the exact faces

@@ -382,10 +382,7 @@ std::optional<ExactPlace> CadSurface::at(const SurfaceMesh& mesh, const Vec3& p,
                                          std::uint32_t facet) const
 {
     const Meeting meeting = meeting_at(mesh, start, facet, place_rounding * size_);
-    if (meeting.count == 0) return std::nullopt;
-    if (models_.is_plane(meeting.refs[0]) &&
-        (meeting.count == 1 || models_.is_plane(meeting.refs[1])))
-        return std::nullopt;
+    if (meeting.count == 0 || is_flat(meeting)) return std::nullopt;
     std::optional<ExactPlace> out;
     if (meeting.count == 2)
         out = on_edge(meeting, p, start);
@@ -400,6 +397,41 @@ std::optional<ExactPlace> CadSurface::at(const SurfaceMesh& mesh, const Vec3& p,
     if (difference > same_distance * chord_ + 1e-12 * size_) return std::nullopt;
     for (std::size_t i = 0; i < meeting.count; ++i)
         if (dot(out->faces[i], mesh.normals[meeting.facets[i]]) < 0) out->faces[i] = -out->faces[i];
+    return out;
+}
+
+std::optional<ExactPlace> CadSurface::in_plane(const SurfaceMesh& mesh, const Vec3& p,
+                                               const Vec3& start, std::uint32_t facet) const
+{
+    const Meeting meeting = meeting_at(mesh, start, facet, place_rounding * size_);
+    if (meeting.count == 0 || is_flat(meeting)) return std::nullopt;
+    ExactPlace out;
+    out.face_count = static_cast<int>(meeting.count);
+    Vec3 next = start;
+    double least_slope = 1; // of a face against the plane: chords are so much longer in it
+    // Along the tangent at the foot to the point below p, until that stays; a corner stays at once.
+    for (int step = 0; step < edge_steps; ++step)
+    {
+        Vec3& at = out.nearest = next;
+        project(mesh, at, facet, true);
+        for (std::size_t i = 0; i < meeting.count; ++i)
+        {
+            const auto foot = models_.foot(meeting.refs[i], at, start);
+            if (!foot || norm(foot->point - at) > 1e-9 * size_) return std::nullopt;
+            const bool turns = dot(foot->normal, mesh.normals[meeting.facets[i]]) < 0;
+            const Vec3 in_plane{foot->normal.x, 0, foot->normal.z};
+            const double slope = norm(in_plane);
+            if (!(slope > 1e-3)) return std::nullopt;
+            least_slope = std::min(least_slope, slope);
+            out.faces[i] = (turns ? -1 : 1) / slope * in_plane;
+        }
+        const Vec3 along{out.faces[0].z, 0, -out.faces[0].x};
+        const double off = meeting.count == 2 ? 0 : dot(p - at, along);
+        if (std::fabs(off) <= 1e-13 * size_) break;
+        next = at + off * along;
+    }
+    const double difference = std::fabs(norm(out.nearest - p) - norm(start - p));
+    if (difference > same_distance * chord_ / least_slope + 1e-12 * size_) return std::nullopt;
     return out;
 }
 

@@ -103,6 +103,13 @@ public:
     std::optional<ExactPlace> at(const SurfaceMesh& mesh, const Vec3& p, const Vec3& start,
                                  std::uint32_t facet) const;
 
+    /// The same in the plane y = constant of p: seen from the line in which the exact surface meets
+    /// it.
+    ///
+    /// start  the place of that line's chords nearest to p, on `facet`
+    std::optional<ExactPlace> in_plane(const SurfaceMesh& mesh, const Vec3& p, const Vec3& start,
+                                       std::uint32_t facet) const;
+
     /// How far facets are from the exact surface, metres.
     double chord() const { return chord_; }
     /// Per edge, the angle between the exact faces on both sides at its middle, radians; below 0
@@ -121,6 +128,12 @@ private:
     Meeting meeting_at(const SurfaceMesh& mesh, const Vec3& p, std::uint32_t facet,
                        double room) const;
     Meeting across(const SurfaceMesh& mesh, std::uint32_t edge) const;
+    /// Whether the exact faces that meet there are planes, as their facets are.
+    bool is_flat(const Meeting& meeting) const
+    {
+        return models_.is_plane(meeting.refs[0]) &&
+               (meeting.count == 1 || models_.is_plane(meeting.refs[1]));
+    }
     bool is_bent(std::uint32_t edge) const
     {
         return !(bends_[edge] >= 0 && bends_[edge] <= smooth);

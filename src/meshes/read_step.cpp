@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -54,7 +55,11 @@ public:
             part.name = found.name;
             for (const std::string_view name : split(found.path, '\n'))
                 if (!name.empty()) part.path.emplace_back(name);
-            if (found.has_color != 0) part.color = {found.color[0], found.color[1], found.color[2]};
+            if (found.has_color == 0) continue;
+            part.color.emplace();
+            for (std::size_t c = 0; c < 3; ++c)
+                (*part.color)[c] = static_cast<std::uint8_t>(
+                    std::lround(255 * std::clamp(found.color[c], 0.0, 1.0)));
         }
     }
     ~StepFile() { step_plugin().close(file_); }

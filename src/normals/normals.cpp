@@ -289,7 +289,12 @@ private:
         }
         if (!has_layers) return;
         const double reach = 2 * def_.h;
-        const WetSurface wet(field_, def_.mk_bound_first, reach, threads_);
+        std::vector<char> is_moving(65536, 0);
+        for (const ParticleBlock& block : particles_.blocks)
+            if (block.type == ParticleType::Moving) is_moving[block.mk] = 1;
+        const WetSurface wet(
+            field_, {def_.mk_bound_first, def_.constants.gravity, reach, std::move(is_moving)},
+            threads_);
         if (wet.is_empty()) return;
         const auto visit = [&](std::size_t r)
         {

@@ -13,13 +13,11 @@ namespace fppg
 namespace
 {
 
-constexpr std::uint16_t never = 0xFFFF;
-constexpr std::uint16_t blocked = 0xFFFE;
-constexpr std::int64_t most_cells = std::int64_t{1} << 25;
 /// Fluid is looked for so far off a surface, dp.
 constexpr double off_surface_dp = 1.2;
-/// A side is dry when the way to it is so much longer, dp.
+/// A side can be dry when the way to it is so much longer, or rises so much higher, dp.
 constexpr double longer_way_dp = 10;
+constexpr double higher_way_dp = 10;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
 constexpr double opposing = -0.5;
@@ -35,90 +33,23 @@ constexpr char is_wet = 0;
 constexpr char is_dry = 1;
 constexpr char is_thin = 2; ///< wet, and so is the other side
 
+/// Whether one side of a wall is dry beside the other.
+bool is_dry_beside(const FluidWay::Way& here, const FluidWay::Way& there, bool is_moving)
+{
+    if (!(here.length > there.length + longer_way_dp)) return false;
+    if (is_moving) return here.runs_out && !there.runs_out;
+    return here.runs_out || here.rise > there.rise + higher_way_dp;
+}
+
 } // namespace
 
-FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound) : grid_(field.grid)
-{
-    const auto cells = [&](int axis)
-    { return (std::int64_t{grid_.n[static_cast<std::size_t>(axis)]} + side_ - 1) / side_; };
-    while (cells(0) * cells(1) * cells(2) > most_cells) ++side_;
-    n_ = {cells(0), cells(1), cells(2)};
-    steps_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), never);
-    for (std::int64_t x = 0; x < std::int64_t{grid_.n[0]}; ++x)
-        for (const Run& run : field.slabs[static_cast<std::size_t>(x)])
-            mark(x / side_, run, run.mk >= first_bound);
-    std::vector<std::size_t> front;
-    for (std::size_t i = 0; i < steps_.size(); ++i)
-        if (steps_[i] == 0) front.push_back(i);
-    has_fluid_ = !front.empty();
-    for (std::uint16_t step = 1; !front.empty() && step < blocked; ++step) front = go(front, step);
-}
-
-void FluidWay::mark(std::int64_t x, const Run& run, bool is_bound)
-{
-    for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
-    {
-        std::uint16_t& cell = steps_[index(x, run.y / side_, z)];
-        if (is_bound)
-            cell = blocked;
-        else if (cell == never)
-            cell = 0;
-    }
-}
-
-std::vector<std::size_t> FluidWay::go(const std::vector<std::size_t>& front, std::uint16_t step)
-{
-    std::vector<std::size_t> next;
-    const auto enter = [&](std::size_t cell)
-    {
-        if (steps_[cell] != never) return;
-        steps_[cell] = step;
-        next.push_back(cell);
-    };
-    const auto ny = static_cast<std::size_t>(n_[1]);
-    const auto nz = static_cast<std::size_t>(n_[2]);
-    for (const std::size_t at : front)
-    {
-        const std::size_t z = at % nz;
-        const std::size_t y = at / nz % ny;
-        if (z > 0) enter(at - 1);
-        if (z + 1 < nz) enter(at + 1);
-        if (y > 0) enter(at - nz);
-        if (y + 1 < ny) enter(at + nz);
-        if (at >= ny * nz) enter(at - ny * nz);
-        if (at + ny * nz < steps_.size()) enter(at + ny * nz);
-    }
-    return next;
-}
-
-double FluidWay::to(const Vec3& p) const
-{
-    if (!has_fluid_) return 0;
-    std::array<std::int64_t, 3> at{};
-    for (int axis = 0; axis < 3; ++axis)
-        at[static_cast<std::size_t>(axis)] =
-            std::llround(std::clamp((p[axis] - grid_.origin[axis]) / grid_.dp, -1e9, 1e9) / side_ -
-                         0.5 * (1 - 1.0 / side_));
-    std::uint16_t least = never;
-    for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
-        for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
-            for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z)
-            {
-                if (x < 0 || y < 0 || z < 0 || x >= n_[0] || y >= n_[1] || z >= n_[2]) continue;
-                const std::uint16_t steps = steps_[index(x, y, z)];
-                if (steps < blocked) least = std::min(least, steps);
-            }
-    return least == never ? std::numeric_limits<double>::infinity()
-                          : static_cast<double>(side_) * least;
-}
-
-WetSurface::WetSurface(const RunField& field, std::uint16_t first_bound, double reach, int threads)
-    : reach_(reach)
+WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
+    : setup_(setup), reach_(setup.reach)
 {
     cut_pieces(field);
     if (pieces_.empty()) return;
     if (std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.is_closed; }))
-        judge(field, FluidWay(field, first_bound), threads);
+        judge(field, FluidWay(field, setup.first_bound, setup.gravity), threads);
     TriangleSoup wet;
     for (const Piece& piece : pieces_)
     {
@@ -152,6 +83,9 @@ void WetSurface::cut_pieces(const RunField& field)
         {
             for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
             piece.normal = bodies[b].wall->sign() * mesh.normals[f];
+            const FittedBody& owner = bodies[piece.body];
+            piece.mk = owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f];
+            piece.is_moving = setup_.is_moving[piece.mk] != 0;
             add_pieces(piece, piece.is_closed ? longest : std::numeric_limits<double>::infinity());
         }
     }
@@ -198,8 +132,28 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         BodyWall& wall = walls[body.owner];
         wall.depth = body.wall.get();
         wall.is_closed = field.walls.bodies[body.owner].measures.volume > 0;
+        wall.is_moving = setup_.is_moving[body.mk] != 0;
         if (wall.box.is_empty())
             for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
+    }
+    const auto before = [&](const Piece& piece)
+    { return piece.middle() + (off_surface_dp * dp) * piece.normal; };
+    std::vector<char> is_closed_in(65536, 0);
+    for (Piece& piece : pieces_)
+    {
+        if (!piece.is_closed) continue;
+        piece.way = way.to(before(piece));
+        if (piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
+    }
+    // What others are too near to at the start gets free when it moves.
+    for (std::size_t mk = 0; mk < is_closed_in.size(); ++mk)
+    {
+        if (is_closed_in[mk] == 0) continue;
+        const FluidWay alone =
+            FluidWay::around(field, setup_.first_bound, static_cast<std::uint16_t>(mk));
+        for (Piece& piece : pieces_)
+            if (piece.is_closed && piece.mk == mk && !piece.way.is_free)
+                piece.way = alone.to(before(piece));
     }
     parallel_for(
         pieces_.size(), threads,
@@ -207,7 +161,6 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         {
             Piece& piece = pieces_[i];
             if (!piece.is_closed) return;
-            piece.way = way.to(piece.middle() + (off_surface_dp * dp) * piece.normal);
             if (is_covered(piece, walls, dp))
                 piece.state = is_dry;
             else
@@ -215,10 +168,10 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         },
         64);
     const auto is_reached = [](const Piece& p)
-    { return p.state != is_dry && std::isfinite(p.way); };
+    { return p.state != is_dry && std::isfinite(p.way.length); };
     if (std::any_of(pieces_.begin(), pieces_.end(), is_reached))
         for (Piece& piece : pieces_)
-            if (!std::isfinite(piece.way)) piece.state = is_dry;
+            if (!std::isfinite(piece.way.length)) piece.state = is_dry;
     dry_to_the_rims();
     dry_along_edges();
 }
@@ -230,7 +183,9 @@ bool WetSurface::is_covered(const Piece& piece, const std::vector<BodyWall>& wal
     for (std::size_t b = 0; b < walls.size(); ++b)
     {
         const BodyWall& wall = walls[b];
-        if (b == piece.body || wall.depth == nullptr || !wall.is_closed) continue;
+        if (b == piece.body || wall.depth == nullptr || !wall.is_closed ||
+            wall.is_moving != piece.is_moving)
+            continue;
         bool is_in_box = true;
         for (int axis = 0; axis < 3; ++axis)
             is_in_box =
@@ -255,14 +210,16 @@ void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidW
     }
     if (dot(other_normal, piece.normal) > opposing) return;
     piece.thickness = dot(middle - other.nearest, piece.normal);
+    piece.is_straight =
+        norm(middle - piece.thickness * piece.normal - other.nearest) < piece.thickness;
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
-    const double there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
-    piece.other_way = there;
-    if (!std::isfinite(piece.way) && !std::isfinite(there)) return;
-    if (piece.way > there + longer_way_dp)
+    const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
+    piece.other_way = there.length;
+    if (!std::isfinite(piece.way.length) && !std::isfinite(there.length)) return;
+    if (is_dry_beside(piece.way, there, piece.is_moving))
         piece.state = is_dry;
-    else if (!(there > piece.way + longer_way_dp))
+    else if (!is_dry_beside(there, piece.way, piece.is_moving))
         piece.state = is_thin;
 }
 
@@ -277,7 +234,7 @@ void WetSurface::dry_to_the_rims()
     {
         const Piece& piece = pieces_[i];
         if (piece.state == is_dry) front.push_back(i);
-        if (piece.state != is_thin || !(piece.way > piece.other_way + 1)) continue;
+        if (piece.state != is_thin || !(piece.way.length > piece.other_way + 1)) continue;
         candidates.push_back(i);
         near.add(piece.middle());
     }
@@ -302,13 +259,18 @@ void WetSurface::dry_to_the_rims()
 /// near to a dry piece is dry too.
 void WetSurface::dry_along_edges()
 {
+    const auto is_far_from_fluid = [](const Piece& piece)
+    {
+        return piece.way.length > longer_way_dp &&
+               (piece.way.runs_out || (!piece.is_moving && piece.way.rise > higher_way_dp));
+    };
     PointGrid dry(2 * reach_, pieces_.size() / 4);
     for (const Piece& piece : pieces_)
         if (piece.state == is_dry) dry.add(piece.middle());
     if (dry.points().empty()) return;
     for (Piece& piece : pieces_)
         if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
-            piece.way > longer_way_dp && dry.has_nearer(piece.middle(), 2 * reach_))
+            is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
             piece.state = is_dry;
 }
 
@@ -317,7 +279,7 @@ void WetSurface::note_thin_walls(const RunField& field)
     const double enough = reach_ - 0.5 * field.grid.dp;
     for (const Piece& piece : pieces_)
     {
-        if (piece.state != is_thin || !(piece.thickness < enough)) continue;
+        if (piece.state != is_thin || !piece.is_straight || !(piece.thickness < enough)) continue;
         const std::uint16_t mk = field.walls.bodies[piece.body].mk;
         auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
                                   [&](const ThinWall& wall) { return wall.mk == mk; });

@@ -4,6 +4,7 @@
 #include "fppg/vec.h"
 
 #include "meshes/mesh_query.h"
+#include "normals/fluid_way.h"
 
 #include <array>
 #include <cstdint>
@@ -13,44 +14,27 @@
 namespace fppg
 {
 
-/// How far fluid has to go from where it stands, over nodes that no wall has.
-class FluidWay
-{
-public:
-    /// first_bound  mks below it are fluid
-    FluidWay(const RunField& field, std::uint16_t first_bound);
-
-    /// In dp, to the free cell nearest to a point (within about a cell); infinite where fluid
-    /// cannot come. Without fluid it is 0 everywhere.
-    double to(const Vec3& p) const;
-
-private:
-    std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
-    {
-        return static_cast<std::size_t>((x * n_[1] + y) * n_[2] + z);
-    }
-
-    void mark(std::int64_t x, const Run& run, bool is_bound);
-    std::vector<std::size_t> go(const std::vector<std::size_t>& front, std::uint16_t step);
-
-    LatticeGrid grid_;
-    std::uint32_t side_ = 1; ///< nodes along the side of a cell
-    std::array<std::int64_t, 3> n_{};
-    std::vector<std::uint16_t> steps_; ///< from fluid, in cells
-    bool has_fluid_ = false;
-};
-
 /// The parts of the surfaces of layered walls that fluid can touch.
 ///
-/// Particles in a closed wall thinner than 4 h can look to two sides. Where fluid has a way
-/// at least 10 dp longer to one of them, or none, that side counts as dry (the outside of a tank),
-/// up to its rim, where the way is not so much longer; so does what another body covers. Everything
-/// else is wet.
+/// Particles in a closed wall thinner than 4 h can look to two sides. One of them counts as dry
+/// where fluid has no way to it, or one that is at least 10 dp longer and
+/// - from there it would run out of the domain (the outside of a tank), or
+/// - it has to rise 10 dp more, above where it stands (the inside of a boat).
+/// The parts that move come to where fluid is: of these a side is dry only where fluid would run
+/// out of the domain and from the other side would not (a tank that moves; not the teeth of a
+/// gear). A dry side goes on up to its rim, where the way is not so much longer. What another body
+/// covers is dry too. Everything else is wet.
 class WetSurface
 {
 public:
-    /// reach  metres, 2 h
-    WetSurface(const RunField& field, std::uint16_t first_bound, double reach, int threads);
+    struct Setup
+    {
+        std::uint16_t first_bound = 0; ///< mks below it are fluid
+        Vec3 gravity;
+        double reach = 0;            ///< metres, 2 h
+        std::vector<char> is_moving; ///< by mk: moves on a given path
+    };
+    WetSurface(const RunField& field, const Setup& setup, int threads);
 
     /// Metres, from a point to the nearest wet place; zero where none is within `most`.
     Vec3 vector_from(const Vec3& p, double most) const;
@@ -76,10 +60,13 @@ private:
         std::uint32_t body = 0;
         const WallDepth* exact_wall = nullptr;
         bool is_closed = false;
+        std::uint16_t mk = 0;
+        bool is_moving = false;
         char state = 0;
-        double thickness = 0; ///< metres; 0: no other side was found
-        double way = 0;       ///< of fluid to it, dp
-        double other_way = 0; ///< of fluid to the other side
+        double thickness = 0;     ///< metres; 0: no other side was found
+        bool is_straight = false; ///< the other side is behind it, not aside beyond an edge
+        FluidWay::Way way;        ///< of fluid to it
+        double other_way = 0;     ///< the length of that to the other side, dp
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
     };
@@ -88,6 +75,7 @@ private:
     {
         const WallDepth* depth = nullptr;
         bool is_closed = false;
+        bool is_moving = false;
         Box3 box;
     };
     void cut_pieces(const RunField& field);
@@ -99,6 +87,7 @@ private:
     void dry_along_edges();
     void note_thin_walls(const RunField& field);
 
+    Setup setup_;
     double reach_;
     std::vector<Piece> pieces_;
     std::vector<ThinWall> thin_walls_;

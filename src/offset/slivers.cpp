@@ -45,11 +45,13 @@ void drop_flat(SurfaceMesh& mesh, const std::vector<char>& is_joined)
     std::vector<char> is_out(facets.size(), 0);
     bool has_pairs = false;
     for (std::size_t i = 1; i < changed.size(); ++i)
-        if (is_out[changed[i - 1].second] == 0 && changed[i].first == changed[i - 1].first)
-        {
-            is_out[changed[i].second] = is_out[changed[i - 1].second] = 1;
-            has_pairs = true;
-        }
+    {
+        char& is_one_out = is_out[changed[i - 1].second];
+        if (is_one_out != 0 || changed[i].first != changed[i - 1].first) continue;
+        is_one_out = 1;
+        is_out[changed[i].second] = 1;
+        has_pairs = true;
+    }
     if (!has_pairs) return;
     std::size_t kept = 0;
     for (std::size_t f = 0; f < facets.size(); ++f)

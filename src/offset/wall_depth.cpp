@@ -50,6 +50,27 @@ void WallDepth::take_round_surface(const SurfaceMesh& body,
         round_ = std::make_unique<RoundWall>(body, std::move(round), is_2d);
 }
 
+void WallDepth::take_cad_surface(const SurfaceMesh& body, std::shared_ptr<const CadSurface> cad,
+                                 bool is_2d, int threads)
+{
+    if (cad == nullptr || asks_inside_) return;
+    cad_ = std::move(cad);
+    if (is_2d)
+        cad_body_ = std::make_unique<CadBody>(CadBody{body, MeshQuery(soup_of(body), threads)});
+}
+
+/// Nothing where the facets are asked.
+std::optional<ExactPlace> WallDepth::exact_place(const Vec3& p, const ClosestPoint& foot) const
+{
+    if (round_ != nullptr)
+        if (auto exact = round_->at(p, foot.point)) return exact;
+    if (cad_body_ != nullptr)
+        return cad_->in_plane(cad_body_->mesh, p, foot.point,
+                              cad_body_->query.closest_point(foot.point).facet);
+    if (cad_ != nullptr) return cad_->at(mesh_, p, foot.point, foot.facet);
+    return std::nullopt;
+}
+
 double WallDepth::chord() const
 {
     return round_ != nullptr ? round_->chord() : cad_ != nullptr ? cad_->chord() : 0;
@@ -104,11 +125,7 @@ DepthPlace WallDepth::at(const Vec3& p, double within) const
     ClosestPoint foot = query().closest_point(p, within);
     // The facets of a round body may be farther than the exact surface that the bound is of.
     if (foot.facet >= mesh_.facets.size()) foot = query().closest_point(p);
-    if (round_ != nullptr)
-        if (const auto exact = round_->at(p, foot.point)) return seen_from(*exact, p, foot.facet);
-    if (cad_ != nullptr)
-        if (const auto exact = cad_->at(mesh_, p, foot.point, foot.facet))
-            return seen_from(*exact, p, foot.facet);
+    if (const auto exact = exact_place(p, foot)) return seen_from(*exact, p, foot.facet);
     DepthPlace out;
     out.nearest = foot.point;
     out.foot = foot.point;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace fppg
@@ -61,11 +62,9 @@ public:
     /// body  the mesh that the round surface belongs to
     void take_round_surface(const SurfaceMesh& body, std::shared_ptr<const RoundSurface> round,
                             bool is_2d);
-    /// Of a body that was made from CAD models; its mesh is the wall's.
-    void take_cad_surface(std::shared_ptr<const CadSurface> cad)
-    {
-        if (!asks_inside_) cad_ = std::move(cad);
-    }
+    /// The same of a body that was made from CAD models; in 3D its mesh is the wall's.
+    void take_cad_surface(const SurfaceMesh& body, std::shared_ptr<const CadSurface> cad,
+                          bool is_2d, int threads);
     /// Whether places are those of an exact surface, not of the facets.
     bool is_exact() const { return round_ != nullptr || cad_ != nullptr; }
     /// How far facets are from the exact surface, metres.
@@ -86,6 +85,7 @@ private:
     const MeshQuery& query() const { return test_.query(); }
     bool is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const;
     DepthPlace seen_from(const ExactPlace& place, const Vec3& p, std::uint32_t facet) const;
+    std::optional<ExactPlace> exact_place(const Vec3& p, const ClosestPoint& foot) const;
     void mitre(const Vec3& p, std::uint32_t facet, const FacetPlace& place, DepthPlace& out) const;
 
     SurfaceMesh mesh_;
@@ -99,6 +99,13 @@ private:
     std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
     std::unique_ptr<RoundWall> round_;
     std::shared_ptr<const CadSurface> cad_;
+    /// Of CAD models in 2D: the body whose section the mesh is.
+    struct CadBody
+    {
+        SurfaceMesh mesh;
+        MeshQuery query;
+    };
+    std::unique_ptr<CadBody> cad_body_;
 };
 
 } // namespace fppg

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace fppg
@@ -25,6 +27,11 @@ constexpr int surface_iterations = 100;
 constexpr char of_border = 2;
 /// Particles with none nearer count as if one were so far, dp.
 constexpr double alone_dp = 2;
+/// How crowded a particle is hangs on those within this reach; where one is taken out, no other is
+/// within it, dp.
+constexpr double reach_of_crowd_dp = 2;
+/// Of the particles in the layers of a body no more are taken out so that they stand for its shell.
+constexpr double most_thinned = 0.05;
 
 class AllSurfaces
 {
@@ -164,7 +171,7 @@ private:
                         project_to_depth(*body.wall, particles.positions[i], body.depth);
             },
             1024);
-        const std::size_t crowded = leave_out_crowded(particles, others);
+        const std::size_t crowded = leave_out_crowded(particles, others) + thin_shells(particles);
         take_new_counts(before, count_by_body(particles));
         add_report(done, spacing_of(particles, others), variation_before);
         report_.parts.back().particles = particles.size();
@@ -261,6 +268,69 @@ private:
         }
         if (count > 0) particles.erase(goes);
         return count;
+    }
+
+    /// Closing holes leaves some 3 % more in layers than one a dp^2, which would crowd what is
+    /// inside: of bodies all of whose particles are inside the most crowded go, until the layers
+    /// stand for their shell. Returns how many.
+    std::size_t thin_shells(WallParticles& particles) const
+    {
+        const FittedWalls& walls = field_.walls;
+        const double dp = field_.grid.dp;
+        if (!walls.cut.empty()) return 0;
+        std::map<const FittedBody*, double> count;
+        for (const std::uint32_t b : particles.bodies) ++count[&walls.owner_of(b)];
+        std::map<const FittedBody*, double> excess;
+        for (const auto& [body, number] : count)
+            if (body->is_inside && !has_fixed_number(*body))
+                excess[body] = std::min(most_thinned * number,
+                                        number - body->measures.shell_volume / (dp * dp * dp));
+        if (std::none_of(excess.begin(), excess.end(), [](auto& e) { return e.second >= 1; }))
+            return 0;
+        std::vector<std::uint32_t> order(particles.size());
+        std::iota(order.begin(), order.end(), 0u);
+        const std::vector<double> crowd = crowds(particles.positions);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return crowd[a] > crowd[b]; });
+        std::vector<char> goes(particles.size(), 0);
+        PointGrid gone(reach_of_crowd_dp * dp, 64);
+        std::size_t taken = 0;
+        for (const std::uint32_t i : order)
+        {
+            const auto left = excess.find(&walls.owner_of(particles.bodies[i]));
+            if (left == excess.end() || left->second < 1 || particles.held[i] != 0 ||
+                particles.kinds[i] != FitKind::Surface ||
+                gone.has_nearer(particles.positions[i], reach_of_crowd_dp * dp))
+                continue;
+            goes[i] = 1;
+            gone.add(particles.positions[i]);
+            left->second -= 1;
+            ++taken;
+        }
+        particles.erase(goes);
+        return taken;
+    }
+
+    /// How crowded points are: the sum of (1 - r / reach)^2 over those around each.
+    std::vector<double> crowds(const std::vector<Vec3>& points) const
+    {
+        const double reach = reach_of_crowd_dp * field_.grid.dp;
+        PointGrid grid(reach, points.size());
+        for (const Vec3& p : points) grid.add(p);
+        std::vector<double> out(points.size());
+        parallel_for(
+            points.size(), threads_,
+            [&](std::size_t i)
+            {
+                grid.for_each_near(points[i], reach,
+                                   [&](std::uint32_t, double squared)
+                                   {
+                                       const double free = 1 - std::sqrt(squared) / reach;
+                                       out[i] += free * free;
+                                   });
+            },
+            256);
+        return out;
     }
 
     /// Whether particles are on the two sheets of a plate, however thin, as plates="both" asks.

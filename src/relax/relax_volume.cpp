@@ -122,6 +122,14 @@ ChunkSums accelerate(Band& band, const NeighbourList& list, const VolumeForces& 
                            });
 }
 
+bool slides(VolumeMotion motion)
+{
+    return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
+}
+
+/// Those that slide stand where they are put back to, and are led along the wall by steps.
+constexpr double limit_of_sliding_dp = 0.4;
+
 /// A step that may come too near to a wall: checked with the exact distance, taken back where it
 /// does, and given up where that does not help.
 class WallGuard
@@ -136,7 +144,7 @@ public:
     {
         if (!closest_) return true;
         const Vec3 moved = Vec3{band.moved.x[i], band.moved.y[i], band.moved.z[i]} + step;
-        return static_cast<double>(band.wall_distances[i]) - norm(moved) > limit_ + 1e-3;
+        return static_cast<double>(band.wall_distances[i]) - norm(moved) > limit_of(band, i) + 1e-3;
     }
 
     /// Returns the step to make instead, in dp.
@@ -147,7 +155,7 @@ public:
                                                      band.wall_within(i) * band.dp);
         renew_nearest_wall(band, i, nearest);
         const double distance = nearest.distance / band.dp;
-        const double limit = std::min(limit_, distance);
+        const double limit = std::min(limit_of(band, i), distance);
         if (norm(step) > 0.9 * distance) step = step * (0.9 * distance / norm(step));
         for (int attempt = 0; attempt < 3; ++attempt)
         {
@@ -164,37 +172,37 @@ public:
     }
 
 private:
+    double limit_of(const Band& band, std::size_t i) const
+    {
+        return slides(band.slides[i]) ? std::min(limit_, limit_of_sliding_dp) : limit_;
+    }
+
     const ClosestWallPoint& closest_;
     double limit_;
     bool is_2d_;
 };
-
-bool slides(VolumeMotion motion)
-{
-    return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
-}
 
 /// The part of a step that leads along the walls on which a particle slides: those no farther from
 /// it than the nearest and a little more.
 Vec3 along_walls(const Band& band, std::size_t i, Vec3 step)
 {
     constexpr float little_more = 0.3f;
-    std::array<Vec3, 3> across;
+    std::array<Vec3, 3> sideways;
     std::size_t count = 0;
     const auto take = [&](const BandPlane& plane, float distance)
     {
-        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == across.size() ||
+        if (count > 0 && (band.slides[i] != VolumeMotion::AlongEdge || count == sideways.size() ||
                           distance > band.wall_distances[i] + little_more))
             return;
         Vec3 normal{plane.x, plane.y, plane.z};
         for (std::size_t k = 0; k < count; ++k)
-            normal = normal - dot(normal, across[k]) * across[k];
+            normal = normal - dot(normal, sideways[k]) * sideways[k];
         const double size = norm(normal);
-        if (size > 0.2) across[count++] = normal / size;
+        if (size > 0.2) sideways[count++] = normal / size;
     };
     for_each_wall(band, i, take);
-    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, across[k]) * across[k];
-    return count < across.size() ? step : Vec3{};
+    for (std::size_t k = 0; k < count; ++k) step = step - dot(step, sideways[k]) * sideways[k];
+    return count < sideways.size() ? step : Vec3{};
 }
 
 ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)

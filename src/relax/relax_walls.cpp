@@ -470,6 +470,7 @@ private:
         options.fit_count = region.fits_count;
         options.wanted = number_wanted(region, runs, positions.size());
         if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
+        if (is_of_inside) options.min_wall_distance_dp = 0.5;
         options.has_free_surface = !is_of_inside;
         if (options.wanted && region.is_solid && !is_of_inside)
             options.least_pair_dp = least_pair_dp;

@@ -8,10 +8,13 @@
 namespace fppg
 {
 
-/// Takes out the walls between the camera and the rest. Each side of the box around the fixed
-/// particles that looks to the camera is taken away, 4.5 dp deep, where some of it hides a particle
-/// that is not fixed; where more than half of these stay hidden (a round tank), all fixed particles
-/// that hide one. Nothing is done without types, or without particles that are not fixed.
+/// Takes out the walls between the camera and the rest. Fixed mks that reach along less than 0.75
+/// of the rest on two axes are no walls and stay. Each side of the box around the walls that looks
+/// to the camera is taken away, 4.5 dp deep, where some of it hides a particle that is not fixed;
+/// where more than half of these stay hidden (a round tank), all wall particles that hide one.
+/// Fluid that hides all other parts, 0.95 of their outline, is cut at their middle, and walls that
+/// hide any of the rest go too. Nothing is done without types, or without particles that are not
+/// fixed.
 ///
 /// towards  unit vector from the particles to the camera
 /// right    and `up`: unit vectors of the picture

@@ -94,7 +94,7 @@ Rgb colour_of_layer(unsigned layer)
 
 unsigned colour_value(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
 {
-    if (colour == RenderColour::Mk) return cloud.mk[i];
+    if (colour == RenderColour::Mk || colour == RenderColour::Role) return cloud.mk[i];
     if (colour == RenderColour::Kind) return cloud.kind[i];
     if (cloud.layer[i] > 0) return cloud.layer[i];
     return !cloud.type.empty() && cloud.type[i] == 3 ? 0 : no_layer;
@@ -104,6 +104,9 @@ Rgb colour_of(const ParticleCloud& cloud, std::size_t i, RenderColour colour)
 {
     if (colour == RenderColour::Kind) return colour_of_kind(cloud.kind[i]);
     if (colour == RenderColour::Layer && cloud.layer[i] > 0) return colour_of_layer(cloud.layer[i]);
+    if (colour == RenderColour::Mk)
+        if (const auto own = cloud.colours.find(cloud.mk[i]); own != cloud.colours.end())
+            return own->second;
     return colour_of_mk(cloud.mk[i], cloud.type.empty() ? unknown_type : cloud.type[i]);
 }
 

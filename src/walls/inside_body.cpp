@@ -156,6 +156,7 @@ public:
         wanted_ = std::round(measures.volume / dp3_);
         make_plan();
         measure_room();
+        measures.shell_volume = std::max(0.0, wanted_ - room_) * dp3_;
         builder_.build(WallSide::Behind, true, plan_);
         fit_number();
         if (plan_.number > 0) builder_.merge_sides();

@@ -169,7 +169,7 @@ std::shared_ptr<const WallDepth> LayerBuilder::wall_of(WallSide side, bool is_cl
         auto wall = std::make_shared<WallDepth>(body.mesh, body.report, is_closed, side,
                                                 sharp_angle_deg, threads_);
         wall->take_round_surface(body.mesh, body.round, false);
-        wall->take_cad_surface(body.cad);
+        wall->take_cad_surface(body.mesh, body.cad, false, threads_);
         return wall;
     }
     MeshReport report;
@@ -178,6 +178,7 @@ std::shared_ptr<const WallDepth> LayerBuilder::wall_of(WallSide side, bool is_cl
     if (mesh.facets.empty()) return nullptr;
     auto wall = std::make_shared<WallDepth>(mesh, report, false, side, sharp_angle_deg, threads_);
     wall->take_round_surface(body.mesh, body.round, true);
+    wall->take_cad_surface(body.mesh, body.cad, true, threads_);
     return wall;
 }
 

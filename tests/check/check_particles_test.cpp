@@ -123,6 +123,15 @@ TEST_P(CheckedTank, FindsReversedNormals)
     EXPECT_EQ(found(tank_.check()), (Faults{{"ghost_in_wall", 1}}));
 }
 
+TEST_P(CheckedTank, FindsANormalToASurfaceBeyondTheNearestFluid)
+{
+    // Fluid is 0.1 m from a particle of the first layer.
+    tank_.normal_at({1.05, y_, -0.05}) = {0.05F, 0, 0.18F};
+    EXPECT_EQ(found(tank_.check()), (Faults{}));
+    tank_.normal_at({1.05, y_, -0.05}) = {0.05F, 0, 0.22F};
+    EXPECT_EQ(found(tank_.check()), (Faults{{"looks_away", 1}}));
+}
+
 TEST_P(CheckedTank, FindsANormalThatLeavesTheCase)
 {
     // Of the second layer: the ghost node lies beyond the third.

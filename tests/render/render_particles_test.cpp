@@ -258,6 +258,23 @@ TEST(RenderParticles, ColoursByKindWhereTheFileHasIt)
     EXPECT_TRUE(has_hue(image.at(170, 50), colour_of_kind(2)));
 }
 
+TEST(RenderParticles, PartsOfCadModelsHaveTheirColourUnlessRolesAreAskedFor)
+{
+    ParticleCloud cloud = two_spheres();
+    cloud.type = {3, 0};
+    cloud.colours[12] = {20, 160, 40};
+    RenderOptions options = small_front();
+    options.has_legend = true;
+    Image image = render_particles({cloud}, options, 1);
+    EXPECT_TRUE(has_hue(image.at(30, 50), colour_of_mk(1, 3)));
+    EXPECT_TRUE(has_hue(image.at(170, 50), {20, 160, 40}));
+    EXPECT_THAT(image.pixels, testing::Contains(Rgb{20, 160, 40})); // the legend, without shade
+    options.colour = RenderColour::Role;
+    image = render_particles({cloud}, options, 1);
+    EXPECT_THAT(image.pixels, testing::Not(testing::Contains(Rgb{20, 160, 40})));
+    EXPECT_FALSE(has_hue(image.at(170, 50), {20, 160, 40}));
+}
+
 TEST(RenderParticles, SeesASmallCaseFarFromTheOrigin)
 {
     ParticleCloud near = two_spheres();
@@ -323,6 +340,57 @@ TEST(RenderParticles, OpensTheWallsInFrontOfTheFluid)
     const Image plain = render_particles({cloud}, options, 1);
     options.opens_walls = true;
     EXPECT_EQ(render_particles({cloud}, options, 1).pixels, plain.pixels);
+}
+
+TEST(RenderParticles, LeavesAFixedPartThatStandsInTheFluidWhole)
+{
+    ParticleCloud cloud = tank_of_water();
+    for (int i = 0; i < 27; ++i) // between the front wall and the water
+    {
+        cloud.positions.push_back({9.0 + i / 9, 2.0 + i / 3 % 3, 3.0 + i % 3});
+        cloud.mk.push_back(11);
+        cloud.type.push_back(0);
+    }
+    cloud.colours[11] = {20, 160, 40};
+    RenderOptions options = small_front();
+    const auto green = [&]
+    {
+        const Image image = render_particles({cloud}, options, 1);
+        return std::count_if(image.pixels.begin(), image.pixels.end(),
+                             [](const Rgb& p) { return p[1] > p[0] + 30 && p[1] > p[2] + 30; });
+    };
+    EXPECT_EQ(green(), 0); // behind the wall
+    options.opens_walls = true;
+    EXPECT_GT(green(), 50);
+}
+
+TEST(RenderParticles, CutsFluidThatHidesAllParts)
+{
+    ParticleCloud cloud = tank_of_water();
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        const Vec3& p = cloud.positions[i];
+        const bool is_inner = p.x > 8 && p.x < 12 && p.y > 8 && p.y < 12 && p.z > 3 && p.z < 6;
+        if (!is_inner) continue;
+        cloud.mk[i] = 11;
+        cloud.type[i] = 1;
+    }
+    cloud.colours[11] = {20, 160, 40};
+    for (const char* view : {"front", "iso"})
+    {
+        RenderOptions options = small_front();
+        options.view = parse_view(view);
+        const auto count = [&](auto&& has)
+        {
+            const Image image = render_particles({cloud}, options, 1);
+            return std::count_if(image.pixels.begin(), image.pixels.end(), has);
+        };
+        const auto is_green = [](const Rgb& p) { return p[1] > p[0] + 30 && p[1] > p[2] + 30; };
+        EXPECT_EQ(count(is_green), 0) << view;
+        options.opens_walls = true;
+        EXPECT_GT(count(is_green), 50) << view;
+        EXPECT_GT(count([](const Rgb& p) { return p[2] > p[0] + 30; }), 200) << view;
+    }
 }
 
 TEST(RenderParticles, ColoursByRoleFirst)

@@ -10,6 +10,7 @@ here are metres, as in the case.
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -266,6 +267,44 @@ def test_exact_layers(work):
             yield f"{name}: a normal is {deep.max()} dp too long or short"
 
 
+def test_exact_layers_2d(work):
+    """In a plane case layers see the lines in which exact faces meet it: a circle, an ellipse, and that of a torus."""
+    known, fluid = work.known, """<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="-0.19" y="-1" z="-0.19" />
+<size x="0.38" y="2" z="0.02" /></drawbox>"""
+    half, dp = known["cylinder_length"] / 2000, 0.002
+    for degrees in (90, 40):
+        turn = np.radians(degrees)
+        axis, middle = np.array((0, -np.sin(turn), np.cos(turn))), np.array((0, 0, 0.05))
+        move = middle - half * axis
+        draws = f"""<setdrawmode mode="full" /><setmkbound mk="1" />
+<drawfilestep file="{work.models}/cylinder.step" autofill="true"><drawmove x="0" y="{move[1]}" z="{move[2]}" />
+<drawrotate angx="{degrees}" angy="0" angz="0" /></drawfilestep><setmkbound mk="2" />
+<drawfilestep file="{work.models}/torus.step" autofill="true"><drawmove x="0" y="0.009" z="-0.05" /></drawfilestep>"""
+        found = work.case("plane", draws + fluid, '<bodyfitted mkbound="1-2" boundary="mdbc" />', dp=dp,
+                          box=((-0.2, 0, -0.2), (0.2, 0, 0.2)))
+        if found.code != 0:
+            yield found.text
+            return
+        for mk, name in ((11, f"cylinder cut at {degrees} degrees"), (12, "torus")):
+            at = (found.mk == mk) & (found.kind < VOLUME)
+            given = found.normals[np.flatnonzero(at)]
+            foot = found.positions[at] + given
+            if mk == 11:
+                own = foot - middle
+                across = own - np.outer(own @ axis, axis)
+                distance, normal = np.linalg.norm(across, axis=1) - known["cylinder_radius"] / 1000, unit(across)
+            else:
+                distance, normal = of_torus(foot - (0, 0.009, -0.05), known["torus_big"] / 1000, known["torus_small"] / 1000)
+            slope = np.hypot(normal[:, 0], normal[:, 2])
+            off = degrees_between(given, normal * (1, 0, 1))
+            beside = np.abs(distance / slope) / dp
+            note(f"2D, {name}: normals of layers off, degrees (largest of {len(off)})", f"{off.max():.1e}")
+            if len(off) < 40 or off.max() > 0.01:
+                yield f"{name}: a normal of {len(off)} is {off.max()} degrees off"
+            if beside.max() > 1e-6:
+                yield f"{name}: a normal ends {beside.max()} dp beside the exact line"
+
+
 def test_lattice_normals(work):
     """norgeometry on the lattice: facets of the shape file stand for exact faces."""
     draw = """<setdrawmode mode="full" /><setshapemode>actual | bound</setshapemode>
@@ -371,6 +410,97 @@ def test_new_case(work):
     found = Result(os.path.join(work.folder, "out", "New"), code, text)
     if len(np.unique(found.mk[found.kind < VOLUME])) < 5:
         yield "not all five parts have walls"
+
+
+def test_colours(work):
+    """CAD colours reach Case.xml, pictures and pages; of parts with one mk that of the largest area."""
+    file = work.step("assembly")
+    draw = ('<setmkbound mk="{0}" /><drawfilestep file="{1}" fppg:part="{2}" fppg:fill="inside">'
+            '<drawmove x="0" y="{3}" z="0" /></drawfilestep>')
+    box = '<setmkbound mk="7" /><drawbox><boxfill>solid</boxfill><point x="0.2" y="0" z="0" /><size x="0.03" y="0.03" z="0.03" /></drawbox>'
+    found = work.case("colours", '<setdrawmode mode="full" />' + draw.format(1, file, "wheel", 0) + draw.format(2, file, "ring", 0)
+                      + draw.format(3, file, "axle, wheel", -0.12) + box, options=("-save:all",))
+    if found.code != 0:
+        yield found.text
+        return
+    with open(found.case + ".xml", encoding="utf-8") as text:
+        xml = text.read()
+    given = dict(re.findall(r'mkbound="\d+" mk="(\d+)"[^>]* fppg:color="(#[0-9a-f]{6})"', xml))
+    if {int(mk) for mk in given} != {11, 12, 13} or 'xmlns:fppg="' not in xml:
+        yield f"Case.xml gives {given}, expected colours of 11, 12 and 13"
+        return
+    for mk, wanted in (("11", "#cc1919"), ("12", "#1933e5"), ("13", "#cc1919")):
+        if given[mk] != wanted:
+            yield f"mk {mk} has {given[mk]}, expected {wanted}"
+    for name in ("colours", "colours_All.vtk", "colours.bi4"):
+        code, text = work.run("render", os.path.join("out", name), "-o", "picture.png", "--size", "200x150")
+        for mk, wanted in given.items():
+            if code != 0 or not re.search(f"{wanted} +mk {mk}", text):
+                yield f"render of {name}: no {wanted} of mk {mk} in {text}"
+        if "#" not in text or re.search(f"({'|'.join(given.values())}) +mk 17", text):
+            yield f"render of {name}: the box has a colour of a CAD part: {text}"
+    code, text = work.run("render", os.path.join("out", "colours"), "-o", "picture.png", "--size", "200x150", "--color", "role")
+    if code != 0 or any(colour in text for colour in given.values()):
+        yield f"render --color role: {text}"
+    code, text = work.run("report", os.path.join("out", "colours"), "-o", "page.html")
+    with open(os.path.join(work.folder, "page.html"), encoding="utf-8") as page:
+        scene = re.search(r'id="fppg-scene">(.*?)</script>', page.read(), re.S)
+    if code != 0 or scene is None:
+        print("the page has no 3-D view: this program was built without its script")
+        return
+    parts = json.loads(scene.group(1))["sets"][0]["parts"]
+    shown = {re.match(r"mk (\d+)", part["label"]).group(1): part["colour"] for part in parts}
+    for mk, wanted in given.items():
+        if shown.get(mk) != wanted:
+            yield f"the page shows mk {mk} in {shown.get(mk)}, expected {wanted}"
+
+
+def test_mixed_folder(work):
+    """A folder of STEP and STL files through new, check, inspect, batch and the solver's files."""
+    parts = os.path.join(work.folder, "parts")
+    os.makedirs(parts)
+    shutil.copy(work.step("block"), parts)
+    shutil.copy(work.step("cylinder"), parts)
+    stl = os.path.join(parts, "plate.stl")  # in the files' millimetres, 1 mm over the ground
+    corners = [(x, y, z) for x in (-60, 90) for y in (60, 80) for z in (1, 31)]
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    with open(stl, "w", encoding="utf-8") as file:
+        file.write("solid plate\n")
+        for q in quads:
+            for facet in (q[:3], (q[0], q[2], q[3])):
+                vertices = "".join("vertex %g %g %g\n" % corners[v] for v in facet)
+                file.write(f"facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n")
+        file.write("endsolid plate\n")
+    code, text = work.run("new", "parts", "-o", "Mixed_Def.xml", "--kind", "obstacle", "--speed", "1", "--water", "0.05",
+                          "--unit", "mm", "--dp", "0.005", "--allow-overlap")
+    if code != 0 or not os.path.exists(os.path.join(work.folder, "Mixed.png")):
+        yield f"new: {text}"
+        return
+    with open(os.path.join(work.folder, "Mixed_Def.xml"), encoding="utf-8") as file:
+        xml = file.read()
+    if xml.count("<drawfilestep ") != 2 or xml.count("<drawfilestl ") != 1:
+        yield f"the definition has not two draws of STEP and one of STL: {xml}"
+    code, text = work.run("inspect", os.path.join("parts", "cylinder.step"), "--dp", "0.005")
+    if code != 0 or "CAD parts" not in text:
+        yield f"inspect: {text}"
+    code, text = work.run("batch", "Mixed_Def.xml", "--out", "batch", "--set", "Dp=0.005,0.006", "--jobs", "1")
+    if code != 0:
+        yield f"batch: {text}"
+        return
+    results = [os.path.join(folder, name) for folder, _, names in os.walk(os.path.join(work.folder, "batch"))
+               for name in names if name.endswith(".bi4")]
+    if len(results) != 2:
+        yield f"batch made {results}, expected two cases: {text}"
+    for result in results:
+        mks = {block["mk"] for block in read_blocks(result[:-4] + ".xml") if block["count"] > 0}
+        if len(mks) < 5:  # fluid, channel, three parts
+            yield f"{result}: only mks {sorted(mks)}"
+        code, text = work.run("check", result[:-4])
+        if code != 0:
+            yield f"check {result}: {text}"
+    code, text = work.run("check", "Mixed_Def.xml", "--motion")
+    if code != 0:
+        yield f"check --motion: {text}"
 
 
 def test_same_bytes(work):

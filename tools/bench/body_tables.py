@@ -192,12 +192,36 @@ def nearest_points(p, mesh):
     return out
 
 
+def edge_points(mesh, step):
+    """Points a step apart on the edges whose facets turn by more than 30 degrees."""
+    v, facets = np.array(mesh.vertices), np.array(mesh.facets)
+    normals = np.cross(v[facets[:, 1]] - v[facets[:, 0]], v[facets[:, 2]] - v[facets[:, 0]])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    first, out = {}, []
+    for f, corners in enumerate(facets):
+        for a, b in zip(corners, np.roll(corners, -1)):
+            other = first.setdefault((min(a, b), max(a, b)), f)
+            if other != f and normals[f] @ normals[other] < math.cos(math.radians(30)):
+                count = 1 + math.ceil(np.linalg.norm(v[b] - v[a]) / step)
+                out.append(v[a] + np.linspace(0, 1, count)[:, None] * (v[b] - v[a]))
+    return np.concatenate(out) if out else np.empty((0, 3))
+
+
+def spread(near):
+    return f"{near.std() / near.mean():.3f}" if len(near) >= 20 else "-"
+
+
 def layers_row(fppg, mesh, dp, mode):
-    fitted = {"lattice": "", "layers": '<fppg><bodyfitted boundary="mdbc" /></fppg>'}[mode]
+    fitted = {"lattice": "", "layers": '<fppg><bodyfitted boundary="mdbc" /><fluidband active="false" /></fppg>'}[mode]
     # The lattice gets its normals as v5.4's examples do, from the mesh itself.
     normals = "" if mode == "layers" else (
         '<normals><distanceh value="2.0" /><geometryfile file="[CaseName]_hdp_Actual.vtk" /></normals>')
     more = "" if mode == "layers" else '<shapeout file="hdp" />'
+    # Fluid all round: without any, `fppg check` takes the box of the body for the room that fluid has.
+    v = np.array(mesh.vertices)
+    low, high = v.min(0) - 8 * dp, v.max(0) + 8 * dp
+    box = ["".join(f' {a}="{x:.9g}"' for a, x in zip("xyz", p)) for p in (low + 2 * dp, low, high - low)]
+    more += f'<setmkfluid mk="0" /><fillbox{box[0]}><modefill>void</modefill><point{box[1]} /><size{box[2]} /></fillbox>'
     with tempfile.TemporaryDirectory() as folder:
         run(fppg, folder, mesh, definition(mesh, dp, fitted, more, normals), ("-save:vtkall",))
         check = os.path.join(folder, "check.json")
@@ -208,7 +232,8 @@ def layers_row(fppg, mesh, dp, mode):
         names = read_vtk(os.path.join(folder, "Body_All.vtk"))
     n = np.array(arrays["BoundNor"], float)
     has = np.linalg.norm(n, axis=1) > 0
-    layer = np.array(names["Layer"]).ravel().astype(int) if "Layer" in names else np.zeros(len(p), int)
+    p = p[:len(n)]
+    layer = np.array(names["Layer"]).ravel().astype(int)[:len(n)] if "Layer" in names else np.zeros(len(p), int)
     order = np.random.default_rng(1).permutation(np.flatnonzero(has & (layer > 0 if "Layer" in names else has)))[:SAMPLE]
     exact = nearest_points(p[order], mesh) - p[order]
     depth = np.linalg.norm(exact, axis=1)
@@ -216,21 +241,26 @@ def layers_row(fppg, mesh, dp, mode):
     angle = np.degrees(np.arccos(np.clip((exact * n[order]).sum(1) / np.maximum(depth * length, 1e-300), -1, 1)))
     # Nearest places of two faces may be equally far; lengths tell whether the vector is right.
     words = [f"{np.mean(angle <= 0.1) * 100:.1f} %", f"{np.quantile(np.abs(depth - length), 0.99) / dp:.1e}"]
-    depths, spreads = [], []
+    depths, spreads, plain = [], [], []
+    edges = edge_points(mesh, dp / 4)
     for k in sorted(set(layer[layer > 0])) if "Layer" in names else []:
         at = np.flatnonzero(layer == k)
         if len(at) < 20:
             continue
         near = cKDTree(p[at]).query(p[at], k=2)[0][:, 1] / dp
-        spreads.append(f"{near.std() / near.mean():.3f}")
+        spreads.append(spread(near))
+        # The edge of a layer under one that stands out is sqrt(2) times its depth away; two dp more along the layer.
+        reach = dp * math.hypot(k - 0.5, k + 1.5)
+        plain.append(spread(near[cKDTree(edges).query(p[at])[0] > reach] if len(edges) else near))
         of = layer[order] == k
         if of.any():
             depths.append(f"{np.median(depth[of]) / dp:.2f}")
-    f = found["mks"][0]
+    f = next(m for m in found["mks"] if m["type"] != "fluid")
     bad = f["faults"]
     near = max(1, f["near_fluid"])
     good = 1 - (bad["weak_kernel"] + bad["ill_conditioned"]) / near
-    return [f"{len(p):,}", *words, ", ".join(depths) or "-", ", ".join(spreads) or "-", str(bad["no_normal"]),
+    return [f"{len(p):,}", *words, ", ".join(depths) or "-", ", ".join(spreads) or "-",
+            ", ".join(plain) or "-", str(bad["no_normal"]),
             str(bad["through_wall"] + bad["looks_away"] + bad["ghost_in_wall"]), f"{100 * good:.1f} %",
             str(bad["wet_on_both_sides"])]
 
@@ -240,7 +270,7 @@ TABLES = {
                "particles | volume | centre off, dp | inertia off | nearest pair, dp | spread | Shepard sums | s"),
     "layers": (LAYERS, ("lattice", "layers"), layers_row,
                "particles | normals within 0.1 degree | length off (99 %), dp | depths of layers, dp | spread in them | "
-               "no normal | through or into walls | ghosts in order | wet on both sides"),
+               "away from edges | no normal | through or into walls | ghosts in order | wet on both sides"),
 }
 
 

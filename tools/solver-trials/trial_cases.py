@@ -1,4 +1,4 @@
-"""Small cases whose answer is known, as definitions and meshes: rest, tank, wedge, cup, pipe, tilted, gear, gears, vessel, ball.
+"""Small cases whose answer is known, as definitions and meshes; CASES, at the end, names them.
 
 Each function named like a case takes keyword arguments (dp and what the case varies, in metres, m/s, degrees) and gives
 a Trial. Geometry is in its final place in the meshes; the definitions only draw it. Walls of closed bodies are 4 dp thick
@@ -26,6 +26,7 @@ class Trial:
     meshes      file name: mesh, its mkbound by the order; `is_sheet`: open, drawn as facets without an inside
     domain      (low, high) corners of the lattice, m
     seed, level fluid is what the walls enclose round the seed, below the level z, m
+    second      another seed and level, for water apart from the first; or None
     gravity     m/s^2; a body force along the pipe there
     speed_sound m/s, the same for every variant; None: 20 sqrt(g depth) by coefsound
     depth       points (n, 3), shift of the walls (3) -> how far behind the true wet surface, m, (n); negative in the fluid
@@ -49,6 +50,7 @@ class Trial:
     parameters: dict = field(default_factory=dict)
     motion: str = ""
     floating: str = ""
+    second: tuple = None
     solver_domain: tuple = ("default", "default", "default", "default", "default", "default")
     facts: dict = field(default_factory=dict)
 
@@ -280,11 +282,58 @@ def ball(dp=0.0125, time=1.0, density=500.0):
                  facts={"water_depth": level, "radius": radius, "density": density, "middle": middle.tolist()})
 
 
-def gears(dp=0.005, gap=3.0, turn=60.0, sound=40.0):
+def sphere(dp=0.0075, time=0.2, radius=0.08):
+    """A closed hollow sphere half full of still water."""
+    mesh = make_meshes.icosphere(radius + 4 * dp, 5)
+    inside = placed(make_meshes.icosphere(radius, 5), ABOUT_Z)
+    rows = [mesh.vertex(*v) for v in inside.vertices]
+    for a, b, c in inside.facets:
+        mesh.triangle(rows[a], rows[c], rows[b])
+    reach = radius + 4 * dp
+    return Trial("sphere", dp, {"sphere.stl": mesh}, around((-reach,) * 3, (reach,) * 3, 2 * dp), (0, 0, -radius / 2), 0.0, time, 10,
+                 lambda p, shift: np.linalg.norm(p, axis=1) - radius, "still_water", facts={"water_depth": radius})
+
+
+def boat(dp=0.0125, time=0.2, density=500.0):
+    """A box afloat at the depth where it rests, its water at rest."""
+    length, width, height, level, wall = 0.3, 0.2, 0.18, 0.12, 4 * dp
+    sides = np.array((0.15, 0.1, 0.08))
+    middle = np.array((length / 2 + 0.3 * dp, 0.2 * dp, level + sides[2] * (0.5 - density / 1000)))
+    tank_mesh = placed(make_meshes.trough([(0, 0), (length, 0)], length, width, height, wall), Y_UP)
+
+    def depth(p, shift):
+        inside = (sides / 2 - np.abs(p - middle)).min(1)
+        return np.maximum(np.maximum(box_depth(p, length, width), -p[:, 2]), inside)
+
+    low, high = (-wall, -width / 2 - wall, -wall), (length + wall, width / 2 + wall, height + 4 * dp)
+    return Trial("boat", dp, {"tank.stl": tank_mesh, "boat.stl": placed(make_meshes.box(*sides), np.eye(3), middle)},
+                 around(low, high, 2 * dp), (0.02, 0, level / 2), level, time, 10, depth, "still_water",
+                 floating=f'<floatings><floating mkbound="1" rhopbody="{density:g}" /></floatings>', facts={"water_depth": level})
+
+
+def partition(dp=0.01, thick=4.0, time=0.2, level=0.12, low_level=0.06):
+    """A tank cut in two by a wall `thick` dp thick, a part of its own; water at two levels on its sides."""
+    length, width, height, wall = 0.2, 0.1, 0.18, 4 * dp
+    tank_mesh = placed(make_meshes.trough([(0, 0), (length, 0)], length, width, height, wall), Y_UP)
+    half = thick * dp / 2
+    plate = placed(make_meshes.box(2 * half, width + 4 * dp, height + 2 * dp), np.eye(3), (length / 2, 0, height / 2 - dp))
+
+    def depth(p, shift):
+        inside = half - np.abs(p[:, 0] - length / 2)
+        return np.maximum(np.maximum(box_depth(p, length, width), -p[:, 2]), inside)
+
+    low, high = (-wall, -width / 2 - wall, -wall), (length + wall, width / 2 + wall, height)
+    return Trial("partition", dp, {"tank.stl": tank_mesh, "plate.stl": plate}, around(low, high, 2 * dp), (0.02, 0, low_level / 2),
+                 level, time, 10, depth, "parted_water", second=((length - 0.02, 0, low_level / 2), low_level),
+                 facts={"water_depth": level, "middle": length / 2})
+
+
+def gears(dp=0.005, gap=3.0, turn=60.0, sound=40.0, still=0.0):
     """Two gears of 12 and 16 teeth that turn in mesh in oil, in the plane y = 0; flanks and tips stay `gap` dp or more apart.
 
     turn   of the smaller one, degrees
     sound  speed of sound over that of the tips
+    still  for so long, s, they stand instead, the oil at rest; 0: they turn
     """
     module, apart, rim = 8 * dp, 3 * dp, 4 * dp
     small, large = 6 * module, 8 * module  # pitch radii
@@ -312,9 +361,12 @@ def gears(dp=0.005, gap=3.0, turn=60.0, sound=40.0):
         return np.maximum.reduce([-p[:, 0], p[:, 0] - length, -p[:, 2]])
 
     low, high = around((0, 0, 0), (length, 0, height), 30 * dp)
+    if still:
+        return Trial("gears", dp, meshes, ((low[0], 0, low[2]), (high[0], 0, high[2])), (length / 2, 0, 2 * dp), level, still, 10,
+                     depth, "turning_gear", parameters={"Visco": 0.05}, facts={"water_depth": level})
     return Trial("gears", dp, meshes, ((low[0], 0, low[2]), (high[0], 0, high[2])), (length / 2, 0, 2 * dp), level, turn / spin, 15,
                  depth, "turning_gear", speed_sound=speed_sound, motion=f"<motion>{''.join(motions)}</motion>",
                  parameters={"Visco": 0.05}, facts={"water_depth": level})
 
 
-CASES = {f.__name__: f for f in (rest, tank, wedge, cup, pipe, tilted, gear, gears, vessel, ball)}
+CASES = {f.__name__: f for f in (rest, tank, wedge, cup, sphere, pipe, tilted, gear, gears, vessel, ball, boat, partition)}

@@ -144,8 +144,11 @@ def definition(trial, variant):
             <distanceh v="2" /></norgeometry></normals>"""
     # Nodes on the sides of a <fillbox> are not filled.
     corner = [v - trial.dp for v in low]
-    size = [min(h + trial.dp, trial.level - 0.25 * trial.dp if k == 2 else h + trial.dp) - c
-            for k, (c, h) in enumerate(zip(corner, high))]
+    fills = []
+    for seed, level in ((trial.seed, trial.level), *([trial.second] if trial.second else [])):
+        size = [min(h + trial.dp, level - 0.25 * trial.dp if k == 2 else h + trial.dp) - c
+                for k, (c, h) in enumerate(zip(corner, high))]
+        fills.append(f"""<fillbox {xyz(seed)}><modefill>void</modefill><point {xyz(corner)} /><size {xyz(size)} /></fillbox>""")
     return f"""<?xml version="1.0" encoding="UTF-8" ?>
 <case xmlns:fppg="urn:fppg"><casedef>
     <constantsdef>{constants(trial)}</constantsdef>
@@ -157,7 +160,7 @@ def definition(trial, variant):
         {surface}
         {draws(trial, variant)}
         <setmkfluid mk="0" />
-        <fillbox {xyz(trial.seed)}><modefill>void</modefill><point {xyz(corner)} /><size {xyz(size)} /></fillbox>
+        {"".join(fills)}
     </mainlist></commands></geometry>
     {trial.floating}{normals}{fppg_block(trial, variant)}{trial.motion}
 </casedef><execution><parameters>

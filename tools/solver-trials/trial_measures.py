@@ -102,6 +102,25 @@ def still_water(run):
     return result, series
 
 
+def parted_water(run):
+    """Water that went from one side of a wall to the other, and the speeds."""
+    middle = run.trial.facts["middle"]
+    start = {}
+
+    def crossed(time, fluid, shift, depth):
+        is_first = fluid["pos"][:, 0] < middle
+        if not start:
+            start.update(zip(fluid["id"].tolist(), is_first.tolist()))
+        deep = (depth > 0.5).sum()
+        return {"crossed": int(sum(start[i] != f for i, f in zip(fluid["id"].tolist(), is_first.tolist()))), "deep": int(deep)}
+
+    series = series_of(run, crossed)
+    last = series[-max(1, len(series) // 5):]
+    return {"mean_speed": float(np.mean([r["mean_speed"] for r in last])), "largest_speed": max(r["largest_speed"] for r in last),
+            "largest_ever": max(r["largest_speed"] for r in series), "crossed": max(r["crossed"] for r in series),
+            "deeper_than_half_dp": max(r["deep"] for r in series), "lost": series[-1]["lost"]}, series
+
+
 def pipe_flow(radius, viscosity, force, times, nodes=400):
     """Speeds (times, nodes) on the radii (nodes) of flow that starts from rest, by finite volumes and Crank-Nicolson."""
     edges = np.linspace(0, radius, nodes + 1)
@@ -184,7 +203,8 @@ def turning_gear(run):
         row.update({k: there[k] for k in ("inside", "deeper_than_half_dp", "deepest_dp")})
     result = {"inside": max(o["inside"] for o in told), "deeper_than_half_dp": max(o["deeper_than_half_dp"] for o in told),
               "deepest_dp": max(o["deepest_dp"] for o in told), "lost": series[-1]["lost"],
-              "largest_speed": max(r["largest_speed"] for r in series), "mean_speed": series[-1]["mean_speed"]}
+              "largest_speed": max(r["largest_speed"] for r in series), "last_largest": series[-1]["largest_speed"],
+              "mean_speed": series[-1]["mean_speed"]}
     return result, series
 
 

@@ -1,0 +1,155 @@
+// Which side of a wall the particles of its layers look to; FPPG_PROGRAM is the program's path.
+
+#include "fppg/read_particles.h"
+
+#include "helpers/bi4_array.h"
+#include "helpers/case_text.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace
+{
+
+using fppg::ParticleCloud;
+using fppg::Vec3;
+using namespace fppg::test;
+
+constexpr double dp = 0.05;
+constexpr std::uint16_t body_mk = 10;
+constexpr std::uint16_t tank_mk = 11;
+
+std::string solid(const Vec3& low, const Vec3& high)
+{
+    return fmt::format(
+        R"(<drawbox><boxfill>solid</boxfill><point x="{}" y="{}" z="{}" /><size x="{}" y="{}" z="{}" /></drawbox>)",
+        low.x, low.y, low.z, high.x - low.x, high.y - low.y, high.z - low.z);
+}
+
+/// A tank with walls of 4 dp and water up to z = 0.3, and a body in it.
+CaseText body_in_tank(const std::string& body, bool is_2d, const std::string& more = "")
+{
+    CaseText text;
+    text.dp = fmt::format("{}", dp);
+    text.pointmin = fmt::format(R"(<pointmin x="-1.5" y="{}" z="-0.5" />)", is_2d ? 0 : -1);
+    text.pointmax = fmt::format(R"(<pointmax x="1.5" y="{}" z="1.5" />)", is_2d ? 0 : 1);
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" + body +
+                    R"(<setmkbound mk="1" />)" + solid({-1, -0.6, -0.2}, {1, 0.6, 0}) +
+                    solid({-1.2, -0.6, -0.2}, {-1, 0.6, 0.9}) +
+                    solid({1, -0.6, -0.2}, {1.2, 0.6, 0.9});
+    if (!is_2d)
+        text.mainlist +=
+            solid({-1.2, -0.8, -0.2}, {1.2, -0.6, 0.9}) + solid({-1.2, 0.6, -0.2}, {1.2, 0.8, 0.9});
+    text.mainlist +=
+        R"(<setmkfluid mk="0" /><fillbox x="0" y="0" z="0.1"><modefill>void</modefill><point x="-1.1" y="-0.7" z="-0.1" /><size x="2.2" y="1.4" z="0.4" /></fillbox>)";
+    text.after_geometry = R"(<fppg><bodyfitted mkbound="0-1" boundary="mdbc" /></fppg>)" + more;
+    text.execution =
+        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /></parameters>)";
+    return text;
+}
+
+/// The particles with the normals that the solver reads.
+ParticleCloud make(const CaseText& text)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult result = run(folder, {"Case_Def", "out/Case", "-save:all"});
+    EXPECT_EQ(result.code, 0) << result.output;
+    ParticleCloud cloud = fppg::read_particles(folder / "out/Case", true, 1);
+    const std::vector<float> normals =
+        bi4_array<float>(read_text(folder / "out/Case.bi4"), "BoundNor");
+    for (std::size_t i = 0; i < cloud.normals.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            cloud.normals[i][k] = 3 * i + k < normals.size() ? normals[3 * i + k] : 0;
+    return cloud;
+}
+
+/// Calls visit(place, layer, normal in dp) for the particles in layers of an mk; how many they are.
+template <typename Visit>
+std::size_t for_each_in_layers(const ParticleCloud& cloud, std::uint16_t mk, const Visit& visit)
+{
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        if (cloud.mk[i] != mk || cloud.layer[i] == 0) continue;
+        ++count;
+        const std::array<float, 3>& n = cloud.normals[i];
+        visit(cloud.positions[i], int{cloud.layer[i]}, Vec3{n[0], n[1], n[2]} / dp);
+    }
+    return count;
+}
+
+/// Water comes to the upper face of a plate of 4 dp over the water in waves, or when it goes down.
+class PlateOverWater : public testing::TestWithParam<std::tuple<bool, bool>>
+{
+};
+
+TEST_P(PlateOverWater, LooksUpAndDown)
+{
+    const auto& [is_2d, is_moving] = GetParam();
+    const ParticleCloud cloud = make(body_in_tank(
+        solid({-0.6, -0.4, 0.35}, {0.6, 0.4, 0.55}), is_2d,
+        is_moving
+            ? R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="1"><vel x="0" y="0" z="-0.1" /></mvrect></objreal></motion>)"
+            : ""));
+    std::size_t up = 0;
+    for_each_in_layers(cloud, body_mk,
+                       [&](const Vec3& p, int layer, const Vec3& n)
+                       {
+                           if (layer == 1)
+                           {
+                               EXPECT_NEAR(norm(n), 0.5, 1e-3) << p.x << ' ' << p.z;
+                           }
+                           if (std::abs(p.x) > 0.3 || std::abs(p.y) > 0.15 || layer > 2) return;
+                           EXPECT_EQ(n.z > 0, p.z > 0.45) << p.z;
+                           up += n.z > 0 ? 1 : 0;
+                       });
+    EXPECT_GT(up, 20u);
+}
+
+/// Water that came to the outside of a tank would run away.
+TEST_P(PlateOverWater, IsInATankWhoseWallsLookInside)
+{
+    const auto& [is_2d, is_moving] = GetParam();
+    const ParticleCloud cloud = make(body_in_tank(
+        solid({-0.6, -0.4, 0.35}, {0.6, 0.4, 0.55}), is_2d,
+        is_moving
+            ? R"(<motion><objreal ref="1"><begin mov="1" start="0" /><mvrect id="1" duration="1"><vel x="0.1" y="0" z="0" /></mvrect></objreal></motion>)"
+            : ""));
+    std::size_t count = 0;
+    for_each_in_layers(cloud, tank_mk,
+                       [&](const Vec3& p, int layer, const Vec3& n)
+                       {
+                           if (p.x < 1 || std::abs(p.y) > 0.3 || p.z < 0.2 || p.z > 0.6) return;
+                           EXPECT_LT(n.x, -0.49) << p.x << ' ' << p.z << " layer " << layer;
+                           ++count;
+                       });
+    EXPECT_GT(count, 20u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, PlateOverWater, testing::Combine(testing::Bool(), testing::Bool()),
+                         [](const auto& test)
+                         {
+                             return std::string(std::get<0>(test.param) ? "In2D" : "In3D") +
+                                    (std::get<1>(test.param) ? "Moving" : "Fixed");
+                         });
+
+/// The surface of a shape in 2D goes on across the plane of the case, where no fluid comes.
+TEST(BlockOverWaterIn2D, LooksOutEverywhere)
+{
+    const ParticleCloud cloud = make(body_in_tank(solid({-0.5, -0.4, 0.5}, {0.5, 0.4, 1.1}), true));
+    const std::size_t count = for_each_in_layers(cloud, body_mk,
+                                                 [](const Vec3& p, int layer, const Vec3& n)
+                                                 {
+                                                     if (layer != 1) return;
+                                                     EXPECT_NEAR(norm(n), 0.5, 1e-3)
+                                                         << p.x << ' ' << p.z;
+                                                 });
+    EXPECT_GT(count, 100u);
+}
+
+} // namespace
