@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <latch>
+#include <mutex>
 #include <new>
 #include <system_error>
 #include <thread>
@@ -47,12 +47,16 @@ void acquire_from_others([[maybe_unused]] const ChunkedLoop& loop)
 void expect_threads(int threads)
 {
     std::vector<std::thread> others;
-    std::latch all_tried(1);
+    // Not std::latch: in GCC 12 it can miss its last count where there is no futex, as on Windows
+    // (GCC's bug 106183), and the program waits without end.
+    std::mutex until_all_tried;
+    std::unique_lock<std::mutex> trying(until_all_tried);
     int why = 0;
     try
     {
         others.reserve(static_cast<std::size_t>(threads - 1));
-        for (int i = 1; i < threads; ++i) others.emplace_back([&all_tried] { all_tried.wait(); });
+        for (int i = 1; i < threads; ++i)
+            others.emplace_back([&] { const std::lock_guard<std::mutex> wait(until_all_tried); });
     }
     catch (const std::system_error& error)
     {
@@ -62,7 +66,7 @@ void expect_threads(int threads)
     {
         why = ENOMEM;
     }
-    all_tried.count_down();
+    trying.unlock();
     for (std::thread& other : others) other.join();
     if (why != 0)
         throw IoError(
