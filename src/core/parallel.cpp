@@ -47,8 +47,8 @@ void acquire_from_others([[maybe_unused]] const ChunkedLoop& loop)
 void expect_threads(int threads)
 {
     std::vector<std::thread> others;
-    // Not std::latch: in GCC 12 it can miss its last count where there is no futex, as on Windows
-    // (GCC's bug 106183), and the program waits without end.
+    // Not std::latch: that of GCC 12 can miss its last count where the system has no futex, as
+    // Windows, and the program would wait without end.
     std::mutex until_all_tried;
     std::unique_lock<std::mutex> trying(until_all_tried);
     int why = 0;
