@@ -48,8 +48,7 @@ struct FitMeasures
     double sheet_volume = 0;    ///< of facets that bound no volume, as if dp thick
     double node_volume = 0;     ///< that the nodes inside stand for
     double wall_volume = 0;     ///< that the wall's particles stand for, as far as they are inside
-    /// With Placement::Inside: of what is no deeper than its layers reach, for which their
-    /// particles stand.
+    /// With Placement::Inside: from the surface down to the depth that its layers stand for.
     double shell_volume = 0;
     /// How much of the volume has particles, 0 to 1: all of a solid, of a surface what fills give
     /// it; 1 too where its walls leave no room for nodes.

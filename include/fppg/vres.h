@@ -68,6 +68,7 @@ bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d);
 
 /// Takes the particles out of a field that zone `zone` has not: those outside its own box where
 /// that is turned, and those inside the zones in it, more than a dp beyond where the buffer ends.
+/// Those of walls are gone before (lattice/zone_clip.h).
 ///
 /// cost  O(runs + columns of the boxes); where a box is turned, its nodes
 void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field);

@@ -48,12 +48,14 @@ void enter_zone(MadeCase& made)
     std::array<bool, 3> is_periodic{};
     std::array<Vec3, 3> shift;
     read_periodic_axes(made.def.execution, made.def.file, is_periodic, shift);
-    if (made.field.walls.volume.size() > 0 && is_periodic != std::array<bool, 3>{})
+    const bool is_on_lattice =
+        made.field.walls.volume.size() == 0 && made.field.walls.bodies.empty();
+    if (!is_on_lattice && is_periodic != std::array<bool, 3>{})
         throw CaseError(made.def.file, made.def.vres.zones[0].line,
                         "<vres>: regions of other resolution in a periodic case with particles off "
-                        "the lattice (<setfrdrawmode>) are not supported yet: they would not "
-                        "meet across the period; expected none of the parameters XPeriodicIncY "
-                        "and the like, or particles on the lattice only");
+                        "the lattice (body-fitted walls, <setfrdrawmode>) are not supported yet: "
+                        "they would not meet across the period; expected none of the parameters "
+                        "XPeriodicIncY and the like, or particles on the lattice only");
     clip_to_zone(made.def.vres, made.def.zone, made.field);
 }
 

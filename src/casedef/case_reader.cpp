@@ -370,11 +370,6 @@ private:
 
     void check_vres(const Element& e) const
     {
-        if (!def_.fit.is_empty())
-            read_.fail(e,
-                       "regions of other resolution together with body-fitted walls are not "
-                       "supported yet, expected <vres active=\"false\">, or -fit:off, which puts "
-                       "the walls on the lattice");
         if (!def_.point_files.empty())
             read_.fail(e,
                        "regions of other resolution together with <fppg><points> are not "

@@ -51,18 +51,21 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
     // A rename would put a file in the place of /dev/null.
     expect_regular_file(path_);
     remove_dead_parts(full.parent_path().string(), short_name(full), false);
-    // A stop signal between the making of the file and its entry in the registry would leave it.
+    // A stop signal between the making of the file and its entry in the registry would leave it: the
+    // entry comes first, since a crash or a signal to another thread is not blocked here.
     const SignalsBlocked blocked;
     // A process of the same id may have been killed here before, and two cases of one process may
     // write the same name: another number is tried then.
     for (int attempt = 0; attempt < 100; ++attempt)
     {
         temporary_path_ = temporary_name(path_, attempt);
+        registry_slot_ = register_temporary(temporary_path_);
         descriptor_ = make_file(temporary_path_);
-        if (descriptor_ >= 0 || errno != EEXIST) break;
+        if (descriptor_ >= 0) break;
+        const int error = errno;
+        unregister_temporary(std::exchange(registry_slot_, -1));
+        if (error != EEXIST || attempt == 99) fail(path_, error);
     }
-    if (descriptor_ < 0) fail(path_, errno);
-    registry_slot_ = register_temporary(temporary_path_);
     // Tells other machines that this process lives; where there are no locks, none asks.
     (void)lock_file(descriptor_, false);
 }

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "lattice/draw_pattern.h"
+#include "lattice/zone_clip.h"
 #include "platform/memory.h"
 
 #include <fmt/format.h>
@@ -108,9 +109,22 @@ void Canvas::reset()
     off_lattice_.reset();
 }
 
+void Canvas::cut_to_zone()
+{
+    const std::vector<Spans> beyond = nodes_beyond_zone(def_.vres, def_.zone, field_);
+    parallel_for(beyond.size(), threads_,
+                 [&](std::size_t x)
+                 {
+                     if (!beyond[x].empty()) fppg::paint(field_.slabs[x], beyond[x], 0);
+                 });
+    walls_.cut_where([&](const Vec3& p)
+                     { return is_beyond_zone(def_.vres, def_.zone, field_.grid, p); });
+}
+
 RunField Canvas::take()
 {
     off_lattice_.finish();
+    if (def_.vres.is_active() && walls_.has_walls()) cut_to_zone();
     walls_.finish();
     return std::move(field_);
 }

@@ -59,6 +59,8 @@ public:
     RunField take();
 
 private:
+    /// Cuts what other zones of `<vres>` have out of the walls and their nodes.
+    void cut_to_zone();
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans);
     void paint_slab(const Brush& brush, std::size_t x, const Spans& spans, const MkValue& mk);
 

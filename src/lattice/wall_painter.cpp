@@ -194,6 +194,18 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
     return keeps_walls ? intersect(spans, zone_of(field_->slabs[x])) : Spans{};
 }
 
+void WallPainter::cut_where(const std::function<bool(const Vec3&)>& is_cut)
+{
+    const std::vector<Vec3>& positions = field_->walls.particles.positions;
+    parallel_for(
+        positions.size(), threads_,
+        [&](std::size_t i)
+        {
+            if (is_cut(positions[i])) is_cut_[i] = 1;
+        },
+        1024);
+}
+
 void WallPainter::reset()
 {
     field_->walls = {};

@@ -3,6 +3,7 @@
 #include "lattice/fitted_draw.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace fppg
@@ -28,6 +29,11 @@ public:
     /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
     /// same time. Returns the spans that must be painted with `mk` as covered.
     Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls);
+
+    /// Cuts the particles at some places.
+    ///
+    /// is_cut  bool(const Vec3&)
+    void cut_where(const std::function<bool(const Vec3&)>& is_cut);
 
     /// Forgets everything.
     void reset();

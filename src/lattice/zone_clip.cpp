@@ -1,6 +1,4 @@
-#include "fppg/vres.h"
-
-#include "nodes/spans.h"
+#include "lattice/zone_clip.h"
 
 #include <algorithm>
 #include <array>
@@ -71,38 +69,34 @@ NodeBox nodes_within(const ZoneBox& box, const LatticeGrid& grid)
     return out;
 }
 
-void erase_box(const NodeBox& box, RunField& field)
+/// The nodes of a slab with particles that are in a turned box, or with `is_outside` that are not.
+Spans nodes_in(const BoxTest& is_inside, bool is_outside, const LatticeGrid& grid, std::uint32_t x,
+               const std::vector<Run>& runs)
 {
-    if (box.is_empty()) return;
-    for (std::int64_t x = box.begin[0]; x < box.end[0]; ++x)
-    {
-        std::vector<Run>& runs = field.slabs[static_cast<std::size_t>(x)];
-        const Spans inside = clip_to_box(occupied(runs), box);
-        if (!inside.empty()) paint(runs, inside, 0);
-    }
+    Spans out;
+    for (const Span& span : occupied(runs))
+        for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+        {
+            if (is_inside(node_place(grid, x, span.y, z)) == is_outside) continue;
+            if (!out.empty() && out.back().y == span.y && out.back().z_end == z)
+                ++out.back().z_end;
+            else
+                out.push_back({span.y, z, z + 1});
+        }
+    return out;
 }
 
-/// Takes out the nodes that are in a turned box, or with `keep` those that are not.
-void erase_nodes(const ZoneBox& box, bool keep, RunField& field)
+/// Whether the nearest node of a place is one of a box.
+bool is_nearest_in(const NodeBox& box, const LatticeGrid& grid, const Vec3& p)
 {
-    const BoxTest is_inside(box, field.grid.is_2d);
-    Spans out;
-    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+    for (int axis = 0; axis < 3; ++axis)
     {
-        out.clear();
-        for (const Span& span : occupied(field.slabs[x]))
-            for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
-            {
-                const bool inside =
-                    is_inside(node_place(field.grid, static_cast<std::uint32_t>(x), span.y, z));
-                if (inside == keep) continue;
-                if (!out.empty() && out.back().y == span.y && out.back().z_end == z)
-                    ++out.back().z_end;
-                else
-                    out.push_back({span.y, z, z + 1});
-            }
-        if (!out.empty()) paint(field.slabs[x], out, 0);
+        const auto k = static_cast<std::size_t>(axis);
+        const double node = std::round((p[axis] - grid.origin[axis]) / grid.dp);
+        if (node < static_cast<double>(box.begin[k]) || node >= static_cast<double>(box.end[k]))
+            return false;
     }
+    return true;
 }
 
 /// Takes out the particles off the lattice whose nearest node is one of a box, or that are nearer
@@ -115,7 +109,6 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
     for (std::size_t i = 0; i < off_lattice.size(); ++i)
     {
         double squared = 0;
-        bool is_nearest = true; // its nearest node is one of the box
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
@@ -123,9 +116,8 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
             const double node = std::clamp(std::round(steps), static_cast<double>(box.begin[k]),
                                            static_cast<double>(box.end[k] - 1));
             squared += (steps - node) * (steps - node);
-            is_nearest = is_nearest && node == std::round(steps);
         }
-        if (is_nearest || squared < 0.75 * 0.75) continue;
+        if (is_nearest_in(box, grid, off_lattice.positions[i]) || squared < 0.75 * 0.75) continue;
         off_lattice.positions[kept] = off_lattice.positions[i];
         off_lattice.mk[kept] = off_lattice.mk[i];
         off_lattice.distances[kept++] = off_lattice.distances[i];
@@ -142,23 +134,68 @@ bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d)
     return BoxTest(box, is_2d)(p);
 }
 
-void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
+std::vector<Spans> nodes_beyond_zone(const VresDef& vres, std::size_t zone, const RunField& field)
 {
+    std::vector<Spans> out(field.slabs.size());
+    const auto add = [&](const auto& nodes_of_slab)
+    {
+        for (std::size_t x = 0; x < out.size(); ++x)
+            out[x] = unite(out[x], nodes_of_slab(static_cast<std::uint32_t>(x)));
+    };
+    const auto add_turned = [&](const ZoneBox& box, bool is_outside)
+    {
+        const BoxTest test(box, field.grid.is_2d);
+        add([&](std::uint32_t x)
+            { return nodes_in(test, is_outside, field.grid, x, field.slabs[x]); });
+    };
     const VresZone& own = vres.zones[zone];
-    if (zone > 0 && !own.inner.is_plain)
-        erase_nodes(resized(own.buffer, own.dp, vres.is_2d), true, field);
+    if (zone > 0 && !own.inner.is_plain) add_turned(resized(own.buffer, own.dp, vres.is_2d), true);
     for (const VresZone& inner : vres.zones)
     {
         if (inner.parent != static_cast<int>(zone)) continue;
-        if (inner.outer_end.is_plain)
-        {
-            const NodeBox box = nodes_within(inner.outer_end, field.grid);
-            erase_box(box, field);
-            erase_off_lattice(box, field.grid, field.walls.volume);
-        }
-        else
-            erase_nodes(resized(inner.outer_end, -own.dp, vres.is_2d), false, field);
+        if (!inner.outer_end.is_plain)
+            add_turned(resized(inner.outer_end, -own.dp, vres.is_2d), false);
+        else if (const NodeBox box = nodes_within(inner.outer_end, field.grid); !box.is_empty())
+            add(
+                [&](std::uint32_t x)
+                {
+                    const bool is_in = x >= box.begin[0] && x < box.end[0];
+                    return is_in ? clip_to_box(occupied(field.slabs[x]), box) : Spans{};
+                });
     }
+    return out;
+}
+
+bool is_beyond_zone(const VresDef& vres, std::size_t zone, const LatticeGrid& grid, const Vec3& p)
+{
+    Vec3 node = p;
+    for (int axis = 0; axis < 3; ++axis)
+        node[axis] =
+            grid.origin[axis] + grid.dp * std::round((p[axis] - grid.origin[axis]) / grid.dp);
+    const VresZone& own = vres.zones[zone];
+    if (zone > 0 && !own.inner.is_plain &&
+        !is_within(resized(own.buffer, own.dp, vres.is_2d), node, vres.is_2d))
+        return true;
+    return std::any_of(vres.zones.begin(), vres.zones.end(),
+                       [&](const VresZone& inner)
+                       {
+                           if (inner.parent != static_cast<int>(zone)) return false;
+                           if (inner.outer_end.is_plain)
+                               return is_nearest_in(nodes_within(inner.outer_end, grid), grid, p);
+                           const ZoneBox box = resized(inner.outer_end, -own.dp, vres.is_2d);
+                           return is_within(box, node, vres.is_2d);
+                       });
+}
+
+void clip_to_zone(const VresDef& vres, std::size_t zone, RunField& field)
+{
+    const std::vector<Spans> beyond = nodes_beyond_zone(vres, zone, field);
+    for (std::size_t x = 0; x < beyond.size(); ++x)
+        if (!beyond[x].empty()) paint(field.slabs[x], beyond[x], 0);
+    for (const VresZone& inner : vres.zones)
+        if (inner.parent == static_cast<int>(zone) && inner.outer_end.is_plain)
+            erase_off_lattice(nodes_within(inner.outer_end, field.grid), field.grid,
+                              field.walls.volume);
 }
 
 } // namespace fppg

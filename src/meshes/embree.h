@@ -20,15 +20,15 @@
 namespace fppg
 {
 
-/// Whether Embree ever ran out of memory in this process: it keeps locks then, and releasing any
-/// device waits for them without end (Embree 3.13.5).
-inline std::atomic<bool> embree_ran_out_of_memory{false};
+/// Whether Embree ever ran out of memory or threads in this process: it keeps locks then, and
+/// making or releasing any device waits for them without end (Embree 3.13.5).
+inline std::atomic<bool> embree_ran_out{false};
 
 struct ReleaseEmbreeDevice
 {
     void operator()(RTCDevice device) const
     {
-        if (!embree_ran_out_of_memory) rtcReleaseDevice(device);
+        if (!embree_ran_out) rtcReleaseDevice(device);
     }
 };
 
@@ -36,7 +36,7 @@ struct ReleaseEmbreeScene
 {
     void operator()(RTCScene scene) const
     {
-        if (!embree_ran_out_of_memory) rtcReleaseScene(scene);
+        if (!embree_ran_out) rtcReleaseScene(scene);
     }
 };
 
@@ -44,9 +44,10 @@ struct ReleaseEmbreeScene
 inline void expect_embree_worked(RTCDevice device)
 {
     const RTCError why = rtcGetDeviceError(device);
-    if (why == RTC_ERROR_OUT_OF_MEMORY)
+    // What its scheduler of tasks throws, as when pthread_create fails, is an unknown error to it.
+    if (why == RTC_ERROR_OUT_OF_MEMORY || why == RTC_ERROR_UNKNOWN)
     {
-        embree_ran_out_of_memory = true;
+        embree_ran_out = true;
         throw std::bad_alloc();
     }
     if (why != RTC_ERROR_NONE)
@@ -58,6 +59,7 @@ inline void expect_embree_worked(RTCDevice device)
 /// throws  as expect_embree_worked()
 inline RTCDevice new_embree_device(int threads)
 {
+    if (embree_ran_out) throw std::bad_alloc();
     const RTCDevice device = rtcNewDevice(fmt::format("threads={}", std::max(threads, 1)).c_str());
     if (device != nullptr) return device;
     expect_embree_worked(nullptr);

@@ -139,12 +139,15 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
     const auto before = [&](const Piece& piece)
     { return piece.middle() + (off_surface_dp * dp) * piece.normal; };
     std::vector<char> is_closed_in(65536, 0);
-    for (Piece& piece : pieces_)
-    {
-        if (!piece.is_closed) continue;
-        piece.way = way.to(before(piece));
-        if (piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
-    }
+    parallel_for(
+        pieces_.size(), threads,
+        [&](std::size_t i)
+        {
+            if (pieces_[i].is_closed) pieces_[i].way = way.to(before(pieces_[i]));
+        },
+        256);
+    for (const Piece& piece : pieces_)
+        if (piece.is_closed && piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
     // What others are too near to at the start gets free when it moves.
     for (std::size_t mk = 0; mk < is_closed_in.size(); ++mk)
     {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace fppg
@@ -27,10 +28,9 @@ constexpr int surface_iterations = 100;
 constexpr char of_border = 2;
 /// Particles with none nearer count as if one were so far, dp.
 constexpr double alone_dp = 2;
-/// How crowded a particle is hangs on those within this reach; where one is taken out, no other is
-/// within it, dp.
+/// Particles within this reach crowd one another; of them one is taken out at most, dp.
 constexpr double reach_of_crowd_dp = 2;
-/// Of the particles in the layers of a body no more are taken out so that they stand for its shell.
+/// No more than this share of the particles in the layers of a body is taken out.
 constexpr double most_thinned = 0.05;
 
 class AllSurfaces
@@ -270,19 +270,20 @@ private:
         return count;
     }
 
-    /// Closing holes leaves some 3 % more in layers than one a dp^2, which would crowd what is
-    /// inside: of bodies all of whose particles are inside the most crowded go, until the layers
-    /// stand for their shell. Returns how many.
+    /// Closing holes leaves some 3 % too many particles in layers. In bodies that have all
+    /// particles inside, the rest would be too sparse then. Takes out the most crowded ones until
+    /// each stands for dp^3 of the shell; bodies that were cut keep theirs. Returns how many went.
     std::size_t thin_shells(WallParticles& particles) const
     {
         const FittedWalls& walls = field_.walls;
         const double dp = field_.grid.dp;
-        if (!walls.cut.empty()) return 0;
+        std::set<const FittedBody*> cut;
+        for (const std::uint32_t b : walls.cut_bodies) cut.insert(&walls.owner_of(b));
         std::map<const FittedBody*, double> count;
         for (const std::uint32_t b : particles.bodies) ++count[&walls.owner_of(b)];
         std::map<const FittedBody*, double> excess;
         for (const auto& [body, number] : count)
-            if (body->is_inside && !has_fixed_number(*body))
+            if (body->is_inside && !has_fixed_number(*body) && cut.count(body) == 0)
                 excess[body] = std::min(most_thinned * number,
                                         number - body->measures.shell_volume / (dp * dp * dp));
         if (std::none_of(excess.begin(), excess.end(), [](auto& e) { return e.second >= 1; }))

@@ -127,7 +127,8 @@ bool slides(VolumeMotion motion)
     return motion == VolumeMotion::AlongWall || motion == VolumeMotion::AlongEdge;
 }
 
-/// Those that slide stand where they are put back to, and are led along the wall by steps.
+/// Particles that slide along a wall are put back to their depth after each step; a step may bring
+/// them this near to it, dp.
 constexpr double limit_of_sliding_dp = 0.4;
 
 /// A step that may come too near to a wall: checked with the exact distance, taken back where it

@@ -38,7 +38,7 @@ struct SceneSet
     double dp = 0; ///< diameter of a particle, metres
     std::vector<ScenePart> parts;
     double end = 0;                  ///< seconds, of the motion; 0: nothing moves
-    std::string mark_label;          ///< what marks mean, for the legend; empty: there are none
+    std::string mark_label{};        ///< what marks mean, for the legend; empty: there are none
     std::size_t frames = 1;          ///< of the marks, at times evenly from 0 to `end`
     std::vector<SceneMark> marks{};  ///< by frames
     std::vector<Vec3> start_marks{}; ///< places without words that are marked at 0 s

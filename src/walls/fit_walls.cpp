@@ -85,7 +85,8 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
     for (std::string& w : fitted.warnings)
         w = file != nullptr ? fmt::format("{}: {}: {}", place, file->file, w)
                             : fmt::format("{}: {}", place, w);
-    if (fitted.particles.size() == 0)
+    // Zones of <vres> are meant to have parts of a case only.
+    if (fitted.particles.size() == 0 && scene.def->zone == 0)
         fitted.warnings.push_back(
             fmt::format("{}: no particle of the body-fitted wall lies inside the domain", place));
 }

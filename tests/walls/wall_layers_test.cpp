@@ -104,8 +104,10 @@ TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShare)
     drawing.fill({0, 0, 1.5});
     const Normals all = normals_of(drawing, relaxed(drawing));
     EXPECT_NE(std::find_if(all.report.warnings.begin(), all.report.warnings.end(),
-                           [](const std::string& w)
-                           { return w.find("fluid on both sides") != std::string::npos; }),
+                           [](const std::string& w) {
+                               return w.find("walls of 0.1 m with fluid on both sides") !=
+                                      std::string::npos;
+                           }),
               all.report.warnings.end());
 }
 
