@@ -41,6 +41,7 @@ struct WallCount
     double on_surface = 0;
     double on_lines = 0;
     double in_layers = 0; ///< behind them
+    double layered = 0;   ///< a dp^2 of surfaces with layers
     double inside = 0;
     double relaxed = 0; ///< of those on surfaces
     double in_band = 0; ///< of those inside, that are relaxed too
@@ -142,6 +143,7 @@ private:
                 wall.on_surface += share * count.on_surface;
                 wall.on_lines += share * count.on_lines;
                 wall.in_layers += share * count.in_layers;
+                wall.layered += share * count.layered;
                 wall.inside += share * count.inside;
                 wall.relaxed += share * count.relaxed;
                 wall.in_band += share * count.in_band;
@@ -189,12 +191,15 @@ private:
         if (is_on_surface) count.on_surface = std::max(count.on_lines, on_area);
         const double volume = share * std::abs(report.volume) / (dp * dp * dp);
         count.in_layers = on_area * layers_of(settings, report, dp);
+        if (count.in_layers > 0) count.layered = on_area;
         if (report.is_watertight) count.in_layers = std::min(count.in_layers, volume);
         if (settings.relax.is_active) count.relaxed = count.on_surface;
         if (shape.is_solid)
             count.inside = std::max(0.0, volume - count.on_surface / 2 - count.in_layers);
         if (settings.relax.is_active)
-            count.in_band = std::min(count.inside, rates.band_particles * on_area);
+            count.in_band = settings.place == Placement::Inside
+                                ? count.inside
+                                : std::min(count.inside, rates.band_particles * on_area);
         out_.wall_area += share * report.area;
         out_.line_length += share * length;
         return count;
@@ -294,6 +299,7 @@ private:
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
             on_surfaces_ += wall.on_surface;
             in_layers_ += wall.in_layers;
+            layered_ += wall.layered;
             relaxed_ += wall.relaxed;
             in_band_ += wall.in_band;
             const auto is_it = [mk = mk](const EstimatedBlock& b) { return b.mk == mk; };
@@ -336,22 +342,36 @@ private:
         if (options_.saves_all) out_.output_bytes += np * vtk;
         if (options_.saves_parts) out_.output_bytes += np * vtk;
 
-        out_.memory_bytes =
-            rates.base_bytes + rates.bytes_per_thread * options_.threads +
-            rates.bytes_per_run * static_cast<double>(runs_) +
-            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
-            rates.bytes_a_wall_particle * on_surfaces_ + rates.bytes_a_relaxed_particle * relaxed_ +
-            rates.bytes_a_band_particle * in_band_ + rates.bytes_a_layer_particle * in_layers_;
-        if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
+        const double near_walls = balanced();
+        set_memory(bound, near_walls);
+        // Single sheets do not hold fluid at rest: that is found out, and it stays.
+        const double a_balanced = layered_ > 0 ? rates.seconds_a_balanced_particle
+                                               : rates.seconds_a_particle_not_balanced;
         out_.seconds = rates.seconds_to_start + draw_seconds_ +
                        read_machine_speed().factor *
                            (rates.seconds_a_wall_particle * on_surfaces_ +
                             rates.seconds_a_relaxed_particle * relaxed_ +
                             rates.seconds_a_band_particle * in_band_ +
-                            rates.seconds_a_layer_particle * in_layers_ +
-                            rates.seconds_a_balanced_particle * balanced()) /
+                            rates.seconds_a_layered_place * layered_ +
+                            rates.seconds_a_layer_particle * in_layers_ + a_balanced * near_walls) /
                            options_.threads +
                        out_.output_bytes / rates.written_bytes_a_second;
+    }
+
+    /// What stays over the run, and the largest of what its stages need besides.
+    void set_memory(double bound, double near_walls)
+    {
+        out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
+                            rates.bytes_per_run * static_cast<double>(runs_) +
+                            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
+                            rates.bytes_a_wall_particle * (on_surfaces_ + in_layers_);
+        if (!walls_.empty()) out_.memory_bytes += rates.bytes_to_fit;
+        if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
+        out_.memory_bytes += std::max(
+            {rates.bytes_a_layered_place * layered_ + rates.bytes_a_layer_particle * in_layers_,
+             rates.bytes_a_relaxed_particle * (relaxed_ + in_layers_) +
+                 rates.bytes_a_band_particle * in_band_,
+             rates.bytes_a_balanced_particle * near_walls});
     }
 
     EstimateOptions options_;
@@ -364,6 +384,7 @@ private:
     TriangleSoup surfaces_;   ///< of all fitted walls
     double on_surfaces_ = 0;
     double in_layers_ = 0;
+    double layered_ = 0;
     double relaxed_ = 0;
     double in_band_ = 0;
     double draw_seconds_ = 0;

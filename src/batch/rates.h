@@ -4,8 +4,9 @@ namespace fppg
 {
 
 /// What particles cost, for estimates: measured with the release build on an AMD EPYC, one thread,
-/// with a ball (surface, filled, in layers; -fit:raw and -fit) and the wet road of cases/new. A
-/// factor of two off on another machine is usual.
+/// with a ball (surface, filled, in layers, inside; -fit:raw and -fit), an open tank with fluid and
+/// the wet road of cases/new. A factor of two off on another machine is usual without a
+/// calibration.
 struct Rates
 {
     double base_bytes = 8e6;                 ///< of the program itself
@@ -14,17 +15,22 @@ struct Rates
     double bytes_per_triangle = 600;         ///< of mesh files, with the trees to search them
     double bytes_a_wall_particle = 170;      ///< off the lattice, placed
     double bytes_a_relaxed_particle = 190;   ///< besides
-    double bytes_a_band_particle = 550;      ///< of a volume that is relaxed
-    double bytes_a_layer_particle = 4200;    ///< with the surface that it is laid on
+    double bytes_a_band_particle = 460;      ///< of a volume that is relaxed
+    double bytes_to_fit = 20e6;              ///< where any wall is fitted
+    double bytes_a_layered_place = 6400;     ///< of a surface with layers, dp^2: its distance field
+    double bytes_a_layer_particle = 2400;    ///< with the surface that it is laid on
+    double bytes_a_balanced_particle = 1900; ///< fluid near walls, and what is around it
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
     double seconds_to_start = 0.01;
-    double seconds_a_wall_particle = 2e-6; ///< placed, with its zone of the lattice; one thread
-    double seconds_a_relaxed_particle = 5e-6;
-    double seconds_a_band_particle = 18e-6;
-    double seconds_a_layer_particle = 100e-6;    ///< cut, laid and relaxed
-    double seconds_a_balanced_particle = 260e-6; ///< fluid near walls
-    double band_particles = 2.3;                 ///< of a solid, a particle on its surface
+    double seconds_a_wall_particle = 5e-6; ///< placed, with its zone of the lattice; one thread
+    double seconds_a_relaxed_particle = 8.5e-6;
+    double seconds_a_band_particle = 26e-6;
+    double seconds_a_layered_place = 79e-6;         ///< of a surface with layers, dp^2
+    double seconds_a_layer_particle = 58e-6;        ///< cut, laid and relaxed
+    double seconds_a_balanced_particle = 120e-6;    ///< fluid near walls in layers
+    double seconds_a_particle_not_balanced = 30e-6; ///< near single sheets
+    double band_particles = 2.3;                    ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;
 
     double bi4_bytes = 44;      ///< a particle: id, position, velocity, density

@@ -51,8 +51,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
     // A rename would put a file in the place of /dev/null.
     expect_regular_file(path_);
     remove_dead_parts(full.parent_path().string(), short_name(full), false);
-    // A stop signal between the making of the file and its entry in the registry would leave it: the
-    // entry comes first, since a crash or a signal to another thread is not blocked here.
+    // A stop signal between the making of the file and its entry in the registry would leave it:
+    // the entry comes first, since a crash or a signal to another thread is not blocked here.
     const SignalsBlocked blocked;
     // A process of the same id may have been killed here before, and two cases of one process may
     // write the same name: another number is tried then.

@@ -117,7 +117,8 @@ void DrawChecks::check_closed(const SourceRef& source, const MeshFileOp& op,
 void DrawChecks::check_fill(const SourceRef& source, const DrawState& state,
                             const std::vector<std::vector<Span>>& nodes)
 {
-    if (!state.draw_points || state.mk.kind == MkKind::Void) return;
+    // The limits of other zones of <vres> are meant to cut what they have of a fill.
+    if (!state.draw_points || state.mk.kind == MkKind::Void || def_.zone > 0) return;
     const LatticeGrid& grid = def_.grid;
     std::string sides;
     const auto add = [&](bool is_there, const char* side)
