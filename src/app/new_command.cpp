@@ -198,7 +198,7 @@ GeneratedCase trial_of(const NewCall& call, const NewCase& made, double& dp)
 {
     dp = made.dp;
     if (made.expected_particles > picture_particles)
-        dp = made.dp * std::cbrt(made.expected_particles / picture_particles);
+        dp = made.dp * std::pow(made.expected_particles / picture_particles, 1.0 / 3);
     if (dp == made.dp) return try_case(call, made, dp);
     try
     {

@@ -231,7 +231,9 @@ KnownMean known_mean(const std::vector<double>& z, const std::vector<double>& xs
         {
             const double known = at(z, b * columns + a);
             if (std::isnan(known)) continue;
-            const double weight = std::hypot(at(xs, a) - at(xs, i), at(ys, b) - at(ys, j));
+            const double x = at(xs, a) - at(xs, i);
+            const double y = at(ys, b) - at(ys, j);
+            const double weight = std::sqrt(x * x + y * y);
             sum += weight * known;
             weights += weight;
             out.score += a == i || b == j ? 2 : 1;

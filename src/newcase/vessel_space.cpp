@@ -50,7 +50,7 @@ VesselSpace::VesselSpace(const CasePlan& plan, std::size_t vessel)
 {
     const Box3& box = plan.parts[vessel].box();
     const Vec3 size = box.max - box.min;
-    grid_.dp = std::max(std::cbrt(size.x * size.y * size.z / most_nodes),
+    grid_.dp = std::max(std::pow(size.x * size.y * size.z / most_nodes, 1.0 / 3),
                         std::max({size.x, size.y, size.z}) / 4000);
     for (int axis = 0; axis < 3; ++axis)
     {

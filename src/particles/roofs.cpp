@@ -95,13 +95,14 @@ private:
                                       static_cast<double>(end - 1)} *
                                      dp;
         bool found = false;
-        walls_.for_each_near(at, 2.2 * dp,
-                             [&](std::uint32_t w, double)
-                             {
-                                 const Vec3 away = walls_.points()[w] - at;
-                                 found = found ||
-                                         (away.z > 0.3 * dp && std::hypot(away.x, away.y) < away.z);
-                             });
+        walls_.for_each_near(
+            at, 2.2 * dp,
+            [&](std::uint32_t w, double)
+            {
+                const Vec3 away = walls_.points()[w] - at;
+                found = found ||
+                        (away.z > 0.3 * dp && away.x * away.x + away.y * away.y < away.z * away.z);
+            });
         return found;
     }
 

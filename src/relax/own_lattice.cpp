@@ -21,7 +21,7 @@ namespace
 constexpr double least_share = 0.5;
 /// ... within a degree.
 constexpr double along = 0.99985;
-constexpr double across = 0.0175;
+constexpr double square = 0.0175;
 constexpr std::size_t most_directions = 64;
 constexpr double most_nodes = 2e6;
 /// A box with more places for each particle of its body is too empty to be searched.
@@ -96,7 +96,7 @@ std::optional<std::array<Vec3, 3>> axes_of(const SurfaceMesh& mesh, bool is_2d)
     {
         const auto next = std::find_if(
             found.begin(), found.end(),
-            [&](const Direction& d) { return std::abs(dot(d.sum, first)) < across * norm(d.sum); });
+            [&](const Direction& d) { return std::abs(dot(d.sum, first)) < square * norm(d.sum); });
         // Of a disc all directions in its plane are alike.
         second = next != found.end()         ? next->sum
                  : std::abs(first.x) < 0.577 ? Vec3{1, 0, 0}

@@ -108,7 +108,7 @@ double stiffest_mode(double h)
                 {
                     const double x = a * (i + 0.5 * j);
                     const double y = height * j;
-                    const double r = std::hypot(x, y);
+                    const double r = std::sqrt(x * x + y * y);
                     if (r == 0 || r >= 2 * h) continue;
                     const double s = 1 - r / (2 * h);
                     const double across = wendland_slope(r / h) / (h * h);
@@ -118,7 +118,8 @@ double stiffest_mode(double h)
                     xy += weight * bend * x * y;
                     yy += weight * (across + bend * y * y);
                 }
-            largest = std::max(largest, 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
+            const double half = 0.5 * (xx - yy);
+            largest = std::max(largest, 0.5 * (xx + yy) + std::sqrt(half * half + xy * xy));
         }
     return largest;
 }

@@ -202,7 +202,11 @@ private:
                 t.middle, 100 * t.other));
         // Where a body is thicker elsewhere, the sheet in the middle cannot make up for that.
         if (body.sheets % 2 == 1 && is_even) plan_.number = static_cast<std::size_t>(wanted_);
-        if (body.sheets == 1) plan_.off_edges_dp = std::hypot(0.5, 0.5 * step / plan_.spacing_dp);
+        if (body.sheets == 1)
+        {
+            const double across = step / plan_.spacing_dp;
+            plan_.off_edges_dp = 0.5 * std::sqrt(1 + across * across);
+        }
     }
 
     /// How many particles the room under the layers has place for.

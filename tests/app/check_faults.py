@@ -3,13 +3,15 @@
 
     check_faults.py PROGRAM [unittest arguments]
 
-FPPG_FAULTS=N makes N times as many steps and moments.
+FPPG_FAULTS=N makes N times as many steps and moments. FPPG_RUNNER starts a PROGRAM of another system, e.g. wine;
+exits with 77 where one of the two is missing.
 """
 
 import os
 import random
 import re
 import resource
+import shlex
 import shutil
 import signal
 import struct
@@ -22,7 +24,8 @@ import unittest
 
 from check_limits import box_stl
 
-PROGRAM = sys.argv[1]
+RUNNER = shlex.split(os.environ.get("FPPG_RUNNER", ""))
+PROGRAM = [*RUNNER, sys.argv[1]]
 TIMES = int(os.environ.get("FPPG_FAULTS", "1"))
 os.environ["SOURCE_DATE_EPOCH"] = "86400"
 CASE = """<case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" />
@@ -56,7 +59,7 @@ class Faults(unittest.TestCase):
         self.write("Case_Def.xml", CASE.format(dp=dp))
 
     def start(self, *arguments, **options):
-        return subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, text=True, stdin=subprocess.DEVNULL,
+        return subprocess.Popen([*PROGRAM, *arguments], cwd=self.folder, text=True, stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
 
     def run_it(self, *arguments, **options):
@@ -321,4 +324,8 @@ class Memory(Faults):
 
 
 if __name__ == "__main__":
+    for needed in (*RUNNER[:1], PROGRAM[-1]):
+        if not shutil.which(needed):
+            print(f"skipped: there is no {needed}")
+            sys.exit(77)
     unittest.main(argv=sys.argv[:1] + sys.argv[2:])

@@ -24,6 +24,19 @@ struct RunResult
     std::string output;
 };
 
+/// The program of another system that tests/platforms has set to be started in the place of that of
+/// this one; null: none.
+inline const char* other_program()
+{
+    return std::getenv("FPPG_PROGRAM_OF_OTHER_SYSTEM");
+}
+
+inline std::string program_to_start(const std::string& program)
+{
+    const char* const here = std::getenv("FPPG_PROGRAM_OF_THIS_ONE");
+    return here && other_program() && program == here ? other_program() : program;
+}
+
 /// A program that runs in a folder, its output going to a file there.
 class Process
 {
@@ -42,10 +55,12 @@ public:
         ::dup2(file, 2);
         if (::chdir(folder.c_str()) != 0) ::_exit(127);
         for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-        std::vector<char*> words{const_cast<char*>(program.c_str())};
-        for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
+        std::vector<std::string> texts{program_to_start(program)};
+        for (const std::string& a : arguments) texts.push_back(program_to_start(a));
+        std::vector<char*> words;
+        for (std::string& text : texts) words.push_back(text.data());
         words.push_back(nullptr);
-        ::execv(program.c_str(), words.data());
+        ::execv(words.front(), words.data());
         ::_exit(127);
     }
 
@@ -62,6 +77,7 @@ public:
         ::waitpid(id_, &status, 0);
         RunResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
                          read_text(output_)};
+        if (other_program()) std::erase(result.output, '\r'); // of the ends of lines on Windows
         std::filesystem::remove(output_);
         return result;
     }
@@ -71,14 +87,19 @@ private:
     pid_t id_ = -1;
 };
 
-/// The bytes of every file of a folder, by path inside it.
+/// The bytes of every file of a folder, by path inside it; those of other_program() without the \r
+/// that end lines of text on Windows.
 inline std::map<std::string, std::string> contents(const std::filesystem::path& folder)
 {
     std::map<std::string, std::string> out;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-        if (entry.is_regular_file())
-            out[std::filesystem::relative(entry.path(), folder).string()] =
-                read_text(entry.path().string());
+    {
+        if (!entry.is_regular_file()) continue;
+        const std::string name = std::filesystem::relative(entry.path(), folder).string();
+        std::string& text = out[name] = read_text(entry.path().string());
+        if (other_program() && (name.ends_with(".xml") || name.ends_with(".out")))
+            std::erase(text, '\r');
+    }
     return out;
 }
 
