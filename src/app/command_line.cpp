@@ -179,7 +179,7 @@ void read_option(const std::string& argument, DropInOptions& options)
     using Action = DropInOptions::Action;
     if (name == "-h" || name == "--help" || name == "-help")
         options.action = Action::Help;
-    else if (name == "-ver" || name == "--version")
+    else if (name == "-ver" || name == "-version" || name == "--version")
         options.action = Action::Version;
     else if (name == "-info")
         options.action = Action::Info;

@@ -28,7 +28,7 @@ struct Rates
     double seconds_a_band_particle = 26e-6;
     double seconds_a_layered_place = 79e-6;         ///< of a surface with layers, dp^2
     double seconds_a_layer_particle = 58e-6;        ///< cut, laid and relaxed
-    double seconds_a_balanced_particle = 120e-6;    ///< fluid near walls in layers
+    double seconds_a_balanced_particle = 70e-6;     ///< fluid near walls in layers
     double seconds_a_particle_not_balanced = 30e-6; ///< near single sheets
     double band_particles = 2.3;                    ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;

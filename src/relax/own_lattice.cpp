@@ -133,13 +133,15 @@ std::vector<Place> places_inside(const OwnLattice& lattice, std::size_t body, co
         rows.size(), threads,
         [&](std::size_t row)
         {
+            const std::size_t i = row / n[1];
+            const std::size_t j = row % n[1];
             for (std::size_t k = 0; k < n[2]; ++k)
             {
                 Place place;
                 place.index = row * n[2] + k;
                 place.at = lattice.corner +
-                           (static_cast<double>(row / n[1]) * lattice.steps[0]) * lattice.axes[0] +
-                           (static_cast<double>(row % n[1]) * lattice.steps[1]) * lattice.axes[1] +
+                           (static_cast<double>(i) * lattice.steps[0]) * lattice.axes[0] +
+                           (static_cast<double>(j) * lattice.steps[1]) * lattice.axes[1] +
                            (static_cast<double>(k) * lattice.steps[2]) * lattice.axes[2];
                 const AllWalls::Closest near = all.closest(place.at);
                 if (near.is_outside || near.body != body || near.distance < least_depth_dp * dp)

@@ -190,10 +190,11 @@ private:
         body.sheets = settings_.across.value_or(sheets_through(t.middle / grid_.dp));
         const double step = t.middle / body.sheets / grid_.dp;
         plan_.depths_dp.clear();
-        for (int k = 0; k < body.sheets / 2; ++k) plan_.depths_dp.push_back((k + 0.5) * step);
+        const int half = body.sheets / 2;
+        for (int k = 0; k < half; ++k) plan_.depths_dp.push_back((k + 0.5) * step);
         plan_.middle_dp = body.sheets % 2 == 1 ? 0.65 * t.middle / grid_.dp : 0;
         plan_.spacing_dp = std::pow(1 / step, power());
-        under_layers_ = (body.sheets / 2) * step * grid_.dp;
+        under_layers_ = half * step * grid_.dp;
         if (!is_even)
             out_.warnings.push_back(fmt::format(
                 "across: the sheets are those of a thickness of {:.4g} m, and {:.0f} % of the "
@@ -256,8 +257,9 @@ private:
         int inside = 0;
         for (int i = 0; i < parts * parts; ++i)
         {
+            const int row = i / parts;
             const double x = (i % parts + 0.5) / parts - 0.5;
-            const double z = (i / parts + 0.5) / parts - 0.5;
+            const double z = (row + 0.5) / parts - 0.5;
             const Vec3 at = p + grid_.dp * Vec3{x, 0, z};
             if (wall_->at(at).depth > under_layers_) ++inside;
         }
