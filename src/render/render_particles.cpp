@@ -283,7 +283,7 @@ void trace(const Panel& panel, RTCScene scene, const Vec3f (&from)[8], PixelSum 
     }
     embree_intersect8(valid, scene, rays);
 
-    RTCRay8 shadow;
+    RTCRay8 shadow{}; // rays that are not sent have places too: Embree of arm64 looks at them
     set_rays(shadow);
     Vec3f normals[8];
     bool is_any_lit = false;
