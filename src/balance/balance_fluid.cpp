@@ -45,7 +45,7 @@ constexpr double against_force = 0.5;
 constexpr int most_iterations = 100;
 constexpr int iterations_per_look = 10; ///< at mDBC's pressures
 constexpr int iterations_per_check = 10;
-constexpr int first_judged = 20;
+constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.1;
