@@ -31,7 +31,7 @@ constexpr double least_distance_dbc = 0.5;
 constexpr double least_distance_mdbc = 0.2;
 constexpr double reach_of_walls = 2.5;
 /// Nearer particles are pushed apart: so high up that pressures do not.
-constexpr double least_pair = 0.6;
+constexpr float least_pair = 0.6F;
 constexpr double depth_of_pushes = 2;
 /// Walls are looked for again where a particle has moved so far, when lists are made anew.
 constexpr double look_again = 0.1;
@@ -156,7 +156,7 @@ private:
     {
         list_.build(
             field_.points, threads_, [&](std::size_t i) { return moves(i); },
-            [](std::size_t, std::size_t) { return true; });
+            [](std::size_t) { return true; });
         parallel_for(
             rest_.size(), threads_,
             [&](std::size_t i)
@@ -196,35 +196,22 @@ private:
         const double dp = rest_.dp;
         const double scale =
             rest_.alpha() / (rest_.h * rest_.h) * dp * (rest_.is_2d ? dp * dp : dp * dp * dp);
-        const auto h_dp = static_cast<float>(rest_.h / dp);
-        parallel_for(
-            list_.rows(), threads_,
-            [&](std::size_t row)
+        const PairShape shape{static_cast<float>(rest_.h / dp), rest_.is_cubic, least_pair};
+        const double g = norm(rest_.gravity);
+        const double deep = rest_.pressure(depth_of_pushes * dp);
+        list_.for_each_group(
+            threads_,
+            [&](const PointGroup& group)
             {
-                const std::uint32_t i = list_.point(row);
-                if (!moves(i)) return;
-                const PressureSums sums =
-                    pressure_sums(field_, i, list_.neighbours(row), h_dp, rest_.is_cubic);
-                const Vec3 push{double{sums.x}, double{sums.y}, double{sums.z}};
-                accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * push;
-                pushes_[i] = push_apart(i, list_.neighbours(row));
-            },
-            NeighbourList::rows_per_chunk);
-    }
-
-    /// What pushes a particle near the surface off others that are too near, as an acceleration.
-    Vec3 push_apart(std::uint32_t i, std::span<const std::uint32_t> near) const
-    {
-        Vec3 out;
-        if (rest_.pressures[i] > rest_.pressure(depth_of_pushes * rest_.dp)) return out;
-        for (const std::uint32_t j : near)
-        {
-            const Vec3 away = (rest_.positions[i] - rest_.positions[j]) / rest_.dp;
-            const double distance = norm(away);
-            if (distance < least_pair && distance > 0)
-                out = out + away * ((least_pair - distance) / distance);
-        }
-        return norm(rest_.gravity) * out;
+                const PressureSums sums = pressure_sums(field_, group, shape);
+                for (std::size_t l = 0; l < group.count; ++l)
+                {
+                    const std::uint32_t i = group.points[l];
+                    if (!moves(i)) continue;
+                    accelerations_[i] = rest_.gravity - scale / rest_.densities[i] * sums.of(l);
+                    pushes_[i] = rest_.pressures[i] > deep ? Vec3{} : g * sums.push_of(l);
+                }
+            });
     }
 
     /// Where the particles are, as the lists and the sums take them.
@@ -370,7 +357,7 @@ private:
     FluidAtRest& rest_;
     const ClosestWallPoint& closest_;
     int threads_;
-    NeighbourList list_;
+    GroupList list_;
     GhostPressures ghosts_;
     bool has_ghosts_;
     double least_distance_;        ///< to a wall, dp

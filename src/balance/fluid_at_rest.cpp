@@ -1,5 +1,6 @@
 #include "balance/fluid_at_rest.h"
 
+#include "balance/pressure_sums.h"
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 #include "particles/run_positions.h"
@@ -74,11 +75,10 @@ void add(const NearParticle& p, RestRole role, double mass, FluidAtRest& rest)
     rest.levels.push_back(rest.height(p.position) + pressure / rest.pressure_per_depth());
 }
 
-/// Puts all arrays into the order of a Morton curve over cells of 2h.
+/// Puts all arrays into the order of a Morton curve over cells of eight particles.
 void sort_along_curve(FluidAtRest& rest, int threads)
 {
-    const std::vector<std::uint32_t> order =
-        morton_order(rest.in_dp(rest.positions), static_cast<float>(rest_reach_dp(rest)), threads);
+    const std::vector<std::uint32_t> order = morton_order(rest.in_dp(rest.positions), 2, threads);
     const auto permute = [&](auto& values)
     {
         auto sorted = values;
@@ -195,45 +195,46 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     return rest;
 }
 
-std::size_t hold_free_faces(FluidAtRest& rest, const NeighbourList& list, int threads)
+std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int threads)
 {
     // Of a lattice, the rows at a free face have 0.6 to 0.7 / h, those at a sheet 0.5 at most.
     constexpr double least = 0.55;
     constexpr double level_cosine = 0.7;
     const Vec3 up = rest.gravity / -norm(rest.gravity);
+    const double dp = rest.dp;
+    const double scale =
+        rest.alpha() / (rest.h * rest.h) * dp * (rest.is_2d ? dp * dp : dp * dp * dp);
+    // Volumes of 1 and pressures that add up to 1: the sums are those of the kernel's slope.
+    PressureField field;
+    field.points = rest.in_dp(rest.positions);
+    field.pressures.assign(rest.size(), 0.5F);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        field.packed.push_back(
+            PackedPoint{field.points.x[i], field.points.y[i], field.points.z[i], 1});
+    const PairShape shape{static_cast<float>(rest.h / dp), rest.is_cubic};
     std::vector<char> is_face(rest.size(), 0);
-    const double scale = rest.alpha() / (rest.h * rest.h) *
-                         (rest.is_2d ? rest.dp * rest.dp : rest.dp * rest.dp * rest.dp);
-    parallel_for(
-        list.rows(), threads,
-        [&](std::size_t row)
+    list.for_each_group(threads,
+                        [&](const PointGroup& group)
+                        {
+                            const PressureSums sums = pressure_sums(field, group, shape);
+                            for (std::size_t l = 0; l < group.count; ++l)
+                            {
+                                const Vec3 outward = -scale * sums.of(l);
+                                const double size = norm(outward);
+                                is_face[group.points[l]] =
+                                    size * rest.h > least && dot(outward, up) < level_cosine * size;
+                            }
+                        });
+    std::vector<char> is_held = is_face;
+    list.for_each_group(
+        threads,
+        [&](const PointGroup& group)
         {
-            const std::uint32_t i = list.point(row);
-            Vec3 outward;
-            for (const std::uint32_t j : list.neighbours(row))
-            {
-                const Vec3 away = rest.positions[i] - rest.positions[j];
-                outward = outward - rest.slope(norm(away) / rest.h) * scale * away;
-            }
-            const double size = norm(outward);
-            is_face[i] = rest.roles[i] == RestRole::Moving && size * rest.h > least &&
-                         dot(outward, up) < level_cosine * size;
-        },
-        NeighbourList::rows_per_chunk);
-    std::vector<char> is_held(rest.size(), 0);
-    parallel_for(
-        list.rows(), threads,
-        [&](std::size_t row)
-        {
-            const std::uint32_t i = list.point(row);
-            if (rest.roles[i] != RestRole::Moving) return;
-            bool near = is_face[i] != 0;
-            for (const std::uint32_t j : list.neighbours(row))
-                near = near ||
-                       (is_face[j] && norm(rest.positions[i] - rest.positions[j]) < 2 * rest.h);
-            is_held[i] = near;
-        },
-        NeighbourList::rows_per_chunk);
+            for (const std::uint32_t j : group.near)
+                for (std::size_t l = 0; is_face[j] != 0 && l < group.count; ++l)
+                    if (norm(rest.positions[group.points[l]] - rest.positions[j]) < 2 * rest.h)
+                        is_held[group.points[l]] = 1;
+        });
     std::size_t count = 0;
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (is_held[i])

@@ -5,8 +5,8 @@
 #include "fppg/particles.h"
 #include "fppg/relax_volume.h"
 
+#include "relax/group_list.h"
 #include "relax/kernel.h"
-#include "relax/neighbour_list.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ struct FluidAtRest
     Vec3 gravity;
     bool is_2d = false;
     bool is_cubic = false; ///< kernel; else that of Wendland
-    Vec3 origin;           ///< of NeighbourList's coordinates
+    Vec3 origin;           ///< of GroupList's coordinates
 
     std::vector<std::uint64_t> ids;
     std::vector<RestRole> roles;
@@ -83,7 +83,7 @@ struct FluidAtRest
         if (q >= 2) return 0;
         return q > 1 ? -0.75 * (2 - q) * (2 - q) / q : -3 + 2.25 * q;
     }
-    /// Positions as NeighbourList takes them: in dp from the origin.
+    /// Positions as GroupList takes them: in dp from the origin.
     PointArrays in_dp(std::span<const Vec3> points) const;
 };
 
@@ -109,7 +109,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
 
 /// Holds fluid within 2h of a free face that is not level. The number of those held.
 ///
-/// list  of all particles that may move
-std::size_t hold_free_faces(FluidAtRest& rest, const NeighbourList& list, int threads);
+/// list  of all particles that may move, made where they are
+std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int threads);
 
 } // namespace fppg

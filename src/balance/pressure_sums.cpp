@@ -2,10 +2,14 @@
 
 #include "core/lanes.h"
 
+#include <cstring>
+
 namespace fppg
 {
 namespace
 {
+
+static_assert(points_per_group == lane_count);
 
 /// The shapes are those of FluidAtRest::shape() and slope().
 struct WendlandLanes
@@ -36,125 +40,170 @@ struct CubicLanes
     }
 };
 
-template <typename Kernel>
-FPPG_LANES PressureSums sum_up(const PressureField& field, std::uint32_t i,
-                               std::span<const std::uint32_t> near, float h_dp,
-                               const Kernel& kernel)
+/// The points of a group, a lane each.
+struct GroupLanes
 {
-    Lanes x{}, y{}, z{};
-    const Lanes per_h = lanes_of(1 / h_dp);
-    const Lanes own = lanes_of(field.pressures[i]);
-    const std::uint32_t* at = near.data();
-    NeighbourLanes(PackedGather{field.packed.data()}, i)
-        .for_each(near.data(), near.size(),
-                  [&](const LaneOffsets& o)
-                  {
-                      const Lanes f = kernel.slope(square_root(o.squared) * per_h) * o.fourth *
-                                      (own + gathered(field.pressures.data(), at));
-                      at += lane_count;
-                      x += f * o.x;
-                      y += f * o.y;
-                      z += f * o.z;
-                  });
-    return {sum_of(x), sum_of(y), sum_of(z)};
-}
+    Lanes x, y, z;
 
-FPPG_LANES PressureSums sum_either(const PressureField& field, std::uint32_t i,
-                                   std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
-{
-    return is_cubic ? sum_up(field, i, near, h_dp, CubicLanes{})
-                    : sum_up(field, i, near, h_dp, WendlandLanes{});
-}
+    FPPG_LANES GroupLanes(const PressureField& field, const PointGroup& group)
+    {
+        const LanePoints p = PackedGather{field.packed.data()}.eight(group.points.data());
+        x = p.x;
+        y = p.y;
+        z = p.z;
+    }
+    /// The offsets from a neighbour to them.
+    FPPG_LANES LaneOffsets from(const PackedPoint& neighbour) const
+    {
+        LaneOffsets o{x - lanes_of(neighbour[0]), y - lanes_of(neighbour[1]),
+                      z - lanes_of(neighbour[2]), Lanes{}, lanes_of(neighbour[3])};
+        o.squared = o.x * o.x + o.y * o.y + o.z * o.z;
+        return o;
+    }
+};
 
-PressureSums sum_plain(const PressureField& field, std::uint32_t i,
-                       std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
+FPPG_LANES void store(const Lanes& from, std::array<float, lane_count>& to)
 {
-    return sum_either(field, i, near, h_dp, is_cubic);
-}
-
-FPPG_AVX2 PressureSums sum_avx2(const PressureField& field, std::uint32_t i,
-                                std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
-{
-    return sum_either(field, i, near, h_dp, is_cubic);
+    std::memcpy(to.data(), &from, sizeof from);
 }
 
 template <typename Kernel>
-FPPG_LANES DensitySums sum_up_densities(const PressureField& field, std::uint32_t i,
-                                        std::span<const std::uint32_t> near, float h_dp,
-                                        const Kernel& kernel)
+FPPG_LANES void sum_up(const PressureField& field, const PointGroup& group, const PairShape& shape,
+                       const Kernel& kernel, PressureSums& out)
+{
+    Lanes x{}, y{}, z{}, push_x{}, push_y{}, push_z{};
+    const Lanes per_h = lanes_of(1 / shape.h_dp);
+    const Lanes own = gathered(field.pressures.data(), group.points.data());
+    const float least_squared = shape.least_pair * shape.least_pair;
+    const GroupLanes points(field, group);
+    for (const std::uint32_t j : group.near)
+    {
+        const LaneOffsets o = points.from(field.packed[j]);
+        const Lanes distance = square_root(o.squared);
+        const Lanes f =
+            kernel.slope(distance * per_h) * o.fourth * (own + lanes_of(field.pressures[j]));
+        x += f * o.x;
+        y += f * o.y;
+        z += f * o.z;
+        const LaneMask is_close = (o.squared < least_squared) & (o.squared > 0.0f);
+        if (set_lanes(is_close) == 0) continue;
+        const Lanes push = is_close ? (shape.least_pair - distance) / distance : Lanes{};
+        push_x += push * o.x;
+        push_y += push * o.y;
+        push_z += push * o.z;
+    }
+    store(x, out.x);
+    store(y, out.y);
+    store(z, out.z);
+    store(push_x, out.push_x);
+    store(push_y, out.push_y);
+    store(push_z, out.push_z);
+}
+
+FPPG_LANES void sum_either(const PressureField& field, const PointGroup& group,
+                           const PairShape& shape, PressureSums& out)
+{
+    if (shape.is_cubic)
+        sum_up(field, group, shape, CubicLanes{}, out);
+    else
+        sum_up(field, group, shape, WendlandLanes{}, out);
+}
+
+void sum_plain(const PressureField& field, const PointGroup& group, const PairShape& shape,
+               PressureSums& out)
+{
+    sum_either(field, group, shape, out);
+}
+
+FPPG_AVX2 void sum_avx2(const PressureField& field, const PointGroup& group, const PairShape& shape,
+                        PressureSums& out)
+{
+    sum_either(field, group, shape, out);
+}
+
+using GroupDensities = std::array<DensitySums, lane_count>;
+
+template <typename Kernel>
+FPPG_LANES void sum_up_densities(const PressureField& field, const PointGroup& group,
+                                 const PairShape& shape, const Kernel& kernel, GroupDensities& out)
 {
     Lanes w{}, w_e{};
     std::array<Lanes, 3> w_r{}, s_r{}, s_e_r{};
     std::array<Lanes, 6> s_r_r{};
-    const Lanes per_h = lanes_of(1 / h_dp);
-    const std::uint32_t* at = near.data();
-    NeighbourLanes(PackedGather{field.packed.data()}, i)
-        .for_each(near.data(), near.size(),
-                  [&](const LaneOffsets& o)
-                  {
-                      const Lanes q = square_root(o.squared) * per_h;
-                      const Lanes of_w = kernel.shape(q) * o.fourth;
-                      const Lanes of_s = kernel.slope(q) * o.fourth;
-                      const Lanes e = gathered(field.pressures.data(), at);
-                      at += lane_count;
-                      const std::array<Lanes, 3> r{o.x, o.y, o.z};
-                      w += of_w;
-                      w_e += of_w * e;
-                      std::size_t pair = 0;
-                      for (std::size_t a = 0; a < 3; ++a)
-                      {
-                          const Lanes along = of_s * r[a];
-                          w_r[a] += of_w * r[a];
-                          s_r[a] += along;
-                          s_e_r[a] += along * e;
-                          for (std::size_t b = a; b < 3; ++b) s_r_r[pair++] += along * r[b];
-                      }
-                  });
-    DensitySums out{sum_of(w), sum_of(w_e), {}, {}, {}, {}};
-    for (std::size_t a = 0; a < 3; ++a)
+    const Lanes per_h = lanes_of(1 / shape.h_dp);
+    const GroupLanes points(field, group);
+    for (const std::uint32_t j : group.near)
     {
-        out.w_r[a] = sum_of(w_r[a]);
-        out.s_r[a] = sum_of(s_r[a]);
-        out.s_e_r[a] = sum_of(s_e_r[a]);
+        const LaneOffsets o = points.from(field.packed[j]);
+        const Lanes q = square_root(o.squared) * per_h;
+        const Lanes of_w = kernel.shape(q) * o.fourth;
+        const Lanes of_s = kernel.slope(q) * o.fourth;
+        const Lanes e = lanes_of(field.pressures[j]);
+        const std::array<Lanes, 3> r{o.x, o.y, o.z};
+        w += of_w;
+        w_e += of_w * e;
+        std::size_t pair = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+        {
+            const Lanes along = of_s * r[a];
+            w_r[a] += of_w * r[a];
+            s_r[a] += along;
+            s_e_r[a] += along * e;
+            for (std::size_t b = a; b < 3; ++b) s_r_r[pair++] += along * r[b];
+        }
     }
-    for (std::size_t k = 0; k < s_r_r.size(); ++k) out.s_r_r[k] = sum_of(s_r_r[k]);
-    return out;
+    for (std::size_t l = 0; l < lane_count; ++l)
+    {
+        DensitySums& sums = out[l];
+        sums.w = w[l];
+        sums.w_e = w_e[l];
+        for (std::size_t a = 0; a < 3; ++a)
+        {
+            sums.w_r[a] = w_r[a][l];
+            sums.s_r[a] = s_r[a][l];
+            sums.s_e_r[a] = s_e_r[a][l];
+        }
+        for (std::size_t k = 0; k < s_r_r.size(); ++k) sums.s_r_r[k] = s_r_r[k][l];
+    }
 }
 
-FPPG_LANES DensitySums densities_either(const PressureField& field, std::uint32_t i,
-                                        std::span<const std::uint32_t> near, float h_dp,
-                                        bool is_cubic)
+FPPG_LANES void densities_either(const PressureField& field, const PointGroup& group,
+                                 const PairShape& shape, GroupDensities& out)
 {
-    return is_cubic ? sum_up_densities(field, i, near, h_dp, CubicLanes{})
-                    : sum_up_densities(field, i, near, h_dp, WendlandLanes{});
+    if (shape.is_cubic)
+        sum_up_densities(field, group, shape, CubicLanes{}, out);
+    else
+        sum_up_densities(field, group, shape, WendlandLanes{}, out);
 }
 
-DensitySums densities_plain(const PressureField& field, std::uint32_t i,
-                            std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
+void densities_plain(const PressureField& field, const PointGroup& group, const PairShape& shape,
+                     GroupDensities& out)
 {
-    return densities_either(field, i, near, h_dp, is_cubic);
+    densities_either(field, group, shape, out);
 }
 
-FPPG_AVX2 DensitySums densities_avx2(const PressureField& field, std::uint32_t i,
-                                     std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
+FPPG_AVX2 void densities_avx2(const PressureField& field, const PointGroup& group,
+                              const PairShape& shape, GroupDensities& out)
 {
-    return densities_either(field, i, near, h_dp, is_cubic);
+    densities_either(field, group, shape, out);
 }
 
 } // namespace
 
-PressureSums pressure_sums(const PressureField& field, std::uint32_t i,
-                           std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
+PressureSums pressure_sums(const PressureField& field, const PointGroup& group,
+                           const PairShape& shape)
 {
-    return is_avx2_there() ? sum_avx2(field, i, near, h_dp, is_cubic)
-                           : sum_plain(field, i, near, h_dp, is_cubic);
+    PressureSums out;
+    (is_avx2_there() ? sum_avx2 : sum_plain)(field, group, shape, out);
+    return out;
 }
 
-DensitySums density_sums(const PressureField& field, std::uint32_t i,
-                         std::span<const std::uint32_t> near, float h_dp, bool is_cubic)
+std::array<DensitySums, lane_count> density_sums(const PressureField& field,
+                                                 const PointGroup& group, const PairShape& shape)
 {
-    return is_avx2_there() ? densities_avx2(field, i, near, h_dp, is_cubic)
-                           : densities_plain(field, i, near, h_dp, is_cubic);
+    GroupDensities out;
+    (is_avx2_there() ? densities_avx2 : densities_plain)(field, group, shape, out);
+    return out;
 }
 
 } // namespace fppg

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "relax/neighbour_list.h"
+#include "fppg/vec.h"
+
+#include "relax/group_list.h"
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace fppg
@@ -25,19 +26,30 @@ struct PressureField
     }
 };
 
-/// The sum of V_j (p_i + p_j) s r over the neighbours j of particle i, r its offset from j in dp, s
-/// the shape (dW/dq) / q of the kernel at q = |r| / h.
+/// Of each point of a group: the sum of V_j (p_i + p_j) s r over its neighbours j, r its offset
+/// from j in dp, s the shape (dW/dq) / q of the kernel at q = |r| / h; and the sum of its pushes.
 struct PressureSums
 {
-    float x = 0, y = 0, z = 0;
+    std::array<float, points_per_group> x{}, y{}, z{};
+    std::array<float, points_per_group> push_x{}, push_y{}, push_z{};
+
+    Vec3 of(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+    Vec3 push_of(std::size_t lane) const { return {push_x[lane], push_y[lane], push_z[lane]}; }
 };
 
-/// Adds up pairs by eights, with AVX2 where it is there; the same sums in the same order without.
-///
-/// h_dp  smoothing length in dp
-/// near  the neighbours of i, as NeighbourList gives them
-PressureSums pressure_sums(const PressureField& field, std::uint32_t i,
-                           std::span<const std::uint32_t> near, float h_dp, bool is_cubic);
+/// How pairs are summed up.
+struct PairShape
+{
+    float h_dp = 0; ///< smoothing length in dp
+    bool is_cubic = false;
+    /// Neighbours nearer than this, dp, push with what is missing; 0: none does.
+    float least_pair = 0;
+};
+
+/// Sums over the list of a group, with AVX2 where it is there; the same sums in the same order
+/// without. What is beyond 2h counts for nothing.
+PressureSums pressure_sums(const PressureField& field, const PointGroup& group,
+                           const PairShape& shape);
 
 /// What mDBC sums up over the neighbours j of a point: V_j times the shape w of the kernel and the
 /// shape s of its slope, with the offset r from j in dp and the density e of j over rhop0.
@@ -48,8 +60,9 @@ struct DensitySums
     std::array<float, 6> s_r_r{}; ///< xx, xy, xz, yy, yz, zz
 };
 
-/// As pressure_sums().
-DensitySums density_sums(const PressureField& field, std::uint32_t i,
-                         std::span<const std::uint32_t> near, float h_dp, bool is_cubic);
+/// As pressure_sums(), of each point of a group.
+std::array<DensitySums, points_per_group> density_sums(const PressureField& field,
+                                                       const PointGroup& group,
+                                                       const PairShape& shape);
 
 } // namespace fppg

@@ -159,15 +159,12 @@ void GhostPressures::set_field(const FluidAtRest& rest, int threads)
     if (!list_.is_outdated(field_.points, threads)) return;
     list_.build(
         field_.points, threads, [&](std::size_t i) { return i >= first_ghost_; },
-        [&](std::size_t, std::size_t j)
-        { return j < first_ghost_ && rest.roles[j] != RestRole::Bound; });
+        [&](std::size_t j) { return j < first_ghost_ && rest.roles[j] != RestRole::Bound; });
 }
 
-GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, std::uint32_t ghost,
-                                             std::span<const std::uint32_t> neighbours) const
+GhostPressures::Sums GhostPressures::sums_of(const FluidAtRest& rest,
+                                             const DensitySums& dimless) const
 {
-    const DensitySums dimless = density_sums(field_, ghost, neighbours,
-                                             static_cast<float>(rest.h / rest.dp), rest.is_cubic);
     // Of sums in dp and dp^3 to those in metres.
     const double dp = rest.dp;
     const double of_w = rest.alpha() * (rest.is_2d ? dp * dp : dp * dp * dp);
@@ -194,7 +191,7 @@ GhostPressures::Sums GhostPressures::sums_at(const FluidAtRest& rest, std::uint3
 }
 
 void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t point,
-                             std::span<const std::uint32_t> neighbours) const
+                             const DensitySums& dimless) const
 {
     const std::uint32_t i = owners_[point - first_ghost_];
     // Of JSphCpu_mdbc.cpp.
@@ -202,7 +199,7 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t point,
     constexpr double least_sum = 0.1;
     constexpr double largest_condition = 50;
     const Vec3 ghost = rest.ghosts[i];
-    const Sums sums = sums_at(rest, point, neighbours);
+    const Sums sums = sums_of(rest, dimless);
     const bool is_new = boundary_ == RestBoundary::Mdbc2;
     if (!sums.has_fluid)
     {
@@ -250,14 +247,14 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t point,
 void GhostPressures::set(FluidAtRest& rest, int threads)
 {
     set_field(rest, threads);
-    parallel_for(
-        list_.rows(), threads,
-        [&](std::size_t row)
-        {
-            const std::uint32_t point = list_.point(row);
-            if (point >= first_ghost_) set_one(rest, point, list_.neighbours(row));
-        },
-        NeighbourList::rows_per_chunk);
+    const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
+    list_.for_each_group(threads,
+                         [&](const PointGroup& group)
+                         {
+                             const auto sums = density_sums(field_, group, shape);
+                             for (std::size_t l = 0; l < group.count; ++l)
+                                 set_one(rest, group.points[l], sums[l]);
+                         });
 }
 
 } // namespace fppg

@@ -32,14 +32,12 @@ private:
     /// Takes over where the fluid is, and makes the lists around ghost nodes anew where it has
     /// moved too far since.
     void set_field(const FluidAtRest& rest, int threads);
-    Sums sums_at(const FluidAtRest& rest, std::uint32_t ghost,
-                 std::span<const std::uint32_t> neighbours) const;
+    Sums sums_of(const FluidAtRest& rest, const DensitySums& dimless) const;
     /// point  that of a ghost node in the field
-    void set_one(FluidAtRest& rest, std::uint32_t point,
-                 std::span<const std::uint32_t> neighbours) const;
+    void set_one(FluidAtRest& rest, std::uint32_t point, const DensitySums& dimless) const;
 
     RestBoundary boundary_;
-    NeighbourList list_;
+    GroupList list_;
     PressureField field_;               ///< of all particles, then the ghost nodes
     std::vector<std::uint32_t> owners_; ///< of every ghost node
     std::vector<double> masses_;        ///< of their particles

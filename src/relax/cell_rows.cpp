@@ -1,12 +1,15 @@
-#include "relax/neighbour_list.h"
+#include "relax/cell_rows.h"
 
 #include "core/lanes.h"
+#include "core/parallel.h"
 #include "core/raw_array.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace fppg
@@ -175,59 +178,87 @@ struct Candidates
     std::size_t count;
 };
 
-struct Search
+FPPG_LANES Lanes loaded(const float* eight)
 {
-    float x, y, z;
-    std::uint32_t itself; ///< the index that does not count
-    float squared;        ///< of the reach
+    Lanes out;
+    std::memcpy(&out, eight, sizeof out);
+    return out;
+}
+
+/// Distances from a point, which does not count itself.
+struct NearPoint
+{
+    Lanes x, y, z;
+    std::uint32_t itself;
+    float limit; ///< squared
+
+    FPPG_LANES Lanes squared(const Candidates& from, std::size_t k) const
+    {
+        const Lanes dx = loaded(from.x + k) - x;
+        const Lanes dy = loaded(from.y + k) - y;
+        const Lanes dz = loaded(from.z + k) - z;
+        return dx * dx + dy * dy + dz * dz;
+    }
 };
+
+/// Distances from a box.
+struct NearBox
+{
+    std::array<Lanes, 3> low, high;
+    float limit;
+    static constexpr std::uint32_t itself = std::numeric_limits<std::uint32_t>::max();
+
+    FPPG_LANES Lanes beyond(std::size_t axis, const float* at) const
+    {
+        const Lanes p = loaded(at);
+        return larger(larger(low[axis] - p, p - high[axis]), Lanes{});
+    }
+    FPPG_LANES Lanes squared(const Candidates& from, std::size_t k) const
+    {
+        const Lanes dx = beyond(0, from.x + k);
+        const Lanes dy = beyond(1, from.y + k);
+        const Lanes dz = beyond(2, from.z + k);
+        return dx * dx + dy * dy + dz * dz;
+    }
+};
+
+/// The lanes from k on that count.
+template <typename Near>
+FPPG_LANES unsigned lanes_near(const Candidates& from, std::size_t k, const Near& near)
+{
+    LaneMask indices;
+    std::memcpy(&indices, from.indices + k, sizeof indices);
+    const LaneMask is_itself = indices == static_cast<std::int32_t>(near.itself);
+    const LaneMask is_near = near.squared(from, k) <= near.limit;
+    unsigned set = set_lanes(is_near & ~is_itself);
+    if (from.count - k < lane_count) set &= (1u << (from.count - k)) - 1;
+    return set;
+}
 
 /// Writes the indices of the candidates within reach, in their order; returns how many. Up to
 /// eight more may be overwritten behind them.
-std::size_t find_within_plain(const Candidates& candidates, const Search& search,
-                              std::uint32_t* found)
+template <typename Near>
+std::size_t find_plain(const Candidates& from, const Near& near, std::uint32_t* found)
 {
     std::size_t count = 0;
-    // Written in any case and counted where it is near: no branch to foretell.
-    for (std::size_t k = 0; k < candidates.count; ++k)
-    {
-        const float dx = candidates.x[k] - search.x;
-        const float dy = candidates.y[k] - search.y;
-        const float dz = candidates.z[k] - search.z;
-        found[count] = candidates.indices[k];
-        count += static_cast<std::size_t>(dx * dx + dy * dy + dz * dz <= search.squared) &
-                 static_cast<std::size_t>(candidates.indices[k] != search.itself);
-    }
+    for (std::size_t k = 0; k < from.count; k += lane_count)
+        for (unsigned set = lanes_near(from, k, near); set != 0; set &= set - 1)
+            found[count++] = from.indices[k + static_cast<std::size_t>(std::countr_zero(set))];
     return count;
 }
 
 #if defined(__x86_64__)
 
-/// The same, eight at a time.
-FPPG_AVX2 std::size_t find_within_avx2(const Candidates& candidates, const Search& search,
-                                       std::uint32_t* found)
+template <typename Near>
+FPPG_AVX2 std::size_t find_avx2(const Candidates& from, const Near& near, std::uint32_t* found)
 {
-    const __m256 x = _mm256_set1_ps(search.x);
-    const __m256 y = _mm256_set1_ps(search.y);
-    const __m256 z = _mm256_set1_ps(search.z);
-    const __m256 reach = _mm256_set1_ps(search.squared);
-    const __m256i itself = _mm256_set1_epi32(static_cast<int>(search.itself));
     std::size_t count = 0;
-    for (std::size_t k = 0; k < candidates.count; k += lane_count)
+    for (std::size_t k = 0; k < from.count; k += lane_count)
     {
-        const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(candidates.x + k), x);
-        const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(candidates.y + k), y);
-        const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(candidates.z + k), z);
-        const __m256 squared = _mm256_add_ps(
-            _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
-        const __m256i indices =
-            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(candidates.indices + k));
-        const __m256 is_itself = _mm256_castsi256_ps(_mm256_cmpeq_epi32(indices, itself));
-        const __m256 is_near =
-            _mm256_andnot_ps(is_itself, _mm256_cmp_ps(squared, reach, _CMP_LE_OQ));
-        auto set = static_cast<unsigned>(_mm256_movemask_ps(is_near));
-        if (candidates.count - k < lane_count) set &= (1u << (candidates.count - k)) - 1;
+        const unsigned set = lanes_near(from, k, near);
         if (set == 0) continue;
+        const __m256i indices =
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from.indices + k));
         const __m256i order =
             _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_orders.of[set])));
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(found + count),
@@ -239,9 +270,48 @@ FPPG_AVX2 std::size_t find_within_avx2(const Candidates& candidates, const Searc
 
 #else
 
-constexpr auto find_within_avx2 = find_within_plain;
+template <typename Near>
+std::size_t find_avx2(const Candidates& from, const Near& near, std::uint32_t* found)
+{
+    return find_plain(from, near, found);
+}
 
 #endif
+
+template <typename Near>
+std::size_t find_within(const Candidates& from, const Near& near, std::uint32_t* found)
+{
+    return is_avx2_there() ? find_avx2(from, near, found) : find_plain(from, near, found);
+}
+
+/// Of the places of candidates those within reach of a point of a group, which are in the lanes.
+FPPG_LANES std::size_t keep_near(const Candidates& from, const LanePoints& group, float limit,
+                                 std::uint32_t* places, std::size_t count)
+{
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < count; ++f)
+    {
+        const std::uint32_t k = places[f];
+        const Lanes dx = group.x - lanes_of(from.x[k]);
+        const Lanes dy = group.y - lanes_of(from.y[k]);
+        const Lanes dz = group.z - lanes_of(from.z[k]);
+        places[kept] = k;
+        kept += set_lanes(dx * dx + dy * dy + dz * dz <= limit) != 0 ? 1 : 0;
+    }
+    return kept;
+}
+
+std::size_t keep_near_plain(const Candidates& from, const LanePoints& group, float limit,
+                            std::uint32_t* places, std::size_t count)
+{
+    return keep_near(from, group, limit, places, count);
+}
+
+FPPG_AVX2 std::size_t keep_near_avx2(const Candidates& from, const LanePoints& group, float limit,
+                                     std::uint32_t* places, std::size_t count)
+{
+    return keep_near(from, group, limit, places, count);
+}
 
 } // namespace
 
@@ -254,10 +324,9 @@ std::vector<std::uint32_t> morton_order(const PointArrays& points, float cell, i
     return order;
 }
 
-void NeighbourList::sort_into_cells(const PointArrays& points, int threads)
+void CellRows::sort(const PointArrays& points, float reach, int threads)
 {
-    // A cell is a little larger than the reach, so that rounding moves no neighbour two cells off.
-    const RawArray<Keyed> keys = sorted_keys(points, reach_ * 1.0001f, threads);
+    const RawArray<Keyed> keys = sorted_keys(points, reach * 1.0001f, threads);
     const std::size_t n = points.size();
     order_.resize(n);
     built_at_.resize(n);
@@ -303,14 +372,14 @@ void NeighbourList::sort_into_cells(const PointArrays& points, int threads)
     make_block_table();
 }
 
-void NeighbourList::forget_cells()
+void CellRows::forget_cells()
 {
     cell_keys_ = {};
     cell_begin_ = {};
     table_ = {};
 }
 
-void NeighbourList::make_block_table()
+void CellRows::make_block_table()
 {
     std::size_t blocks = 0;
     for (std::size_t c = 0; c < cell_keys_.size(); ++c)
@@ -334,7 +403,7 @@ void NeighbourList::make_block_table()
     }
 }
 
-const NeighbourList::Block* NeighbourList::find_block(std::uint64_t key) const
+const CellRows::Block* CellRows::find_block(std::uint64_t key) const
 {
     std::size_t slot = (key * 0x9E3779B97F4A7C15u) >> table_shift_;
     while (table_[slot].mask != 0)
@@ -345,19 +414,19 @@ const NeighbourList::Block* NeighbourList::find_block(std::uint64_t key) const
     return nullptr;
 }
 
-std::size_t NeighbourList::cell_of_row(std::size_t row) const
+std::size_t CellRows::cell_of_row(std::size_t row) const
 {
     const auto next = std::upper_bound(cell_begin_.begin(), cell_begin_.end(), row);
     return static_cast<std::size_t>(next - cell_begin_.begin()) - 1;
 }
 
-NeighbourList::Scratch& NeighbourList::scratch_of_thread()
+CellRows::Scratch& CellRows::scratch_of_thread()
 {
     thread_local Scratch scratch;
     return scratch;
 }
 
-void NeighbourList::copy_rows(std::size_t begin, std::size_t end, Scratch& scratch) const
+void CellRows::copy_rows(std::size_t begin, std::size_t end, Scratch& scratch) const
 {
     const std::size_t first = scratch.count;
     scratch.count += end - begin;
@@ -366,6 +435,9 @@ void NeighbourList::copy_rows(std::size_t begin, std::size_t end, Scratch& scrat
         for (auto* v : {&scratch.x, &scratch.y, &scratch.z})
             v->resize(2 * scratch.count + lane_count);
         scratch.indices.resize(2 * scratch.count + lane_count);
+        scratch.buffer.resize(scratch.indices.size());
+        scratch.places.resize(scratch.indices.size());
+        std::iota(scratch.places.begin(), scratch.places.end(), 0u);
     }
     for (std::size_t row = begin; row < end; ++row)
     {
@@ -377,7 +449,7 @@ void NeighbourList::copy_rows(std::size_t begin, std::size_t end, Scratch& scrat
     }
 }
 
-void NeighbourList::gather(std::size_t cell, Scratch& scratch) const
+void CellRows::gather(std::size_t cell, Scratch& scratch) const
 {
     scratch.count = 0;
     const std::uint64_t own = cell_keys_[cell];
@@ -411,22 +483,50 @@ void NeighbourList::gather(std::size_t cell, Scratch& scratch) const
             for (std::int64_t i = low[0] >> 2; i <= high[0] >> 2; ++i) visit_block(i, j, k);
 }
 
-void NeighbourList::find_near(std::size_t row, Scratch& scratch) const
+void CellRows::find_near(std::size_t row, float reach, Scratch& scratch) const
 {
-    scratch.found.resize(scratch.count + lane_count);
     const Candidates candidates{scratch.x.data(), scratch.y.data(), scratch.z.data(),
                                 scratch.indices.data(), scratch.count};
-    const Search search{built_at_.x[row], built_at_.y[row], built_at_.z[row], order_[row],
-                        reach_ * reach_};
-    const auto find = is_avx2_there() ? find_within_avx2 : find_within_plain;
-    scratch.found.resize(find(candidates, search, scratch.found.data()));
+    const NearPoint near{lanes_of(built_at_.x[row]), lanes_of(built_at_.y[row]),
+                         lanes_of(built_at_.z[row]), order_[row], reach * reach};
+    take_found(find_within(candidates, near, scratch.buffer.data()), scratch);
 }
 
-bool NeighbourList::is_outdated(const PointArrays& points, int threads) const
+void CellRows::find_near_any(std::span<const std::uint32_t> rows, float reach,
+                             Scratch& scratch) const
+{
+    const Candidates candidates{scratch.x.data(), scratch.y.data(), scratch.z.data(),
+                                scratch.places.data(), scratch.count};
+    LanePoints group;
+    NearBox box;
+    box.limit = reach * reach;
+    // Nested because each lane goes into its axes' ranges.
+    for (const std::size_t axis : {0u, 1u, 2u})
+    {
+        const std::vector<float>& at = axis == 0   ? built_at_.x
+                                       : axis == 1 ? built_at_.y
+                                                   : built_at_.z;
+        Range range;
+        Lanes lanes;
+        for (std::size_t l = 0; l < lane_count; ++l)
+        {
+            lanes[l] = at[rows[std::min(l, rows.size() - 1)]];
+            range.add({lanes[l], lanes[l]});
+        }
+        (axis == 0 ? group.x : axis == 1 ? group.y : group.z) = lanes;
+        box.low[axis] = lanes_of(range.low);
+        box.high[axis] = lanes_of(range.high);
+    }
+    const std::size_t count = find_within(candidates, box, scratch.buffer.data());
+    const auto keep = is_avx2_there() ? keep_near_avx2 : keep_near_plain;
+    take_found(keep(candidates, group, box.limit, scratch.buffer.data(), count), scratch);
+}
+
+bool CellRows::has_moved(const PointArrays& points, float distance, int threads) const
 {
     const std::size_t n = points.size();
     if (n != built_at_.size()) return true;
-    const float limit = 0.25f * skin_ * skin_;
+    const float limit = distance * distance;
     const std::size_t blocks = (n + points_per_block - 1) / points_per_block;
     std::vector<char> is_far(blocks, 0);
     parallel_for(blocks, threads,
