@@ -196,14 +196,17 @@ private:
         const double dp = rest_.dp;
         const double scale =
             rest_.alpha() / (rest_.h * rest_.h) * dp * (rest_.is_2d ? dp * dp : dp * dp * dp);
-        const PairShape shape{static_cast<float>(rest_.h / dp), rest_.is_cubic, least_pair};
+        const PairShape shape{static_cast<float>(rest_.h / dp), rest_.is_cubic};
         const double g = norm(rest_.gravity);
         const double deep = rest_.pressure(depth_of_pushes * dp);
         list_.for_each_group(
             threads_,
             [&](const PointGroup& group)
             {
-                const PressureSums sums = pressure_sums(field_, group, shape);
+                PairShape of_group = shape;
+                for (const std::uint32_t i : group.points)
+                    if (rest_.pressures[i] <= deep) of_group.least_pair = least_pair;
+                const PressureSums sums = pressure_sums(field_, group, of_group);
                 for (std::size_t l = 0; l < group.count; ++l)
                 {
                     const std::uint32_t i = group.points[l];

@@ -40,6 +40,13 @@ struct CubicLanes
     }
 };
 
+/// One of four numbers in all lanes.
+template <int k>
+FPPG_LANES Lanes spread(const PackedPoint& p)
+{
+    return __builtin_shufflevector(p, p, k, k, k, k, k, k, k, k);
+}
+
 /// The points of a group, a lane each.
 struct GroupLanes
 {
@@ -55,8 +62,8 @@ struct GroupLanes
     /// The offsets from a neighbour to them.
     FPPG_LANES LaneOffsets from(const PackedPoint& neighbour) const
     {
-        LaneOffsets o{x - lanes_of(neighbour[0]), y - lanes_of(neighbour[1]),
-                      z - lanes_of(neighbour[2]), Lanes{}, lanes_of(neighbour[3])};
+        LaneOffsets o{x - spread<0>(neighbour), y - spread<1>(neighbour),
+                      z - spread<2>(neighbour), Lanes{}, spread<3>(neighbour)};
         o.squared = o.x * o.x + o.y * o.y + o.z * o.z;
         return o;
     }
@@ -67,7 +74,7 @@ FPPG_LANES void store(const Lanes& from, std::array<float, lane_count>& to)
     std::memcpy(to.data(), &from, sizeof from);
 }
 
-template <typename Kernel>
+template <bool pushes, typename Kernel>
 FPPG_LANES void sum_up(const PressureField& field, const PointGroup& group, const PairShape& shape,
                        const Kernel& kernel, PressureSums& out)
 {
@@ -85,6 +92,7 @@ FPPG_LANES void sum_up(const PressureField& field, const PointGroup& group, cons
         x += f * o.x;
         y += f * o.y;
         z += f * o.z;
+        if (!pushes) continue;
         const LaneMask is_close = (o.squared < least_squared) & (o.squared > 0.0f);
         if (set_lanes(is_close) == 0) continue;
         const Lanes push = is_close ? (shape.least_pair - distance) / distance : Lanes{};
@@ -103,10 +111,13 @@ FPPG_LANES void sum_up(const PressureField& field, const PointGroup& group, cons
 FPPG_LANES void sum_either(const PressureField& field, const PointGroup& group,
                            const PairShape& shape, PressureSums& out)
 {
+    const bool pushes = shape.least_pair > 0;
     if (shape.is_cubic)
-        sum_up(field, group, shape, CubicLanes{}, out);
+        pushes ? sum_up<true>(field, group, shape, CubicLanes{}, out)
+               : sum_up<false>(field, group, shape, CubicLanes{}, out);
     else
-        sum_up(field, group, shape, WendlandLanes{}, out);
+        pushes ? sum_up<true>(field, group, shape, WendlandLanes{}, out)
+               : sum_up<false>(field, group, shape, WendlandLanes{}, out);
 }
 
 void sum_plain(const PressureField& field, const PointGroup& group, const PairShape& shape,

@@ -16,6 +16,8 @@ namespace fppg
 /// Eight numbers that go through the loops side by side. With AVX2 they are one register, without
 /// it two or eight: the same sums in the same order, so that results do not depend on the machine.
 using Lanes = float __attribute__((vector_size(32)));
+/// Four numbers, half of the lanes.
+using HalfLanes = float __attribute__((vector_size(16)));
 using LaneMask = std::int32_t __attribute__((vector_size(32)));
 
 inline constexpr std::size_t lane_count = 8;
@@ -41,7 +43,8 @@ inline bool is_avx2_there()
 
 FPPG_LANES Lanes lanes_of(float value)
 {
-    return Lanes{} + value;
+    const HalfLanes first{value};
+    return __builtin_shufflevector(first, first, 0, 0, 0, 0, 0, 0, 0, 0);
 }
 
 FPPG_LANES Lanes larger(const Lanes& a, const Lanes& b)
@@ -80,9 +83,6 @@ FPPG_LANES Lanes square_root(const Lanes& squared)
     return root;
 #endif
 }
-
-/// Four numbers, half of the lanes.
-using HalfLanes = float __attribute__((vector_size(16)));
 
 FPPG_LANES HalfLanes low_half(const Lanes& v)
 {
