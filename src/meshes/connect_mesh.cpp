@@ -11,9 +11,14 @@ namespace fppg
 
 void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
 {
+    build_edges(mesh, threads);
+    finish_mesh(mesh, threads, report);
+}
+
+void finish_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
+{
     report = {};
     report.facets_read = mesh.facets.size();
-    build_edges(mesh, threads);
     orient_shells(mesh, report.shells);
     measure_facets(mesh, threads);
     for (const Facet& facet : mesh.facets)
@@ -25,6 +30,12 @@ void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
         report.area += mesh.areas[f];
     }
     judge_edges(mesh, report);
+}
+
+void connect_facets(SurfaceMesh& mesh, int threads)
+{
+    build_edges(mesh, threads);
+    measure_facets(mesh, threads);
 }
 
 } // namespace fppg

@@ -14,4 +14,11 @@ namespace fppg
 /// cost     O(n log n)
 void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report);
 
+/// Of a mesh that is changed further, and whose facets do not clash: edges, neighbours, normals and
+/// areas. finish_mesh() makes it whole.
+void connect_facets(SurfaceMesh& mesh, int threads);
+
+/// All that connect_mesh() does, of a mesh whose edges and neighbours are known.
+void finish_mesh(SurfaceMesh& mesh, int threads, MeshReport& report);
+
 } // namespace fppg

@@ -1,10 +1,12 @@
 #include "meshes/edge_map.h"
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/row_lists.h"
 
 namespace fppg
 {
@@ -19,55 +21,32 @@ struct EdgeSide
 {
     std::uint32_t larger; ///< the other vertex
     std::uint32_t side;   ///< 3 * facet + side
+
+    auto operator<=>(const EdgeSide&) const = default;
 };
 
 /// The sides of all facets by their smaller vertex, then their larger one, then by facet.
-struct SidesOfVertices
+RowLists<EdgeSide> sort_sides(const SurfaceMesh& mesh, int threads)
 {
-    std::vector<std::size_t> first; ///< per vertex, and one past the end
-    std::vector<EdgeSide> sides;
-};
-
-SidesOfVertices sort_sides(const SurfaceMesh& mesh, int threads)
-{
-    SidesOfVertices out;
-    out.first.assign(mesh.vertices.size() + 1, 0);
-    const auto for_each_side = [&](const auto& visit)
-    {
-        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    return make_row_lists<EdgeSide>(
+        mesh.vertices.size(), mesh.facets.size(), threads,
+        [&](std::size_t f, const auto& add)
+        {
             for (std::size_t s = 0; s < 3; ++s)
             {
                 const std::uint32_t a = mesh.facets[f][s], b = mesh.facets[f][(s + 1) % 3];
-                visit(std::min(a, b),
-                      EdgeSide{std::max(a, b), static_cast<std::uint32_t>(3 * f + s)});
+                add(std::min(a, b),
+                    EdgeSide{std::max(a, b), static_cast<std::uint32_t>(3 * f + s)});
             }
-    };
-    for_each_side([&](std::uint32_t vertex, const EdgeSide&) { ++out.first[vertex + 1]; });
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) out.first[v + 1] += out.first[v];
-    std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
-    out.sides.resize(3 * mesh.facets.size());
-    for_each_side([&](std::uint32_t vertex, const EdgeSide& side)
-                  { out.sides[next[vertex]++] = side; });
-    parallel_for(
-        mesh.vertices.size(), threads,
-        [&](std::size_t v)
-        {
-            const auto at = [&](std::size_t i)
-            { return out.sides.begin() + static_cast<std::ptrdiff_t>(i); };
-            std::sort(at(out.first[v]), at(out.first[v + 1]),
-                      [](const EdgeSide& a, const EdgeSide& b)
-                      { return a.larger != b.larger ? a.larger < b.larger : a.side < b.side; });
-        },
-        4096);
-    return out;
+        });
 }
 
 } // namespace
 
 void build_edges(SurfaceMesh& mesh, int threads)
 {
-    const SidesOfVertices of = sort_sides(mesh, threads);
-    const std::vector<EdgeSide>& sides = of.sides;
+    const RowLists<EdgeSide> of = sort_sides(mesh, threads);
+    const std::vector<EdgeSide>& sides = of.values;
     const std::size_t blocks = (mesh.vertices.size() + vertices_per_block - 1) / vertices_per_block;
     // Calls visit(vertex, begin, end) for the sides of each edge of a block's vertices.
     const auto for_each_edge = [&](std::size_t block, const auto& visit)

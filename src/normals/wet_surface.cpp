@@ -149,15 +149,18 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
     for (const Piece& piece : pieces_)
         if (piece.is_closed && piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
     // What others are too near to at the start gets free when it moves.
+    std::vector<std::uint16_t> closed_in;
     for (std::size_t mk = 0; mk < is_closed_in.size(); ++mk)
-    {
-        if (is_closed_in[mk] == 0) continue;
-        const FluidWay alone =
-            FluidWay::around(field, setup_.first_bound, static_cast<std::uint16_t>(mk));
-        for (Piece& piece : pieces_)
-            if (piece.is_closed && piece.mk == mk && !piece.way.is_free)
-                piece.way = alone.to(before(piece));
-    }
+        if (is_closed_in[mk] != 0) closed_in.push_back(static_cast<std::uint16_t>(mk));
+    parallel_for(closed_in.size(), threads,
+                 [&](std::size_t i)
+                 {
+                     const std::uint16_t mk = closed_in[i];
+                     const FluidWay alone = FluidWay::around(field, setup_.first_bound, mk);
+                     for (Piece& piece : pieces_)
+                         if (piece.is_closed && piece.mk == mk && !piece.way.is_free)
+                             piece.way = alone.to(before(piece));
+                 });
     parallel_for(
         pieces_.size(), threads,
         [&](std::size_t i)

@@ -21,13 +21,12 @@ CreaseMesh::CreaseMesh(const WallDepth& of, const OffsetOptions& given, int n, S
       mesh(surface),
       turn(std::cos(given.feature_angle_deg * std::numbers::pi / 180))
 {
-    begin.assign(mesh.vertices.size() + 2, 0);
-    for (const auto& edge : mesh.edges)
-        for (const std::uint32_t v : edge) ++begin[v + 2];
-    for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
-    around.resize(2 * mesh.edges.size());
-    for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
-        for (const std::uint32_t v : mesh.edges[e]) around[begin[v + 1]++] = e;
+    edges_ = make_row_lists<std::uint32_t>(mesh.vertices.size(), mesh.edges.size(), threads,
+                                           [&](std::size_t e, const auto& add)
+                                           {
+                                               for (const std::uint32_t v : mesh.edges[e])
+                                                   add(v, static_cast<std::uint32_t>(e));
+                                           });
 }
 
 Vec3 CreaseMesh::normal_of(std::uint32_t facet) const
@@ -114,11 +113,10 @@ public:
     {
         std::vector<std::uint32_t> facets;
         std::vector<std::uint32_t> vertices{v};
-        for (const std::uint32_t* e = on_.edges_of(v); e != on_.edges_end(v); ++e)
-            vertices.push_back(on_.other_end(*e, v));
+        for (const std::uint32_t e : on_.edges_of(v)) vertices.push_back(on_.other_end(e, v));
         for (const std::uint32_t w : vertices)
-            for (const std::uint32_t* e = on_.edges_of(w); e != on_.edges_end(w); ++e)
-                for (const std::uint32_t f : on_.mesh.edge_facets[*e])
+            for (const std::uint32_t e : on_.edges_of(w))
+                for (const std::uint32_t f : on_.mesh.edge_facets[e])
                     if (f != no_index) facets.push_back(f);
         std::sort(facets.begin(), facets.end());
         facets.erase(std::unique(facets.begin(), facets.end()), facets.end());

@@ -2,9 +2,11 @@
 
 #include "fppg/surface_mesh.h"
 
+#include "core/row_lists.h"
 #include "offset/offset_surface.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fppg
@@ -23,8 +25,7 @@ struct CreaseMesh
     Vec3 normal_of(std::uint32_t facet) const;
     Vec3 middle_of(std::uint32_t facet) const;
     /// The edges of a vertex.
-    const std::uint32_t* edges_of(std::uint32_t v) const { return around.data() + begin[v]; }
-    const std::uint32_t* edges_end(std::uint32_t v) const { return around.data() + begin[v + 1]; }
+    std::span<const std::uint32_t> edges_of(std::uint32_t v) const { return edges_.row(v); }
     std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const
     {
         return mesh.edges[e][0] == v ? mesh.edges[e][1] : mesh.edges[e][0];
@@ -34,9 +35,10 @@ struct CreaseMesh
     const OffsetOptions& options;
     int threads;
     SurfaceMesh& mesh;
-    double turn;                      ///< cosine of the angle by which faces turn at a crease
-    std::vector<std::uint64_t> begin; ///< edges of vertex v: around[begin[v]] to begin[v + 1]
-    std::vector<std::uint32_t> around;
+    double turn; ///< cosine of the angle by which faces turn at a crease
+
+private:
+    RowLists<std::uint32_t> edges_;
 };
 
 /// Where two vertices on a crease lie across the edge of two others, the crease runs between them:

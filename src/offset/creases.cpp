@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/raw_array.h"
+#include "meshes/connect_mesh.h"
 #include "offset/crease_mesh.h"
 #include "offset/quadric.h"
 #include "offset/slivers.h"
@@ -112,8 +113,8 @@ private:
 
     bool has_crease(std::uint32_t v) const
     {
-        return std::any_of(on_.edges_of(v), on_.edges_end(v),
-                           [&](std::uint32_t e) { return is_crease_[e] != 0; });
+        return std::ranges::any_of(on_.edges_of(v),
+                                   [&](std::uint32_t e) { return is_crease_[e] != 0; });
     }
     /// everywhere  else only at edges one of whose ends is on a crease
     void find(bool everywhere)
@@ -142,8 +143,8 @@ private:
     std::optional<Vec3> crease_place(std::uint32_t v, double longest = longest_move) const
     {
         std::vector<std::uint32_t> facets;
-        for (const std::uint32_t* e = on_.edges_of(v); e != on_.edges_end(v); ++e)
-            for (const std::uint32_t f : on_.mesh.edge_facets[*e])
+        for (const std::uint32_t e : on_.edges_of(v))
+            for (const std::uint32_t f : on_.mesh.edge_facets[e])
                 if (f != no_index && std::find(facets.begin(), facets.end(), f) == facets.end())
                     facets.push_back(f);
         const Vec3& from = on_.mesh.vertices[v];
@@ -299,12 +300,12 @@ private:
     {
         if (at == goal) return is_flat(loop);
         if (loop.size() == lens_edges) return false;
-        for (const std::uint32_t* e = on_.edges_of(at); e != on_.edges_end(at); ++e)
+        for (const std::uint32_t e : on_.edges_of(at))
         {
-            if (is_crease_[*e] == 0 || std::find(loop.begin(), loop.end(), *e) != loop.end())
+            if (is_crease_[e] == 0 || std::find(loop.begin(), loop.end(), e) != loop.end())
                 continue;
-            loop.push_back(*e);
-            if (find_loop(on_.other_end(*e, at), goal, loop)) return true;
+            loop.push_back(e);
+            if (find_loop(on_.other_end(e, at), goal, loop)) return true;
             loop.pop_back();
         }
         return false;
@@ -377,8 +378,8 @@ private:
 
     int creases_at(std::uint32_t v) const
     {
-        return static_cast<int>(std::count_if(on_.edges_of(v), on_.edges_end(v),
-                                              [&](std::uint32_t e) { return is_crease_[e] != 0; }));
+        return static_cast<int>(std::ranges::count_if(
+            on_.edges_of(v), [&](std::uint32_t e) { return is_crease_[e] != 0; }));
     }
 
     /// From each end of a crease on, over vertices that can be moved onto it, to another crease.
@@ -401,9 +402,8 @@ private:
         };
         std::vector<Step> path;
         std::uint32_t at = end;
-        const std::uint32_t last =
-            *std::find_if(on_.edges_of(end), on_.edges_end(end),
-                          [&](std::uint32_t e) { return is_crease_[e] != 0; });
+        const std::uint32_t last = *std::ranges::find_if(
+            on_.edges_of(end), [&](std::uint32_t e) { return is_crease_[e] != 0; });
         Vec3 way = on_.mesh.vertices[end] - on_.mesh.vertices[on_.other_end(last, end)];
         bool is_closed = false;
         while (static_cast<int>(path.size()) < gap_edges && !is_closed)
@@ -411,10 +411,10 @@ private:
             std::uint32_t best = no_index;
             Vec3 best_place;
             double best_turn = gap_turn;
-            for (const std::uint32_t* e = on_.edges_of(at); e != on_.edges_end(at); ++e)
+            for (const std::uint32_t e : on_.edges_of(at))
             {
-                if (is_crease_[*e] != 0) continue;
-                const std::uint32_t w = on_.other_end(*e, at);
+                if (is_crease_[e] != 0) continue;
+                const std::uint32_t w = on_.other_end(e, at);
                 const bool is_on = creases_at(w) > 0;
                 const Vec3 rough = on_.mesh.vertices[w] - on_.mesh.vertices[at];
                 if (dot(rough, way) < 0.1 * norm(rough) * norm(way)) continue;
@@ -425,7 +425,7 @@ private:
                 const double turn = dot(step, way) / (norm(step) * norm(way));
                 if (!(norm(step) > 0.05 * on_.options.cell) || !(turn > best_turn)) continue;
                 best_turn = turn;
-                best = *e;
+                best = e;
                 best_place = *place;
             }
             if (best == no_index) break;
@@ -463,12 +463,11 @@ void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int th
         CreaseFinder finder(on, std::move(on_creases));
         if (!finder.place_vertices()) return;
         on_creases = finder.on_creases();
-        if (turn_onto_creases(on, on_creases)) reconnect(offset.mesh, threads, offset.report);
-        remove_slivers(offset.mesh, options.cell, on_creases, threads, offset.report);
+        if (turn_onto_creases(on, on_creases)) connect_facets(offset.mesh, threads);
+        remove_slivers(offset.mesh, options.cell, on_creases, threads);
     }
     const CreaseMesh on(wall, options, threads, offset.mesh);
     offset.creases = CreaseFinder(on, std::move(on_creases)).run();
-    reconnect(offset.mesh, threads, offset.report);
 }
 
 Features offset_features(const OffsetSurface& offset, const FeatureOptions& options)

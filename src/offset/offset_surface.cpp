@@ -4,7 +4,6 @@
 #include "meshes/connect_mesh.h"
 #include "offset/creases.h"
 #include "offset/dual_cells.h"
-#include "offset/slivers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -207,11 +206,13 @@ OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options
         for (const DualVertex& v : dual.vertices) mesh.vertices.push_back(v.position);
     for (const auto& of_brick : facets)
         mesh.facets.insert(mesh.facets.end(), of_brick.begin(), of_brick.end());
-    out.report.facets_read = mesh.facets.size();
-    if (mesh.facets.empty()) return out;
-    connect_mesh(mesh, threads, out.report);
-    if (move_to_rims(wall, options, threads, mesh)) reconnect(mesh, threads, out.report);
+    const std::size_t cut = mesh.facets.size();
+    if (cut == 0) return out;
+    connect_facets(mesh, threads);
+    if (move_to_rims(wall, options, threads, mesh)) connect_facets(mesh, threads);
     sharpen_creases(wall, options, threads, out);
+    finish_mesh(mesh, threads, out.report);
+    out.report.facets_read = cut;
     return out;
 }
 

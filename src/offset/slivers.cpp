@@ -1,7 +1,9 @@
 #include "offset/slivers.h"
 
-#include "meshes/connect_mesh.h"
+#include "core/parallel.h"
+#include "core/row_lists.h"
 #include "meshes/edge_map.h"
+#include "meshes/measure_facets.h"
 
 #include <algorithm>
 #include <array>
@@ -60,57 +62,62 @@ void drop_flat(SurfaceMesh& mesh, const std::vector<char>& is_joined)
 }
 
 /// The vertices at the other ends of the edges of each vertex, ascending.
-class VertexNeighbours
+RowLists<std::uint32_t> vertices_around(const SurfaceMesh& mesh, int threads)
 {
-public:
-    explicit VertexNeighbours(const SurfaceMesh& mesh) : first_(mesh.vertices.size() + 1, 0)
-    {
-        for (const auto& edge : mesh.edges)
-            for (const std::uint32_t v : edge) ++first_[v + 1];
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-        vertices_.resize(first_.back());
-        // Edges are sorted, so that a vertex meets the smaller ones first.
-        for (const auto& [a, b] : mesh.edges)
-        {
-            vertices_[next[a]++] = b;
-            vertices_[next[b]++] = a;
-        }
-    }
+    return make_row_lists<std::uint32_t>(mesh.vertices.size(), mesh.edges.size(), threads,
+                                         [&](std::size_t e, const auto& add)
+                                         {
+                                             const auto& [a, b] = mesh.edges[e];
+                                             add(a, b);
+                                             add(b, a);
+                                         });
+}
 
-    std::span<const std::uint32_t> of(std::uint32_t v) const
-    {
-        return {vertices_.data() + first_[v], vertices_.data() + first_[v + 1]};
-    }
-
-private:
-    std::vector<std::size_t> first_;
-    std::vector<std::uint32_t> vertices_;
-};
+/// The numbers of the items that are chosen, ascending.
+template <typename Choose>
+std::vector<std::uint32_t> chosen(std::size_t items, int threads, const Choose& choose)
+{
+    std::vector<char> is_chosen(items);
+    parallel_for(
+        items, threads, [&](std::size_t i) { is_chosen[i] = choose(i) ? 1 : 0; }, 4096);
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < items; ++i)
+        if (is_chosen[i] != 0) out.push_back(i);
+    return out;
+}
 
 /// Joins the ends of short edges, each vertex with one other at most and none of its neighbours
 /// with any; returns whether any was. Ends that have more neighbours in common than the facets of
 /// their edge say would pinch the surface.
-bool join_near_vertices(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases)
+bool join_near_vertices(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
+                        int threads)
 {
-    const VertexNeighbours around(mesh);
+    const std::vector<std::uint32_t> near =
+        chosen(mesh.edges.size(), threads,
+               [&](std::size_t e)
+               {
+                   const auto& [a, b] = mesh.edges[e];
+                   return norm(mesh.vertices[a] - mesh.vertices[b]) < one_vertex * cell;
+               });
+    if (near.empty()) return false;
+    const RowLists<std::uint32_t> around = vertices_around(mesh, threads);
     std::vector<std::uint32_t> of(mesh.vertices.size());
     std::iota(of.begin(), of.end(), 0u);
     std::vector<char> is_used(of.size(), 0);
     std::vector<char> is_joined(of.size(), 0);
     bool found = false;
-    for (const auto& edge : mesh.edges)
+    for (const std::uint32_t e : near)
     {
+        const auto& edge = mesh.edges[e];
         if (is_used[edge[0]] != 0 || is_used[edge[1]] != 0) continue;
-        if (!(norm(mesh.vertices[edge[0]] - mesh.vertices[edge[1]]) < one_vertex * cell)) continue;
         std::vector<std::uint32_t> common;
-        std::ranges::set_intersection(around.of(edge[0]), around.of(edge[1]),
+        std::ranges::set_intersection(around.row(edge[0]), around.row(edge[1]),
                                       std::back_inserter(common));
         if (common.size() > 2) continue;
         for (const std::uint32_t end : edge)
         {
             is_used[end] = 1;
-            for (const std::uint32_t v : around.of(end)) is_used[v] = 1;
+            for (const std::uint32_t v : around.row(end)) is_used[v] = 1;
         }
         // The vertex on a crease stays.
         const std::size_t kept = on_creases[edge[1]] > on_creases[edge[0]] ? 1 : 0;
@@ -135,14 +142,18 @@ double height(const SurfaceMesh& mesh, const Corners& f)
 }
 
 /// Turns the longest sides of low facets where that makes the lower of both facets higher.
-bool turn_sides(SurfaceMesh& mesh, double cell)
+bool turn_sides(SurfaceMesh& mesh, double cell, int threads)
 {
+    const std::vector<std::uint32_t> low_facets =
+        chosen(mesh.facets.size(), threads,
+               [&](std::size_t f) { return height(mesh, mesh.facets[f]) < low_facet * cell; });
+    if (low_facets.empty()) return false;
     std::vector<char> is_used(mesh.facets.size(), 0);
     bool found = false;
-    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+    for (const std::uint32_t f : low_facets)
     {
+        if (is_used[f] != 0) continue;
         const double low = height(mesh, mesh.facets[f]);
-        if (is_used[f] != 0 || !(low < low_facet * cell)) continue;
         std::size_t side = 0;
         double longest = 0;
         for (std::size_t s = 0; s < 3; ++s)
@@ -185,27 +196,19 @@ bool turn_sides(SurfaceMesh& mesh, double cell)
 } // namespace
 
 void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
-                    int threads, MeshReport& report)
+                    int threads)
 {
     bool is_changed = false;
     for (int round = 0; round < rounds; ++round)
     {
-        const bool joined = join_near_vertices(mesh, cell, on_creases);
+        const bool joined = join_near_vertices(mesh, cell, on_creases, threads);
         if (joined) build_edges(mesh, threads);
-        const bool turned = turn_sides(mesh, cell);
+        const bool turned = turn_sides(mesh, cell, threads);
         if (turned) build_edges(mesh, threads);
         if (!joined && !turned) break;
         is_changed = true;
     }
-    if (is_changed) reconnect(mesh, threads, report);
-}
-
-void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report)
-{
-    const std::size_t facets_read = report.facets_read;
-    report = {};
-    report.facets_read = facets_read;
-    connect_mesh(mesh, threads, report);
+    if (is_changed) measure_facets(mesh, threads);
 }
 
 } // namespace fppg

@@ -12,13 +12,10 @@ namespace fppg
 /// its longest side is turned to the other diagonal. Features and charts would take folded slivers
 /// for sheets of their own.
 ///
-/// mesh        connected before and after
+/// mesh        connected before and after, by connect_facets()
 /// cell        metres
 /// on_creases  per vertex: 1 where it is on a crease; these stay
 void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_creases,
-                    int threads, MeshReport& report);
-
-/// connect_mesh() once more, after vertices have moved; report.facets_read stays.
-void reconnect(SurfaceMesh& mesh, int threads, MeshReport& report);
+                    int threads);
 
 } // namespace fppg
