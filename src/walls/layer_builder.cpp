@@ -115,13 +115,17 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
     wall_ = wall_of(side, is_closed, settings_.feature_angle_deg, deepest);
     if (wall_ == nullptr) return;
     if (plan.middle_dp > 0) find_thin_parts(*wall_);
+    // The number of particles inside a body is measured by its layers' facets.
+    const bool is_coarse =
+        !grid_.is_2d && !out_.body.is_inside && wall_->turn_per_metre() * grid_.dp < few_turns;
+    const double cell_dp = is_coarse ? coarse_cell_dp : plan.cell_dp;
     const std::string of_side = side == WallSide::Front ? " before the surface" : std::string();
     for (std::size_t k = 0; k < plan.depths_dp.size(); ++k)
     {
         const double depth = plan.depths_dp[k] * grid_.dp;
         if (!(depth > 0)) continue;
         std::shared_ptr<const WallDepth> of_layer = wall_;
-        OffsetSurface surface = surface_at(depth, plan.cell_dp, side, is_closed, of_layer);
+        OffsetSurface surface = surface_at(depth, cell_dp, side, is_closed, of_layer);
         if (surface.mesh.facets.empty()) break;
         FittedBody body;
         body.name = fmt::format("layer {}{}", k + 1, of_side);
