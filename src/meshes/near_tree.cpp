@@ -502,9 +502,14 @@ ClosestPoint NearTree::closest(const Vec3& point, double within) const
         0,
         none};
     search.set_limit(within);
-    // Points are mostly asked for one beside the other: without a bound, the last answer is one.
+    // Points are mostly asked for one beside the other: the last answer is a good bound.
     thread_local std::uint32_t last = 0;
-    if (within == infinity && last < soup_.size()) search.look_at(last);
+    if (last < soup_.size()) search.look_at(last);
+    if (search.best.distance > within)
+    {
+        search.best = none;
+        search.set_limit(within);
+    }
     (is_avx2_there() ? search_avx2 : search_plain)(nodes_->nodes, nodes_->leaves, search);
     if (search.best.facet < soup_.size()) last = search.best.facet;
     // A point at the limit itself may be computed to be beyond it by a rounding.

@@ -32,7 +32,8 @@ bool may_hold(const WallDepth& wall, const DepthGrid& grid, Cube& cube, double d
     const DepthPlace place = wall.at(middle, cube.within);
     const double distance = norm(place.nearest - middle);
     cube.within = (distance + reach) * (1 + 1e-9);
-    if (std::fabs(distance - depth) <= reach) return true;
+    if (std::fabs(distance - depth) <= reach)
+        return distance <= reach || !wall.is_surely_before(middle, place);
     // At a mitre the depth is less than the distance, and jumps where another side is as near.
     return place.depth > 0 && distance > depth && distance - reach < longest_mitre * depth &&
            (place.depth < depth + reach ||

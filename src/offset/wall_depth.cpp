@@ -14,6 +14,7 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
     : mesh_(mesh),
       normals_(mesh_),
       test_(soup_of(mesh_), threads),
+      is_solid_(is_solid),
       asks_inside_(is_solid && !report.is_watertight),
       sign_(side == WallSide::Behind ? 1 : -1),
       turn_(std::cos(sharp_angle_deg * std::numbers::pi / 180))

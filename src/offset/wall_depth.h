@@ -72,6 +72,14 @@ public:
 
     /// within  metres; a point of the surface is known to be so near
     DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
+    /// Whether a point is before the wall beyond doubt: beside facets that lie on one another, as
+    /// folded slivers do, the nearest facet alone does not say so.
+    ///
+    /// place  at(p)
+    bool is_surely_before(const Vec3& p, const DepthPlace& place) const
+    {
+        return place.depth < 0 && (!is_solid_ || test_.is_inside(p) != (sign_ > 0));
+    }
     const SurfaceMesh& mesh() const { return mesh_; }
     /// Whether depths may be those of a mitre around some point: an edge that has one is so near.
     bool has_mitre_near(const Vec3& p, double within) const
@@ -95,6 +103,7 @@ private:
     PseudoNormals normals_;
     InsideTest test_;
     double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
+    bool is_solid_ = false;
     bool asks_inside_ = false;
     double sign_ = 1;
     std::vector<char> is_sharp_; ///< per edge
