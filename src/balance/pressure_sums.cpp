@@ -62,8 +62,8 @@ struct GroupLanes
     /// The offsets from a neighbour to them.
     FPPG_LANES LaneOffsets from(const PackedPoint& neighbour) const
     {
-        LaneOffsets o{x - spread<0>(neighbour), y - spread<1>(neighbour),
-                      z - spread<2>(neighbour), Lanes{}, spread<3>(neighbour)};
+        LaneOffsets o{x - spread<0>(neighbour), y - spread<1>(neighbour), z - spread<2>(neighbour),
+                      Lanes{}, spread<3>(neighbour)};
         o.squared = o.x * o.x + o.y * o.y + o.z * o.z;
         return o;
     }

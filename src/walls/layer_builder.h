@@ -16,8 +16,8 @@ namespace fppg
 
 /// Side of the cells that offset surfaces are cut from, dp.
 inline constexpr double offset_cell_dp = 0.5;
-/// The same where a wall turns by less than this many radians a dp: plates and boxes of more than 60
-/// dp, balls of more than 40. There it takes half the time for the same layers; the layers of a
+/// The same where a wall turns by less than this many radians a dp: plates and boxes of more than
+/// 60 dp, balls of more than 40. There it takes half the time for the same layers; the layers of a
 /// vehicle that turns by 0.07 were less even by it (spread 0.054 instead of 0.046).
 inline constexpr double coarse_cell_dp = 0.7;
 inline constexpr double few_turns = 0.05;
