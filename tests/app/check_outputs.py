@@ -3,9 +3,10 @@
 
     check_outputs.py PROGRAM SHIM [unittest arguments]
 
-SHIM is a library that kills the program as it renames a file, or "" where none was built.
+SHIM is a library that kills the program as it renames a file and lets its calls fail, or "" where none was built.
 """
 
+import errno
 import fcntl
 import os
 import re
@@ -177,6 +178,26 @@ class Mixed(Outputs):
         code, out, _ = self.run_it("Case_Def", "out/Case", "-save:-bi", "-dp:0.04")
         self.assertEqual(code, 0)
         self.assertIn("*** WARNING: out/Case.bi4 is of an earlier run", out)
+
+
+@unittest.skipUnless(SHIM, "the library that lets calls fail was not built")
+class Failing(Outputs):
+    def test_calls_leave_the_old_files_alone(self):
+        """A quota that is used up, or a disk that breaks: as room is taken, as bytes are written, as a file is closed."""
+        before = self.make_old_result()
+        for call in ("fallocate", "pwrite", "close"):
+            for error in (errno.EDQUOT, errno.EIO):
+                for at in range(1, 100):
+                    environment = {**os.environ, "LD_PRELOAD": SHIM, "FAIL_CALL": call, "FAIL_AT": str(at), "FAIL_ERROR": str(error)}
+                    code, out, _ = self.run_it("Case_Def", "out/Case", "-save:all", "-dp:0.04", env=environment)
+                    if code == 0:
+                        break
+                    self.assertEqual(code, 4, out)
+                    self.assertRegex(out, rf"\*\*\* Error: .*{os.strerror(error)}")
+                    self.assertEqual(self.contents(), before, (call, at))
+                self.assertEqual(code, 0, out)
+                self.assertGreater(at, 1, call)
+                before = self.make_old_result()
 
 
 class Stopped(Outputs):
