@@ -2,6 +2,7 @@
 """Runs all cases of cases/ with 1, 2, 3, 8 and 16 threads, twice each, on the lattice, fitted and relaxed: the same bytes each time.
 
     check_same_bytes.py PROGRAM [--other PROGRAM] [--cases dambreak,gear] [--threads 1,16] [--coarser 2.5]
+    check_same_bytes.py PROGRAM --recorded FILE [--write]    # particles on the lattice, against a record that all compilers share
 
 With --other, of another compiler: on the lattice its files are the same; fitted, no particle is farther than 1e-12 dp from its place.
 """
@@ -66,12 +67,38 @@ def farthest(first, second, dp):
     return max((abs(a - b) for a, b in zip(struct.unpack(form, places), struct.unpack(form, others))), default=0.0) / dp
 
 
-def check(options, definition, mode):
-    """Prints a row; whether all is as it should be."""
+def name_and_dp(options, definition):
     with open(definition, encoding="utf-8") as file:
         dp = float(re.search(r'<definition dp="([^"]+)"', file.read()).group(1))
     name = os.path.basename(os.path.dirname(definition))
-    dp *= COARSER.get(name, options.coarser)
+    return name, dp * COARSER.get(name, options.coarser)
+
+
+def check_record(options, definitions):
+    """Number and hash of ids and places of all particles on the lattice: one record for every compiler."""
+    lines = []
+    for definition in definitions:
+        name, dp = name_and_dp(options, definition)
+        with tempfile.TemporaryDirectory(prefix="fppg-bytes-") as folder:
+            files = run(options.program, definition[:-4], dp, "lattice", 2, folder)
+        if "Case.bi4" not in files:
+            print(name, files.get("error", b"").decode().strip())
+            return False
+        count, ids = array_of(files["Case.bi4"], b"Idp")
+        lines.append(f"{name}\t{count}\t{hashlib.sha256(ids + array_of(files['Case.bi4'], b'Posd')[1]).hexdigest()[:16]}\n")
+    if options.write:
+        with open(options.recorded, "w", encoding="utf-8") as file:
+            file.writelines(lines)
+    with open(options.recorded, encoding="utf-8") as file:
+        recorded = dict(line.split("\t", 1) for line in file)
+    other = [line for line in lines if recorded.get(line.split("\t")[0]) != line.split("\t", 1)[1]]
+    print(f"{len(lines) - len(other)} of {len(lines)} cases have the recorded particles", *other, sep="\n")
+    return lines and not other
+
+
+def check(options, definition, mode):
+    """Prints a row; whether all is as it should be."""
+    name, dp = name_and_dp(options, definition)
     hashes = set()
     last = {}
     for threads in options.threads.split(","):
@@ -99,14 +126,19 @@ def main():
     parser.add_argument("--other", default="")
     parser.add_argument("--cases", default="")
     parser.add_argument("--threads", default="1,2,3,8,16")
+    parser.add_argument("--modes", default=",".join(MODES))
     parser.add_argument("--coarser", type=float, default=2.5, help="than the dp of the case")
+    parser.add_argument("--recorded", default="")
+    parser.add_argument("--write", action="store_true", help="the record anew")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
     options.other = os.path.abspath(options.other) if options.other else ""
     definitions = sorted(glob.glob(f"{ROOT}/cases/*/*_Def.xml"))
     if options.cases:
         definitions = [d for d in definitions if os.path.basename(os.path.dirname(d)) in options.cases.split(",")]
-    right = [check(options, d, mode) for d in definitions for mode in MODES]
+    if options.recorded:
+        return 0 if check_record(options, definitions) else 1
+    right = [check(options, d, mode) for mode in options.modes.split(",") for d in definitions]
     print(f"{right.count(True)} of {len(right)} as they should be")
     return 0 if right and all(right) else 1
 

@@ -227,6 +227,7 @@ private:
     void add_time(const BinaryItem& item, MeshData& data) const
     {
         data.times.push_back(number<double>(item, "TimeStep", 12));
+        if (!std::isfinite(data.times.back())) fail("has a time that is not finite");
         if (data.times.size() > 1 && !(data.times.back() > *(data.times.end() - 2)))
             fail(fmt::format("has a time {:g} s that does not follow {:g} s", data.times.back(),
                              *(data.times.end() - 2)));

@@ -282,8 +282,10 @@ private:
 
     static std::uint64_t point_number(double value)
     {
-        // A negative number is none of a point; it stays negative in the message.
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
+        // A negative number is none of a point; it stays negative in the message. As a double the
+        // largest whole number of a text is 2^63, which is none of 64 bits.
+        constexpr double most = 9e18;
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min(value, most)));
     }
 
     void add_cell(CellLists& cells, const std::vector<double>& numbers)

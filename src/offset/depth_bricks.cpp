@@ -118,7 +118,8 @@ public:
     BrickFiller(const WallDepth& wall, const DepthGrid& grid, double depth, DepthBrick& brick)
         : wall_(wall), grid_(grid), depth_(depth), brick_(brick)
     {
-        brick.nodes.assign(static_cast<std::size_t>(brick_nodes * brick_nodes * brick_nodes), {});
+        constexpr int all = brick_nodes * brick_nodes * brick_nodes;
+        brick.nodes.assign(static_cast<std::size_t>(all), {});
         is_seen_.assign(brick.nodes.size(), 0);
     }
 
@@ -150,7 +151,8 @@ public:
 private:
     void look(const std::array<int, 3>& n, double within)
     {
-        const auto at = static_cast<std::size_t>((n[0] * brick_nodes + n[1]) * brick_nodes + n[2]);
+        const int number = (n[0] * brick_nodes + n[1]) * brick_nodes + n[2];
+        const auto at = static_cast<std::size_t>(number);
         if (is_seen_[at] != 0) return;
         is_seen_[at] = 1;
         const Vec3 p =

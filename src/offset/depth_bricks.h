@@ -44,7 +44,8 @@ struct DepthBrick
 
     const DepthNode& node(int i, int j, int k) const
     {
-        return nodes[static_cast<std::size_t>((i * brick_nodes + j) * brick_nodes + k)];
+        const int at = (i * brick_nodes + j) * brick_nodes + k;
+        return nodes[static_cast<std::size_t>(at)];
     }
 };
 

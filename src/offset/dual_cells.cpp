@@ -261,7 +261,7 @@ DualBrick make_dual_brick(const DualSource& from, const DepthBrick& brick, doubl
         for (auto& crossings : of_sheet) crossings.clear();
         for (int e = 0; e < edges_of_cell; ++e)
         {
-            const int sheet = dual.vertex[static_cast<std::size_t>(e)];
+            const std::int8_t sheet = dual.vertex[static_cast<std::size_t>(e)];
             if (sheet < 0) continue;
             const auto a = corner_of_edge(e, 0);
             const auto b = corner_of_edge(e, 1);

@@ -51,7 +51,8 @@ struct DualBrick
 
     NodeSide side(const std::array<int, 3>& n) const
     {
-        return sides[static_cast<std::size_t>((n[0] * brick_nodes + n[1]) * brick_nodes + n[2])];
+        const int at = (n[0] * brick_nodes + n[1]) * brick_nodes + n[2];
+        return sides[static_cast<std::size_t>(at)];
     }
 };
 

@@ -69,11 +69,11 @@ private:
             b = found;
         }
         const DualBrick& dual = duals_[b];
-        const std::int16_t at = dual.index[static_cast<std::size_t>(
-            (cell[0] * brick_cells + cell[1]) * brick_cells + cell[2])];
+        const int number = (cell[0] * brick_cells + cell[1]) * brick_cells + cell[2];
+        const std::int16_t at = dual.index[static_cast<std::size_t>(number)];
         if (at < 0) return {};
         const DualCell& of_cell = dual.cells[static_cast<std::size_t>(at)];
-        const int sheet = of_cell.vertex[static_cast<std::size_t>(edge)];
+        const std::int8_t sheet = of_cell.vertex[static_cast<std::size_t>(edge)];
         if (sheet < 0) return {};
         const std::size_t vertex = of_cell.first + static_cast<std::size_t>(sheet);
         return {static_cast<std::uint32_t>(first_[b] + vertex), &dual.vertices[vertex]};

@@ -59,12 +59,12 @@ void EditedText::remove(const TextNode& node)
     replace(span, "");
 }
 
-void EditedText::report(int line, std::string from, std::string to)
+void EditedText::report(int line, const std::string& from, const std::string& to)
 {
     out_.changes.push_back({line, one_line(from), one_line(to)});
 }
 
-void EditedText::note(int line, std::string text)
+void EditedText::note(int line, const std::string& text)
 {
     out_.notes.push_back({line, one_line(text)});
 }

@@ -34,8 +34,8 @@ public:
     /// With its line, where nothing else stands on it.
     void remove(const TextNode& node);
 
-    void report(int line, std::string from, std::string to);
-    void note(int line, std::string text);
+    void report(int line, const std::string& from, const std::string& to);
+    void note(int line, const std::string& text);
 
     /// The blanks before `at`, where there is nothing else before it on its line.
     std::optional<std::string> indent_at(std::size_t at) const;

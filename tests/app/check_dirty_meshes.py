@@ -18,6 +18,8 @@ import tempfile
 
 import numpy as np
 
+from sanitized import times_slower
+
 PROGRAM, TOOLS, TABLE = sys.argv[1:4]
 sys.path.insert(0, TOOLS)
 from make_meshes import icosphere  # noqa: E402 (found by the path above)
@@ -33,8 +35,11 @@ CASE = """<case xmlns:fppg="urn:fppg"><casedef><constantsdef><gravity x="0" y="0
 <parameter key="NoPenetration" value="1" /><parameter key="TimeMax" value="1" /></parameters></execution></case>
 """
 MESH = '<drawfilestl file="mesh.stl" {} />'
-BLOCK = ('<setmkbound mk="1" /><drawbox fppg:name="block"><boxfill>solid</boxfill><point x="#{0}+0.2" y="#{0}+0.2" '
-         'z="#{0}+0.5" /><size x="0.6" y="0.6" z="0.5" /></drawbox>')
+# @ stands before places and % before lengths: far from the origin both are other numbers.
+BLOCK = ('<setmkbound mk="1" /><drawbox fppg:name="block"><boxfill>solid</boxfill><point x="@0.2" y="@0.2" z="@0.5" />'
+         '<size x="%0.6" y="%0.6" z="%0.5" /></drawbox>')
+FAR = 1e6
+FAR_DP = 1e-3
 # GenCase's rule for the nodes of a facet (tests/golden/rules.md) depends on how a surface is cut into facets.
 MOST_OF_COUNT = 0.2
 # name -> draws, <fppg>, option, Boundary.
@@ -44,7 +49,7 @@ MODES = {
     "fitted": (MESH.format('fppg:fill="inside"'), "", "-fit:raw", 1),
     "Boolean": (MESH.format('fppg:name="ball"') + BLOCK, '<bodyfitted mkbound="0-9" /><boolean op="difference" '
                 'mkbound="1"><part ref="block" /><part ref="ball" /></boolean>', "-fit:raw", 1),
-    "fill": (MESH.format(""), '<fill mkfluid="0" seed="#{0}+0.5,#{0}+0.5,#{0}+0.3" percent="60" />', "-fit:off", 1),
+    "fill": (MESH.format(""), '<fill mkfluid="0" seed="@0.5,@0.5,@0.3" percent="60" />', "-fit:off", 1),
     "mDBC": (MESH.format(""), '<bodyfitted mkbound="0" boundary="mdbc" />', "-fit:raw", 2),
 }
 
@@ -79,6 +84,10 @@ def moved(facets, by):
     return [[[x + by for x in corner] for corner in facet] for facet in facets]
 
 
+def far_away(facets):
+    return moved(scaled(facets, FAR_DP / DP), FAR)
+
+
 def halved(facets):
     """Each tenth facet has a corner in the middle of its first edge, which the neighbour lacks."""
     out = []
@@ -111,7 +120,8 @@ def jittered(facets, by):
 
 
 def defects():
-    """name -> bytes of the file, facets of the clean twin (None: there is none, an error or a warning is wanted)."""
+    """name -> bytes of the file, facets of the clean twin (None: there is none, an error or a warning is wanted). Names
+    that begin with "near 1e6" are of balls there, as large as their dp."""
     clean = ball()
     nan = [[list(corner) for corner in facet] for facet in clean]
     nan[7][1][2] = float("nan")
@@ -147,6 +157,8 @@ def defects():
         "binary that begins with solid": (binary(clean, head=b"solid ball"), clean),
         "1000 times too large": (binary(scaled(clean, 1000)), None),
         "1000 times too small": (binary(scaled(clean, 0.001)), None),
+        "near 1e6 m with dp 1e-3, ASCII": (text(far_away(clean), "{:.17g}"), clean),
+        "near 1e6 m with dp 1e-3, binary": (binary(far_away(clean)), None),
         "20,000 slivers": (binary(slivers(clean, 20000)), clean),
     }
 
@@ -155,15 +167,17 @@ class Run:
     """What a case gave: code, warnings, error, particles with mk, and vectors of boundary particles."""
 
     def __init__(self, folder, mode, mesh, low=0.0, dp=DP):
+        def put(text):
+            text = re.sub(r"@([0-9.]+)", lambda m: repr(low + dp / DP * float(m.group(1))), text)
+            return re.sub(r"%([0-9.]+)", lambda m: repr(dp / DP * float(m.group(1))), text)
+
         draws, fit, option, boundary = MODES[mode]
         with open(os.path.join(folder, "mesh.stl"), "wb") as file:
             file.write(mesh)
-        fit = re.sub(r"#\{0\}\+([0-9.]+)", lambda m: repr(low + float(m.group(1))), fit)
         with open(os.path.join(folder, "Case_Def.xml"), "w", encoding="utf-8") as file:
-            file.write(CASE.format(dp=dp, low=low, high=low + 1, draws=draws.replace("{0}", repr(low)), fit=fit,
-                                   boundary=boundary))
+            file.write(CASE.format(dp=dp, low=repr(low), high=repr(low + dp / DP), draws=put(draws), fit=put(fit), boundary=boundary))
         done = subprocess.run([PROGRAM, "Case_Def", "out/Case", "-threads:2", option], cwd=folder, check=False,
-                              timeout=100, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                              timeout=100 * times_slower(PROGRAM), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.code, self.out = done.returncode, done.stdout
         assert self.code in (0, 3, 4), f"{mode}: exit code {self.code}\n{self.out}"
         self.error = "".join(re.findall(r"\n\*\*\* Error: (.*)", self.out))
@@ -174,6 +188,8 @@ class Run:
             self.places, self.mk = read_particles(stem)
             _, arrays = read_bi4(stem + ".bi4")
             self.normals = np.array(arrays.get("BoundNor", np.zeros((0, 3))), float).reshape(-1, 3)
+            # As if it were the clean case.
+            self.places, self.normals = (self.places - low) * (DP / dp), self.normals * (DP / dp)
 
 
 def farthest(a, b):
@@ -218,7 +234,7 @@ def difference(run, twin, mode):
 
 
 def judge(folder, mode, mesh, clean, clean_text):
-    run = Run(folder, mode, mesh)
+    run = Run(folder, mode, mesh, *((FAR, FAR_DP) if clean_text.startswith("near 1e6") else ()))
     if run.code != 0:
         assert "mesh.stl" in run.error or "Case_Def.xml" in run.error, f"{mode}: {run.error}"
         return "error" if clean_text != "clean" else "ERROR"

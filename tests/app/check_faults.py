@@ -23,9 +23,11 @@ import time
 import unittest
 
 from check_limits import box_stl
+from sanitized import is_sanitized, times_slower
 
 RUNNER = shlex.split(os.environ.get("FPPG_RUNNER", ""))
 PROGRAM = [*RUNNER, sys.argv[1]]
+SLOWER = times_slower(PROGRAM[-1])
 TIMES = int(os.environ.get("FPPG_FAULTS", "1"))
 os.environ["SOURCE_DATE_EPOCH"] = "86400"
 CASE = """<case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" />
@@ -64,7 +66,7 @@ class Faults(unittest.TestCase):
 
     def run_it(self, *arguments, **options):
         process = self.start(*arguments, **options)
-        out, _ = process.communicate(timeout=120)
+        out, _ = process.communicate(timeout=120 * SLOWER)
         return process.returncode, out
 
     def make(self, *arguments):
@@ -158,7 +160,7 @@ class Killed(Faults):
             process = self.start("Case_Def", "out/Case", "-save:all", "-dp:0.02")
             time.sleep(moments.uniform(0, 1.1 * takes))
             process.kill()
-            process.communicate(timeout=60)
+            process.communicate(timeout=60 * SLOWER)
             files = {name: data for name, data in self.results().items() if ".part-" not in name and ".lock" not in name}
             pair = [(files.get("Case.xml"), files.get("Case.bi4"))]
             if pair[0][0] is None:
@@ -276,7 +278,7 @@ class Inputs(Faults):
             process = self.start("Case_Def", "out/Case")
             time.sleep(wait)
             os.truncate(self.path("data/box.stl"), 4096)
-            out, _ = process.communicate(timeout=120)
+            out, _ = process.communicate(timeout=120 * SLOWER)
             self.assertIn(process.returncode, (0, 3, 4), out)
 
     def test_of_the_future(self):
@@ -290,6 +292,7 @@ class Inputs(Faults):
             self.assertLess(os.stat(self.path("out/" + name)).st_mtime, ahead)
 
 
+@unittest.skipIf(is_sanitized(PROGRAM[-1]), "the sanitizer needs memory without limits")
 class Memory(Faults):
     def run_with(self, size, *arguments):
         return self.run_it("Case_Def", "out/Case", *arguments,

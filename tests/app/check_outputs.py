@@ -3,9 +3,10 @@
 
     check_outputs.py PROGRAM SHIM [unittest arguments]
 
-SHIM is a library that kills the program as it renames a file, or "" where none was built.
+SHIM is a library that kills the program as it renames a file and lets its calls fail, or "" where none was built.
 """
 
+import errno
 import fcntl
 import os
 import re
@@ -17,7 +18,10 @@ import tempfile
 import time
 import unittest
 
+from sanitized import times_slower
+
 PROGRAM, SHIM = sys.argv[1:3]
+SLOWER = times_slower(PROGRAM)
 os.environ["SOURCE_DATE_EPOCH"] = "86400"
 HEAD = """<case><casedef><constantsdef><gravity x="0" y="0" z="-9.81" /><rhop0 value="1000" />
 <hswl value="0" auto="true" /><gamma value="7" /><coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />
@@ -64,7 +68,7 @@ class Outputs(unittest.TestCase):
 
     def run_it(self, *arguments, **options):
         process = self.start(*arguments, **options)
-        out, err = process.communicate(timeout=120)
+        out, err = process.communicate(timeout=120 * SLOWER)
         return process.returncode, out, err
 
     def contents(self):
@@ -79,7 +83,7 @@ class Outputs(unittest.TestCase):
         return self.contents()
 
     def wait_until(self, is_time, process):
-        end = time.monotonic() + 60
+        end = time.monotonic() + 60 * SLOWER
         while not is_time() and process.poll() is None and time.monotonic() < end:
             time.sleep(0.0005)
 
@@ -97,7 +101,7 @@ class TwoRuns(Outputs):
         for _ in range(20):
             two = [self.start("Case_Def", "out/Case", dp) for dp in ("-dp:0.02", "-dp:0.025")]
             for process in two:
-                out, _ = process.communicate(timeout=120)
+                out, _ = process.communicate(timeout=120 * SLOWER)
                 self.assertEqual(process.returncode, 0, out)
             self.expect_pair()
             self.assertEqual(self.leftovers(), [])
@@ -176,12 +180,32 @@ class Mixed(Outputs):
         self.assertIn("*** WARNING: out/Case.bi4 is of an earlier run", out)
 
 
+@unittest.skipUnless(SHIM, "the library that lets calls fail was not built")
+class Failing(Outputs):
+    def test_calls_leave_the_old_files_alone(self):
+        """A quota that is used up, or a disk that breaks: as room is taken, as bytes are written, as a file is closed."""
+        before = self.make_old_result()
+        for call in ("fallocate", "pwrite", "close"):
+            for error in (errno.EDQUOT, errno.EIO):
+                for at in range(1, 100):
+                    environment = {**os.environ, "LD_PRELOAD": SHIM, "FAIL_CALL": call, "FAIL_AT": str(at), "FAIL_ERROR": str(error)}
+                    code, out, _ = self.run_it("Case_Def", "out/Case", "-save:all", "-dp:0.04", env=environment)
+                    if code == 0:
+                        break
+                    self.assertEqual(code, 4, out)
+                    self.assertRegex(out, rf"\*\*\* Error: .*{os.strerror(error)}")
+                    self.assertEqual(self.contents(), before, (call, at))
+                self.assertEqual(code, 0, out)
+                self.assertGreater(at, 1, call)
+                before = self.make_old_result()
+
+
 class Stopped(Outputs):
     def stop(self, number, is_time, definition="Case_Def", *arguments):
         process = self.start(definition, "out/Case", "-save:all", *arguments)
         self.wait_until(is_time, process)
         process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=60 * SLOWER)
         return process.returncode, out + err
 
     def is_writing(self):
@@ -222,7 +246,7 @@ class Stopped(Outputs):
                              preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         self.wait_until(lambda: os.path.exists(self.path("out/.Case.lock")), process)
         process.send_signal(signal.SIGHUP)
-        out, _ = process.communicate(timeout=60)
+        out, _ = process.communicate(timeout=60 * SLOWER)
         self.assertEqual(process.returncode, 0, out)
 
     def test_by_sigkill_leaves_files_that_the_next_run_removes(self):
@@ -245,7 +269,7 @@ class Stopped(Outputs):
         command = f'"{PROGRAM}" Case_Def out/Case -dp:0.004; echo $? > code'
         subprocess.run(["/bin/bash", "-c", f"({command}) | head -1"], cwd=self.folder, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 60 * SLOWER
         while not os.path.exists(self.path("code")) and time.monotonic() < deadline:
             time.sleep(0.01)
         time.sleep(0.05)

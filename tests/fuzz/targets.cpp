@@ -4,15 +4,18 @@
 #include "app/subcommand_line.h"
 #include "app/subcommands.h"
 #include "casedef/expression.h"
+#include "casedef/mesh_data.h"
 #include "casedef/variables.h"
 #include "core/text.h"
 #include "fppg/case_def.h"
 #include "fppg/error.h"
 #include "fppg/read_particles.h"
+#include "fppg/read_shapes.h"
 #include "fppg/shapes.h"
 #include "fppg/surface_mesh.h"
 #include "fuzz/working_folder.h"
 #include "meshes/readers.h"
+#include "report/run_facts.h"
 #include "upgrade/upgrade.h"
 
 #include <algorithm>
@@ -122,6 +125,33 @@ void read_bi4_file(std::string_view bytes)
     (void)read_particles("Result", false, 1);
 }
 
+/// The Case.xml of a result, beside the particles of the working folder.
+void read_result_xml(std::string_view bytes)
+{
+    write_input("Given.xml", bytes);
+    (void)read_particles("Given", false, 1);
+}
+
+/// What `<initials>` reads: tables and binary files.
+void read_values_on_a_mesh(std::string_view bytes)
+{
+    const std::string name = bytes.starts_with("#FileJBD") ? "values.mbi4" : "values.csv";
+    write_input(name, bytes);
+    (void)values_at_time(read_mesh_data(name, "Vel"), 0.5);
+}
+
+void read_shape_file(std::string_view bytes)
+{
+    write_input("Case__Dp.vtk", bytes);
+    (void)read_shapes_vtk("Case__Dp.vtk");
+}
+
+/// Case.out, as reports read it.
+void read_log(std::string_view bytes)
+{
+    (void)run_facts_html(read_run_facts(bytes));
+}
+
 void read_vtk_file(std::string_view bytes)
 {
     write_input("Result_All.vtk", bytes);
@@ -156,11 +186,15 @@ constexpr auto table = std::to_array<Target>({
     {"csv", read_mesh<MeshFormat::CsvBathymetry>, false},
     {"expression", evaluate, false},
     {"generate", generate_particles, true},
+    {"log", read_log, false},
+    {"meshdata", read_values_on_a_mesh, false},
     {"obj", read_mesh<MeshFormat::Obj>, false},
     {"off", read_mesh<MeshFormat::Off>, false},
     {"particles", read_vtk_file, false},
     {"ply", read_mesh<MeshFormat::Ply>, false},
     {"points", read_point_list, false},
+    {"result", read_result_xml, true},
+    {"shapes", read_shape_file, false},
     {"stl", read_mesh<MeshFormat::Stl>, false},
     {"vtk", read_mesh<MeshFormat::Vtk>, false},
     {"vtm", read_parts, false},
