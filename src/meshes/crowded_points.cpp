@@ -16,9 +16,10 @@ constexpr std::size_t points_per_chunk = 1024;
 /// So much of a distance may be lacking: coordinates of files are rounded.
 constexpr double rounding = 1e-4;
 
-PointGrid grid_of_all(const std::vector<Vec3>& points, double cell)
+/// Cells twice as long as the reach: eight of them are looked into instead of 27.
+PointGrid grid_of_all(const std::vector<Vec3>& points, double reach)
 {
-    PointGrid grid(cell, points.size());
+    PointGrid grid(2 * reach, points.size());
     for (const Vec3& p : points) grid.add(p);
     return grid;
 }

@@ -169,11 +169,15 @@ public:
         const std::size_t count = (parts_.size() + lane_count - 1) / lane_count;
         nodes.resize(nodes_over({0, count}));
         leaves.resize(count);
-        // Large ranges are halved one after the other, small ones on all threads.
-        std::vector<Subtree> small;
-        spread({0, {0, count}}, nodes, &small);
-        parallel_for(small.size(), threads_,
-                     [&](std::size_t i) { spread(small[i], nodes, nullptr); });
+        // Nodes of one level on all threads.
+        for (std::vector<Subtree> level{{0, {0, count}}}; !level.empty();)
+        {
+            std::vector<std::vector<Subtree>> below(level.size());
+            parallel_for(level.size(), threads_,
+                         [&](std::size_t i) { spread(level[i], nodes, below[i]); });
+            level.clear();
+            for (const auto& some : below) level.insert(level.end(), some.begin(), some.end());
+        }
         std::vector<Box3> leaf_boxes(count);
         parallel_for(
             count, threads_, [&](std::size_t l) { leaf_boxes[l] = fill(l, leaves[l]); }, 64);
@@ -227,9 +231,9 @@ private:
         return sum;
     }
 
-    /// Makes the nodes over a range, each before those below it. Where `small` is given, subtrees
-    /// over few parts are noted there instead.
-    void spread(const Subtree& tree, std::vector<TreeNode>& nodes, std::vector<Subtree>* small)
+    /// Makes the nodes over a range, each before those below it; subtrees over many parts are left
+    /// for later.
+    void spread(const Subtree& tree, std::vector<TreeNode>& nodes, std::vector<Subtree>& later)
     {
         TreeNode& node = nodes[tree.node];
         std::uint32_t next = tree.node + 1;
@@ -243,10 +247,10 @@ private:
                 if (part.size() == 1) return;
                 const Subtree below{next, part};
                 next += nodes_over(part);
-                if (small != nullptr && lane_count * part.size() <= parts_per_task)
-                    small->push_back(below);
+                if (lane_count * part.size() > parts_per_task)
+                    later.push_back(below);
                 else
-                    spread(below, nodes, small);
+                    spread(below, nodes, later);
             });
     }
 
