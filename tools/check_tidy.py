@@ -20,6 +20,8 @@ import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+# As in src/*/CMakeLists.txt; their values do not matter here.
+DEFINITIONS = ["-DFMT_SHARED", '-DFPPG_LIBRARIES="lib"', '-DFPPG_PLUGIN_FOLDER="lib"']
 # A change of more files is looked at by --all.
 MOST = 10
 
@@ -85,7 +87,7 @@ def flags_of(source, build, known):
         return known[source]
     if source.startswith(ROOT + os.sep) and not is_of_a_stage(source):
         return None
-    return ["-std=c++20", "-fopenmp", "-DFMT_SHARED", f"-I{ROOT}/include", f"-I{ROOT}/src", f"-I{build}/include", f"-I{build}",
+    return ["-std=c++20", "-fopenmp", *DEFINITIONS, f"-I{ROOT}/include", f"-I{ROOT}/src", f"-I{build}/include", f"-I{build}",
             "-isystem", "/usr/include/hdf5/serial"]
 
 

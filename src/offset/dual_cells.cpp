@@ -261,8 +261,8 @@ DualBrick make_dual_brick(const DualSource& from, const DepthBrick& brick, doubl
         for (auto& crossings : of_sheet) crossings.clear();
         for (int e = 0; e < edges_of_cell; ++e)
         {
-            const std::int8_t sheet = dual.vertex[static_cast<std::size_t>(e)];
-            if (sheet < 0) continue;
+            if (dual.vertex[static_cast<std::size_t>(e)] < 0) continue;
+            const auto sheet = static_cast<std::uint8_t>(dual.vertex[static_cast<std::size_t>(e)]);
             const auto a = corner_of_edge(e, 0);
             const auto b = corner_of_edge(e, 1);
             const auto place = [&](const std::array<int, 3>& corner)
@@ -271,7 +271,7 @@ DualBrick make_dual_brick(const DualSource& from, const DepthBrick& brick, doubl
                                  brick.first[1] + at[1] + corner[1],
                                  brick.first[2] + at[2] + corner[2]);
             };
-            of_sheet[static_cast<std::size_t>(sheet)].push_back(
+            of_sheet[sheet].push_back(
                 cross_edge(brick.node(at[0] + a[0], at[1] + a[1], at[2] + a[2]), place(a),
                            brick.node(at[0] + b[0], at[1] + b[1], at[2] + b[2]), place(b), depth));
         }

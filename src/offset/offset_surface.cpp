@@ -75,7 +75,7 @@ private:
         const DualCell& of_cell = dual.cells[static_cast<std::size_t>(at)];
         const std::int8_t sheet = of_cell.vertex[static_cast<std::size_t>(edge)];
         if (sheet < 0) return {};
-        const std::size_t vertex = of_cell.first + static_cast<std::size_t>(sheet);
+        const std::size_t vertex = of_cell.first + static_cast<std::uint8_t>(sheet);
         return {static_cast<std::uint32_t>(first_[b] + vertex), &dual.vertices[vertex]};
     }
 
