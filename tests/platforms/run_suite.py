@@ -56,6 +56,8 @@ def run_tests(starter):
     for test, why in skipped.items():
         print(f"left out: {test}: {why}")
     environment = dict(os.environ, FPPG_PROGRAM_OF_THIS_ONE=PROGRAM, FPPG_PROGRAM_OF_OTHER_SYSTEM=starter)
+    if "-L" in RUNNER:  # for programs that the kernel starts by qemu: their libraries
+        environment["QEMU_LD_PREFIX"] = RUNNER[RUNNER.index("-L") + 1]
     done = subprocess.run([SUITE, "--gtest_filter=-" + ":".join(skipped)], env=environment, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, check=False)
     text = done.stdout.decode(errors="replace")

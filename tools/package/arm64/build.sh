@@ -16,7 +16,7 @@ root=$folder/root
 
 # What the program is linked with, and what that needs to run under qemu.
 unpack_libraries() {
-    [ ! -f "$folder/unpacked" ] || return 0
+    [ ! "$folder/unpacked" -nt "$here/packages.txt" ] || return 0
     apt=$folder/apt
     mkdir -p "$apt/lists/partial" "$apt/cache/archives/partial"
     cat >"$apt/apt.conf" <<END
