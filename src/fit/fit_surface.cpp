@@ -94,6 +94,7 @@ void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int 
                         SurfaceParticles& result)
 {
     const MeshQuery query(soup_of(mesh), threads);
+    query.prepare_nearest();
     const auto cells = find_crossed_cells(mesh, options.lattice_origin, options.dp, threads);
     std::vector<ClosestPoint> closest(cells.size());
     parallel_for(

@@ -147,6 +147,7 @@ void WallPainter::cut_by(const FittedDraw& draw)
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     if (std::none_of(positions.begin(), positions.end(), is_near)) return;
     const InsideTest test(soup_of(draw.body.mesh), threads_);
+    test.query().prepare_nearest();
     // Layers take the place of what stood there, as the nodes between them are taken.
     const auto is_among_layers = [&](const Vec3& p)
     {

@@ -169,6 +169,11 @@ const TriangleSoup& MeshQuery::soup() const
     return scene_->soup;
 }
 
+void MeshQuery::prepare_nearest() const
+{
+    scene_->near_tree();
+}
+
 ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
 {
     return scene_->near_tree().closest(point, within);

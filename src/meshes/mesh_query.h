@@ -42,6 +42,10 @@ public:
     MeshQuery(MeshQuery&&) noexcept;
     MeshQuery& operator=(MeshQuery&&) noexcept;
 
+    /// Makes the tree that closest_point() searches, on all threads. Else its first call does, and
+    /// from a parallel loop on that thread alone, while the others wait.
+    void prepare_nearest() const;
+
     /// The nearest point of all facets. A point on an edge has the same bits whichever of the
     /// facets at that edge it is computed from.
     ///

@@ -63,7 +63,9 @@ WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
     }
     note_thin_walls(field);
     pieces_.clear();
-    if (!wet.vertices.empty()) query_ = std::make_unique<MeshQuery>(std::move(wet), threads);
+    if (wet.vertices.empty()) return;
+    query_ = std::make_unique<MeshQuery>(std::move(wet), threads);
+    query_->prepare_nearest();
 }
 
 void WetSurface::cut_pieces(const RunField& field)

@@ -19,6 +19,7 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
       sign_(side == WallSide::Behind ? 1 : -1),
       turn_(std::cos(sharp_angle_deg * std::numbers::pi / 180))
 {
+    query().prepare_nearest();
     for (const Vec3& v : mesh_.vertices) size_ = std::max(size_, largest_coordinate(v));
     is_sharp_.resize(mesh_.edges.size(), 0);
     TriangleSoup mitred;
