@@ -200,13 +200,10 @@ private:
     void accelerate()
     {
         set_field();
-        // Of sums in dp and dp^3 to those in metres.
-        const double dp = rest_.dp;
-        const double scale =
-            rest_.alpha() / (rest_.h * rest_.h) * dp * (rest_.is_2d ? dp * dp : dp * dp * dp);
-        const PairShape shape{static_cast<float>(rest_.h / dp), rest_.is_cubic};
+        const double scale = rest_.slope_scale();
+        const PairShape shape{static_cast<float>(rest_.h / rest_.dp), rest_.is_cubic};
         const double g = norm(rest_.gravity);
-        const double deep = rest_.pressure(depth_of_pushes * dp);
+        const double deep = rest_.pressure(depth_of_pushes * rest_.dp);
         list_.for_each_group(
             threads_,
             [&](const PointGroup& group)

@@ -201,9 +201,7 @@ std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int thread
     constexpr double least = 0.55;
     constexpr double level_cosine = 0.7;
     const Vec3 up = rest.gravity / -norm(rest.gravity);
-    const double dp = rest.dp;
-    const double scale =
-        rest.alpha() / (rest.h * rest.h) * dp * (rest.is_2d ? dp * dp : dp * dp * dp);
+    const double scale = rest.slope_scale();
     // Volumes of 1 and pressures that add up to 1: the sums are those of the kernel's slope.
     PressureField field;
     field.points = rest.in_dp(rest.positions);
@@ -211,7 +209,7 @@ std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int thread
     for (std::size_t i = 0; i < rest.size(); ++i)
         field.packed.push_back(
             PackedPoint{field.points.x[i], field.points.y[i], field.points.z[i], 1});
-    const PairShape shape{static_cast<float>(rest.h / dp), rest.is_cubic};
+    const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
     std::vector<char> is_face(rest.size(), 0);
     list.for_each_group(threads,
                         [&](const PointGroup& group)

@@ -62,27 +62,15 @@ struct FluidAtRest
     {
         return b * (std::pow(density / rhop0, gamma) - 1);
     }
-    /// The factor of the kernel, of which wendland() and cubic_spline() are the shapes.
+    /// The factor of the kernel, W = alpha times the shape that pressure_sums.h sums up.
     double alpha() const
     {
         if (is_cubic)
             return is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
         return is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     }
-    /// W / alpha at q = r / h.
-    double shape(double q) const
-    {
-        if (!is_cubic) return wendland(q);
-        if (q >= 2) return 0;
-        return q > 1 ? (2 - q) * (2 - q) * (2 - q) / 4 : 1 - 1.5 * q * q + 0.75 * q * q * q;
-    }
-    /// (dW/dq) / q / alpha.
-    double slope(double q) const
-    {
-        if (!is_cubic) return wendland_slope(q);
-        if (q >= 2) return 0;
-        return q > 1 ? -0.75 * (2 - q) * (2 - q) / q : -3 + 2.25 * q;
-    }
+    /// From sums of the kernel's slope in dp and dp^3 (2D: dp^2) to those in metres.
+    double slope_scale() const { return alpha() / (h * h) * dp * (is_2d ? dp * dp : dp * dp * dp); }
     /// Positions as GroupList takes them: in dp from the origin.
     PointArrays in_dp(std::span<const Vec3> points) const;
 };

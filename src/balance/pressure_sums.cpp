@@ -11,7 +11,7 @@ namespace
 
 static_assert(points_per_group == lane_count);
 
-/// The shapes are those of FluidAtRest::shape() and slope().
+/// W and (dW/dq) / q over FluidAtRest::alpha(), at q = r / h.
 struct WendlandLanes
 {
     FPPG_LANES Lanes shape(const Lanes& q) const

@@ -26,9 +26,9 @@ struct PointGroup
 
 /// Active points by eights, each eight with one list. A pair then costs no gathering: eight points
 /// stay in registers, and one neighbour after the other is compared with all of them. Of the pairs
-/// half are too far apart, but eight are looked at in the time of two out of NeighbourList; lists
-/// have a fifth of the entries. Fastest, and groups are compact, when the points are stored along a
-/// Morton curve over cells of about two spacings.
+/// half are too far apart, but each takes half of the time that it takes out of NeighbourList;
+/// lists have a fifth of the entries. Fastest, and groups are compact, when the points are stored
+/// along a Morton curve over cells of about two spacings.
 class GroupList
 {
 public:
