@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "core/sine.h"
 #include "nodes/snap.h"
 #include "shapes/plane_shapes.h"
 #include "shapes/planes.h"
@@ -63,9 +64,8 @@ void add_ring(const Vec3& center, const Vec3& first, const Vec3& second, double 
     const int n = static_cast<int>(std::ceil(2 * std::numbers::pi * radius / dp));
     for (int i = 0; i < n; ++i)
     {
-        const double angle = 360.0 / n * radian * i;
-        out.push_back(center + first * (radius * std::cos(angle)) +
-                      second * (radius * std::sin(angle)));
+        const SineAndCosine turn = portable_sine_and_cosine(360.0 / n * radian * i);
+        out.push_back(center + first * (radius * turn.cosine) + second * (radius * turn.sine));
     }
 }
 
@@ -76,9 +76,9 @@ void add_shell(const Vec3& center, double radius, double dp, std::vector<Vec3>& 
     const int m = 2 * static_cast<int>(std::ceil(std::numbers::pi * radius / (2 * dp)));
     for (int k = 1; k <= m; ++k)
     {
-        const double polar = 180.0 / m * radian * k;
-        const Vec3 middle{center.x, center.y, center.z - radius * std::cos(polar)};
-        add_ring(middle, {1, 0, 0}, {0, 1, 0}, radius * std::sin(polar), dp, out);
+        const SineAndCosine polar = portable_sine_and_cosine(180.0 / m * radian * k);
+        const Vec3 middle{center.x, center.y, center.z - radius * polar.cosine};
+        add_ring(middle, {1, 0, 0}, {0, 1, 0}, radius * polar.sine, dp, out);
     }
 }
 
