@@ -81,14 +81,14 @@ int run_convert(const std::vector<std::string>& arguments)
     const ParticleFormat& format = find_particle_format(call.format, call.output);
     const ParticleFeed feed = feed_of_file(call.case_name, call.xml);
     ConvertedFiles written = convert_particles(feed, format, call.output, call.threads);
-    ResultFiles files;
+    ResultFiles result;
     for (OutputFile& file : written.files)
     {
         expect_other_file(call, file.path());
-        files.take(std::move(file));
+        result.take(std::move(file));
     }
-    const std::vector<std::string> names = files.names();
-    files.commit(false);
+    const std::vector<std::string> names = result.names();
+    result.commit(false);
     for (const std::string& name : names) fmt::print("{}\n", name);
     fmt::print("{} particles as {}\n", feed.count, format.name);
     for (const std::string& loss : written.losses) fmt::print("Note: {}.\n", loss);

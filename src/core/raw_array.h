@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -17,9 +16,10 @@ class RawArray
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
 public:
-    explicit RawArray(std::size_t n) : values_(static_cast<T*>(std::malloc(n * sizeof(T))))
+    explicit RawArray(std::size_t n = 0)
+        : values_(static_cast<T*>(
+              n > 0 ? ::operator new (n * sizeof(T), std::align_val_t{alignof(T)}) : nullptr))
     {
-        if (values_ == nullptr && n > 0) throw std::bad_alloc();
     }
 
     T& operator[](std::size_t i) { return values_.get()[i]; }
@@ -30,7 +30,10 @@ public:
 private:
     struct Free
     {
-        void operator()(T* values) const { std::free(values); }
+        void operator()(T* values) const
+        {
+            ::operator delete (values, std::align_val_t{alignof(T)});
+        }
     };
     std::unique_ptr<T, Free> values_;
 };

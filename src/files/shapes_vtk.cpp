@@ -24,7 +24,7 @@ LegacyShapeCells collect_cells(const std::vector<ShapePolygons>& shapes,
         for (const std::vector<std::uint32_t>& cell : shapes[s].polygons)
         {
             if (cell_kind(cell.size()) != kind) continue;
-            part.begin(cell.size(), shapes[s].mk);
+            part.begin(cell.size(), static_cast<std::uint32_t>(shapes[s].mk));
             for (const std::uint32_t v : cell)
                 append_big_endian(part.connectivity, corners.numbers[s][v]);
             append_big_endian(part.object_id, shapes[s].object_id);

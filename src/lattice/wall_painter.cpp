@@ -113,19 +113,19 @@ void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& z
         [&](std::size_t i)
         { nodes[i] = find_node_in(zone, positions[first_particle + i], grid).value_or(Node{}); },
         1024);
-    std::vector<char> touched(anchors_.size(), 0);
+    std::vector<char> is_reached(anchors_.size(), 0);
     for (std::size_t i = 0; i < nodes.size(); ++i)
     {
         const auto x = static_cast<std::size_t>(nodes[i].x);
         anchors_[x].push_back({static_cast<std::uint32_t>(nodes[i].y),
                                static_cast<std::uint32_t>(nodes[i].z),
                                static_cast<std::uint32_t>(first_particle + i)});
-        touched[x] = 1;
+        is_reached[x] = 1;
     }
     parallel_for(anchors_.size(), threads_,
                  [&](std::size_t x)
                  {
-                     if (!touched[x]) return;
+                     if (!is_reached[x]) return;
                      std::sort(anchors_[x].begin(), anchors_[x].end(),
                                [](const Anchor& a, const Anchor& b) {
                                    return std::tuple(a.y, a.z, a.particle) <

@@ -1,13 +1,17 @@
 #include "meshes/near_tree.h"
 
 #include "core/lanes.h"
+#include "core/morton.h"
 #include "core/parallel.h"
+#include "core/raw_array.h"
 #include "meshes/facet_distance.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -49,6 +53,7 @@ struct FacetPart
 {
     Box3 box;
     std::uint32_t facet = 0;
+    std::uint32_t number = 0; ///< of the parts of the facet
 };
 
 /// The parts into which a facet is cut across its longest edge for its boxes: long and oblique, one
@@ -154,7 +159,8 @@ std::array<FacetPlane, planes_of_facet> planes_around(const std::array<Vec3, 3>&
     return out;
 }
 
-/// Halves ranges of facets until eight are left.
+/// Cuts the order of facets along a Morton curve in halves; ranges that one thread takes are
+/// ordered anew by the middles of their facets. Until eight are left.
 class TreeMaker
 {
 public:
@@ -162,13 +168,14 @@ public:
         : soup_(soup), centre_(centre), scale_(scale), threads_(threads)
     {
         make_parts();
+        sort_parts();
     }
 
-    void make(std::vector<TreeNode>& nodes, std::vector<TreeLeaf>& leaves)
+    void make(std::vector<TreeNode>& nodes, RawArray<TreeLeaf>& leaves)
     {
-        const std::size_t count = (parts_.size() + lane_count - 1) / lane_count;
+        const std::size_t count = (n_parts_ + lane_count - 1) / lane_count;
         nodes.resize(nodes_over({0, count}));
-        leaves.resize(count);
+        leaves = RawArray<TreeLeaf>(count);
         // Nodes of one level on all threads.
         for (std::vector<Subtree> level{{0, {0, count}}}; !level.empty();)
         {
@@ -255,23 +262,20 @@ private:
     }
 
     /// Orders the parts of a range so that those before the leaf `middle` have the smaller middles
-    /// along the longest extent of all these.
+    /// along the longest extent of all these. Long ranges stay along the Morton curve.
     void halve(const LeafRange& range, std::size_t middle)
     {
+        if (lane_count * range.size() > parts_per_task) return;
         const auto at = [&](std::size_t leaf)
-        {
-            return order_.begin() +
-                   static_cast<std::ptrdiff_t>(std::min(lane_count * leaf, order_.size()));
-        };
+        { return parts_.data() + std::min(lane_count * leaf, n_parts_); };
         Box3 box;
-        for (auto p = at(range.begin); p != at(range.end); ++p)
-            box.add(parts_[*p].box.min + parts_[*p].box.max);
+        for (auto p = at(range.begin); p != at(range.end); ++p) box.add(p->box.min + p->box.max);
         const Vec3 size = box.max - box.min;
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-        const auto key = [&](std::uint32_t p)
-        { return std::pair(parts_[p].box.min[axis] + parts_[p].box.max[axis], p); };
+        const auto key = [&](const FacetPart& p)
+        { return std::tuple(p.box.min[axis] + p.box.max[axis], p.facet, p.number); };
         std::nth_element(at(range.begin), at(middle), at(range.end),
-                         [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+                         [&](const FacetPart& a, const FacetPart& b) { return key(a) < key(b); });
     }
 
     void make_parts()
@@ -283,8 +287,8 @@ private:
             { end[f] = static_cast<std::uint32_t>(parts_of_facet(&soup_.vertices[3 * f])); },
             1024);
         for (std::size_t f = 1; f < end.size(); ++f) end[f] += end[f - 1];
-        parts_.resize(end.back());
-        order_.resize(parts_.size());
+        n_parts_ = end.back();
+        parts_ = RawArray<FacetPart>(n_parts_);
         parallel_for(
             soup_.size(), threads_,
             [&](std::size_t f)
@@ -293,13 +297,39 @@ private:
                 const auto n = static_cast<int>(end[f] - begin);
                 for (int k = 0; k < n; ++k)
                 {
-                    const std::uint32_t p = begin + static_cast<std::uint32_t>(k);
-                    parts_[p] = {box_of_part(&soup_.vertices[3 * f], k, n),
-                                 static_cast<std::uint32_t>(f)};
-                    order_[p] = p;
+                    parts_[begin + static_cast<std::uint32_t>(k)] = {
+                        box_of_part(&soup_.vertices[3 * f], k, n), static_cast<std::uint32_t>(f),
+                        static_cast<std::uint32_t>(k)};
                 }
             },
             1024);
+    }
+
+    /// Along the Morton curve of their middles, in 1024 cells along an axis.
+    void sort_parts()
+    {
+        constexpr double cells = 1024;
+        const auto cell_of = [&](const FacetPart& part, int axis)
+        {
+            const double at =
+                (0.5 * (part.box.min[axis] + part.box.max[axis]) - centre_[axis]) / scale_;
+            return static_cast<std::uint64_t>(std::clamp(0.5 * cells * (1 + at), 0.0, cells - 1));
+        };
+        RawArray<Keyed> keys(n_parts_);
+        parallel_for(
+            n_parts_, threads_,
+            [&](std::size_t p)
+            {
+                keys[p] = {
+                    morton_key(cell_of(parts_[p], 0), cell_of(parts_[p], 1), cell_of(parts_[p], 2)),
+                    static_cast<std::uint32_t>(p)};
+            },
+            1024);
+        sort_by_key(keys, n_parts_, (1u << 30) - 1, threads_);
+        RawArray<FacetPart> sorted(n_parts_);
+        parallel_for(
+            n_parts_, threads_, [&](std::size_t p) { sorted[p] = parts_[keys[p].index]; }, 1024);
+        parts_.swap(sorted);
     }
 
     /// Returns the box of the leaf.
@@ -307,10 +337,11 @@ private:
     {
         Box3 box;
         const std::size_t begin = l * lane_count;
-        leaf.count = static_cast<std::uint32_t>(std::min(parts_.size() - begin, lane_count));
+        leaf = {};
+        leaf.count = static_cast<std::uint32_t>(std::min(n_parts_ - begin, lane_count));
         for (std::size_t c = 0; c < leaf.count; ++c)
         {
-            const FacetPart& part = parts_[order_[begin + c]];
+            const FacetPart& part = parts_[begin + c];
             leaf.facet[c] = part.facet;
             box.add(part.box.min);
             box.add(part.box.max);
@@ -345,8 +376,8 @@ private:
     Vec3 centre_;
     double scale_;
     int threads_;
-    std::vector<FacetPart> parts_;
-    std::vector<std::uint32_t> order_;
+    RawArray<FacetPart> parts_;
+    std::size_t n_parts_ = 0;
 };
 
 /// One search; see NearTree.
@@ -447,7 +478,7 @@ FPPG_LANES std::size_t push_children(const TreeNode& node, const NearSearch& sea
     return depth;
 }
 
-FPPG_LANES void search_tree(const std::vector<TreeNode>& nodes, const std::vector<TreeLeaf>& leaves,
+FPPG_LANES void search_tree(const std::vector<TreeNode>& nodes, const RawArray<TreeLeaf>& leaves,
                             NearSearch& search)
 {
     std::array<StackEntry, stack_size> stack;
@@ -463,13 +494,13 @@ FPPG_LANES void search_tree(const std::vector<TreeNode>& nodes, const std::vecto
     }
 }
 
-void search_plain(const std::vector<TreeNode>& nodes, const std::vector<TreeLeaf>& leaves,
+void search_plain(const std::vector<TreeNode>& nodes, const RawArray<TreeLeaf>& leaves,
                   NearSearch& search)
 {
     search_tree(nodes, leaves, search);
 }
 
-FPPG_AVX2 void search_avx2(const std::vector<TreeNode>& nodes, const std::vector<TreeLeaf>& leaves,
+FPPG_AVX2 void search_avx2(const std::vector<TreeNode>& nodes, const RawArray<TreeLeaf>& leaves,
                            NearSearch& search)
 {
     search_tree(nodes, leaves, search);
@@ -480,7 +511,7 @@ FPPG_AVX2 void search_avx2(const std::vector<TreeNode>& nodes, const std::vector
 struct NearTree::Nodes
 {
     std::vector<TreeNode> nodes; ///< the first is the root
-    std::vector<TreeLeaf> leaves;
+    RawArray<TreeLeaf> leaves;
 };
 
 NearTree::NearTree(const TriangleSoup& soup, const Vec3& centre, double scale, int threads)

@@ -44,6 +44,28 @@ public:
     template <typename Visit>
     void for_each_near(const Vec3& p, double radius, const Visit& visit) const
     {
+        find_near(p, radius,
+                  [&](std::uint32_t at, double squared)
+                  {
+                      visit(at, squared);
+                      return false;
+                  });
+    }
+
+    /// Whether a point lies nearer than `radius`.
+    bool has_nearer(const Vec3& p, double radius) const
+    {
+        return find_near(p, radius,
+                         [&](std::uint32_t, double squared) { return squared < radius * radius; });
+    }
+
+    const std::vector<Vec3>& points() const { return points_; }
+
+private:
+    /// Until `is_it` is true for one.
+    template <typename IsIt>
+    bool find_near(const Vec3& p, double radius, const IsIt& is_it) const
+    {
         const std::int64_t i1 = index_of(p.x + radius), j1 = index_of(p.y + radius),
                            k1 = index_of(p.z + radius);
         // Nested because the cells around a place are walked along three axes.
@@ -54,23 +76,11 @@ public:
                     {
                         const Vec3 away = points_[at] - p;
                         const double squared = dot(away, away);
-                        if (squared <= radius * radius) visit(at, squared);
+                        if (squared <= radius * radius && is_it(at, squared)) return true;
                     }
+        return false;
     }
 
-    /// Whether a point lies nearer than `radius`.
-    bool has_nearer(const Vec3& p, double radius) const
-    {
-        bool found = false;
-        for_each_near(p, radius,
-                      [&](std::uint32_t, double squared)
-                      { found = found || squared < radius * radius; });
-        return found;
-    }
-
-    const std::vector<Vec3>& points() const { return points_; }
-
-private:
     static constexpr std::uint32_t none = 0xFFFFFFFF;
     struct Slot
     {

@@ -30,6 +30,8 @@ using Float3 = std::array<float, 3>;
 /// solver takes zero for none, and mirrors the particle in the surface to where it stands.
 constexpr double on_surface_dp = 0.01;
 
+/// Long runs are divided among threads.
+constexpr std::uint32_t most_at_once = 1024;
 /// Nearer to its surface than this a particle counts as on it, dp.
 constexpr double least_depth_dp = 0.1;
 
@@ -147,7 +149,8 @@ public:
             std::uint64_t id = block.begin;
             for (const ParticleRun& run : block.runs)
             {
-                places_.push_back({&block, &run, id});
+                for (std::uint32_t k = 0; k < run.count; k += most_at_once)
+                    places_.push_back({&block, &run, id, k, std::min(run.count, k + most_at_once)});
                 id += run.count;
             }
         }
@@ -170,11 +173,13 @@ public:
     }
 
 private:
+    /// Particles of a run that one thread looks at.
     struct RunPlace
     {
         const ParticleBlock* block;
         const ParticleRun* run;
-        std::uint64_t id; ///< of its first particle
+        std::uint64_t id;         ///< of the run's first particle
+        std::uint32_t begin, end; ///< of these in the run
     };
 
     /// Calls body(run index, position, normal) for all boundary particles.
@@ -184,7 +189,7 @@ private:
         const auto visit = [&](std::size_t r)
         {
             const RunPlace& place = places_[r];
-            for (std::uint32_t k = 0; k < place.run->count; ++k)
+            for (std::uint32_t k = place.begin; k < place.end; ++k)
                 body(r, position(place, k), normals_[place.id + k]);
         };
         parallel_for(places_.size(), threads_, visit, 64);
@@ -302,7 +307,7 @@ private:
             if (is_layered[place.block->mk] == 0) return;
             Transform turn = motion_of(*place.block);
             turn.offset = {};
-            for (std::uint32_t k = 0; k < place.run->count; ++k)
+            for (std::uint32_t k = place.begin; k < place.end; ++k)
             {
                 Float3& normal = normals_[place.id + k];
                 const double depth = own_depth(r, normal);
@@ -439,7 +444,7 @@ private:
         std::vector<Vec3> selected;
         for (const RunPlace& place : places_)
             if (!op.has_mk || std::find(op.mk.begin(), op.mk.end(), place.block->mk) != op.mk.end())
-                for (std::uint32_t k = 0; k < place.run->count; ++k)
+                for (std::uint32_t k = place.begin; k < place.end; ++k)
                     selected.push_back(position(place, k));
         const PartSurface surface(selected, first_node(), particles_.pos_max, def_.grid.dp, reach);
         set(op, [&](const Vec3& p) { return surface.normal_at(p); });
@@ -471,7 +476,7 @@ private:
     const RunField& field_;
     int threads_;
     NormalsReport& report_;
-    std::vector<RunPlace> places_; ///< all runs of boundary particles
+    std::vector<RunPlace> places_; ///< of all runs of boundary particles
     std::vector<Float3> normals_;
 };
 

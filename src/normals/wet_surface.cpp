@@ -181,7 +181,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         for (Piece& piece : pieces_)
             if (!std::isfinite(piece.way.length)) piece.state = is_dry;
     dry_to_the_rims();
-    dry_along_edges();
+    dry_along_edges(threads);
 }
 
 /// Whether another closed wall begins right before a piece.
@@ -265,7 +265,7 @@ void WetSurface::dry_to_the_rims()
 
 /// Along the edges of a dry side no place lies right behind another: what is far from the fluid and
 /// near to a dry piece is dry too.
-void WetSurface::dry_along_edges()
+void WetSurface::dry_along_edges(int threads)
 {
     const auto is_far_from_fluid = [](const Piece& piece)
     {
@@ -276,10 +276,16 @@ void WetSurface::dry_along_edges()
     for (const Piece& piece : pieces_)
         if (piece.state == is_dry) dry.add(piece.middle());
     if (dry.points().empty()) return;
-    for (Piece& piece : pieces_)
-        if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
-            is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
-            piece.state = is_dry;
+    parallel_for(
+        pieces_.size(), threads,
+        [&](std::size_t i)
+        {
+            Piece& piece = pieces_[i];
+            if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
+                is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
+                piece.state = is_dry;
+        },
+        256);
 }
 
 void WetSurface::note_thin_walls(const RunField& field)

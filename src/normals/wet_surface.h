@@ -84,7 +84,7 @@ private:
     static bool is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp);
     void compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way, double dp) const;
     void dry_to_the_rims();
-    void dry_along_edges();
+    void dry_along_edges(int threads);
     void note_thin_walls(const RunField& field);
 
     Setup setup_;

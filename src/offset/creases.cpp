@@ -94,13 +94,11 @@ private:
     }
 
     /// Whether the direction of the depth turns across an edge by more than the feature angle.
-    ///
-    /// normals  of all facets
-    bool turns(std::uint32_t e, const RawArray<Vec3>& normals) const
+    bool turns(std::uint32_t e) const
     {
         const auto& facets = on_.mesh.edge_facets[e];
         if (facets[1] == no_index || on_.mesh.is_manifold[e] == 0) return false;
-        if (dot(normals[facets[0]], normals[facets[1]]) > looked_at) return false;
+        if (dot(on_.normal_of(facets[0]), on_.normal_of(facets[1])) > looked_at) return false;
         const Vec3 middle = 0.5 * (on_.mesh.vertices[on_.mesh.edges[e][0]] +
                                    on_.mesh.vertices[on_.mesh.edges[e][1]]);
         std::array<Vec3, 2> directions;
@@ -111,50 +109,95 @@ private:
         return dot(directions[0], directions[1]) < on_.turn;
     }
 
-    bool has_crease(std::uint32_t v) const
+    /// Per vertex, whether one of its edges is a crease.
+    std::vector<char> ends_of_creases() const
     {
-        return std::ranges::any_of(on_.edges_of(v),
-                                   [&](std::uint32_t e) { return is_crease_[e] != 0; });
+        std::vector<char> out(on_.mesh.vertices.size(), 0);
+        for (std::size_t e = 0; e < is_crease_.size(); ++e)
+            if (is_crease_[e] != 0)
+                for (const std::uint32_t v : on_.mesh.edges[e]) out[v] = 1;
+        return out;
     }
+
     /// everywhere  else only at edges one of whose ends is on a crease
     void find(bool everywhere)
     {
-        RawArray<Vec3> normals(on_.mesh.facets.size());
-        parallel_for(
-            on_.mesh.facets.size(), on_.threads,
-            [&](std::size_t f) { normals[f] = on_.normal_of(static_cast<std::uint32_t>(f)); },
-            1024);
-        std::vector<char> found(on_.mesh.edges.size(), 0);
+        const std::vector<char> is_end = everywhere ? std::vector<char>() : ends_of_creases();
         parallel_for(
             on_.mesh.edges.size(), on_.threads,
-            [&](std::size_t i)
+            [&](std::size_t e)
             {
-                const auto e = static_cast<std::uint32_t>(i);
-                if (everywhere || has_crease(on_.mesh.edges[e][0]) ||
-                    has_crease(on_.mesh.edges[e][1]))
-                    found[e] = turns(e, normals) ? 1 : 0;
+                const auto [a, b] = on_.mesh.edges[e];
+                const bool may_be = everywhere || is_end[a] != 0 || is_end[b] != 0;
+                is_crease_[e] = may_be && turns(static_cast<std::uint32_t>(e)) ? 1 : 0;
             },
             256);
-        is_crease_ = std::move(found);
     }
 
-    /// The place on a crease, or at its corner, nearest to a vertex: where the planes meet along
-    /// which the depth is right under the facets around it.
-    std::optional<Vec3> crease_place(std::uint32_t v, double longest = longest_move) const
+    std::vector<std::uint32_t> facets_around(std::uint32_t v) const
     {
         std::vector<std::uint32_t> facets;
         for (const std::uint32_t e : on_.edges_of(v))
             for (const std::uint32_t f : on_.mesh.edge_facets[e])
                 if (f != no_index && std::find(facets.begin(), facets.end(), f) == facets.end())
                     facets.push_back(f);
+        return facets;
+    }
+
+    /// The places on creases, or at their corners, nearest to vertices. Facets that several of
+    /// these have are measured once.
+    std::vector<std::optional<Vec3>> crease_places(const std::vector<std::uint32_t>& vertices,
+                                                   double longest) const
+    {
+        std::vector<char> is_around(on_.mesh.facets.size(), 0);
+        std::vector<std::uint32_t> facets;
+        for (const std::uint32_t v : vertices)
+            for (const std::uint32_t e : on_.edges_of(v))
+                for (const std::uint32_t f : on_.mesh.edge_facets[e])
+                    if (f != no_index && std::exchange(is_around[f], char{1}) == 0)
+                        facets.push_back(f);
+        RawArray<DepthPlane> planes(on_.mesh.facets.size());
+        parallel_for(
+            facets.size(), on_.threads,
+            [&](std::size_t i) { planes[facets[i]] = plane_under(facets[i]); }, 64);
+        std::vector<std::optional<Vec3>> out(vertices.size());
+        parallel_for(
+            vertices.size(), on_.threads,
+            [&](std::size_t i) {
+                out[i] =
+                    crease_place(vertices[i], longest, [&](std::uint32_t f) { return planes[f]; });
+            },
+            64);
+        return out;
+    }
+
+    /// The depth near the middle of a facet.
+    struct DepthPlane
+    {
+        Vec3 middle;
+        Vec3 direction;
+        double depth;
+    };
+    DepthPlane plane_under(std::uint32_t facet) const
+    {
+        const Vec3 p = on_.middle_of(facet);
+        const DepthPlace place = on_.wall.at(p);
+        return {p, place.direction, place.depth};
+    }
+
+    /// The place on a crease, or at its corner, nearest to a vertex: where the planes meet along
+    /// which the depth is right under the facets around it.
+    template <typename PlaneUnder>
+    std::optional<Vec3> crease_place(std::uint32_t v, double longest,
+                                     const PlaneUnder& plane_under) const
+    {
         const Vec3& from = on_.mesh.vertices[v];
         Quadric quadric;
-        for (const std::uint32_t f : facets)
+        for (const std::uint32_t f : facets_around(v))
         {
-            const Vec3 p = on_.middle_of(f);
-            const DepthPlace place = on_.wall.at(p);
-            const double at_vertex = place.depth + dot(place.direction, from - p);
-            quadric.add_plane(place.direction, on_.options.depth - at_vertex);
+            const DepthPlane plane = plane_under(f);
+            const double at_vertex = plane.depth + dot(plane.direction, from - plane.middle);
+            quadric.add_plane(plane.direction, on_.options.depth - at_vertex);
         }
         const Vec3 start = from + quadric.least_point();
         if (!(norm(start - from) < longest * on_.options.cell)) return std::nullopt;
@@ -205,20 +248,16 @@ private:
             near.size(), on_.threads,
             [&](std::size_t i) { places[i] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
         const std::vector<std::uint32_t> cut = edges_with_creases(place_of, places);
-        std::vector<std::array<std::optional<Vec3>, 2>> on_crease(cut.size());
-        parallel_for(
-            cut.size(), on_.threads,
-            [&](std::size_t i)
-            {
-                for (std::size_t end = 0; end < 2; ++end)
-                    on_crease[i][end] = crease_place(on_.mesh.edges[cut[i]][end], longest_pull);
-            },
-            64);
+        std::vector<std::uint32_t> ends;
+        for (const std::uint32_t e : cut)
+            ends.insert(ends.end(), on_.mesh.edges[e].begin(), on_.mesh.edges[e].end());
+        const std::vector<std::optional<Vec3>> on_crease = crease_places(ends, longest_pull);
         std::vector<char> is_pulled(on_.mesh.vertices.size(), 0);
         for (std::size_t i = 0; i < cut.size(); ++i)
         {
             const auto [a, b] = on_.mesh.edges[cut[i]];
-            const auto& [of_a, of_b] = on_crease[i];
+            const std::optional<Vec3>& of_a = on_crease[2 * i];
+            const std::optional<Vec3>& of_b = on_crease[2 * i + 1];
             if (is_pulled[a] != 0 || is_pulled[b] != 0 || (!of_a && !of_b)) continue;
             const bool takes_a = of_a && (!of_b || norm(*of_a - on_.mesh.vertices[a]) <=
                                                        norm(*of_b - on_.mesh.vertices[b]));
@@ -261,18 +300,16 @@ private:
     {
         is_placed_.assign(on_.mesh.vertices.size(), 0);
         std::vector<std::uint32_t> vertices;
+        const std::vector<char> is_end = ends_of_creases();
         for (std::uint32_t v = 0; v < on_.mesh.vertices.size(); ++v)
         {
-            if (!has_crease(v)) continue;
+            if (is_end[v] == 0) continue;
             if (was_placed_.empty() || was_placed_[v] == 0)
                 vertices.push_back(v);
             else
                 is_placed_[v] = 1;
         }
-        std::vector<std::optional<Vec3>> places(vertices.size());
-        parallel_for(
-            vertices.size(), on_.threads,
-            [&](std::size_t i) { places[i] = crease_place(vertices[i]); }, 64);
+        const std::vector<std::optional<Vec3>> places = crease_places(vertices, longest_move);
         for (std::size_t i = 0; i < vertices.size(); ++i)
         {
             if (!places[i]) continue;
@@ -419,7 +456,9 @@ private:
                 const Vec3 rough = on_.mesh.vertices[w] - on_.mesh.vertices[at];
                 if (dot(rough, way) < 0.1 * norm(rough) * norm(way)) continue;
                 const std::optional<Vec3> place =
-                    is_on ? std::optional(on_.mesh.vertices[w]) : crease_place(w);
+                    is_on ? std::optional(on_.mesh.vertices[w])
+                          : crease_place(w, longest_move,
+                                         [&](std::uint32_t f) { return plane_under(f); });
                 if (!place) continue;
                 const Vec3 step = *place - on_.mesh.vertices[at];
                 const double turn = dot(step, way) / (norm(step) * norm(way));

@@ -1,8 +1,8 @@
 #include "relax/cell_rows.h"
 
 #include "core/lanes.h"
+#include "core/morton.h"
 #include "core/parallel.h"
-#include "core/raw_array.h"
 
 #include <algorithm>
 #include <array>
@@ -18,39 +18,7 @@ namespace fppg
 namespace
 {
 
-/// Cells along an axis: three such numbers fill a word.
-constexpr std::uint32_t most_cells = 1u << 21;
 constexpr std::size_t points_per_block = 1 << 14;
-
-/// Puts two empty bits before every bit of a number below 2^21.
-std::uint64_t interleaved(std::uint64_t v)
-{
-    v = (v | v << 32) & 0x001F00000000FFFFu;
-    v = (v | v << 16) & 0x001F0000FF0000FFu;
-    v = (v | v << 8) & 0x100F00F00F00F00Fu;
-    v = (v | v << 4) & 0x10C30C30C30C30C3u;
-    v = (v | v << 2) & 0x1249249249249249u;
-    return v;
-}
-
-/// Takes every third bit.
-std::int64_t gathered(std::uint64_t v)
-{
-    v &= 0x1249249249249249u;
-    v = (v | v >> 2) & 0x10C30C30C30C30C3u;
-    v = (v | v >> 4) & 0x100F00F00F00F00Fu;
-    v = (v | v >> 8) & 0x001F0000FF0000FFu;
-    v = (v | v >> 16) & 0x001F00000000FFFFu;
-    v = (v | v >> 32) & 0x00000000001FFFFFu;
-    return static_cast<std::int64_t>(v);
-}
-
-std::uint64_t morton_key(std::int64_t i, std::int64_t j, std::int64_t k)
-{
-    return interleaved(static_cast<std::uint64_t>(i)) |
-           interleaved(static_cast<std::uint64_t>(j)) << 1 |
-           interleaved(static_cast<std::uint64_t>(k)) << 2;
-}
 
 /// The last six bits of morton_key().
 unsigned place_in_block(std::int64_t i, std::int64_t j, std::int64_t k)
@@ -66,48 +34,9 @@ struct CellAxis
     float scale = 1;
     std::uint64_t key(float x) const
     {
-        return std::min(static_cast<std::uint32_t>((x - min) * scale), most_cells - 1);
+        return std::min(static_cast<std::uint32_t>((x - min) * scale), most_morton_cells - 1);
     }
 };
-
-struct Keyed
-{
-    std::uint64_t key;
-    std::uint32_t index;
-};
-
-/// Sorts by key, equal keys in the order in which they come. Least significant digits first; every
-/// block of items counts its digits, so that all know where theirs go.
-void sort_by_key(RawArray<Keyed>& items, std::size_t n, std::uint64_t largest_key, int threads)
-{
-    constexpr unsigned digit_bits = 10;
-    constexpr std::size_t digits = 1 << digit_bits;
-    const std::size_t blocks = std::clamp<std::size_t>(n / points_per_block, 1, 64);
-    const auto begin_of = [&](std::size_t block) { return n * block / blocks; };
-    RawArray<Keyed> other(n);
-    std::vector<std::array<std::uint32_t, digits>> counts(blocks);
-    for (unsigned shift = 0; shift < 64 && largest_key >> shift != 0; shift += digit_bits)
-    {
-        const auto digit = [&](const Keyed& item) { return item.key >> shift & (digits - 1); };
-        parallel_for(blocks, threads,
-                     [&](std::size_t b)
-                     {
-                         counts[b].fill(0);
-                         for (std::size_t k = begin_of(b); k < begin_of(b + 1); ++k)
-                             ++counts[b][digit(items[k])];
-                     });
-        std::uint32_t sum = 0;
-        for (std::size_t d = 0; d < digits; ++d)
-            for (auto& count : counts) sum += std::exchange(count[d], sum);
-        parallel_for(blocks, threads,
-                     [&](std::size_t b)
-                     {
-                         for (std::size_t k = begin_of(b); k < begin_of(b + 1); ++k)
-                             other[counts[b][digit(items[k])]++] = items[k];
-                     });
-        items.swap(other);
-    }
-}
 
 struct Range
 {
@@ -149,7 +78,7 @@ RawArray<Keyed> sorted_keys(const PointArrays& points, float cell, int threads)
         extent = std::max(extent, range.high - range.low);
     }
     // Larger cells serve as well, only slower.
-    const float side = std::max(cell, extent / static_cast<float>(most_cells - 1));
+    const float side = std::max(cell, extent / static_cast<float>(most_morton_cells - 1));
     for (CellAxis& axis : axes) axis.scale = 1 / side;
     const std::size_t n = points.size();
     RawArray<Keyed> keys(n);
@@ -157,9 +86,8 @@ RawArray<Keyed> sorted_keys(const PointArrays& points, float cell, int threads)
         n, threads,
         [&](std::size_t i)
         {
-            keys[i] = {interleaved(axes[0].key(points.x[i])) |
-                           interleaved(axes[1].key(points.y[i])) << 1 |
-                           interleaved(axes[2].key(points.z[i])) << 2,
+            keys[i] = {morton_key(axes[0].key(points.x[i]), axes[1].key(points.y[i]),
+                                  axes[2].key(points.z[i])),
                        static_cast<std::uint32_t>(i)};
         },
         points_per_block);
@@ -459,7 +387,7 @@ void CellRows::gather(std::size_t cell, Scratch& scratch) const
     for (std::size_t a = 0; a < 3; ++a)
     {
         low[a] = std::max<std::int64_t>(at[a] - 1, 0);
-        high[a] = std::min<std::int64_t>(at[a] + 1, most_cells - 1);
+        high[a] = std::min<std::int64_t>(at[a] + 1, most_morton_cells - 1);
     }
     const auto visit_block = [&](std::int64_t bi, std::int64_t bj, std::int64_t bk)
     {
