@@ -305,13 +305,27 @@ private:
         return bits;
     }
 
+    /// Arrays may share appended data, but a small file whose many arrays all name one large block
+    /// would take a time and memory that grow with the square of its size.
+    void count_appended(const XMLElement& array, std::size_t bytes)
+    {
+        constexpr std::size_t most_shared = 16;
+        constexpr std::size_t small = 1 << 16;
+        taken_ += bytes;
+        if (taken_ > most_shared * appended_.size() + small)
+            fail(array, fmt::format("the arrays up to this one take {} bytes of appended data, "
+                                    "more than {} times the {} that there are",
+                                    taken_, most_shared, appended_.size()));
+    }
+
     /// The data of an array, decoded and inflated.
     std::string bytes_of(const XMLElement& array, std::string_view format)
     {
         if (format == "binary")
         {
             const char* text = array.GetText();
-            return unpacked(array, text == nullptr ? "" : text, true);
+            const std::string_view own = text == nullptr ? "" : text;
+            return unpacked(array, own, true).data;
         }
         if (format != "appended")
             fail(array, fmt::format("its format is \"{}\", expected ascii, binary or appended",
@@ -320,7 +334,9 @@ private:
         if (offset > appended_.size())
             fail(array, fmt::format("its offset is {}, the appended data have {} bytes", offset,
                                     appended_.size()));
-        return unpacked(array, appended_.substr(offset), !is_appended_raw_);
+        Unpacked out = unpacked(array, appended_.substr(offset), !is_appended_raw_);
+        count_appended(array, out.taken);
+        return std::move(out.data);
     }
 
     /// Reads bytes from raw data or from base64.
@@ -350,6 +366,8 @@ private:
             if (out.size() > n) out.resize(n);
             return out;
         }
+
+        std::size_t taken() const { return at_; }
 
     private:
         static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -392,7 +410,12 @@ private:
         std::size_t at_ = 0;
     };
 
-    std::string unpacked(const XMLElement& array, std::string_view source, bool is_base64) const
+    struct Unpacked
+    {
+        std::string data;
+        std::size_t taken = 0; ///< bytes of the source
+    };
+    Unpacked unpacked(const XMLElement& array, std::string_view source, bool is_base64) const
     {
         ByteSource bytes(source, is_base64);
         const auto take = [&](std::uint64_t n)
@@ -414,7 +437,8 @@ private:
                 fail(array, fmt::format("is truncated, or its length is wrong: it says {} bytes, "
                                         "there are {} of text at most",
                                         n, source.size()));
-            return take(header_width_ + n).substr(header_width_);
+            std::string data = take(header_width_ + n).substr(header_width_);
+            return {std::move(data), bytes.taken()};
         }
         // Number of blocks, size of a block, size of the last one (0: whole), packed sizes.
         ByteSource peek(source, is_base64);
@@ -441,7 +465,7 @@ private:
             inflate(array, std::string_view(packed).substr(at, field(3 + i)), size, out);
             at += field(3 + i);
         }
-        return out;
+        return {std::move(out), bytes.taken()};
     }
 
     void packed_sum(const XMLElement& array, std::uint64_t size, std::size_t at_most) const
@@ -475,6 +499,7 @@ private:
     bool is_appended_raw_ = true;
     bool is_big_endian_ = false;
     bool is_compressed_ = false;
+    std::size_t taken_ = 0; ///< of the appended data, by all arrays so far
     std::size_t header_width_ = 4;
     IndexedMesh mesh_;
 };
