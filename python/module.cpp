@@ -247,7 +247,7 @@ void raise(const std::exception& error, const char* name)
     PyErr_SetObject(type.ptr(), type(py::str(error.what())).ptr());
 }
 
-void translate(std::exception_ptr thrown)
+void translate(const std::exception_ptr& thrown)
 {
     try
     {

@@ -220,7 +220,7 @@ void mesh_part(File& file, std::size_t index, double deflection, double angle, v
         BRepBndLib::Add(shape, box, Standard_False);
         deflection = box.IsVoid() ? 1 : std::sqrt(box.SquareExtent()) / 2000;
     }
-    BRepMesh_IncrementalMesh(shape, deflection, Standard_False, angle, Standard_False);
+    const BRepMesh_IncrementalMesh mesher(shape, deflection, Standard_False, angle, Standard_False);
     Facets facets(shape);
     for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next())
     {
