@@ -247,11 +247,11 @@ void raise(const std::exception& error, const char* name)
     PyErr_SetObject(type.ptr(), type(py::str(error.what())).ptr());
 }
 
-void translate(const std::exception_ptr& thrown)
+void translate(std::exception_ptr thrown)
 {
     try
     {
-        if (thrown) std::rethrow_exception(thrown);
+        if (thrown) std::rethrow_exception(std::move(thrown));
     }
     catch (const UsageError& error)
     {

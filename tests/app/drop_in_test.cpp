@@ -61,7 +61,8 @@ struct BadInput
     const char* message;
 };
 
-void PrintTo(const BadInput& input, std::ostream* out)
+// GoogleTest looks for this name.
+void PrintTo(const BadInput& input, std::ostream* out) // NOLINT(readability-identifier-naming)
 {
     *out << input.name;
 }
