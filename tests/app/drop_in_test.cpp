@@ -61,8 +61,7 @@ struct BadInput
     const char* message;
 };
 
-// GoogleTest looks for this name.
-void PrintTo(const BadInput& input, std::ostream* out) // NOLINT(readability-identifier-naming)
+void PrintTo(const BadInput& input, std::ostream* out)
 {
     *out << input.name;
 }
