@@ -12,6 +12,42 @@ namespace
 constexpr std::uint16_t never = 0xFFFF;
 constexpr std::uint16_t blocked = 0xFFFE;
 constexpr std::int64_t most_cells = std::int64_t{1} << 25;
+/// Nodes around all that is drawn. What lies farther out is free and changes no way.
+constexpr std::int64_t margin = 4;
+
+struct NodeRange
+{
+    std::int64_t begin = std::numeric_limits<std::int64_t>::max();
+    std::int64_t end = 0;
+
+    void add(std::int64_t first, std::int64_t behind)
+    {
+        begin = std::min(begin, first);
+        end = std::max(end, behind);
+    }
+};
+
+/// Nodes along each axis between which something is drawn, with a margin; all along periodic ones.
+std::array<NodeRange, 3> drawn_nodes(const RunField& field)
+{
+    std::array<NodeRange, 3> out;
+    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+        for (const Run& run : field.slabs[x])
+        {
+            const auto at = static_cast<std::int64_t>(x);
+            out[0].add(at, at + 1);
+            out[1].add(run.y, std::int64_t{run.y} + 1);
+            out[2].add(run.z_begin, run.z_end);
+        }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const std::int64_t n = field.grid.n[axis];
+        const bool is_whole = field.grid.is_periodic[axis] || out[axis].end == 0;
+        out[axis].begin = is_whole ? 0 : std::max<std::int64_t>(out[axis].begin - margin, 0);
+        out[axis].end = is_whole ? n : std::min(out[axis].end + margin, n);
+    }
+    return out;
+}
 
 } // namespace
 
@@ -19,8 +55,10 @@ template <typename IsBound>
 FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const IsBound& is_bound)
     : grid_(field.grid)
 {
-    const auto cells = [&](int axis)
-    { return (std::int64_t{grid_.n[static_cast<std::size_t>(axis)]} + side_ - 1) / side_; };
+    const std::array<NodeRange, 3> drawn = drawn_nodes(field);
+    for (std::size_t axis = 0; axis < 3; ++axis) first_[axis] = drawn[axis].begin;
+    const auto cells = [&](std::size_t axis)
+    { return (drawn[axis].end - drawn[axis].begin + side_ - 1) / side_; };
     while (cells(0) * cells(1) * cells(2) > most_cells) ++side_;
     n_ = {cells(0), cells(1), cells(2)};
     steps_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), never);
@@ -28,9 +66,9 @@ FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const IsBou
         for (const Run& run : field.slabs[static_cast<std::size_t>(x)])
         {
             if (run.mk < first_bound)
-                mark(x / side_, run, 0);
+                mark(x, run, 0);
             else if (is_bound(run.mk))
-                mark(x / side_, run, blocked);
+                mark(x, run, blocked);
         }
     has_fluid_ = std::find(steps_.begin(), steps_.end(), 0) != steps_.end();
 }
@@ -57,9 +95,12 @@ FluidWay FluidWay::around(const RunField& field, std::uint16_t first_bound, std:
 
 void FluidWay::mark(std::int64_t x, const Run& run, std::uint16_t steps)
 {
-    for (std::int64_t z = run.z_begin / side_; z <= (run.z_end - 1) / side_; ++z)
+    const auto cell_of = [&](std::int64_t node, std::size_t axis)
+    { return (node - first_[axis]) / side_; };
+    for (std::int64_t z = cell_of(run.z_begin, 2); z <= cell_of(std::int64_t{run.z_end} - 1, 2);
+         ++z)
     {
-        std::uint16_t& cell = steps_[index(x, run.y / side_, z)];
+        std::uint16_t& cell = steps_[index(cell_of(x, 0), cell_of(run.y, 1), z)];
         if (steps == blocked || cell == never) cell = steps;
     }
 }
@@ -185,8 +226,9 @@ FluidWay::Way FluidWay::to(const Vec3& p) const
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const auto a = static_cast<int>(axis);
-        at[axis] = std::llround(std::clamp((p[a] - grid_.origin[a]) / grid_.dp, -1e9, 1e9) / side_ -
-                                0.5 * (1 - 1.0 / side_));
+        const double node = std::clamp((p[a] - grid_.origin[a]) / grid_.dp, -1e9, 1e9) -
+                            static_cast<double>(first_[axis]);
+        at[axis] = std::llround(node / side_ - 0.5 * (1 - 1.0 / side_));
         // Surfaces go on beyond periodic limits, and those of a case in 2D across its plane.
         if (grid_.is_2d && axis == 1) at[axis] = 0;
         if (grid_.is_periodic[axis]) at[axis] = std::clamp<std::int64_t>(at[axis], 0, n_[axis] - 1);

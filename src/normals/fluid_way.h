@@ -11,7 +11,8 @@
 namespace fppg
 {
 
-/// Where fluid can go from where it stands, over nodes that no wall has.
+/// Where fluid can go from where it stands, over nodes that no wall has. Looks at the box of what
+/// is drawn only, so that a large domain costs nothing.
 class FluidWay
 {
 public:
@@ -58,7 +59,8 @@ private:
     void find_what_runs_out(const LatticeGrid& grid);
 
     LatticeGrid grid_;
-    std::uint32_t side_ = 1; ///< nodes along the side of a cell
+    std::uint32_t side_ = 1;              ///< nodes along the side of a cell
+    std::array<std::int64_t, 3> first_{}; ///< node of the first cell
     std::array<std::int64_t, 3> n_{};
     int up_axis_ = -1; ///< -1: no gravity
     bool is_up_negative_ = false;

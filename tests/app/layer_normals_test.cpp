@@ -152,4 +152,16 @@ TEST(BlockOverWaterIn2D, LooksOutEverywhere)
     EXPECT_GT(count, 100u);
 }
 
+/// The way of the fluid is looked for in coarse cells where there are very many nodes.
+TEST(LayerNormals, AreTheSameInADomainThatIsMostlyEmpty)
+{
+    const std::string plate = solid({-0.6, -0.4, 0.15}, {0.6, 0.4, 0.25});
+    CaseText text = body_in_tank(plate, false);
+    const ParticleCloud small = make(text);
+    text.pointmax = R"(<pointmax x="60" y="40" z="45" />)";
+    const ParticleCloud large = make(text);
+    EXPECT_EQ(small.positions, large.positions);
+    EXPECT_EQ(small.normals, large.normals);
+}
+
 } // namespace
