@@ -124,24 +124,24 @@ class FittedSphere : public testing::Test
 protected:
     static void SetUpTestSuite()
     {
-        folder_ = new TemporaryFolder;
-        result_ = run_case(*folder_, sphere_in_tank(), {"-fit"});
+        of_sphere = new TemporaryFolder;
+        run_of_sphere = run_case(*of_sphere, sphere_in_tank(), {"-fit"});
     }
-    static void TearDownTestSuite() { delete folder_; }
+    static void TearDownTestSuite() { delete of_sphere; }
 
-    static TemporaryFolder* folder_;
-    static RunResult result_;
+    static TemporaryFolder* of_sphere;
+    static RunResult run_of_sphere;
 };
 
-TemporaryFolder* FittedSphere::folder_ = nullptr;
-RunResult FittedSphere::result_;
+TemporaryFolder* FittedSphere::of_sphere = nullptr;
+RunResult FittedSphere::run_of_sphere;
 
 TEST_F(FittedSphere, HasItsParticlesOffTheLatticeOnItsTrueSurface)
 {
-    ASSERT_EQ(result_.code, 0) << result_.output;
-    const VtkFile picture(read_text(*folder_ / "out/Case_All.vtk"));
+    ASSERT_EQ(run_of_sphere.code, 0) << run_of_sphere.output;
+    const VtkFile picture(read_text(*of_sphere / "out/Case_All.vtk"));
     const auto& kind = picture.arrays.at("Kind");
-    const ParticleCloud cloud = particles(*folder_);
+    const ParticleCloud cloud = particles(*of_sphere);
     ASSERT_EQ(kind.size(), cloud.positions.size());
     std::size_t on_surface = 0;
     for (std::size_t i = 0; i < kind.size(); ++i)
@@ -166,15 +166,16 @@ TEST_F(FittedSphere, KeepsEveryParticleOnTheSurfaceOnTheLatticeWithoutFit)
     ASSERT_EQ(run_case(other, sphere_in_tank()).code, 0);
     for (const Vec3& p : particles(other).positions) EXPECT_TRUE(is_node(p, 0.05));
     std::size_t off = 0;
-    for (const Vec3& p : positions_of(particles(*folder_), bound_mk + 1)) off += !is_node(p, 0.05);
+    for (const Vec3& p : positions_of(particles(*of_sphere), bound_mk + 1))
+        off += !is_node(p, 0.05);
     EXPECT_GT(off, 200u);
 }
 
 TEST_F(FittedSphere, HasBlocksInCaseXmlThatFitTheParticles)
 {
-    const ParticleCloud cloud = particles(*folder_);
+    const ParticleCloud cloud = particles(*of_sphere);
     double next = 0;
-    for (const Element& block : blocks(*folder_))
+    for (const Element& block : blocks(*of_sphere))
     {
         EXPECT_EQ(number(block, "begin"), next);
         const double count = number(block, "count");
@@ -183,13 +184,13 @@ TEST_F(FittedSphere, HasBlocksInCaseXmlThatFitTheParticles)
         next += count;
     }
     EXPECT_EQ(next, static_cast<double>(cloud.positions.size()));
-    const Element root = fppg::read_xml(*folder_ / "out/Case.xml");
+    const Element root = fppg::read_xml(*of_sphere / "out/Case.xml");
     EXPECT_EQ(number(child(child(root, "execution"), "particles"), "np"), next);
 }
 
 TEST_F(FittedSphere, HasUnitNormalsThatPointOutwardsInThePicture)
 {
-    const VtkFile picture(read_text(*folder_ / "out/Case_All.vtk"));
+    const VtkFile picture(read_text(*of_sphere / "out/Case_All.vtk"));
     const auto& normal = picture.arrays.at("Normal");
     const auto& kind = picture.arrays.at("Kind");
     const auto& mk = picture.arrays.at("Mk");
@@ -207,7 +208,7 @@ TEST_F(FittedSphere, HasUnitNormalsThatPointOutwardsInThePicture)
 
 TEST_F(FittedSphere, WritesTheHistoryOfItsRelaxationUnlessRaw)
 {
-    const std::string history = read_text(*folder_ / "out/Case_Relax.csv");
+    const std::string history = read_text(*of_sphere / "out/Case_Relax.csv");
     EXPECT_TRUE(history.starts_with("what,iteration,particles,"));
     EXPECT_GT(std::count(history.begin(), history.end(), '\n'), 10);
     const TemporaryFolder other;

@@ -2,6 +2,7 @@
 
 #include "batch/batch_cases.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,8 +133,8 @@ TEST(Batch, GivesTheBytesOfSingleRuns)
     ASSERT_EQ(batch(folder, "cases", {"--set", "Dp=0.1,0.08", "--", "-save:all"}).code, 0);
     for (const std::string name : {"DrawBox", "DrawFileStl"})
     {
-        run(folder,
-            {"cases/" + name + "_Def", "single/" + name + "/" + name, "-dp:0.08", "-save:all"});
+        run(folder, {fmt::format("cases/{}_Def", name), fmt::format("single/{0}/{0}", name),
+                     "-dp:0.08", "-save:all"});
         auto of_batch = results(folder.path() / "out" / (name + "_Dp0.08"));
         std::erase_if(of_batch, [&](const auto& file)
                       { return file.first == name + ".png" || contains(file.first, ".batch."); });
