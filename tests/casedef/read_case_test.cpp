@@ -577,7 +577,7 @@ TEST(ReadCase, RefusesPatternsThatCannotBe)
           pattern_2x1x2("X--X", R"(<gap x="2" y="0" z="0" />)"),
           pattern_2x1x2("X--X", R"(<scale x="0" y="1" z="1" />)"),
           pattern_2x1x2("X--X", R"(<border x="-1" y="0" z="0" />)")})
-        EXPECT_NE(error_of(with_patterns(wrong, "")).find("<"), std::string::npos) << wrong;
+        EXPECT_NE(error_of(with_patterns(wrong, "")).find('<'), std::string::npos) << wrong;
     EXPECT_NE(error_of(with_patterns(pattern_2x1x2("X--X"), R"(<setpattern name="q" />)"))
                   .find("there is no pattern named 'q'"),
               std::string::npos);

@@ -75,7 +75,8 @@ inline std::vector<TestParticle> shaken(std::vector<TestParticle> particles, dou
 
 /// What compare_results() says of two sets of particles.
 inline Comparison compare_sets(const std::vector<TestParticle>& a,
-                               const std::vector<TestParticle>& b, CompareOptions options = {})
+                               const std::vector<TestParticle>& b,
+                               const CompareOptions& options = {})
 {
     const TestFolder folder;
     write_particles(folder / "a.vtk", a);

@@ -26,7 +26,8 @@ struct NodeField
     int at(int x, int y, int z) const
     {
         if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) return 0;
-        return mk[static_cast<std::size_t>((x * n[1] + y) * n[2] + z)];
+        const int at = (x * n[1] + y) * n[2] + z;
+        return mk[static_cast<std::size_t>(at)];
     }
 };
 
@@ -132,7 +133,8 @@ NodeField random_field(int n_y)
 {
     NodeField nodes;
     nodes.n = {*rc::gen::inRange(1, 7), n_y, *rc::gen::inRange(1, 7)};
-    const auto size = static_cast<std::size_t>(nodes.n[0] * nodes.n[1] * nodes.n[2]);
+    const int count = nodes.n[0] * nodes.n[1] * nodes.n[2];
+    const auto size = static_cast<std::size_t>(count);
     nodes.mk = *rc::gen::container<std::vector<int>>(
         size, rc::gen::weightedElement<int>({{3, 0}, {3, 1}, {2, 10}, {1, 11}}));
     return nodes;

@@ -223,7 +223,8 @@ TEST(Crossings, FindEveryOneOfManyLayers)
     ASSERT_EQ(found.size(), 200u);
     for (std::size_t i = 0; i < 200; ++i)
     {
-        EXPECT_EQ(found[i].position, static_cast<double>(3 * (i / 2) + i % 2));
+        const std::size_t position = 3 * (i / 2) + i % 2;
+        EXPECT_EQ(found[i].position, static_cast<double>(position));
         EXPECT_EQ(found[i].step, i % 2 == 0 ? 1 : -1);
     }
 }

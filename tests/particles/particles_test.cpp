@@ -6,6 +6,7 @@
 #include "helpers/case_text.h"
 #include "helpers/dense_grid.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -150,8 +151,9 @@ TEST(MakeParticles, OrientsAnMkInEveryOrderOfTheAxes)
     {
         CaseText text = small_case();
         text.mkconfig =
-            R"(<mkconfig boundcount="240" fluidcount="9"><mkorientbound mk="0" orient=")" + order +
-            R"(" /><mkorientfluid mk="0" orient=")" + order + R"(" /></mkconfig>)";
+            fmt::format(R"(<mkconfig boundcount="240" fluidcount="9"><mkorientbound mk="0" )"
+                        R"(orient="{0}" /><mkorientfluid mk="0" orient="{0}" /></mkconfig>)",
+                        order);
         const Made made = make(text, any_nodes(2));
         const Made plain = make(small_case(), any_nodes(2));
         ASSERT_EQ(made.particles.blocks.size(), plain.particles.blocks.size());

@@ -233,7 +233,7 @@ TEST(FluidSpace, ExactMassIsThatOfTheLitresAskedFor)
 
 TEST(FluidSpace, ExactMassThatCannotBeIsRefused)
 {
-    const auto refused = [](CaseText text, const std::string& reason)
+    const auto refused = [](const CaseText& text, const std::string& reason)
     {
         const Result r = make(text);
         EXPECT_NE(r.code, 0);

@@ -303,7 +303,9 @@ TEST(RelaxVolume, TakesNoParticlesAndNoWalls)
     EXPECT_EQ(relax_volume(none, {}, options, 1).iterations, 0);
     // Without a wall every node of a small block is at a free surface or near to it.
     std::vector<Vec3> block;
-    for (int i = 0; i < 27; ++i) block.push_back({0.1 * (i % 3), 0.1 * (i / 3 % 3), 0.1 * (i / 9)});
+    for (const int x : {0, 1, 2})
+        for (const int y : {0, 1, 2})
+            for (const int z : {0, 1, 2}) block.push_back({0.1 * x, 0.1 * y, 0.1 * z});
     const auto before = block;
     EXPECT_EQ(relax_volume(block, {}, options, 1).held_at_surface, 27U);
     EXPECT_EQ(block, before);

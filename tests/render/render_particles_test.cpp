@@ -42,7 +42,9 @@ ParticleCloud block()
     ParticleCloud cloud = cloud_of({}, {});
     for (int i = 0; i < 8 * 7 * 6; ++i)
     {
-        cloud.positions.push_back({double(i / 42), double(i / 6 % 7), double(i % 6)});
+        const int x = i / 42;
+        const int y = i / 6 % 7;
+        cloud.positions.push_back({double(x), double(y), double(i % 6)});
         cloud.mk.push_back(static_cast<std::uint16_t>(10 + i % 5));
     }
     return cloud;
@@ -347,7 +349,9 @@ TEST(RenderParticles, LeavesAFixedPartThatStandsInTheFluidWhole)
     ParticleCloud cloud = tank_of_water();
     for (int i = 0; i < 27; ++i) // between the front wall and the water
     {
-        cloud.positions.push_back({9.0 + i / 9, 2.0 + i / 3 % 3, 3.0 + i % 3});
+        const int x = i / 9;
+        const int y = i / 3 % 3;
+        cloud.positions.push_back({9.0 + x, 2.0 + y, 3.0 + i % 3});
         cloud.mk.push_back(11);
         cloud.type.push_back(0);
     }

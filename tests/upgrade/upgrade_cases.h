@@ -20,7 +20,7 @@ inline std::string definition(const std::string& in_casedef, const std::string& 
 /// The upgrade, which must have nothing to do a second time.
 inline UpgradedDefinition upgrade(const std::string& text)
 {
-    const UpgradedDefinition out = upgrade_definition(text, "CaseA_Def.xml");
+    UpgradedDefinition out = upgrade_definition(text, "CaseA_Def.xml");
     const UpgradedDefinition again = upgrade_definition(out.text, "CaseA_Def.xml");
     EXPECT_TRUE(again.changes.empty()) << again.changes.front().from;
     EXPECT_EQ(again.text, out.text);

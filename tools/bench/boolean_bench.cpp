@@ -10,6 +10,7 @@
 #include "fppg/boolean.h"
 #include "fppg/shapes.h"
 #include "lattice/wall_painter.h"
+#include "walls/fit_shape.h"
 
 #include <algorithm>
 #include <array>

@@ -213,12 +213,12 @@ int main(int count, char** values)
                      "[--relax N] [--h H] [--quality]\n");
         return 2;
     }
-    using clock = std::chrono::steady_clock;
+    using Clock = std::chrono::steady_clock;
     const double dp = std::atof(argv[2]);
     const int threads = argc > 4 ? std::atoi(argv[4]) : 1;
     fppg::MeshReport report;
     auto mesh = fppg::repair_mesh(fppg::read_stl(argv[1]).soup, {}, threads, report);
-    const auto start_lines = clock::now();
+    const auto start_lines = Clock::now();
     fppg::FeatureOptions feature_options;
     feature_options.dp = dp;
     const auto features = fppg::find_features(mesh, feature_options);
@@ -227,7 +227,7 @@ int main(int count, char** values)
     fppg::FitOptions options;
     options.dp = dp;
     if (argc > 5 && std::strcmp(argv[5], "cell") == 0) options.density = fppg::FitDensity::Cell;
-    const auto start = clock::now();
+    const auto start = Clock::now();
     const std::clock_t cpu_start = std::clock();
     auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
     const double seconds = seconds_since(start);
