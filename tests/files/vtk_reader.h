@@ -84,7 +84,7 @@ private:
     {
         const std::size_t end = bytes_.find('\n', at_);
         if (end == std::string::npos) throw std::runtime_error("line without end");
-        const std::string text = bytes_.substr(at_, end - at_);
+        std::string text = bytes_.substr(at_, end - at_);
         at_ = end + 1;
         return text;
     }
