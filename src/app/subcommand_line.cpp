@@ -179,11 +179,34 @@ SubcommandOption SubcommandLine::add_flag(const std::string& names, bool& value,
     return SubcommandOption(app_->add_flag(names, value, what));
 }
 
+namespace
+{
+
+/// Options may be written as in a run: -dp:0.01 for --dp=0.01, -threads:2, -strict.
+std::string in_long_form(const CLI::App& app, const std::string& argument)
+{
+    if (!argument.starts_with('-') || argument.starts_with("--")) return argument;
+    const std::size_t colon = argument.find(':');
+    const std::string name = argument.substr(1, colon == std::string::npos ? colon : colon - 1);
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& known : option->get_lnames())
+            if (name == known)
+                return colon == std::string::npos
+                           ? "--" + name
+                           : fmt::format("--{}={}", name, argument.substr(colon + 1));
+    return argument;
+}
+
+} // namespace
+
 bool SubcommandLine::read(const std::vector<std::string>& arguments)
 {
+    std::vector<std::string> words; // the last first, as CLI11 wants them
+    for (auto word = arguments.rbegin(); word != arguments.rend(); ++word)
+        words.push_back(in_long_form(*app_, *word));
     try
     {
-        app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+        app_->parse(words);
     }
     catch (const CLI::CallForHelp&)
     {

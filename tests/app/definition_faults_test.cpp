@@ -299,8 +299,13 @@ TEST(Subcommands, SayWhatAnOptionExpects)
                          "--dp: \"-1\" is invalid, expected above 0"))
         << output_of({"inspect", "a.stl", "--dp", "-1"});
     EXPECT_TRUE(contains(output_of({"compare", "a", "b", "--quite"}), "(did you mean --quiet?)"));
-    EXPECT_TRUE(contains(output_of({"compare", "a", "b", "--threads", "5000"}),
-                         "\"5000\" is invalid, expected 0 to 4096"));
+    for (const std::vector<std::string>& threads :
+         {std::vector<std::string>{"--threads", "5000"}, {"-threads:5000"}})
+    {
+        std::vector<std::string> words{"compare", "a", "b"};
+        words.insert(words.end(), threads.begin(), threads.end());
+        EXPECT_TRUE(contains(output_of(words), "\"5000\" is invalid, expected 0 to 4096"));
+    }
 }
 
 TEST(Tags, ThatAreNotClosedAreNamedWithTheirLine)
