@@ -35,9 +35,11 @@ inline std::int64_t gathered(std::uint64_t v)
 }
 
 /// Place on the curve of cell (i, j, k), each in [0, most_morton_cells).
-inline std::uint64_t morton_key(std::uint64_t i, std::uint64_t j, std::uint64_t k)
+inline std::uint64_t morton_key(std::int64_t i, std::int64_t j, std::int64_t k)
 {
-    return interleaved(i) | interleaved(j) << 1 | interleaved(k) << 2;
+    return interleaved(static_cast<std::uint64_t>(i)) |
+           interleaved(static_cast<std::uint64_t>(j)) << 1 |
+           interleaved(static_cast<std::uint64_t>(k)) << 2;
 }
 
 struct Keyed

@@ -38,7 +38,7 @@ BoxTree::BoxTree(std::vector<Box3> boxes, int threads) : boxes_(std::move(boxes)
             {
                 const double extent = all.max[axis] - all.min[axis];
                 const double share = extent > 0 ? at[axis] / extent : 0;
-                return static_cast<std::uint64_t>(share * (most_morton_cells - 1));
+                return static_cast<std::int64_t>(share * (most_morton_cells - 1));
             };
             keys[i] = {morton_key(cell(0), cell(1), cell(2)), static_cast<std::uint32_t>(i)};
         },

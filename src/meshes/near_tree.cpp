@@ -10,8 +10,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 namespace fppg
@@ -53,7 +51,6 @@ struct FacetPart
 {
     Box3 box;
     std::uint32_t facet = 0;
-    std::uint32_t number = 0; ///< of the parts of the facet
 };
 
 /// The parts into which a facet is cut across its longest edge for its boxes: long and oblique, one
@@ -272,8 +269,7 @@ private:
         for (auto p = at(range.begin); p != at(range.end); ++p) box.add(p->box.min + p->box.max);
         const Vec3 size = box.max - box.min;
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-        const auto key = [&](const FacetPart& p)
-        { return std::tuple(p.box.min[axis] + p.box.max[axis], p.facet, p.number); };
+        const auto key = [&](const FacetPart& p) { return p.box.min[axis] + p.box.max[axis]; };
         std::nth_element(at(range.begin), at(middle), at(range.end),
                          [&](const FacetPart& a, const FacetPart& b) { return key(a) < key(b); });
     }
@@ -298,8 +294,7 @@ private:
                 for (int k = 0; k < n; ++k)
                 {
                     parts_[begin + static_cast<std::uint32_t>(k)] = {
-                        box_of_part(&soup_.vertices[3 * f], k, n), static_cast<std::uint32_t>(f),
-                        static_cast<std::uint32_t>(k)};
+                        box_of_part(&soup_.vertices[3 * f], k, n), static_cast<std::uint32_t>(f)};
                 }
             },
             1024);
@@ -313,7 +308,7 @@ private:
         {
             const double at =
                 (0.5 * (part.box.min[axis] + part.box.max[axis]) - centre_[axis]) / scale_;
-            return static_cast<std::uint64_t>(std::clamp(0.5 * cells * (1 + at), 0.0, cells - 1));
+            return static_cast<std::int64_t>(std::clamp(0.5 * cells * (1 + at), 0.0, cells - 1));
         };
         RawArray<Keyed> keys(n_parts_);
         parallel_for(

@@ -152,10 +152,8 @@ private:
         std::vector<char> is_around(on_.mesh.facets.size(), 0);
         std::vector<std::uint32_t> facets;
         for (const std::uint32_t v : vertices)
-            for (const std::uint32_t e : on_.edges_of(v))
-                for (const std::uint32_t f : on_.mesh.edge_facets[e])
-                    if (f != no_index && std::exchange(is_around[f], char{1}) == 0)
-                        facets.push_back(f);
+            for (const std::uint32_t f : facets_around(v))
+                if (std::exchange(is_around[f], char{1}) == 0) facets.push_back(f);
         RawArray<DepthPlane> planes(on_.mesh.facets.size());
         parallel_for(
             facets.size(), on_.threads,
@@ -187,15 +185,16 @@ private:
 
     /// The place on a crease, or at its corner, nearest to a vertex: where the planes meet along
     /// which the depth is right under the facets around it.
-    template <typename PlaneUnder>
-    std::optional<Vec3> crease_place(std::uint32_t v, double longest,
-                                     const PlaneUnder& plane_under) const
+    ///
+    /// plane_of  plane_under() of a facet
+    template <typename PlaneOf>
+    std::optional<Vec3> crease_place(std::uint32_t v, double longest, const PlaneOf& plane_of) const
     {
         const Vec3& from = on_.mesh.vertices[v];
         Quadric quadric;
         for (const std::uint32_t f : facets_around(v))
         {
-            const DepthPlane plane = plane_under(f);
+            const DepthPlane plane = plane_of(f);
             const double at_vertex = plane.depth + dot(plane.direction, from - plane.middle);
             quadric.add_plane(plane.direction, on_.options.depth - at_vertex);
         }

@@ -32,7 +32,7 @@ struct CellAxis
 {
     float min = 0;
     float scale = 1;
-    std::uint64_t key(float x) const
+    std::int64_t key(float x) const
     {
         return std::min(static_cast<std::uint32_t>((x - min) * scale), most_morton_cells - 1);
     }
