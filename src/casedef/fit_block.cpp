@@ -172,8 +172,9 @@ private:
                                boundary));
         if (e.find_attribute("layers") != nullptr && !is_word(e, "layers", "auto"))
             s.layers = static_cast<int>(number_or(
-                e, "layers", 0, [](double v) { return v >= 1 && v <= 16 && v == std::floor(v); },
-                "auto or a whole number from 1 to 16"));
+                e, "layers", 0,
+                [](double v) { return v >= 1 && v <= most_layers && v == std::floor(v); },
+                fmt::format("auto or a whole number from 1 to {}", most_layers).c_str()));
         if (e.find_attribute("side") == nullptr) return;
         const std::string& side = read_.text(e, "side");
         if (side == "behind")

@@ -5,9 +5,14 @@
 namespace fppg
 {
 
+/// Of one wall.
+inline constexpr int most_layers = 16;
+
 /// Gives every fitted wall without a boundary condition of its own that of the case's parameter
 /// Boundary (2: mDBC), warns where the two disagree or one layer stands for mDBC, and hints at
 /// parameters that hold fluid in the solver.
+///
+/// throws  CaseError where h asks for more layers than most_layers
 void settle_boundaries(CaseDef& def);
 
 } // namespace fppg

@@ -53,7 +53,7 @@ void paint_off_lattice_lines(Painting& painting, const Brush& brush,
                {
                    std::vector<Vec3> points;
                    for (const auto& [from, to] : segments)
-                       append(points, off_lattice_line(from, to, painting.grid().dp));
+                       append(points, off_lattice_line(from, to, painting.grid()));
                    return points;
                });
 }
@@ -83,11 +83,10 @@ void paint_off_lattice_polyhedron(Painting& painting, const Brush& brush, const 
     if (op.solid == SolidKind::Box && !grid.is_2d)
     {
         const auto corner = [&](std::size_t i) { return op.vertices[op.solid_vertices[i]]; };
-        paint_made(
-            painting, brush,
-            [&] {
-                return off_lattice_block(corner(0), {corner(1), corner(3), corner(4)}, grid.dp);
-            });
+        paint_made(painting, brush,
+                   [&] {
+                       return off_lattice_block(corner(0), {corner(1), corner(3), corner(4)}, grid);
+                   });
         return;
     }
     std::vector<OffLatticePart> parts = off_lattice_parts(op, state.mode, state.matrix, grid);
@@ -135,11 +134,10 @@ void paint_off_lattice_sphere(Painting& painting, const Brush& brush, const Sphe
     const DrawState& state = *brush.state;
     const LatticeGrid& grid = painting.grid();
     if (grid.is_2d)
-        paint_made(painting, brush,
-                   [&] { return off_lattice_disc(op, state.mode, grid.origin.y, grid.dp); });
+        paint_made(painting, brush, [&] { return off_lattice_disc(op, state.mode, grid); });
     else
         paint_made(painting, brush,
-                   [&] { return off_lattice_sphere(op, state.matrix, state.mode, grid.dp); });
+                   [&] { return off_lattice_sphere(op, state.matrix, state.mode, grid); });
 }
 
 void paint_off_lattice_cylinder(Painting& painting, const Brush& brush, const CylinderOp& op)
@@ -159,7 +157,7 @@ void paint_off_lattice_cylinder(Painting& painting, const Brush& brush, const Cy
         nothing.heeds_pattern = false;
         painting.canvas.paint(nothing, emptied);
     }
-    paint_made(painting, brush, [&] { return off_lattice_cylinder(op, state.mode, grid.dp); });
+    paint_made(painting, brush, [&] { return off_lattice_cylinder(op, state.mode, grid); });
 }
 
 } // namespace fppg

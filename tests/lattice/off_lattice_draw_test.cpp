@@ -147,6 +147,55 @@ std::vector<Vec3> in_plane(const std::string& corners)
     return drawn_in_plane("<drawquadri>" + corners + "</drawquadri>");
 }
 
+// A kilobyte of text shall not cost gigabytes or minutes.
+TEST(OffLatticeDraw, RefusesWhatLiesAlmostWhollyOutsideOfTheDomain)
+{
+    const auto is_refused = [](const std::string& command)
+    {
+        try
+        {
+            (void)field_of(command);
+            return std::string("it was drawn");
+        }
+        catch (const CaseError& e)
+        {
+            return std::string(e.what());
+        }
+    };
+    const std::string corner = R"(<point x="0.1" y="0.1" z="0.1" />)";
+    for (const std::string size : {"1e5", "4294967296", "1e150"})
+        for (const std::string& command : {
+                 R"(<drawbox><boxfill>solid</boxfill>)" + corner + R"(<size x=")" + size +
+                     R"(" y="1000" z="1000" /></drawbox>)",
+                 R"(<drawsphere radius=")" + size + R"(">)" + corner + "</drawsphere>",
+                 R"(<drawcylinder radius="1000">)" + corner + R"(<point x=")" + size +
+                     R"(" y="0.1" z="0.1" /></drawcylinder>)",
+                 "<drawtriangle>" + corner + R"(<point x=")" + size +
+                     R"(" y="0.1" z="0.1" /><point x="0.1" y="5000" z="0.2" /></drawtriangle>)",
+                 R"(<drawpyramid>)" + corner + R"(<point x=")" + size +
+                     R"(" y="0.1" z="0.1" /><point x="5" y="5000" z="0.2" />)" +
+                     R"(<point x="1" y="1" z="3000" /></drawpyramid>)",
+             })
+            EXPECT_TRUE(is_refused(command).find("outside of the domain") != std::string::npos ||
+                        is_refused(command).find("dp long") != std::string::npos)
+                << command << "\n"
+                << is_refused(command);
+}
+
+TEST(OffLatticeDraw, DrawsTheEndOfALongObliqueTriangle)
+{
+    // Its sides leave the domain at once; the box around it has 10^10 places of the square grid.
+    const RunField field =
+        field_of(R"(<drawtriangle><point x="0" y="0" z="0" /><point x="9000" y="9000" z="0" />)"
+                 R"(<point x="9000" y="9000.4" z="0" /></drawtriangle>)");
+    EXPECT_GT(field.walls.volume.size(), 0u);
+    for (const Vec3& p : field.walls.volume.positions)
+    {
+        EXPECT_GE(p.y, p.x - 1e-9);
+        EXPECT_LE(p.y, p.x * (1 + 0.4 / 9000) + 1e-9);
+    }
+}
+
 TEST(OffLatticeDraw, DrawsASphereOfA2dCaseAsADisc)
 {
     const auto count = [](const std::string& mode, double y)
