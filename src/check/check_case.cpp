@@ -233,8 +233,8 @@ CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, i
         report.fill = nodes.size();
         if (nodes.n[2] == 0 && !walls.empty())
             report.setup.notes.push_back(
-                "The box of all walls is too large to be filled: walls "
-                "were judged with the fluid of the case alone.");
+                "The box of all walls, with 4h around it, is too large to be filled: walls were "
+                "judged with the fluid of the case alone.");
         else if (report.fluid + report.fill == 0)
             report.setup.notes.push_back(
                 "There is no fluid, and walls leave no room for it: no normal "

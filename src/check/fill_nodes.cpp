@@ -13,6 +13,8 @@ namespace
 
 constexpr std::size_t marks_per_chunk = 4096;
 constexpr double most_columns = 1U << 28U;
+/// Nodes beyond the box, 4h: of 6 dp are 24 of them.
+constexpr double most_beyond = 512;
 
 /// Spans of nodes by columns, which may overlap.
 struct NodeSpans
@@ -237,7 +239,8 @@ FillNodes whole_box(const CheckParticles& particles, const CheckSetup& setup,
     nodes.dp = setup.dp;
     Box3 box;
     for (const std::uint32_t i : walls) box.add(particles.positions[i]);
-    if (box.is_empty()) return nodes;
+    const double beyond = std::ceil(4 * setup.h / setup.dp);
+    if (box.is_empty() || !(beyond <= most_beyond)) return nodes;
     double columns = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -249,7 +252,7 @@ FillNodes whole_box(const CheckParticles& particles, const CheckSetup& setup,
         const bool is_flat = setup.is_2d && axis == 1;
         const auto a = static_cast<std::size_t>(axis);
         if (!is_flat && !setup.is_periodic[a])
-            nodes.beyond[a] = static_cast<std::int64_t>(std::ceil(4 * setup.h / setup.dp));
+            nodes.beyond[a] = static_cast<std::int64_t>(beyond);
         nodes.origin[axis] -= static_cast<double>(nodes.beyond[a]) * setup.dp;
         const double count = (is_flat ? 1 : std::max(0.0, end - begin + 1)) +
                              2 * static_cast<double>(nodes.beyond[a]);

@@ -3,7 +3,7 @@
 #include "check/layered_tank.h"
 #include "fppg/check.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <limits>
 #include <map>
@@ -76,6 +76,17 @@ TEST_P(CheckedTank, WithoutFluidIsJudgedAsFull)
 {
     tank_.drain([](const Vec3&) { return true; });
     EXPECT_EQ(found(tank_.check()), Faults{}) << to_text(tank_.check());
+}
+
+TEST_P(CheckedTank, IsNotFilledWhereTheKernelIsFarLargerThanIt)
+{
+    for (const double h : {1000.0, 1e307})
+    {
+        tank_.setup.h = h;
+        tank_.setup.domain = {{-9, -9, -9}, {9, 9, 9}};
+        EXPECT_THAT(tank_.check().setup.notes,
+                    testing::Contains(testing::HasSubstr("too large to be filled")));
+    }
 }
 
 TEST_P(CheckedTank, WithoutFluidTakesNoGapInAWallForSpace)
