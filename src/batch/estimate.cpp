@@ -11,6 +11,7 @@
 #include "batch/rates.h"
 #include "core/json.h"
 #include "lattice/mesh_units.h"
+#include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
@@ -40,8 +41,10 @@ struct WallCount
 {
     double on_surface = 0;
     double on_lines = 0;
-    double in_layers = 0; ///< behind them
-    double layered = 0;   ///< a dp^2 of surfaces with layers
+    double in_layers = 0;     ///< behind them
+    double layered_lines = 0; ///< of those on lines, on surfaces with layers
+    double cut_area = 0;      ///< a dp^2 of surfaces with layers, less where cells are coarse
+    double cut_particles = 0; ///< of those in layers, likewise
     double inside = 0;
     double relaxed = 0; ///< of those on surfaces
     double in_band = 0; ///< of those inside, that are relaxed too
@@ -137,13 +140,16 @@ private:
         for (const StepSurface& surface : step_surfaces(scene_, step, options_.threads))
         {
             const WallCount count = count_shape(surface.shape, state.clips, *settings);
+            most_cut_ = std::max(most_cut_, count.cut_area);
             for (const auto& [mk, share] : mk_shares(surface, state.mk.mk))
             {
                 WallCount& wall = walls_[mk];
                 wall.on_surface += share * count.on_surface;
                 wall.on_lines += share * count.on_lines;
                 wall.in_layers += share * count.in_layers;
-                wall.layered += share * count.layered;
+                wall.layered_lines += share * count.layered_lines;
+                wall.cut_area += share * count.cut_area;
+                wall.cut_particles += share * count.cut_particles;
                 wall.inside += share * count.inside;
                 wall.relaxed += share * count.relaxed;
                 wall.in_band += share * count.in_band;
@@ -191,8 +197,16 @@ private:
         if (is_on_surface) count.on_surface = std::max(count.on_lines, on_area);
         const double volume = share * std::abs(report.volume) / (dp * dp * dp);
         count.in_layers = on_area * layers_of(settings, report, dp);
-        if (count.in_layers > 0) count.layered = on_area;
         if (report.is_watertight) count.in_layers = std::min(count.in_layers, volume);
+        if (count.in_layers > 0)
+        {
+            const double finer =
+                offset_cell_dp /
+                (settings.place == Placement::Inside ? offset_cell_dp : layer_cell_dp(mesh, dp));
+            count.layered_lines = count.on_lines;
+            count.cut_area = finer * finer * on_area;
+            count.cut_particles = finer * finer * count.in_layers;
+        }
         if (settings.relax.is_active) count.relaxed = count.on_surface;
         if (shape.is_solid)
             count.inside = std::max(0.0, volume - count.on_surface / 2 - count.in_layers);
@@ -299,7 +313,9 @@ private:
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
             on_surfaces_ += wall.on_surface;
             in_layers_ += wall.in_layers;
-            layered_ += wall.layered;
+            layered_lines_ += wall.layered_lines;
+            cut_area_ += wall.cut_area;
+            cut_particles_ += wall.cut_particles;
             relaxed_ += wall.relaxed;
             in_band_ += wall.in_band;
             const auto is_it = [mk = mk](const EstimatedBlock& b) { return b.mk == mk; };
@@ -345,17 +361,19 @@ private:
         const double near_walls = balanced();
         set_memory(bound, near_walls);
         // Single sheets do not hold fluid at rest: that is found out, and it stays.
-        const double a_balanced = layered_ > 0 ? rates.seconds_a_balanced_particle
-                                               : rates.seconds_a_particle_not_balanced;
-        out_.seconds = rates.seconds_to_start + draw_seconds_ +
-                       read_machine_speed().factor *
-                           (rates.seconds_a_wall_particle * on_surfaces_ +
-                            rates.seconds_a_relaxed_particle * relaxed_ +
-                            rates.seconds_a_band_particle * in_band_ +
-                            rates.seconds_a_layered_place * layered_ +
-                            rates.seconds_a_layer_particle * in_layers_ + a_balanced * near_walls) /
-                           options_.threads +
-                       out_.output_bytes / rates.written_bytes_a_second;
+        const double a_balanced = cut_area_ > 0 ? rates.seconds_a_balanced_particle
+                                                : rates.seconds_a_particle_not_balanced;
+        out_.seconds =
+            rates.seconds_to_start + draw_seconds_ +
+            read_machine_speed().factor *
+                (rates.seconds_a_wall_particle * on_surfaces_ +
+                 rates.seconds_a_relaxed_particle * relaxed_ +
+                 rates.seconds_a_band_particle * in_band_ + rates.seconds_a_cut_place * cut_area_ +
+                 rates.seconds_a_cut_particle * cut_particles_ +
+                 rates.seconds_a_layer_particle * in_layers_ +
+                 rates.seconds_a_layered_line * layered_lines_ + a_balanced * near_walls) /
+                options_.threads +
+            out_.output_bytes / rates.written_bytes_a_second;
     }
 
     /// What stays over the run, and the largest of what its stages need besides.
@@ -368,7 +386,7 @@ private:
         if (!walls_.empty()) out_.memory_bytes += rates.bytes_to_fit;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
         out_.memory_bytes += std::max(
-            {rates.bytes_a_layered_place * layered_ + rates.bytes_a_layer_particle * in_layers_,
+            {rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
              rates.bytes_a_relaxed_particle * (relaxed_ + in_layers_) +
                  rates.bytes_a_band_particle * in_band_,
              rates.bytes_a_balanced_particle * near_walls});
@@ -384,7 +402,10 @@ private:
     TriangleSoup surfaces_;   ///< of all fitted walls
     double on_surfaces_ = 0;
     double in_layers_ = 0;
-    double layered_ = 0;
+    double layered_lines_ = 0;
+    double cut_area_ = 0;
+    double cut_particles_ = 0;
+    double most_cut_ = 0; ///< the largest cut area of one draw
     double relaxed_ = 0;
     double in_band_ = 0;
     double draw_seconds_ = 0;

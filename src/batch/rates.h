@@ -5,8 +5,8 @@ namespace fppg
 
 /// What particles cost, for estimates: measured with the release build on an AMD EPYC, one thread,
 /// with a ball (surface, filled, in layers, inside; -fit:raw and -fit), an open tank with fluid and
-/// the wet road of cases/new. A factor of two off on another machine is usual without a
-/// calibration.
+/// the gearbox and the wet road of cases/new. A factor of two off on another machine is usual
+/// without a calibration.
 struct Rates
 {
     double base_bytes = 8e6;                 ///< of the program itself
@@ -17,8 +17,8 @@ struct Rates
     double bytes_a_relaxed_particle = 190;   ///< besides
     double bytes_a_band_particle = 460;      ///< of a volume that is relaxed
     double bytes_to_fit = 20e6;              ///< where any wall is fitted
-    double bytes_a_layered_place = 6400;     ///< of a surface with layers, dp^2: its distance field
-    double bytes_a_layer_particle = 2400;    ///< with the surface that it is laid on
+    double bytes_a_cut_place = 6000;         ///< of a surface with layers, dp^2: its distance field
+    double bytes_a_cut_particle = 3100;      ///< the surface that those of layers are laid on
     double bytes_a_balanced_particle = 1900; ///< fluid near walls, and what is around it
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
@@ -26,8 +26,10 @@ struct Rates
     double seconds_a_wall_particle = 5e-6; ///< placed, with its zone of the lattice; one thread
     double seconds_a_relaxed_particle = 8.5e-6;
     double seconds_a_band_particle = 26e-6;
-    double seconds_a_layered_place = 79e-6;         ///< of a surface with layers, dp^2
-    double seconds_a_layer_particle = 58e-6;        ///< cut, laid and relaxed
+    double seconds_a_cut_place = 70e-6;             ///< of a surface with layers, dp^2
+    double seconds_a_cut_particle = 45e-6;          ///< the surface that it is laid on
+    double seconds_a_layer_particle = 30e-6;        ///< laid and relaxed
+    double seconds_a_layered_line = 700e-6;         ///< of creases of layers, dp of the edge
     double seconds_a_balanced_particle = 70e-6;     ///< fluid near walls in layers
     double seconds_a_particle_not_balanced = 30e-6; ///< near single sheets
     double band_particles = 2.3;                    ///< of a solid, a particle on its surface

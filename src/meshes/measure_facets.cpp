@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/parallel.h"
@@ -52,6 +53,21 @@ void measure_facets(SurfaceMesh& mesh, int threads)
         if (is_thin[f] == without_side || dot(mesh.normals[at], mesh.normals[f]) > 0)
             mesh.normals[f] = mesh.normals[at];
     }
+}
+
+double turn_per_metre(const SurfaceMesh& mesh)
+{
+    double turns = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    {
+        const auto [f, g] = mesh.edge_facets[e];
+        if (g == no_index || mesh.is_manifold[e] == 0) continue;
+        const auto [a, b] = mesh.edges[e];
+        turns +=
+            norm(mesh.normals[f] - mesh.normals[g]) * norm(mesh.vertices[b] - mesh.vertices[a]);
+    }
+    const double area = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
+    return area > 0 ? turns / area : 0;
 }
 
 } // namespace fppg

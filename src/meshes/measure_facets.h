@@ -11,4 +11,8 @@ namespace fppg
 /// threads  number of threads; the result does not depend on it
 void measure_facets(SurfaceMesh& mesh, int threads);
 
+/// How much a surface turns for its area, radians a metre: 2 / R of a ball. Turns of more than a
+/// right angle count for less.
+double turn_per_metre(const SurfaceMesh& mesh);
+
 } // namespace fppg

@@ -23,14 +23,12 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
     for (const Vec3& v : mesh_.vertices) size_ = std::max(size_, largest_coordinate(v));
     is_sharp_.resize(mesh_.edges.size(), 0);
     TriangleSoup mitred;
-    double turns = 0;
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
     {
         const auto& facets = mesh_.edge_facets[e];
         if (facets[1] == no_index || mesh_.is_manifold[e] == 0) continue;
         const Vec3& begin = mesh_.vertices[mesh_.edges[e][0]];
         const Vec3& end = mesh_.vertices[mesh_.edges[e][1]];
-        turns += norm(mesh_.normals[facets[0]] - mesh_.normals[facets[1]]) * norm(end - begin);
         is_sharp_[e] = dot(mesh_.normals[facets[0]], mesh_.normals[facets[1]]) < turn_ ? 1 : 0;
         if (is_sharp_[e] == 0) continue;
         double rise = 0; // of one facet over the plane of the other
@@ -38,7 +36,6 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
             rise += dot(mesh_.vertices[v] - begin, mesh_.normals[facets[0]]);
         if (sign_ * rise > 0) mitred.vertices.insert(mitred.vertices.end(), {begin, end, end});
     }
-    if (report.area > 0) turn_per_metre_ = turns / report.area;
     if (!mitred.vertices.empty()) mitres_ = std::make_unique<MeshQuery>(std::move(mitred), threads);
 }
 

@@ -86,9 +86,6 @@ public:
     {
         return mitres_ != nullptr && mitres_->closest_point(p).distance <= within;
     }
-    /// How much the surface turns for its area, radians a metre: 2 / R of a ball. Turns of more
-    /// than a right angle count for less.
-    double turn_per_metre() const { return turn_per_metre_; }
     /// 1 where the layers are behind the facets, -1 where they are in front.
     double sign() const { return sign_; }
 
@@ -106,8 +103,7 @@ private:
     bool is_solid_ = false;
     bool asks_inside_ = false;
     double sign_ = 1;
-    std::vector<char> is_sharp_; ///< per edge
-    double turn_per_metre_ = 0;
+    std::vector<char> is_sharp_;        ///< per edge
     double turn_ = 0;                   ///< cosine of the angle from which edges are sharp
     std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
     std::unique_ptr<RoundWall> round_;

@@ -7,6 +7,7 @@
 #include "meshes/cad_surface.h"
 #include "meshes/connect_mesh.h"
 #include "meshes/crowded_points.h"
+#include "meshes/measure_facets.h"
 #include "offset/layer_place.h"
 #include "offset/offset_surface.h"
 #include "walls/fit_shape.h"
@@ -67,6 +68,11 @@ SurfaceMesh drawn_out(const SurfaceMesh& mesh, double plane_y, double half_width
 
 } // namespace
 
+double layer_cell_dp(const SurfaceMesh& wall, double dp)
+{
+    return turn_per_metre(wall) * dp < few_turns ? coarse_cell_dp : offset_cell_dp;
+}
+
 LayerSide LayerBuilder::side_without_fluid() const
 {
     if (settings_.fluid_places.empty()) return LayerSide::Behind;
@@ -116,9 +122,8 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
     if (wall_ == nullptr) return;
     if (plan.middle_dp > 0) find_thin_parts(*wall_);
     // The number of particles inside a body is measured by its layers' facets.
-    const bool is_coarse =
-        !grid_.is_2d && !out_.body.is_inside && wall_->turn_per_metre() * grid_.dp < few_turns;
-    const double cell_dp = is_coarse ? coarse_cell_dp : plan.cell_dp;
+    const double cell_dp =
+        grid_.is_2d || out_.body.is_inside ? plan.cell_dp : layer_cell_dp(wall_->mesh(), grid_.dp);
     const std::string of_side = side == WallSide::Front ? " before the surface" : std::string();
     for (std::size_t k = 0; k < plan.depths_dp.size(); ++k)
     {

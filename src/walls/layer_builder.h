@@ -21,6 +21,8 @@ inline constexpr double offset_cell_dp = 0.5;
 /// vehicle that turns by 0.07 were less even by it (spread 0.054 instead of 0.046).
 inline constexpr double coarse_cell_dp = 0.7;
 inline constexpr double few_turns = 0.05;
+/// Which of the two the layers of a wall take, 3D.
+double layer_cell_dp(const SurfaceMesh& wall, double dp);
 
 /// Which layers a wall gets.
 struct LayerPlan
