@@ -9,6 +9,7 @@
 #include "meshes/column_spans.h"
 #include "meshes/inside_by_vote.h"
 #include "meshes/inside_test.h"
+#include "nodes/domain.h"
 #include "nodes/spans.h"
 
 #include <algorithm>
@@ -35,6 +36,7 @@ struct WideGrid
 /// The lattice itself where it holds the mesh and all nodes near it, else a larger one.
 WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
 {
+    expect_near(bounds, lattice);
     WideGrid wide;
     wide.grid = lattice;
     for (int axis = 0; axis < 3; ++axis)
@@ -43,11 +45,6 @@ WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
         const auto k = static_cast<std::size_t>(axis);
         const double low = std::floor((bounds.min[axis] - lattice.origin[axis]) / lattice.dp) - 2;
         const double high = std::ceil((bounds.max[axis] - lattice.origin[axis]) / lattice.dp) + 2;
-        constexpr double limit = 2147483648.0;
-        if (!(std::abs(low) < limit && std::abs(high) < limit))
-            throw GeometryError(fmt::format(
-                "the mesh reaches from {:.6g} to {:.6g} m along {}, more than 2^31 dp of {:.6g} m",
-                bounds.min[axis], bounds.max[axis], "xyz"[axis], lattice.dp));
         const double begin = std::min(low, 0.0);
         const double end = std::max(high + 1, static_cast<double>(lattice.n[k]));
         wide.offset[k] = static_cast<std::int64_t>(begin);

@@ -199,7 +199,7 @@ private:
     /// The last node that is not beyond a coordinate.
     std::int64_t node_below(double coordinate, int axis) const
     {
-        return static_cast<std::int64_t>(std::floor((coordinate - grid_.origin[axis]) / grid_.dp));
+        return to_index(std::floor((coordinate - grid_.origin[axis]) / grid_.dp));
     }
 
     void add_facet(const TriangleSoup& soup, std::size_t t)

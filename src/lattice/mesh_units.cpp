@@ -94,13 +94,14 @@ void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
     const auto* op = shape_as<MeshFileOp>(draw);
     throw GeometryError(fmt::format(
         "{}: {} has a surface of {:.4g} m^2, for which body-fitted walls need {:.2g} particles "
-        "with "
-        "dp={:g}; {}; dp={:g} and larger ones fit",
+        "with dp={:g}; {}{}",
         place_of(*scene.def, draw.source), op != nullptr ? op->file : "it", area, count, dp,
         count > static_cast<double>(most_particles)
             ? fmt::format("the file format holds at most {}", most_particles_text)
             : fmt::format("this machine has {:.3g} GB of memory free", memory * 1e-9),
-        dp_rounded_up(dp * std::sqrt(count / most))));
+        std::isfinite(count) ? fmt::format("; dp={:g} and larger ones fit",
+                                           dp_rounded_up(dp * std::sqrt(count / most)))
+                             : std::string()));
 }
 
 /// A mesh file whose size does not go with that of the domain.

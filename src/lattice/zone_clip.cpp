@@ -1,4 +1,5 @@
 #include "lattice/zone_clip.h"
+#include "nodes/snap.h"
 
 #include <algorithm>
 #include <array>
@@ -61,7 +62,7 @@ NodeBox nodes_within(const ZoneBox& box, const LatticeGrid& grid)
     {
         if (grid.is_2d && axis == 1) continue;
         const auto step = [&](double x)
-        { return static_cast<std::int64_t>(std::round((x - grid.origin[axis]) / grid.dp)); };
+        { return to_index(std::round((x - grid.origin[axis]) / grid.dp)); };
         const auto k = static_cast<std::size_t>(axis);
         out.begin[k] = std::max<std::int64_t>(out.begin[k], step(box.corner[axis]) + 1);
         out.end[k] = std::min<std::int64_t>(out.end[k], step(far[axis]));

@@ -174,9 +174,15 @@ void MeshQuery::prepare_nearest() const
     scene_->near_tree();
 }
 
-ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
+ClosestPoint MeshQuery::closest_point(const Vec3& point, double within,
+                                      const NearFacets* near) const
 {
-    return scene_->near_tree().closest(point, within);
+    return scene_->near_tree().closest(point, within, near);
+}
+
+void MeshQuery::collect_near(const Vec3& place, double reach, NearFacets& near) const
+{
+    scene_->near_tree().collect(place, reach, near);
 }
 
 std::vector<Crossing> MeshQuery::crossings(const Vec3& origin, int axis) const

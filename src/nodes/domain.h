@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/lattice.h"
+#include "fppg/mesh.h"
 
 namespace fppg
 {
@@ -28,5 +29,9 @@ inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid, double beyond_d
     }
     return true;
 }
+
+/// throws  GeometryError where a mesh reaches farther from the lattice than 2^31 dp, along y not in
+/// 2D
+void expect_near(const Box3& bounds, const LatticeGrid& grid);
 
 } // namespace fppg

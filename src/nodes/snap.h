@@ -21,16 +21,21 @@ struct Node
     bool operator==(const Node&) const = default;
 };
 
+/// A whole number as an index. Far outside every lattice all are one, so that the conversion is
+/// defined.
+inline std::int64_t to_index(double whole)
+{
+    constexpr double limit = 4e9;
+    return static_cast<std::int64_t>(whole < -limit ? -limit : whole > limit ? limit : whole);
+}
+
 /// Rounds a coordinate to the lattice: floor((c - origin) / dp + 0.5), in double and in this order,
 /// so that halves fall as in GenCase (rule L4: 0.05 goes up to 0.1, 0.45 falls to 0.4). Below the
 /// origin halves go down: -0.05 to -0.1 where the origin is 0.
 inline std::int64_t snap(double coordinate, double origin, double dp)
 {
     const double steps = (coordinate - origin) / dp;
-    const double index = steps < 0 ? std::ceil(steps - 0.5) : std::floor(steps + 0.5);
-    // Far outside every lattice; keeps the conversion defined for huge coordinates.
-    constexpr double limit = 4e9;
-    return static_cast<std::int64_t>(index < -limit ? -limit : index > limit ? limit : index);
+    return to_index(steps < 0 ? std::ceil(steps - 0.5) : std::floor(steps + 0.5));
 }
 
 inline Node snap(const Vec3& p, const LatticeGrid& grid)

@@ -291,6 +291,9 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
 FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const LatticeGrid& grid,
                     const std::vector<ClipPlane>& clips, int threads)
 {
+    Box3 bounds;
+    for (const Vec3& v : given.mesh.vertices) bounds.add(v);
+    expect_near(bounds, grid);
     FittedDraw out;
     out.body = std::move(given);
     out.warnings = out.body.report.warnings;

@@ -19,6 +19,8 @@ namespace
 /// on a step behind the cut, as the volume asks, and not quite on it, where faces of meshes lie.
 constexpr double margin_dp = 12.001;
 constexpr double least_area_dp2 = 20000;
+/// What is left of a round shape is laid on its facets: only where so many times as much is beyond.
+constexpr double most_of_round = 8;
 /// The box touches nothing by intent.
 constexpr double cut_merge_dp = 1e-6;
 
@@ -54,7 +56,9 @@ double area_in(const Box3& box, const std::array<Vec3, 3>& corners)
     return 0.5 * norm(twice);
 }
 
-bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double dp, int threads)
+/// Whether of the area so many times as much is beyond a box as in it, and of some size.
+bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double times, double dp,
+                      int threads)
 {
     const double all = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
     if (all < least_area_dp2 * dp * dp) return false;
@@ -68,7 +72,7 @@ bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double dp, int t
         },
         1024);
     const double inside = std::accumulate(within.begin(), within.end(), 0.0);
-    return all - inside > std::max(inside, least_area_dp2 * dp * dp);
+    return all - inside > std::max(times * inside, least_area_dp2 * dp * dp);
 }
 
 TriangleSoup soup_of_box(const Box3& box)
@@ -98,9 +102,11 @@ TriangleSoup soup_of_box(const Box3& box)
 std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
                                          const LatticeGrid& grid, int threads)
 {
-    if (settings.place == Placement::Inside || body.round != nullptr || grid.is_2d) return {};
+    if (settings.place == Placement::Inside || grid.is_2d) return {};
     const Box3 box = box_around(grid);
-    if (!is_mostly_beyond(body.mesh, box, grid.dp, threads)) return {};
+    const double times = body.round != nullptr ? most_of_round : 1;
+    if (!is_mostly_beyond(body.mesh, box, times, grid.dp, threads)) return {};
+    body.round = nullptr;
     MeshReport of_box;
     const SurfaceMesh around = repair_mesh(soup_of_box(box), {}, threads, of_box);
     const BooleanNode both{
