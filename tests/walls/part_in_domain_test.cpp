@@ -2,6 +2,12 @@
 
 #include "walls/part_in_domain.h"
 
+#include "fppg/case_def.h"
+#include "fppg/error.h"
+#include "fppg/lattice.h"
+#include "fppg/scene.h"
+
+#include "helpers/case_text.h"
 #include "helpers/surface_cover.h"
 #include "meshes/mesh_query.h"
 #include "walls/fit_shape.h"
@@ -10,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fppg
 {
@@ -169,6 +176,37 @@ TEST(LargeBody, BesideTheDomainHasNothingInIt)
     const FittedDraw part = fit(box({5, 5, 5}, {25, 25, 25}), true, BodyExtent::NearDomain);
     EXPECT_EQ(part.particles.size(), 0u);
     for (const Spans& slab : part.volume) EXPECT_TRUE(slab.empty());
+}
+
+TEST(LargeBody, BeyondAllNumbersIsRefused)
+{
+    EXPECT_THROW(fit(box({0.2, 1e307, 0.3}, {0.3, 1.1e307, 0.4}), true, BodyExtent::Whole),
+                 GeometryError);
+}
+
+TEST(LargeBody, ThatIsRoundIsLaidInTheDomainAlone)
+{
+    // A pipe of 40 m; the domain is 2 m of it.
+    const test::TemporaryFolder folder;
+    test::CaseText text;
+    text.dp = "0.05";
+    text.mainlist =
+        R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.3" mask="1|2">)"
+        R"(<point x="-20" y="0.1" z="0.1" /><point x="20" y="0.1" z="0.1" /></drawcylinder>)";
+    test::write_text(folder / "Case_Def.xml", text.text());
+    CaseOptions options;
+    options.fit = FitChoice::On;
+    const CaseDef def = read_case(folder / "Case_Def.xml", options);
+    LatticeReport report;
+    const RunField field = draw_scene(make_scene(def), 2, {}, report);
+    const std::vector<Vec3>& wall = field.walls.particles.positions;
+    const double length = (def.grid.n[0] - 1) * def.grid.dp;
+    const double area = 2 * std::numbers::pi * 0.3 * length;
+    EXPECT_NEAR(static_cast<double>(wall.size()) * dp * dp, area, 0.05 * area);
+    for (const Vec3& p : wall) EXPECT_NEAR(std::hypot(p.y - 0.1, p.z - 0.1), 0.3, 0.01 * dp);
+    double laid = 0;
+    for (const FittedBody& body : field.walls.bodies) laid += body.report.area;
+    EXPECT_LT(laid, 3 * area);
 }
 
 } // namespace
