@@ -174,15 +174,9 @@ void MeshQuery::prepare_nearest() const
     scene_->near_tree();
 }
 
-ClosestPoint MeshQuery::closest_point(const Vec3& point, double within,
-                                      const NearFacets* near) const
+ClosestPoint MeshQuery::closest_point(const Vec3& point, double within) const
 {
-    return scene_->near_tree().closest(point, within, near);
-}
-
-void MeshQuery::collect_near(const Vec3& place, double reach, NearFacets& near) const
-{
-    scene_->near_tree().collect(place, reach, near);
+    return scene_->near_tree().closest(point, within);
 }
 
 std::vector<Crossing> MeshQuery::crossings(const Vec3& origin, int axis) const

@@ -52,13 +52,8 @@ public:
     /// within  metres; how far to look, which saves half of the search or more. Where no point of
     ///         the mesh is so near, the facet is the largest number, point and distance are
     ///         infinite
-    /// near    facets one of which is the nearest; null: all are looked at
     ClosestPoint closest_point(const Vec3& point,
-                               double within = std::numeric_limits<double>::infinity(),
-                               const NearFacets* near = nullptr) const;
-
-    /// Those within `reach` of a place, metres: for queries whose nearest facet is one of them.
-    void collect_near(const Vec3& place, double reach, NearFacets& near) const;
+                               double within = std::numeric_limits<double>::infinity()) const;
 
     /// All crossings of the half line from `origin` towards larger coordinates along `axis` (0, 1
     /// or 2), sorted by position, then facet. Edges and vertices count as in inside_spans(): for

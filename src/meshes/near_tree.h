@@ -18,23 +18,6 @@ struct ClosestPoint
     double distance = 0;     ///< metres, not negative
 };
 
-struct FacetTree;
-
-/// The facets near some place, for many queries there.
-class NearFacets
-{
-public:
-    NearFacets();
-    ~NearFacets();
-    NearFacets(const NearFacets&) = delete;
-    NearFacets& operator=(const NearFacets&) = delete;
-
-private:
-    friend class NearTree;
-    struct Leaves;
-    std::unique_ptr<Leaves> leaves_;
-};
-
 /// Finds the nearest facet of a mesh. Boxes and planes in float, eight at a time and with room for
 /// their rounding, say which facets may be nearest; distances are computed from these in double. So
 /// the answer depends on the facets alone, not on the tree.
@@ -54,20 +37,15 @@ public:
 
     /// within  metres; where no point is so near, the facet is the largest number, point and
     ///         distance are infinite
-    ///
-    /// near  facets one of which is the nearest; null: all are looked at
-    ClosestPoint closest(const Vec3& point, double within = std::numeric_limits<double>::infinity(),
-                         const NearFacets* near = nullptr) const;
-
-    /// Those within `reach` of a place, metres, or none where they are more than 64: then queries
-    /// look at all.
-    void collect(const Vec3& place, double reach, NearFacets& near) const;
+    ClosestPoint closest(const Vec3& point,
+                         double within = std::numeric_limits<double>::infinity()) const;
 
 private:
+    struct Nodes;
     const TriangleSoup& soup_;
     Vec3 centre_;
     double scale_;
-    std::unique_ptr<FacetTree> tree_;
+    std::unique_ptr<Nodes> nodes_;
 };
 
 } // namespace fppg

@@ -22,27 +22,14 @@ struct Cube
     double within = std::numeric_limits<double>::infinity();
 };
 
-/// Half of a cube's diagonal, metres.
-double reach_of(const Cube& cube, const DepthGrid& grid)
-{
-    return static_cast<double>(cube.size) * half_diagonal * grid.cell;
-}
-
-Vec3 middle_of(const Cube& cube, const DepthGrid& grid)
-{
-    return grid.node(cube.first[0], cube.first[1], cube.first[2]) +
-           (0.5 * static_cast<double>(cube.size) * grid.cell) * Vec3{1, 1, 1};
-}
-
 /// Whether the surface may pass through a cube of cells. Its `within` is made tighter.
-///
-/// near  as for WallDepth::at()
-bool may_hold(const WallDepth& wall, const DepthGrid& grid, Cube& cube, double depth,
-              const NearFacets* near = nullptr)
+bool may_hold(const WallDepth& wall, const DepthGrid& grid, Cube& cube, double depth)
 {
-    const Vec3 middle = middle_of(cube, grid);
-    const double reach = reach_of(cube, grid);
-    const DepthPlace place = wall.at(middle, cube.within, near);
+    const double half = 0.5 * static_cast<double>(cube.size);
+    const Vec3 middle =
+        grid.node(cube.first[0], cube.first[1], cube.first[2]) + (half * grid.cell) * Vec3{1, 1, 1};
+    const double reach = 2 * half * half_diagonal * grid.cell;
+    const DepthPlace place = wall.at(middle, cube.within);
     const double distance = norm(place.nearest - middle);
     cube.within = (distance + reach) * (1 + 1e-9);
     if (std::fabs(distance - depth) <= reach)
@@ -145,9 +132,7 @@ public:
             within};
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (cube.first[axis] >= grid_.cells[axis]) return;
-        if (size < brick_cells && !may_hold(wall_, grid_, cube, depth_, near(size))) return;
-        if (size == gathers_at)
-            wall_.collect_near(middle_of(cube, grid_), cube.within + reach_of(cube, grid_), near_);
+        if (size < brick_cells && !may_hold(wall_, grid_, cube, depth_)) return;
         if (size == 2)
         {
             for (int i = 0; i <= 2; ++i)
@@ -164,11 +149,6 @@ public:
     }
 
 private:
-    /// Facets near cubes of this size serve all the queries in them.
-    static constexpr int gathers_at = 4;
-
-    const NearFacets* near(int size) const { return size < gathers_at ? &near_ : nullptr; }
-
     void look(const std::array<int, 3>& n, double within)
     {
         const int number = (n[0] * brick_nodes + n[1]) * brick_nodes + n[2];
@@ -177,7 +157,7 @@ private:
         is_seen_[at] = 1;
         const Vec3 p =
             grid_.node(brick_.first[0] + n[0], brick_.first[1] + n[1], brick_.first[2] + n[2]);
-        const DepthPlace place = wall_.at(p, within, &near_);
+        const DepthPlace place = wall_.at(p, within);
         DepthNode& node = brick_.nodes[at];
         node.foot = place.foot;
         node.direction = place.direction;
@@ -190,7 +170,6 @@ private:
     double depth_;
     DepthBrick& brick_;
     std::vector<char> is_seen_;
-    NearFacets near_; ///< of the cube that is looked at
 };
 
 } // namespace

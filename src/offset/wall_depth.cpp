@@ -117,9 +117,9 @@ bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& p
     return dot(out, normals_.at(foot.facet, place)) < 0;
 }
 
-DepthPlace WallDepth::at(const Vec3& p, double within, const NearFacets* near) const
+DepthPlace WallDepth::at(const Vec3& p, double within) const
 {
-    ClosestPoint foot = query().closest_point(p, within, near);
+    ClosestPoint foot = query().closest_point(p, within);
     // The facets of a round body may be farther than the exact surface that the bound is of.
     if (foot.facet >= mesh_.facets.size()) foot = query().closest_point(p);
     if (const auto exact = exact_place(p, foot)) return seen_from(*exact, p, foot.facet);

@@ -71,14 +71,7 @@ public:
     double chord() const;
 
     /// within  metres; a point of the surface is known to be so near
-    /// near    facets one of which is the nearest to p; null: all are looked at
-    DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity(),
-                  const NearFacets* near = nullptr) const;
-    /// For at() of places whose nearest point of the surface is within `reach` of this one, metres.
-    void collect_near(const Vec3& place, double reach, NearFacets& near) const
-    {
-        query().collect_near(place, reach + chord(), near);
-    }
+    DepthPlace at(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const;
     /// Whether a point is before the wall beyond doubt: beside facets that lie on one another, as
     /// folded slivers do, the nearest facet alone does not say so.
     ///
