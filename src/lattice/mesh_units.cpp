@@ -5,6 +5,7 @@
 
 #include "core/most_particles.h"
 #include "platform/memory.h"
+#include "scene/near_domain.h"
 #include "scene/surfaces.h"
 #include "shapes/shape.h"
 
@@ -81,14 +82,16 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
            fit_settings(def.fit, state.mk.mk) != nullptr && state.mode != DrawMode::Wire;
 }
 
-/// Body-fitted walls are laid whole before what is outside the domain goes.
+/// Body-fitted walls are laid before what is outside the domain goes, but for the far parts of
+/// cylinders.
 void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
     constexpr double bytes_per_particle = 100; // the least that laying them needs
     const double dp = scene.def->grid.dp;
     const auto memory = static_cast<double>(available_memory());
     const double most = std::min(static_cast<double>(most_particles), memory / bytes_per_particle);
-    const double area = area_of(scene, draw, most * dp * dp, threads);
+    const std::optional<DrawOp> shorter = ended_beside_domain(draw, scene.def->grid);
+    const double area = area_of(scene, shorter ? *shorter : draw, most * dp * dp, threads);
     const double count = area / (dp * dp);
     if (count <= most) return;
     const auto* op = shape_as<MeshFileOp>(draw);

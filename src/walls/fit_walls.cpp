@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_mesh.h"
+#include "scene/near_domain.h"
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
 #include "walls/fit_shape.h"
@@ -102,14 +103,17 @@ bool floats(const CaseDef& def, std::uint16_t mk)
                        });
 }
 
+/// The mass of what floats is that of all of it.
+BodyExtent extent_of(const Scene& scene, const DrawOp& draw)
+{
+    return floats(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
+}
+
 FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
                const FitSettings& settings, int threads)
 {
-    // The mass of what floats is that of all of it.
-    const BodyExtent extent =
-        floats(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
-    FittedDraw out =
-        fit_shape(shape, settings, scene.def->grid, draw.state->clips, extent, threads);
+    FittedDraw out = fit_shape(shape, settings, scene.def->grid, draw.state->clips,
+                               extent_of(scene, draw), threads);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
@@ -136,7 +140,11 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     const DrawState& state = *draw.state;
     const LatticeGrid& grid = scene.def->grid;
     FittedStep out;
-    const std::vector<ShapeMesh> shapes = surfaces_of(scene, draw, PartsAs::Drawn, threads);
+    std::optional<DrawOp> shorter;
+    if (extent_of(scene, draw) == BodyExtent::NearDomain && settings.place != Placement::Inside)
+        shorter = ended_beside_domain(draw, grid);
+    const std::vector<ShapeMesh> shapes =
+        surfaces_of(scene, shorter ? *shorter : draw, PartsAs::Drawn, threads);
     if (shapes.empty()) return out;
     if (state.pattern && state.draw_points)
         throw GeometryError(

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "meshes/cut_at_plane.h"
+#include "scene/near_domain.h"
 
 #include <algorithm>
 #include <array>
@@ -15,23 +16,8 @@ namespace fppg
 namespace
 {
 
-/// Layers, relaxation and features reach less far. Hardly beyond a plane of nodes, so that nodes go
-/// on a step behind the cut, as the volume asks, and not quite on it, where faces of meshes lie.
-constexpr double margin_dp = 12.001;
-constexpr double least_area_dp2 = 20000;
-/// What is left of a round shape is laid on its facets: only where so many times as much is beyond.
-constexpr double most_of_round = 8;
 /// The box touches nothing by intent.
 constexpr double cut_merge_dp = 1e-6;
-
-/// The domain with the margin.
-Box3 box_around(const LatticeGrid& grid)
-{
-    const double margin = margin_dp * grid.dp;
-    const Vec3 last{grid.n[0] - 1.0, grid.n[1] - 1.0, grid.n[2] - 1.0};
-    return {grid.origin - Vec3{margin, margin, margin},
-            grid.origin + grid.dp * last + Vec3{margin, margin, margin}};
-}
 
 /// What of the area of a facet is in a box.
 double area_in(const Box3& box, const std::array<Vec3, 3>& corners)
@@ -56,12 +42,10 @@ double area_in(const Box3& box, const std::array<Vec3, 3>& corners)
     return 0.5 * norm(twice);
 }
 
-/// Whether of the area so many times as much is beyond a box as in it, and of some size.
-bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double times, double dp,
-                      int threads)
+bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double dp, int threads)
 {
     const double all = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
-    if (all < least_area_dp2 * dp * dp) return false;
+    if (all < least_beyond_dp2 * dp * dp) return false;
     std::vector<double> within(mesh.facets.size());
     parallel_for(
         mesh.facets.size(), threads,
@@ -72,7 +56,7 @@ bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double times, do
         },
         1024);
     const double inside = std::accumulate(within.begin(), within.end(), 0.0);
-    return all - inside > std::max(times * inside, least_area_dp2 * dp * dp);
+    return all - inside > std::max(inside, least_beyond_dp2 * dp * dp);
 }
 
 TriangleSoup soup_of_box(const Box3& box)
@@ -102,11 +86,9 @@ TriangleSoup soup_of_box(const Box3& box)
 std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
                                          const LatticeGrid& grid, int threads)
 {
-    if (settings.place == Placement::Inside || grid.is_2d) return {};
-    const Box3 box = box_around(grid);
-    const double times = body.round != nullptr ? most_of_round : 1;
-    if (!is_mostly_beyond(body.mesh, box, times, grid.dp, threads)) return {};
-    body.round = nullptr;
+    if (settings.place == Placement::Inside || body.round != nullptr || grid.is_2d) return {};
+    const Box3 box = box_near_domain(grid);
+    if (!is_mostly_beyond(body.mesh, box, grid.dp, threads)) return {};
     MeshReport of_box;
     const SurfaceMesh around = repair_mesh(soup_of_box(box), {}, threads, of_box);
     const BooleanNode both{
