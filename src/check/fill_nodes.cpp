@@ -251,8 +251,7 @@ FillNodes whole_box(const CheckParticles& particles, const CheckSetup& setup,
         nodes.origin[axis] = phase + begin * setup.dp;
         const bool is_flat = setup.is_2d && axis == 1;
         const auto a = static_cast<std::size_t>(axis);
-        if (!is_flat && !setup.is_periodic[a])
-            nodes.beyond[a] = static_cast<std::int64_t>(beyond);
+        if (!is_flat && !setup.is_periodic[a]) nodes.beyond[a] = static_cast<std::int64_t>(beyond);
         nodes.origin[axis] -= static_cast<double>(nodes.beyond[a]) * setup.dp;
         const double count = (is_flat ? 1 : std::max(0.0, end - begin + 1)) +
                              2 * static_cast<double>(nodes.beyond[a]);
