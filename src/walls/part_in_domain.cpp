@@ -42,10 +42,22 @@ double area_in(const Box3& box, const std::array<Vec3, 3>& corners)
     return 0.5 * norm(twice);
 }
 
-bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double dp, int threads)
+/// When a body is cut: of its area so many times as much is beyond as within, and so much.
+struct CutRule
 {
+    double times = 1;
+    double least_dp2 = least_beyond_dp2;
+};
+/// What is left of a round shape is laid on its facets, not on the exact surface, and has up to 8 %
+/// fewer particles (a ball of 120 dp): only where the whole would take minutes.
+constexpr CutRule rule_of_round{8, 5e6};
+
+bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, const CutRule& rule, double dp,
+                      int threads)
+{
+    const double least = rule.least_dp2 * dp * dp;
     const double all = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
-    if (all < least_beyond_dp2 * dp * dp) return false;
+    if (all < least) return false;
     std::vector<double> within(mesh.facets.size());
     parallel_for(
         mesh.facets.size(), threads,
@@ -56,7 +68,7 @@ bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, double dp, int t
         },
         1024);
     const double inside = std::accumulate(within.begin(), within.end(), 0.0);
-    return all - inside > std::max(inside, least_beyond_dp2 * dp * dp);
+    return all - inside > std::max(rule.times * inside, least);
 }
 
 TriangleSoup soup_of_box(const Box3& box)
@@ -86,9 +98,11 @@ TriangleSoup soup_of_box(const Box3& box)
 std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
                                          const LatticeGrid& grid, int threads)
 {
-    if (settings.place == Placement::Inside || body.round != nullptr || grid.is_2d) return {};
+    if (settings.place == Placement::Inside || grid.is_2d) return {};
     const Box3 box = box_near_domain(grid);
-    if (!is_mostly_beyond(body.mesh, box, grid.dp, threads)) return {};
+    const CutRule rule = body.round != nullptr ? rule_of_round : CutRule{};
+    if (!is_mostly_beyond(body.mesh, box, rule, grid.dp, threads)) return {};
+    body.round = nullptr;
     MeshReport of_box;
     const SurfaceMesh around = repair_mesh(soup_of_box(box), {}, threads, of_box);
     const BooleanNode both{

@@ -224,5 +224,17 @@ TEST(LargeBody, ThatIsAPipeIsMadeInTheDomainAlone)
     }
 }
 
+TEST(LargeBody, ThatIsADiscOfAMillionSquareStepsIsLaidInTheDomainAlone)
+{
+    const FittedWalls walls = walls_of(
+        R"(<drawcylinder radius="240"><point x="0" y="0" z="-0.3" /><point x="0" y="0" z="0.4" />)"
+        R"(</drawcylinder>)");
+    const double area = 2 * 1.95 * 1.95;
+    EXPECT_NEAR(static_cast<double>(walls.particles.size()) * dp * dp, area, 0.1 * area);
+    for (const Vec3& p : walls.particles.positions)
+        EXPECT_LT(std::min(std::fabs(p.z + 0.3), std::fabs(p.z - 0.4)), 1e-6 * dp);
+    EXPECT_LT(area_laid(walls), 20 * area);
+}
+
 } // namespace
 } // namespace fppg
