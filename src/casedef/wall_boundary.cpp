@@ -28,24 +28,17 @@ std::optional<int> whole_parameter(const CaseDef& def, std::string_view key)
 }
 
 /// As many layers as fluid at the surface sees: layer k is needed while k < 2h/dp - 1.
-double layers_seen(double kernel_dp)
+int layers_seen(double kernel_dp)
 {
-    return std::max(1.0, std::ceil(kernel_dp - 1 - 1e-9));
+    return std::max(1, static_cast<int>(std::ceil(kernel_dp - 1 - 1e-9)));
 }
 
-std::vector<double> layer_depths(const FitSettings& settings, double kernel_dp, const CaseDef& def)
+std::vector<double> layer_depths(const FitSettings& settings, double kernel_dp)
 {
     if (settings.place == Placement::Inside) return {0.5};
     std::vector<double> out;
     const bool is_mdbc = settings.boundary == WallBoundary::Mdbc;
-    const double seen = is_mdbc ? layers_seen(kernel_dp) : 0;
-    if (!settings.layers && seen > most_layers)
-        throw CaseError(def.file, settings.line,
-                        fmt::format("<bodyfitted>: at 2h = {:.3g} dp walls of mDBC need {:.3g} "
-                                    "layers, expected at most {}; a smaller coefh or hdp needs "
-                                    "fewer, layers=\"4\" sets their number",
-                                    kernel_dp, seen, most_layers));
-    const int count = settings.layers.value_or(static_cast<int>(seen));
+    const int count = settings.layers.value_or(is_mdbc ? layers_seen(kernel_dp) : 0);
     for (int k = 0; k < count; ++k) out.push_back(k + (is_mdbc ? 0.5 : 0.0));
     return out;
 }
@@ -53,7 +46,7 @@ std::vector<double> layer_depths(const FitSettings& settings, double kernel_dp, 
 /// Says of layers for mDBC that are fewer than fluid sees what that means.
 void judge_layers(const FitSettings& settings, double kernel_dp, CaseDef& def)
 {
-    const double needed = layers_seen(kernel_dp);
+    const int needed = layers_seen(kernel_dp);
     if (settings.boundary != WallBoundary::Mdbc || !settings.layers || *settings.layers >= needed)
         return;
     const std::string at = fmt::format("{}:{}: <bodyfitted layers=\"{}\">: ", def.file,
@@ -99,6 +92,11 @@ void settle_boundaries(CaseDef& def)
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;
+    if (!(kernel_dp <= most_layers + 1))
+        throw CaseError(def.file, def.fit.all ? def.fit.all->line : def.fit.of_mk[0].second.line,
+                        fmt::format("<bodyfitted>: 2h is {:.3g} dp by the constants of the case, "
+                                    "expected at most {} dp; a smaller coefh or hdp does",
+                                    kernel_dp, most_layers + 1));
     const auto settle = [&](FitSettings& s)
     {
         if (!s.boundary)
@@ -108,7 +106,7 @@ void settle_boundaries(CaseDef& def)
                 "{}:{}: <bodyfitted boundary=\"{}\">: the parameter Boundary of the case is {}, "
                 "with which the solver expects walls for {}.",
                 def.file, s.line, is_mdbc ? "dbc" : "mdbc", *parameter, is_mdbc ? "mDBC" : "DBC"));
-        s.depths_dp = layer_depths(s, kernel_dp, def);
+        s.depths_dp = layer_depths(s, kernel_dp);
         // The places themselves give the normals.
         if (s.boundary == WallBoundary::Mdbc) def.normals.is_active = true;
     };

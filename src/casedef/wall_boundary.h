@@ -5,14 +5,14 @@
 namespace fppg
 {
 
-/// Of one wall.
+/// Of one wall; no kernel of fluid at its surface reaches a farther one.
 inline constexpr int most_layers = 16;
 
 /// Gives every fitted wall without a boundary condition of its own that of the case's parameter
 /// Boundary (2: mDBC), warns where the two disagree or one layer stands for mDBC, and hints at
 /// parameters that hold fluid in the solver.
 ///
-/// throws  CaseError where h asks for more layers than most_layers
+/// throws  CaseError where the kernel would see more layers than most_layers, whatever the walls
 void settle_boundaries(CaseDef& def);
 
 } // namespace fppg

@@ -170,21 +170,18 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
 }
 
-TEST(FitBlock, RefusesMoreLayersThanAWallCanHold)
+TEST(FitBlock, RefusesAKernelThatIsFarWiderThanWalls)
 {
-    CaseText text = tank_with_boundary(R"(<bodyfitted />)", best_mdbc);
-    const std::size_t at = text.constants.find("coefh value=\"1\"");
     for (const char* coefh : {"6", "1e308"})
-    {
-        CaseText other = text;
-        other.constants.replace(at, 15, std::string("coefh value=\"") + coefh + "\"");
-        EXPECT_THAT([&] { (void)read(other); },
-                    testing::ThrowsMessage<CaseError>(HasSubstr("layers, expected at most 16")));
-        // Their number alone counts.
-        other = tank_with_boundary(R"(<bodyfitted layers="3" />)", best_mdbc);
-        other.constants.replace(at, 15, std::string("coefh value=\"") + coefh + "\"");
-        EXPECT_EQ(settings(read(other), 0).depths_dp.size(), 3u);
-    }
+        for (const char* block :
+             {"<bodyfitted />", R"(<bodyfitted layers="3" />)", R"(<bodyfitted boundary="dbc" />)"})
+        {
+            CaseText text = tank_with_boundary(block, best_mdbc);
+            text.constants.replace(text.constants.find("coefh value=\"1\""), 15,
+                                   std::string("coefh value=\"") + coefh + "\"");
+            EXPECT_THAT([&] { (void)read(text); },
+                        testing::ThrowsMessage<CaseError>(HasSubstr("expected at most 17 dp")));
+        }
 }
 
 TEST(FitBlock, SaysThatAllParticlesAreInside)
