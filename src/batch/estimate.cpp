@@ -11,6 +11,7 @@
 #include "batch/rates.h"
 #include "core/json.h"
 #include "lattice/mesh_units.h"
+#include "scene/near_domain.h"
 #include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
 
@@ -137,7 +138,10 @@ private:
             return;
         const FitSettings* settings = fit_settings(def_.fit, state.mk.mk);
         if (settings == nullptr) return;
-        for (const StepSurface& surface : step_surfaces(scene_, step, options_.threads))
+        const std::optional<DrawOp> shorter = ended_beside_domain(*step.draw, def_.grid);
+        SceneStep near = step;
+        if (shorter) near.draw = &*shorter;
+        for (const StepSurface& surface : step_surfaces(scene_, near, options_.threads))
         {
             const WallCount count = count_shape(surface.shape, state.clips, *settings);
             most_cut_ = std::max(most_cut_, count.cut_area);
