@@ -92,10 +92,10 @@ void settle_boundaries(CaseDef& def)
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;
-    if (!(kernel_dp <= most_layers + 1))
+    if (!(kernel_dp > 0 && kernel_dp <= most_layers + 1))
         throw CaseError(def.file, def.fit.all ? def.fit.all->line : def.fit.of_mk[0].second.line,
                         fmt::format("<bodyfitted>: 2h is {:.3g} dp by the constants of the case, "
-                                    "expected at most {} dp; a smaller coefh or hdp does",
+                                    "expected more than 0 and at most {} dp; coefh or hdp sets it",
                                     kernel_dp, most_layers + 1));
     const auto settle = [&](FitSettings& s)
     {

@@ -170,17 +170,17 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
 }
 
-TEST(FitBlock, RefusesAKernelThatIsFarWiderThanWalls)
+TEST(FitBlock, RefusesAKernelFarWiderThanWallsOrWithoutWidth)
 {
-    for (const char* coefh : {"6", "1e308"})
+    for (const char* coefh : {"6", "1e308", "0", "-1e9"})
         for (const char* block :
              {"<bodyfitted />", R"(<bodyfitted layers="3" />)", R"(<bodyfitted boundary="dbc" />)"})
         {
             CaseText text = tank_with_boundary(block, best_mdbc);
             text.constants.replace(text.constants.find("coefh value=\"1\""), 15,
                                    std::string("coefh value=\"") + coefh + "\"");
-            EXPECT_THAT([&] { (void)read(text); },
-                        testing::ThrowsMessage<CaseError>(HasSubstr("expected at most 17 dp")));
+            EXPECT_THAT([&] { (void)read(text); }, testing::ThrowsMessage<CaseError>(
+                                                       HasSubstr("more than 0 and at most 17 dp")));
         }
 }
 
