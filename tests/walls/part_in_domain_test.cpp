@@ -224,7 +224,7 @@ TEST(LargeBody, ThatIsAPipeIsMadeInTheDomainAlone)
     }
 }
 
-TEST(LargeBody, ThatIsADiscOfAMillionSquareStepsIsLaidInTheDomainAlone)
+TEST(LargeBody, ThatIsADiscIsLaidInTheDomainAlone)
 {
     const FittedWalls walls = walls_of(
         R"(<drawcylinder radius="240"><point x="0" y="0" z="-0.3" /><point x="0" y="0" z="0.4" />)"
