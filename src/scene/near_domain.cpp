@@ -13,9 +13,6 @@ namespace
 /// Hardly beyond a plane of nodes, so that nodes go on a step behind the cut, as the volume asks,
 /// and not quite on it, where faces of meshes lie.
 constexpr double margin_dp = 12.001;
-/// What goes on in the domain shall be as if all were laid: a cylinder stays whole unless so many
-/// times as much of it is beyond.
-constexpr double most_beyond = 8;
 
 /// The part of a line, from 0 to `length` along it, whose planes across it meet a box.
 std::array<double, 2> part_beside(const Box3& box, const Vec3& from, const Vec3& along,
@@ -46,13 +43,24 @@ bool end_beside(Cylinder& cylinder, const Box3& box, double dp)
     // Of one that is wholly beyond a step is left, as beyond as the rest.
     if (high - low < dp) (low > 0 ? low : high) += low > 0 ? -dp : dp;
     const double beyond = length - (high - low);
-    if (!(beyond > most_beyond * (high - low)) ||
+    if (!(beyond > times_beyond_of_round * (high - low)) ||
         !(2 * std::numbers::pi * cylinder.radius * beyond > least_beyond_dp2 * dp * dp))
         return false;
     const Vec3 from = cylinder.p0;
     cylinder.p0 = from + low * along;
     cylinder.p1 = from + high * along;
     return true;
+}
+
+bool floats(const CaseDef& def, std::uint16_t mk)
+{
+    const int mkbound = mk - def.mk_bound_first;
+    return std::any_of(def.floatings.begin(), def.floatings.end(),
+                       [&](const FloatingDef& floating)
+                       {
+                           const std::vector<std::uint16_t>& mks = floating.mkbound;
+                           return std::find(mks.begin(), mks.end(), mkbound) != mks.end();
+                       });
 }
 
 } // namespace
@@ -65,10 +73,18 @@ Box3 box_near_domain(const LatticeGrid& grid)
             grid.origin + grid.dp * last + Vec3{margin, margin, margin}};
 }
 
-std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const LatticeGrid& grid)
+bool is_laid_whole(const CaseDef& def, std::uint16_t mk)
 {
+    const FitSettings* settings = fit_settings(def.fit, mk);
+    return (settings != nullptr && settings->place == Placement::Inside) || floats(def, mk);
+}
+
+std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const CaseDef& def)
+{
+    const LatticeGrid& grid = def.grid;
     const auto* cylinder = shape_as<CylinderOp>(draw);
-    if (cylinder == nullptr || grid.is_2d) return std::nullopt;
+    if (cylinder == nullptr || grid.is_2d || is_laid_whole(def, draw.state->mk.mk))
+        return std::nullopt;
     CylinderOp shorter = *cylinder;
     const Box3 box = box_near_domain(grid);
     bool is_shorter = shorter.layers.empty() && end_beside(shorter, box, grid.dp);

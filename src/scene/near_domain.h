@@ -1,9 +1,11 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/draw_ops.h"
 #include "fppg/lattice.h"
 #include "fppg/mesh.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace fppg
@@ -15,8 +17,17 @@ inline constexpr double least_beyond_dp2 = 20000;
 /// The domain with a margin of 12 dp on all sides. Layers, relaxation and features reach less far.
 Box3 box_near_domain(const LatticeGrid& grid);
 
-/// A cylinder of which eight times as much as what comes into the domain is beyond it, and at least
-/// 20,000 dp^2, without most of that: its facets would be made first. Empty for all else.
-std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const LatticeGrid& grid);
+/// What goes on in the domain shall be as if all were laid: a round shape is left whole unless so
+/// many times as much of it is beyond the domain as within.
+inline constexpr double times_beyond_of_round = 8;
+
+/// Whether a body-fitted shape is laid whole, however much of it is beyond the domain: the mass of
+/// what floats is that of all of it, and with `place="inside"` the wall fills its solid.
+bool is_laid_whole(const CaseDef& def, std::uint16_t mk);
+
+/// The cylinder of a body-fitted draw, of which far more is beyond the domain than within
+/// (times_beyond_of_round) and at least 20,000 dp^2, without most of that: its facets would be made
+/// first. Empty for all else, and for what is laid whole.
+std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const CaseDef& def);
 
 } // namespace fppg

@@ -92,28 +92,13 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
             fmt::format("{}: no particle of the body-fitted wall lies inside the domain", place));
 }
 
-bool floats(const CaseDef& def, std::uint16_t mk)
-{
-    const int mkbound = mk - def.mk_bound_first;
-    return std::any_of(def.floatings.begin(), def.floatings.end(),
-                       [&](const FloatingDef& floating)
-                       {
-                           const std::vector<std::uint16_t>& mks = floating.mkbound;
-                           return std::find(mks.begin(), mks.end(), mkbound) != mks.end();
-                       });
-}
-
-/// The mass of what floats is that of all of it.
-BodyExtent extent_of(const Scene& scene, const DrawOp& draw)
-{
-    return floats(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
-}
-
 FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
                const FitSettings& settings, int threads)
 {
-    FittedDraw out = fit_shape(shape, settings, scene.def->grid, draw.state->clips,
-                               extent_of(scene, draw), threads);
+    const BodyExtent extent =
+        is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
+    FittedDraw out =
+        fit_shape(shape, settings, scene.def->grid, draw.state->clips, extent, threads);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
@@ -140,9 +125,7 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     const DrawState& state = *draw.state;
     const LatticeGrid& grid = scene.def->grid;
     FittedStep out;
-    std::optional<DrawOp> shorter;
-    if (extent_of(scene, draw) == BodyExtent::NearDomain && settings.place != Placement::Inside)
-        shorter = ended_beside_domain(draw, grid);
+    const std::optional<DrawOp> shorter = ended_beside_domain(draw, *scene.def);
     const std::vector<ShapeMesh> shapes =
         surfaces_of(scene, shorter ? *shorter : draw, PartsAs::Drawn, threads);
     if (shapes.empty()) return out;

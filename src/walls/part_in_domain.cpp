@@ -50,7 +50,7 @@ struct CutRule
 };
 /// What is left of a round shape is laid on its facets, not on the exact surface, and has up to 8 %
 /// fewer particles (a ball of 120 dp): only where the whole would take minutes.
-constexpr CutRule rule_of_round{8, 5e6};
+constexpr CutRule rule_of_round{times_beyond_of_round, 5e6};
 
 bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, const CutRule& rule, double dp,
                       int threads)

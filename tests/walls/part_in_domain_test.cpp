@@ -185,7 +185,9 @@ TEST(LargeBody, BeyondAllNumbersIsRefused)
 }
 
 /// The walls of a case in a domain of 2 x 2 x 2 m that draws `command` body-fitted.
-FittedWalls walls_of(const std::string& command)
+///
+/// after  what comes behind `<geometry>`: floating bodies, `<fppg>`
+FittedWalls walls_of(const std::string& command, const std::string& after = {})
 {
     const test::TemporaryFolder folder;
     test::CaseText text;
@@ -193,6 +195,7 @@ FittedWalls walls_of(const std::string& command)
     text.pointmin = R"(<pointmin x="-1" y="-1" z="-1" />)";
     text.pointmax = R"(<pointmax x="1" y="1" z="1" />)";
     text.mainlist = R"(<setdrawmode mode="face" /><setmkbound mk="0" />)" + command;
+    text.after_geometry = after;
     test::write_text(folder / "Case_Def.xml", text.text());
     CaseOptions options;
     options.fit = FitChoice::On;
@@ -208,20 +211,41 @@ double area_laid(const FittedWalls& walls)
     return area;
 }
 
+/// A pipe along x, from -20 to `end`, without its ends.
+std::string pipe_to(const std::string& end)
+{
+    return R"(<drawcylinder radius="0.3" mask="1|2"><point x="-20" y="0.1" z="0.1" /><point x=")" +
+           end + R"(" y="0.1" z="0.1" /></drawcylinder>)";
+}
+
 TEST(LargeBody, ThatIsAPipeIsMadeInTheDomainAlone)
 {
     // A pipe of 40 m, and one so long that no machine could hold its facets.
     for (const std::string end : {"20", "2e7"})
     {
-        const FittedWalls walls = walls_of(
-            R"(<drawcylinder radius="0.3" mask="1|2"><point x="-20" y="0.1" z="0.1" /><point x=")" +
-            end + R"(" y="0.1" z="0.1" /></drawcylinder>)");
+        const FittedWalls walls = walls_of(pipe_to(end));
         const double area = 2 * std::numbers::pi * 0.3 * 2;
         EXPECT_NEAR(static_cast<double>(walls.particles.size()) * dp * dp, area, 0.05 * area);
         for (const Vec3& p : walls.particles.positions)
             EXPECT_NEAR(std::hypot(p.y - 0.1, p.z - 0.1), 0.3, 0.01 * dp);
         EXPECT_LT(area_laid(walls), 3 * area);
     }
+}
+
+const std::string floats =
+    R"(<floatings><floating mkbound="0" relativeweight="0.5" /></floatings>)";
+const std::string lies_inside = R"(<fppg><bodyfitted place="inside" /></fppg>)";
+
+TEST(LargeBody, ThatFloatsIsMadeWhole)
+{
+    EXPECT_NEAR(area_laid(walls_of(pipe_to("20"), floats)), 2 * std::numbers::pi * 0.3 * 40, 0.5);
+}
+
+TEST(LargeBody, ThatIsMadeWholeIsRefusedWhereNoFileCouldHoldIt)
+{
+    // In the domain alone there are 1,500 particles of it.
+    for (const std::string& after : {floats, lies_inside})
+        EXPECT_THROW(walls_of(pipe_to("2e9"), after), GeometryError);
 }
 
 TEST(LargeBody, ThatIsADiscIsLaidInTheDomainAlone)
