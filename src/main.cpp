@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
@@ -95,6 +96,12 @@ int run_and_tell(int argc, char** argv)
         return fail(
             "there is not enough memory for this case; a larger dp or a smaller domain needs less",
             4);
+    }
+    catch (const std::filesystem::filesystem_error& error)
+    {
+        // Of names that the system does not take, longer than 255 characters for one.
+        const std::string text = error.path1().string() + ": " + error.code().message();
+        return fail(error.path1().empty() ? error.what() : text.c_str(), 4);
     }
     catch (const std::exception& error)
     {

@@ -218,6 +218,13 @@ class Folders(Faults):
                 self.assertIn("File name too long", out)
         shutil.rmtree(at, ignore_errors=True)
 
+    def test_longer_than_the_system_takes(self):
+        long = "C" * 300
+        for command in (["upgrade", long], ["upgrade", "Case_Def", "-o", long], ["templates", long], ["batch", long]):
+            code, out = self.run_it(*command)
+            self.assertEqual(code, 4, out)
+            self.assertRegex(out, "C{300}.*: File name too long")
+
     def test_that_lead_elsewhere_by_a_link(self):
         os.mkdir(self.path("real"))
         os.symlink("real", self.path("link"))

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,10 @@ void read_definition_text(std::string_view bytes)
     }
     catch (const Error&)
     {
+    }
+    catch (const std::filesystem::filesystem_error&)
+    {
+        // The program ends with exit code 4 for these, too.
     }
     write_input("Case_Def.xml", bytes);
     (void)read_case("Case_Def.xml", options_of_case());
@@ -222,6 +227,10 @@ void run_target(const Target& target, std::string_view bytes)
     }
     catch (const Error&)
     {
+    }
+    catch (const std::filesystem::filesystem_error&)
+    {
+        // The program ends with exit code 4 for these, too.
     }
     tidy_working_folder();
 }
