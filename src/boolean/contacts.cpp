@@ -334,7 +334,7 @@ std::vector<FacetContacts> find_contacts(const MeshSet& set, double merge_distan
             facets.push_back(g);
         }
         if (facets.empty()) continue;
-        const BoxTree tree(std::move(near), threads);
+        const BoxTree tree(near, threads);
         parallel_for(
             set.first_facet[n], threads,
             [&](std::size_t i)

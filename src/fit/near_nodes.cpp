@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "fppg/error.h"
 #include "meshes/facet_distance.h"
+#include "meshes/near_tree.h"
 #include "platform/memory.h"
 
 #include <algorithm>
@@ -99,8 +100,10 @@ double distance_between(double value, double low, double high)
 class SlabSearch
 {
 public:
-    SlabSearch(const TriangleSoup& soup, const LatticeGrid& grid)
-        : soup_(soup), grid_(grid), reach_(reach_dp * grid.dp), offsets_(grid.n[1] + 1)
+    /// tree  of the soup, which is asked for the distance of each node then; null: the facets are
+    ///       asked one by one
+    SlabSearch(const TriangleSoup& soup, const LatticeGrid& grid, const NearTree* tree)
+        : soup_(soup), grid_(grid), tree_(tree), reach_(reach_dp * grid.dp), offsets_(grid.n[1] + 1)
     {
         nearest_.resize(grid.n[2], no_distance);
         touched_.resize((grid.n[2] / chunk + 63) / 64 + 1, 0);
@@ -112,6 +115,7 @@ public:
         x_ = grid_.origin.x + slab * grid_.dp;
         stretches_.clear();
         facets_.clear();
+        boxes_.clear();
         for (const std::uint32_t* f = begin; f < end; ++f) add_stretches(*f);
         sort_by_row();
         std::vector<NearNode> result;
@@ -133,8 +137,10 @@ private:
     void add_stretches(std::uint32_t f)
     {
         const Vec3* const corners = &soup_.vertices[3 * std::size_t{f}];
-        facets_.emplace_back(corners);
-        const Box3& box = facets_.back().box();
+        if (tree_ == nullptr) facets_.emplace_back(corners);
+        Box3 box;
+        for (int k = 0; k < 3; ++k) box.add(corners[k]);
+        boxes_.push_back(box);
         const Vec3 size = box.max - box.min;
         if (std::max({size.x, size.y, size.z}) < small_facet_dp * grid_.dp)
             add_small(box);
@@ -184,7 +190,7 @@ private:
             stretches_.push_back({static_cast<std::uint32_t>(row),
                                   static_cast<std::uint32_t>(nodes.begin),
                                   static_cast<std::uint32_t>(nodes.end),
-                                  static_cast<std::uint32_t>(facets_.size() - 1)});
+                                  static_cast<std::uint32_t>(boxes_.size() - 1)});
     }
 
     /// Facets keep their order within a row.
@@ -210,8 +216,7 @@ private:
 
     void measure(const Stretch& s)
     {
-        const FacetDistance& facet = facets_[s.facet];
-        const Box3& box = facet.box();
+        const Box3& box = boxes_[s.facet];
         Vec3 p{x_, grid_.origin.y + s.row * grid_.dp, 0};
         const double aside = distance_between(p.x, box.min.x, box.max.x);
         const double across = distance_between(p.y, box.min.y, box.max.y);
@@ -223,11 +228,19 @@ private:
             const double before = std::min(nearest_[k], limit);
             const double along = distance_between(p.z, box.min.z, box.max.z);
             if (to_row + along * along >= before) continue;
-            const double squared = facet.squared(p, before);
+            const double squared = tree_ != nullptr ? 0 : facets_[s.facet].squared(p, before);
             if (squared < before) nearest_[k] = squared;
         }
         for (std::uint32_t c = s.begin / chunk; c <= (s.end - 1) / chunk; ++c)
             touched_[c / 64] |= std::uint64_t{1} << (c % 64);
+    }
+
+    /// The distance of a node of a row that may be near.
+    double distance_of(std::uint32_t row, std::uint32_t k) const
+    {
+        if (tree_ == nullptr) return std::sqrt(nearest_[k]);
+        const Vec3 p{x_, grid_.origin.y + row * grid_.dp, grid_.origin.z + k * grid_.dp};
+        return tree_->closest(p, reach_).distance;
     }
 
     /// Lists the nodes of a row and makes it clean for the next.
@@ -243,7 +256,7 @@ private:
                 for (std::uint32_t k = begin; k < end; ++k)
                 {
                     if (nearest_[k] == no_distance) continue;
-                    const double distance = std::floor(std::sqrt(nearest_[k]) * scale + 0.5);
+                    const double distance = std::floor(distance_of(row, k) * scale + 0.5);
                     nearest_[k] = no_distance;
                     if (distance <= distance_units)
                         result.push_back({row, k, static_cast<std::uint32_t>(distance)});
@@ -253,9 +266,11 @@ private:
 
     const TriangleSoup& soup_;
     const LatticeGrid& grid_;
+    const NearTree* tree_;
     double reach_;
     double x_ = 0;
-    std::vector<FacetDistance> facets_; ///< of the slab in hand
+    std::vector<FacetDistance> facets_; ///< of the slab in hand; none where the tree is asked
+    std::vector<Box3> boxes_;           ///< theirs
     std::vector<Stretch> stretches_;
     std::vector<std::uint32_t> offsets_, filled_, order_;
     std::uint32_t first_row_ = 0, last_row_ = 0;
@@ -286,6 +301,25 @@ void check_memory(const TriangleSoup& soup, const LatticeGrid& grid)
             bytes * 1e-9, available * 1e-9));
 }
 
+/// A tree where a node has so many facets near it that asking them one by one takes longer.
+std::unique_ptr<NearTree> tree_of_fine(const TriangleSoup& soup, double dp, int threads)
+{
+    constexpr double many = 4; // facets a dp^2
+    double area = 0;
+    Box3 box;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const Vec3* p = &soup.vertices[3 * f];
+        area += 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
+        for (int k = 0; k < 3; ++k) box.add(p[k]);
+    }
+    if (!(static_cast<double>(soup.size()) * dp * dp > many * area)) return nullptr;
+    const Vec3 half = 0.5 * (box.max - box.min);
+    const double scale = std::max({half.x, half.y, half.z});
+    if (!(scale > 0)) return nullptr;
+    return std::make_unique<NearTree>(soup, box.min + half, scale, threads);
+}
+
 } // namespace
 
 std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
@@ -311,6 +345,7 @@ std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
         for (std::int64_t x = ranges[f].begin; x < ranges[f].end; ++x)
             facets[filled[static_cast<std::size_t>(x)]++] = static_cast<std::uint32_t>(f);
 
+    const std::unique_ptr<NearTree> tree = tree_of_fine(soup, grid.dp, threads);
     std::vector<std::vector<NearNode>> slabs(grid.n[0]);
     std::vector<std::unique_ptr<SlabSearch>> idle;
     std::mutex guard;
@@ -327,7 +362,7 @@ std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
                              idle.pop_back();
                          }
                      }
-                     if (!search) search = std::make_unique<SlabSearch>(soup, grid);
+                     if (!search) search = std::make_unique<SlabSearch>(soup, grid, tree.get());
                      slabs[x] =
                          search->search(static_cast<std::uint32_t>(x), facets.data() + offsets[x],
                                         facets.data() + offsets[x + 1]);

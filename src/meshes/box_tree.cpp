@@ -18,12 +18,12 @@ Vec3 middle_of(const Box3& box)
 
 } // namespace
 
-BoxTree::BoxTree(std::vector<Box3> boxes, int threads) : boxes_(std::move(boxes))
+BoxTree::BoxTree(const std::vector<Box3>& boxes, int threads)
 {
-    const std::size_t n = boxes_.size();
+    const std::size_t n = boxes.size();
     if (n == 0) return;
     Box3 all;
-    for (const Box3& box : boxes_)
+    for (const Box3& box : boxes)
     {
         all.add(box.min);
         all.add(box.max);
@@ -33,7 +33,7 @@ BoxTree::BoxTree(std::vector<Box3> boxes, int threads) : boxes_(std::move(boxes)
         n, threads,
         [&](std::size_t i)
         {
-            const Vec3 at = middle_of(boxes_[i]) - all.min;
+            const Vec3 at = middle_of(boxes[i]) - all.min;
             const auto cell = [&](int axis)
             {
                 const double extent = all.max[axis] - all.min[axis];
@@ -45,16 +45,30 @@ BoxTree::BoxTree(std::vector<Box3> boxes, int threads) : boxes_(std::move(boxes)
         4096);
     sort_by_key(keys, n, std::numeric_limits<std::uint64_t>::max() >> 1, threads);
     order_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) order_[i] = keys[i].index;
+    boxes_.resize(n);
+    parallel_for(
+        n, threads,
+        [&](std::size_t i)
+        {
+            order_[i] = keys[i].index;
+            boxes_[i] = boxes[order_[i]];
+        },
+        4096);
 
     while (first_leaf_ * std::size_t{4} < n) first_leaf_ *= 2;
+    first_group_ = std::max(first_leaf_ / 4, 1u);
     nodes_.resize(std::size_t{2} * first_leaf_);
-    for (std::size_t leaf = 0; leaf < first_leaf_; ++leaf)
-        for (std::size_t i = begin_of(leaf); i < begin_of(leaf + 1); ++i)
+    parallel_for(
+        first_leaf_, threads,
+        [&](std::size_t leaf)
         {
-            nodes_[first_leaf_ + leaf].add(boxes_[order_[i]].min);
-            nodes_[first_leaf_ + leaf].add(boxes_[order_[i]].max);
-        }
+            for (std::size_t i = begin_of(leaf); i < begin_of(leaf + 1); ++i)
+            {
+                nodes_[first_leaf_ + leaf].add(boxes_[i].min);
+                nodes_[first_leaf_ + leaf].add(boxes_[i].max);
+            }
+        },
+        4096);
     for (std::size_t node = first_leaf_ - 1; node >= 1; --node)
         for (const std::size_t child : {2 * node, 2 * node + 1})
         {

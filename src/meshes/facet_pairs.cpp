@@ -59,47 +59,48 @@ FacetPairs find_pairs(const SurfaceMesh& mesh, bool of_one_shell, double depth, 
         const auto& c = mesh.facets[f];
         return Corners{mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
     };
-    const auto box_of = [](const Corners& corners)
-    {
-        Box3 box;
-        for (const Vec3& p : corners) box.add(p);
-        return box;
-    };
     std::vector<Box3> boxes(n);
-    for (std::size_t f = 0; f < n; ++f) boxes[f] = box_of(corners_of(f));
-    const BoxTree tree(std::move(boxes), threads);
-
-    std::vector<std::uint32_t> crossed(n, 0);
-    std::vector<std::uint32_t> first(n, no_index);
     parallel_for(
         n, threads,
         [&](std::size_t f)
         {
-            const Corners own = corners_of(f);
-            tree.for_each_overlap(
-                box_of(own),
-                [&](std::uint32_t other)
+            for (const Vec3& p : corners_of(f)) boxes[f].add(p);
+        },
+        4096);
+    const BoxTree tree(boxes, threads);
+
+    const auto cross = [&](std::uint32_t f, std::uint32_t other)
+    {
+        if (of_one_shell && mesh.shells[other] != mesh.shells[f]) return false;
+        for (const std::uint32_t v : mesh.facets[f])
+            if (std::find(mesh.facets[other].begin(), mesh.facets[other].end(), v) !=
+                mesh.facets[other].end())
+                return false;
+        return cross_deeply(corners_of(f), corners_of(other), depth);
+    };
+    std::vector<FacetPairs> of_group(tree.groups());
+    parallel_for(
+        of_group.size(), threads,
+        [&](std::size_t group)
+        {
+            tree.for_each_pair_of(
+                group,
+                [&](std::uint32_t f, std::uint32_t other)
                 {
-                    if (other <= f) return;
-                    if (of_one_shell && mesh.shells[other] != mesh.shells[f]) return;
-                    for (const std::uint32_t v : mesh.facets[f])
-                        if (std::find(mesh.facets[other].begin(), mesh.facets[other].end(), v) !=
-                            mesh.facets[other].end())
-                            return;
-                    const Corners theirs = corners_of(other);
-                    if (!cross_deeply(own, theirs, depth)) return;
-                    ++crossed[f];
-                    first[f] = std::min(first[f], other);
+                    if (!cross(f, other)) return;
+                    FacetPairs& pairs = of_group[group];
+                    ++pairs.count;
+                    pairs.first = std::min(pairs.first, {std::min(f, other), std::max(f, other)});
                 });
         },
-        256);
-    FacetPairs pairs;
-    for (std::size_t f = n; f-- > 0;)
+        16);
+    FacetPairs all;
+    for (const FacetPairs& pairs : of_group)
     {
-        pairs.count += crossed[f];
-        if (crossed[f] > 0) pairs.first = {static_cast<std::uint32_t>(f), first[f]};
+        all.count += pairs.count;
+        all.first = std::min(all.first, pairs.first);
     }
-    return pairs;
+    return all;
 }
 
 } // namespace

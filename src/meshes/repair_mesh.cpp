@@ -170,7 +170,7 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     report.facets_read = soup.size();
     check_input(soup);
     SurfaceMesh mesh;
-    weld_equal(soup, threads, mesh);
+    weld_equal(soup, mesh);
     if (options.weld_distance > 0) weld_near(options.weld_distance, {}, mesh);
     drop_degenerate(mesh, report);
     if (mesh.facets.empty())

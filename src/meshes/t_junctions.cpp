@@ -36,7 +36,7 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double distance,
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
 
-    const BoxTree tree(std::move(boxes), threads);
+    const BoxTree tree(boxes, threads);
     std::vector<std::vector<Junction>> found(ends.size());
     parallel_for(
         ends.size(), threads,

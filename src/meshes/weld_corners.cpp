@@ -1,13 +1,13 @@
 #include "meshes/weld_corners.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "core/parallel_sort.h"
 #include "meshes/mesh_facets.h"
 
 namespace fppg
@@ -16,45 +16,65 @@ namespace fppg
 namespace
 {
 
-bool is_before(const Vec3& a, const Vec3& b)
+/// Numbers places in the order in which they come, equal ones by one number.
+class PlaceNumbers
 {
-    if (a.x != b.x) return a.x < b.x;
-    return a.y != b.y ? a.y < b.y : a.z < b.z;
-}
+public:
+    explicit PlaceNumbers(std::vector<Vec3>& places) : places_(places) {}
+
+    std::uint32_t number_of(const Vec3& place)
+    {
+        if (2 * places_.size() >= slots_.size()) grow();
+        // Zero has no sign then.
+        const Vec3 p = place + Vec3{0.0, 0.0, 0.0};
+        std::uint32_t& slot = slot_of(p);
+        if (slot == no_index)
+        {
+            slot = static_cast<std::uint32_t>(places_.size());
+            places_.push_back(p);
+        }
+        return slot;
+    }
+
+private:
+    /// The number of a place that is here, or where that of a new one goes.
+    std::uint32_t& slot_of(const Vec3& p)
+    {
+        std::uint64_t hash = 0;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9E3779B97F4A7C15;
+            hash ^= hash >> 32;
+        }
+        std::size_t at = hash & (slots_.size() - 1);
+        while (slots_[at] != no_index && !is_at(slots_[at], p)) at = (at + 1) & (slots_.size() - 1);
+        return slots_[at];
+    }
+
+    bool is_at(std::uint32_t number, const Vec3& p) const
+    {
+        const Vec3& there = places_[number];
+        return there.x == p.x && there.y == p.y && there.z == p.z;
+    }
+
+    void grow()
+    {
+        slots_.assign(std::max<std::size_t>(2 * slots_.size(), 64), no_index);
+        for (std::uint32_t i = 0; i < places_.size(); ++i) slot_of(places_[i]) = i;
+    }
+
+    std::vector<Vec3>& places_;
+    std::vector<std::uint32_t> slots_; ///< a power of two, no more than half of them taken
+};
 
 } // namespace
 
-void weld_equal(const TriangleSoup& soup, int threads, SurfaceMesh& mesh)
+void weld_equal(const TriangleSoup& soup, SurfaceMesh& mesh)
 {
-    const std::size_t n = soup.vertices.size();
-    std::vector<std::uint32_t> order(n);
-    for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<std::uint32_t>(i);
-    const std::vector<Vec3>& p = soup.vertices;
-    parallel_sort(order, threads,
-                  [&p](std::uint32_t a, std::uint32_t b)
-                  {
-                      if (is_before(p[a], p[b])) return true;
-                      if (is_before(p[b], p[a])) return false;
-                      return a < b;
-                  });
-    // The first corner of each place stands for it; places are numbered in the order of the file.
-    std::vector<std::uint32_t> first(n);
-    for (std::size_t i = 0; i < n; ++i)
-        first[order[i]] =
-            i > 0 && !is_before(p[order[i - 1]], p[order[i]]) ? first[order[i - 1]] : order[i];
-    std::vector<std::uint32_t>& index = order;
-    for (std::size_t i = 0; i < n; ++i)
-    {
-        if (first[i] == i)
-        {
-            index[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-            mesh.vertices.push_back({p[i].x + 0.0, p[i].y + 0.0, p[i].z + 0.0});
-        }
-        else
-            index[i] = index[first[i]];
-    }
+    PlaceNumbers numbers(mesh.vertices);
     mesh.facets.resize(soup.size());
-    for (std::size_t i = 0; i < n; ++i) mesh.facets[i / 3][i % 3] = index[i];
+    for (std::size_t i = 0; i < soup.vertices.size(); ++i)
+        mesh.facets[i / 3][i % 3] = numbers.number_of(soup.vertices[i]);
 }
 
 void weld_near(double distance, const std::vector<char>& may_move, SurfaceMesh& mesh)

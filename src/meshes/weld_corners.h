@@ -9,9 +9,8 @@ namespace fppg
 /// Gives corners with equal coordinates one index, in the order of the file. Zero and minus zero
 /// are equal.
 ///
-/// mesh     empty; gets its vertices and facets
-/// threads  number of threads; the result does not depend on it
-void weld_equal(const TriangleSoup& soup, int threads, SurfaceMesh& mesh);
+/// mesh  empty; gets its vertices and facets
+void weld_equal(const TriangleSoup& soup, SurfaceMesh& mesh);
 
 /// Moves every vertex onto the nearest earlier one that stands for a place within the distance.
 /// Places do not grow from neighbour to neighbour, so a fine mesh cannot run together. The edge map

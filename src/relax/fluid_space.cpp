@@ -51,6 +51,8 @@ public:
                 if (!run.is_covered && run.mk < bound_first) mark(x, run);
     }
 
+    bool is_empty() const { return is_empty_; }
+
     bool has(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
         const std::size_t bit = z / side;
@@ -64,6 +66,7 @@ private:
 
     void mark(std::size_t x, const Run& run)
     {
+        is_empty_ = false;
         constexpr auto reach = static_cast<std::uint32_t>(reach_of_fluid);
         const auto first = [](std::size_t at) { return at < reach ? 0 : (at - reach) / side; };
         const auto last = [&](std::size_t at, std::size_t axis)
@@ -77,6 +80,7 @@ private:
     std::array<std::uint32_t, 3> count_{};
     std::size_t words_ = 0;
     std::vector<std::uint64_t> bits_;
+    bool is_empty_ = true;
 };
 
 /// What lies on one side of a wall.
@@ -117,6 +121,7 @@ public:
 
     FluidSpace run()
     {
+        if (near_.is_empty()) return {};
         const std::vector<std::vector<NearNode>> found =
             find_near_nodes(all_.soup(), field_.grid, threads_);
         std::vector<NodeIndex> nodes;
