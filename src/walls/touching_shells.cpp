@@ -211,24 +211,23 @@ std::vector<Contact> find_contacts(const SurfaceMesh& mesh, const Shells& shells
             boxes[i].add(corner(mesh, facets[i], k) + room);
         }
     const BoxTree tree(boxes, threads);
-    std::vector<std::vector<Contact>> found(facets.size());
+    std::vector<std::vector<Contact>> found(tree.groups());
     parallel_for(
-        facets.size(), threads,
-        [&](std::size_t i)
+        found.size(), threads,
+        [&](std::size_t group)
         {
-            tree.for_each_overlap(boxes[i],
-                                  [&](std::uint32_t k)
+            tree.for_each_pair_of(group,
+                                  [&](std::uint32_t i, std::uint32_t k)
                                   {
-                                      const std::uint32_t f = facets[i], g = facets[k];
-                                      if (g <= f || shells.of_facet[f] == shells.of_facet[g])
-                                          return;
+                                      const auto [f, g] = std::minmax(facets[i], facets[k]);
+                                      if (shells.of_facet[f] == shells.of_facet[g]) return;
                                       Contact contact = contact_of(mesh, f, g, within);
                                       if (!(contact.area > 0)) return;
                                       contact.shells = {shells.of_facet[f], shells.of_facet[g]};
-                                      found[i].push_back(contact);
+                                      found[group].push_back(contact);
                                   });
         },
-        256);
+        16);
     std::vector<Contact> all;
     for (const std::vector<Contact>& some : found) all.insert(all.end(), some.begin(), some.end());
     return all;
