@@ -1,48 +1,35 @@
 #include "meshes/crowded_points.h"
 
 #include "core/parallel.h"
-#include "meshes/point_grid.h"
+#include "meshes/close_pairs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace fppg
 {
 namespace
 {
 
-constexpr std::size_t points_per_chunk = 1024;
 /// So much of a distance may be lacking: coordinates of files are rounded.
 constexpr double rounding = 1e-4;
-
-/// Cells twice as long as the reach: eight of them are looked into instead of 27.
-PointGrid grid_of_all(const std::vector<Vec3>& points, double reach)
-{
-    PointGrid grid(2 * reach, points.size());
-    for (const Vec3& p : points) grid.add(p);
-    return grid;
-}
 
 } // namespace
 
 std::vector<double> nearest_distances(const std::vector<Vec3>& points, double reach, int threads)
 {
-    const PointGrid grid = grid_of_all(points, reach);
-    std::vector<double> out(points.size());
-    parallel_for(
-        points.size(), threads,
-        [&](std::size_t i)
-        {
-            double best = reach * reach;
-            grid.for_each_near(points[i], reach,
-                               [&](std::uint32_t j, double squared)
-                               {
-                                   if (j != i) best = std::min(best, squared);
-                               });
-            out[i] = std::sqrt(best);
-        },
-        points_per_chunk);
+    const ClosePairs pairs(points, reach, threads);
+    std::vector<double> out(points.size(), reach * reach);
+    parallel_for(pairs.chunks(), threads,
+                 [&](std::size_t chunk)
+                 {
+                     pairs.for_each_pair_of(chunk,
+                                            [&](std::uint32_t i, std::uint32_t, double squared)
+                                            { out[i] = std::min(out[i], squared); });
+                 });
+    for (double& distance : out) distance = std::sqrt(distance);
     return out;
 }
 
@@ -51,36 +38,35 @@ std::vector<char> find_crowded(const std::vector<Vec3>& points,
                                const std::function<bool(std::size_t, std::size_t)>& may_stay,
                                int threads)
 {
-    const PointGrid grid = grid_of_all(points, distance);
+    struct Crowded
+    {
+        std::uint32_t point = 0;
+        std::uint32_t before = 0; ///< of it, too near
+    };
+    const auto place_of = [&](std::uint32_t i) { return std::tuple(rank[i], i); };
     const double least = (1 - rounding) * distance;
-    const auto is_too_near = [&](std::size_t i, std::size_t j, double squared)
-    { return j != i && squared < least * least && !(may_stay && may_stay(i, j)); };
-    std::vector<char> has_near(points.size(), 0);
-    parallel_for(
-        points.size(), threads,
-        [&](std::size_t i)
-        {
-            grid.for_each_near(points[i], distance,
-                               [&](std::uint32_t j, double squared)
-                               {
-                                   if (is_too_near(i, j, squared)) has_near[i] = 1;
-                               });
-        },
-        points_per_chunk);
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < points.size(); ++i)
-        if (has_near[i] != 0) order.push_back(i);
-    const auto comes_before = [&](std::uint32_t a, std::uint32_t b)
-    { return std::tuple(rank[a], a) < std::tuple(rank[b], b); };
-    std::sort(order.begin(), order.end(), comes_before);
+    const ClosePairs pairs(points, distance, threads);
+    std::vector<std::vector<Crowded>> of_chunk(pairs.chunks());
+    parallel_for(of_chunk.size(), threads,
+                 [&](std::size_t chunk)
+                 {
+                     pairs.for_each_pair_of(chunk,
+                                            [&](std::uint32_t i, std::uint32_t j, double squared)
+                                            {
+                                                if (squared < least * least &&
+                                                    place_of(j) < place_of(i) &&
+                                                    !(may_stay && may_stay(i, j)))
+                                                    of_chunk[chunk].push_back({i, j});
+                                            });
+                 });
+    std::vector<Crowded> crowded;
+    for (const auto& some : of_chunk) crowded.insert(crowded.end(), some.begin(), some.end());
+    std::sort(crowded.begin(), crowded.end(),
+              [&](const Crowded& a, const Crowded& b)
+              { return place_of(a.point) < place_of(b.point); });
     std::vector<char> goes(points.size(), 0);
-    for (const std::uint32_t i : order)
-        grid.for_each_near(points[i], distance,
-                           [&](std::uint32_t j, double squared)
-                           {
-                               if (goes[j] == 0 && is_too_near(i, j, squared) && comes_before(j, i))
-                                   goes[i] = 1;
-                           });
+    for (const Crowded& pair : crowded)
+        if (goes[pair.before] == 0) goes[pair.point] = 1;
     return goes;
 }
 
