@@ -29,8 +29,8 @@ public:
     std::size_t groups() const { return boxes_.empty() ? 0 : first_group_; }
 
     /// Calls visit(index, other) for every pair of boxes that have a point in common, once over all
-    /// groups: in the group of the one that comes first in the tree. Ten times as fast as to look
-    /// for the pairs of each box.
+    /// groups: in the group of the one that comes first in the tree. An eighth of the time of
+    /// for_each_overlap() for each box.
     template <typename Visit>
     void for_each_pair_of(std::size_t group, const Visit& visit) const
     {
