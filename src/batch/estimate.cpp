@@ -158,6 +158,7 @@ private:
                 wall.relaxed += share * count.relaxed;
                 wall.in_band += share * count.in_band;
             }
+            facets_ += static_cast<double>(surface.shape.soup.size());
             const std::vector<Vec3>& corners = surface.shape.soup.vertices;
             surfaces_.vertices.insert(surfaces_.vertices.end(), corners.begin(), corners.end());
         }
@@ -370,7 +371,7 @@ private:
         out_.seconds =
             rates.seconds_to_start + draw_seconds_ +
             read_machine_speed().factor *
-                (rates.seconds_a_wall_particle * on_surfaces_ +
+                (rates.seconds_a_facet * facets_ + rates.seconds_a_wall_particle * on_surfaces_ +
                  rates.seconds_a_relaxed_particle * relaxed_ +
                  rates.seconds_a_band_particle * in_band_ + rates.seconds_a_cut_place * cut_area_ +
                  rates.seconds_a_cut_particle * cut_particles_ +
@@ -404,6 +405,7 @@ private:
     std::uint64_t runs_ = 0;
     std::vector<Vec3> fluid_; ///< some of its nodes
     TriangleSoup surfaces_;   ///< of all fitted walls
+    double facets_ = 0;       ///< of body-fitted draws
     double on_surfaces_ = 0;
     double in_layers_ = 0;
     double layered_lines_ = 0;

@@ -24,6 +24,7 @@ struct Rates
 
     double seconds_to_start = 0.01;
     double seconds_a_wall_particle = 5e-6; ///< placed, with its zone of the lattice; one thread
+    double seconds_a_facet = 6e-6;         ///< of a body-fitted mesh: mended, searched
     double seconds_a_relaxed_particle = 8.5e-6;
     double seconds_a_band_particle = 26e-6;
     double seconds_a_cut_place = 70e-6;             ///< of a surface with layers, dp^2
