@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <variant>
 
 namespace fppg
@@ -49,8 +50,45 @@ double area_of(const TriangleSoup& soup, const Transform& transform)
     return area;
 }
 
-/// Of the true surface that a draw leaves, m^2. Of a shape in a small box not more than that box's:
-/// its surface is only made where it matters.
+/// What spheres, cylinders and ellipsoids have at least, m^2, without making their facets; 0 of
+/// other shapes.
+double least_round_area(const DrawOp& draw, double dp)
+{
+    constexpr double pi = std::numbers::pi;
+    double area = 0;
+    if (const auto* sphere = shape_as<SphereOp>(draw))
+    {
+        const auto add = [&](double radius) { area += 4 * pi * radius * radius; };
+        for (const double layer : sphere->layers_dp) add(sphere->radius + layer * dp);
+        if (sphere->layers_dp.empty()) add(sphere->radius);
+    }
+    if (const auto* cylinder = shape_as<CylinderOp>(draw))
+    {
+        const auto add = [&](const CylinderLayer& layer)
+        {
+            const auto& [first, second, tube] = cylinder->is_visible;
+            const double cover = pi * layer.radius * layer.radius;
+            area += (first ? cover : 0) + (second ? cover : 0) +
+                    (tube ? 2 * pi * layer.radius * norm(layer.p1 - layer.p0) : 0);
+        };
+        for (const CylinderLayer& layer : cylinder->layers) add(layer);
+        if (cylinder->layers.empty()) add({cylinder->p0, cylinder->p1, cylinder->radius});
+    }
+    if (const auto* ellipsoid = shape_as<EllipsoidOp>(draw))
+    {
+        const double apart = norm(ellipsoid->focus1 - ellipsoid->focus0);
+        const double sum = ellipsoid->radius;
+        // Of a needle; of a sphere it is 4 / pi times as much.
+        area = pi * pi * 0.25 * sum * std::sqrt(std::max(0.0, (sum - apart) * (sum + apart)));
+    }
+    return area;
+}
+
+/// Of the true surface that a draw leaves, m^2. Of a shape in a small box not more than that box's,
+/// of a round one that is far too large not less than it has: its surface is only made where it
+/// matters.
+///
+/// small  m^2; as much fits
 double area_of(const Scene& scene, const DrawOp& draw, double small, int threads)
 {
     if (const auto* op = shape_as<MeshFileOp>(draw))
@@ -60,7 +98,9 @@ double area_of(const Scene& scene, const DrawOp& draw, double small, int threads
     const Vec3 size = box.max - box.min;
     const double of_box = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
     if (of_box < small) return of_box;
-    double area = 0;
+    double area = least_round_area(draw, scene.def->grid.dp);
+    if (area > small) return area;
+    area = 0;
     for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
         area += area_of(shape.soup, {});
     return area;

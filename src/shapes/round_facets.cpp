@@ -16,7 +16,8 @@ namespace
 
 using Corners = std::array<std::uint32_t, 3>;
 
-constexpr double most_facets = 2147483648.0;
+/// With the trees to search them they need about 12 GB.
+constexpr double most_facets = 2e7;
 
 } // namespace
 
@@ -39,8 +40,11 @@ void check_size(const char* shape, double size)
 void check_facets(double count)
 {
     if (!(count < most_facets))
-        throw GeometryError(fmt::format(
-            "the round shape is so large for dp that its surface needs {:g} triangles", count));
+        throw GeometryError(
+            fmt::format("the round shape is so large for dp that its surface needs {:.3g} "
+                        "triangles, expected at "
+                        "most {:g}; a larger dp needs fewer",
+                        count, most_facets));
 }
 
 std::array<Vec3, 2> across(const Vec3& u)

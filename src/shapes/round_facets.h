@@ -29,7 +29,7 @@ struct SharedFacets
 
 /// throws  GeometryError that names the shape for a size that is not above 0
 void check_size(const char* shape, double size);
-/// throws  GeometryError where a shape would need more than 2^31 facets
+/// throws  GeometryError where a shape would need more than 20 million facets
 void check_facets(double count);
 
 /// Two directions that make a right-handed system with the unit vector u: v, then w = u x v.

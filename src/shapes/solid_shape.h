@@ -24,7 +24,7 @@ public:
     /// The closed true surface, not snapped, with `round`.
     ///
     /// dp      metres; facets are no deeper below the surface than chord_error_dp
-    /// throws  GeometryError where more than 2^31 facets would be needed
+    /// throws  GeometryError where more than 20 million facets would be needed
     virtual ShapeMesh surface(double dp) const = 0;
     /// The nodes of the lattice that the draw mode takes: face, solid or full.
     virtual SlabRegion nodes(const DrawState& state, const LatticeGrid& grid) const = 0;
