@@ -185,6 +185,9 @@ struct SphereOp
     /// but nodes lie in the box of the snapped corners and one node around it (GenCase v5.0: 300
     /// spheres of random scales; otherwise it counts where ctesphere is above 1).
     std::vector<Box3> limits{};
+    /// Of a sphere that is far larger than the domain the facets away from here grow with the
+    /// distance; empty: all are alike.
+    Box3 near{};
 };
 
 /// One of `layers vdp`: the faces of this cylinder are drawn.

@@ -138,7 +138,7 @@ private:
             return;
         const FitSettings* settings = fit_settings(def_.fit, state.mk.mk);
         if (settings == nullptr) return;
-        const std::optional<DrawOp> shorter = ended_beside_domain(*step.draw, def_);
+        const std::optional<DrawOp> shorter = made_near_domain(*step.draw, def_);
         SceneStep near = step;
         if (shorter) near.draw = &*shorter;
         for (const StepSurface& surface : step_surfaces(scene_, near, options_.threads))

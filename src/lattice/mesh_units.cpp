@@ -130,7 +130,9 @@ void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
     const double dp = scene.def->grid.dp;
     const auto memory = static_cast<double>(available_memory());
     const double most = std::min(static_cast<double>(most_particles), memory / bytes_per_particle);
-    const std::optional<DrawOp> shorter = ended_beside_domain(draw, *scene.def);
+    const std::optional<DrawOp> shorter = made_near_domain(draw, *scene.def);
+    // All but what is near the domain is cut off.
+    if (shorter && shape_as<SphereOp>(*shorter) != nullptr) return;
     const double area = area_of(scene, shorter ? *shorter : draw, most * dp * dp, threads);
     const double count = area / (dp * dp);
     if (count <= most) return;

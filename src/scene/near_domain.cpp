@@ -14,6 +14,11 @@ namespace
 /// and not quite on it, where faces of meshes lie.
 constexpr double margin_dp = 12.001;
 
+/// Radius, in dp and over that of the ball around the domain, from which on a ball has coarse
+/// facets beyond the domain: most of it is cut off then (walls/part_in_domain.h).
+constexpr double large_ball_dp = 1500;
+constexpr double ball_over_box = 20;
+
 /// The part of a line, from 0 to `length` along it, whose planes across it meet a box.
 std::array<double, 2> part_beside(const Box3& box, const Vec3& from, const Vec3& along,
                                   double length)
@@ -79,21 +84,36 @@ bool is_laid_whole(const CaseDef& def, std::uint16_t mk)
     return (settings != nullptr && settings->place == Placement::Inside) || floats(def, mk);
 }
 
-std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const CaseDef& def)
+std::optional<DrawOp> made_near_domain(const DrawOp& draw, const CaseDef& def)
 {
     const LatticeGrid& grid = def.grid;
-    const auto* cylinder = shape_as<CylinderOp>(draw);
-    if (cylinder == nullptr || grid.is_2d || is_laid_whole(def, draw.state->mk.mk))
-        return std::nullopt;
-    CylinderOp shorter = *cylinder;
+    if (grid.is_2d || is_laid_whole(def, draw.state->mk.mk)) return std::nullopt;
     const Box3 box = box_near_domain(grid);
-    bool is_shorter = shorter.layers.empty() && end_beside(shorter, box, grid.dp);
-    for (CylinderLayer& layer : shorter.layers)
-        is_shorter = end_beside(layer, box, grid.dp) || is_shorter;
-    if (!is_shorter) return std::nullopt;
     DrawOp out = draw;
-    out.what = Shape(std::move(shorter));
-    return out;
+    if (const auto* cylinder = shape_as<CylinderOp>(draw))
+    {
+        CylinderOp shorter = *cylinder;
+        bool is_shorter = shorter.layers.empty() && end_beside(shorter, box, grid.dp);
+        for (CylinderLayer& layer : shorter.layers)
+            is_shorter = end_beside(layer, box, grid.dp) || is_shorter;
+        if (!is_shorter) return std::nullopt;
+        out.what = Shape(std::move(shorter));
+        return out;
+    }
+    if (const auto* sphere = shape_as<SphereOp>(draw))
+    {
+        double radius = sphere->radius;
+        for (const double layer : sphere->layers_dp)
+            radius = std::min(radius, sphere->radius + layer * grid.dp);
+        if (!(radius > large_ball_dp * grid.dp) ||
+            !(radius > ball_over_box * 0.5 * norm(box.max - box.min)))
+            return std::nullopt;
+        SphereOp coarse = *sphere;
+        coarse.near = box;
+        out.what = Shape(std::move(coarse));
+        return out;
+    }
+    return std::nullopt;
 }
 
 } // namespace fppg

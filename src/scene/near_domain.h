@@ -25,9 +25,10 @@ inline constexpr double times_beyond_of_round = 8;
 /// what floats is that of all of it, and with `place="inside"` the wall fills its solid.
 bool is_laid_whole(const CaseDef& def, std::uint16_t mk);
 
-/// The cylinder of a body-fitted draw, of which far more is beyond the domain than within
-/// (times_beyond_of_round) and at least 20,000 dp^2, without most of that: its facets would be made
-/// first. Empty for all else, and for what is laid whole.
-std::optional<DrawOp> ended_beside_domain(const DrawOp& draw, const CaseDef& def);
+/// A body-fitted draw with the facets that what is in the domain needs. Of a cylinder of which far
+/// more is beyond the domain than within (times_beyond_of_round), and at least 20,000 dp^2, most of
+/// that is left out; a sphere that is twenty times as large as the domain, and at least 1,500 dp in
+/// radius, has coarse facets beyond. Empty for all else, and for what is laid whole.
+std::optional<DrawOp> made_near_domain(const DrawOp& draw, const CaseDef& def);
 
 } // namespace fppg

@@ -184,6 +184,7 @@ void measure(Body& body, const Widths& widths, const LatticeGrid& grid)
     double reach = 0;
     for (const Piece& p : body.pieces)
         reach = std::max(reach, p.radius + (p.is_shell ? widths.tube : 0));
+    reach = std::min(reach, 4e9 * grid.dp); // beyond every lattice, and still an index
     body.a = position(body.a_node, grid);
     body.b = position(body.b_node, grid);
     body.axis = body.b - body.a;

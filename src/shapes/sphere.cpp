@@ -15,14 +15,51 @@ namespace fppg::kinds
 namespace
 {
 
+/// Moves the directions of a sphere's corners towards `axis`, without turning a facet over: in the
+/// stereographic projection from the other end of the axis it is a scaling by `factor`, so that
+/// facets keep their shape. One corner is that other end, so that the body stays as deep as it was.
+void gather_about(const Vec3& axis, double factor, std::vector<Vec3>& directions)
+{
+    *std::min_element(directions.begin(), directions.end(),
+                      [&](const Vec3& a, const Vec3& b) { return dot(a, axis) < dot(b, axis); }) =
+        -1.0 * axis;
+    for (Vec3& p : directions)
+    {
+        const double along = std::clamp(dot(p, axis), -1.0, 1.0);
+        const Vec3 aside = p - along * axis;
+        const double side = norm(aside);
+        if (!(side > 0)) continue;
+        const double tangent = factor * std::sqrt((1 - along) / (1 + along)); // of half the angle
+        const double scale = 1 / (1 + tangent * tangent);
+        p = (1 - tangent * tangent) * scale * axis + (2 * tangent * scale / side) * aside;
+    }
+}
+
 /// A geodesic sphere: the faces of an icosahedron cut evenly, 1167 radius / dp facets and never
 /// fewer than 500.
-ShapeMesh sphere_mesh(const Vec3& center, double radius, double dp)
+///
+/// near  if not empty, the facets in this box are so small, and the others grow away from it
+ShapeMesh sphere_mesh(const Vec3& center, double radius, const Box3& near, double dp)
 {
     check_size("a sphere with a radius", radius);
-    const double parts = std::max(5.0, parts_for_chord(radius / dp));
+    double parts = std::max(5.0, parts_for_chord(radius / dp));
+    Vec3 axis;
+    double factor = 1;
+    if (!near.is_empty())
+    {
+        constexpr double least_parts = 24;
+        const Vec3 to_box = near.min + 0.5 * (near.max - near.min) - center;
+        const double away = norm(to_box);
+        axis = away > 0 ? to_box / away : Vec3{0, 0, 1};
+        // Half of the angle at which the box is seen from the middle, where the sphere passes it.
+        factor = std::tan(0.5 * std::asin(std::min(0.5, 0.5 * norm(near.max - near.min) / radius)));
+        parts = std::max(least_parts, std::ceil(2 * factor * parts));
+        // Where the middle is in the box, the sphere is far from it.
+        if (away < 0.5 * radius) factor = 1;
+    }
     check_facets(20 * parts * parts);
     SharedFacets mesh = geodesic_sphere(static_cast<std::uint32_t>(parts));
+    if (factor != 1) gather_about(axis, factor, mesh.vertices);
     for (Vec3& p : mesh.vertices) p = center + p * radius;
     ShapeMesh out;
     out.soup = mesh.soup();
@@ -164,9 +201,9 @@ std::vector<ShapeMesh> surfaces_of(const SphereOp& sphere, const ShapeContext& c
     if (context.is_wire()) return out;
     const double dp = context.grid.dp;
     for (const double layer : sphere.layers_dp)
-        out.push_back(sphere_mesh(sphere.center, sphere.radius + layer * dp, dp));
+        out.push_back(sphere_mesh(sphere.center, sphere.radius + layer * dp, sphere.near, dp));
     if (!out.empty()) return out;
-    out.push_back(sphere_mesh(sphere.center, sphere.radius, dp));
+    out.push_back(sphere_mesh(sphere.center, sphere.radius, sphere.near, dp));
     out.back().is_solid = context.may_fill();
     return out;
 }

@@ -125,7 +125,7 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     const DrawState& state = *draw.state;
     const LatticeGrid& grid = scene.def->grid;
     FittedStep out;
-    const std::optional<DrawOp> shorter = ended_beside_domain(draw, *scene.def);
+    const std::optional<DrawOp> shorter = made_near_domain(draw, *scene.def);
     const std::vector<ShapeMesh> shapes =
         surfaces_of(scene, shorter ? *shorter : draw, PartsAs::Drawn, threads);
     if (shapes.empty()) return out;

@@ -12,6 +12,7 @@
 #include "meshes/mesh_query.h"
 #include "walls/fit_shape.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -229,6 +230,29 @@ TEST(LargeBody, ThatIsAPipeIsMadeInTheDomainAlone)
         for (const Vec3& p : walls.particles.positions)
             EXPECT_NEAR(std::hypot(p.y - 0.1, p.z - 0.1), 0.3, 0.01 * dp);
         EXPECT_LT(area_laid(walls), 3 * area);
+    }
+}
+
+TEST(LargeBody, ThatIsABallIsFineInTheDomainAlone)
+{
+    // Of 200 m, 1e5 m and 1e8 m in radius, through (0.1, 0, 0) along (1, 0.5, 0.2).
+    const Vec3 normal = Vec3{1, 0.5, 0.2} / norm(Vec3{1, 0.5, 0.2});
+    for (const double radius : {200.0, 1e5, 1e8})
+    {
+        const Vec3 center = Vec3{0.1, 0, 0} - radius * normal;
+        const FittedWalls walls =
+            walls_of(fmt::format(R"(<drawsphere radius="{}"><point x="{}" y="{}" z="{}" />)"
+                                 "</drawsphere>",
+                                 radius, center.x, center.y, center.z));
+        const std::vector<Vec3>& places = walls.particles.positions;
+        double farthest = 0;
+        for (const Vec3& p : places)
+            farthest = std::max(farthest, std::fabs(norm(p - center) - radius));
+        EXPECT_LT(farthest, std::max(0.006 * dp, 4e-16 * radius)) << radius;
+        // As flat as a plane here, which passes all of the four sides along x: |y|, |z| < 1.
+        const double area = 2 * 2 / normal.x;
+        EXPECT_NEAR(static_cast<double>(places.size()) * dp * dp, area, 0.1 * area) << radius;
+        EXPECT_LT(area_laid(walls), 20 * area) << radius;
     }
 }
 
