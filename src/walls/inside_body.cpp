@@ -78,7 +78,7 @@ Thickness thickness_of(const WallDepth& wall, double most, int threads)
 /// As many sheets as a thickness is nearest to, in dp.
 int sheets_through(double thickness_dp)
 {
-    int n = std::max(1, static_cast<int>(std::floor(thickness_dp)));
+    int n = static_cast<int>(std::clamp(std::floor(thickness_dp), 1.0, 1e9));
     if (thickness_dp * thickness_dp > static_cast<double>(n) * (n + 1)) ++n;
     return n;
 }

@@ -98,11 +98,12 @@ void for_each_sample(const SurfaceMesh& mesh, std::size_t f, double apart, const
     for (std::size_t k = 1; k < 3; ++k)
         if (norm(corner(k + 1) - corner(k)) > norm(corner(first + 1) - corner(first))) first = k;
     const double longest = norm(corner(first + 1) - corner(first));
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / apart)));
+    const int n = static_cast<int>(std::clamp(std::ceil(longest / apart), 1.0, 1e9));
     const double height = 2 * mesh.areas[f] / longest;
     // As many rows as a sliver is long would be far too many.
     const bool is_sliver = height < sliver * longest;
-    const int rows = is_sliver ? std::max(1, static_cast<int>(std::ceil(height / apart))) : n;
+    const int rows =
+        is_sliver ? static_cast<int>(std::clamp(std::ceil(height / apart), 1.0, 1e9)) : n;
     if (!is_sliver) first = 0;
     const Vec3& a = corner(first);
     const Vec3 u = corner(first + 1) - a;
@@ -127,8 +128,8 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
         if (mesh.vertices[v].x != p.x || mesh.vertices[v].z != p.z) q = mesh.vertices[v];
     p.y = *options.plane_y;
     q.y = *options.plane_y;
-    const int n =
-        std::max(1, static_cast<int>(std::ceil(norm(q - p) / (sample_of_line_dp * options.dp))));
+    const int n = static_cast<int>(
+        std::clamp(std::ceil(norm(q - p) / (sample_of_line_dp * options.dp)), 1.0, 1e9));
     for (int i = 0; i < n; ++i)
         if (const auto at = middle.under(p + ((i + 0.5) / n) * (q - p), mesh.normals[facet],
                                          static_cast<std::uint32_t>(facet)))
