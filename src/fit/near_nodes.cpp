@@ -4,6 +4,7 @@
 #include "fppg/error.h"
 #include "meshes/facet_distance.h"
 #include "meshes/near_tree.h"
+#include "meshes/unit_cube.h"
 #include "platform/memory.h"
 
 #include <algorithm>
@@ -314,10 +315,8 @@ std::unique_ptr<NearTree> tree_of_fine(const TriangleSoup& soup, double dp, int 
         for (int k = 0; k < 3; ++k) box.add(p[k]);
     }
     if (!(static_cast<double>(soup.size()) * dp * dp > many * area)) return nullptr;
-    const Vec3 half = 0.5 * (box.max - box.min);
-    const double scale = std::max({half.x, half.y, half.z});
-    if (!(scale > 0)) return nullptr;
-    return std::make_unique<NearTree>(soup, box.min + half, scale, threads);
+    const UnitCube cube = unit_cube_of(box);
+    return std::make_unique<NearTree>(soup, cube.centre, cube.scale, threads);
 }
 
 } // namespace

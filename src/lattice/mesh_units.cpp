@@ -122,8 +122,8 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
            fit_settings(def.fit, state.mk.mk) != nullptr && state.mode != DrawMode::Wire;
 }
 
-/// Body-fitted walls are laid before what is outside the domain goes, but for the far parts of
-/// cylinders.
+/// Body-fitted walls are laid before what is outside the domain goes, but for far parts of
+/// cylinders and balls.
 void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
     constexpr double bytes_per_particle = 100; // the least that laying them needs

@@ -56,7 +56,6 @@ public:
             sides_[s] = corners[(s + 1) % 3] - corners[s];
             const double squared = dot(sides_[s], sides_[s]);
             side_inverse_[s] = squared > 0 ? 1 / squared : 0;
-            box_.add(corners[s]);
         }
         normal_ = cross(sides_[0], sides_[1]);
         const double squared = dot(normal_, normal_);
@@ -66,8 +65,6 @@ public:
         inverse_ = 1 / squared;
         for (std::size_t s = 0; s < 3; ++s) inwards_[s] = cross(normal_, sides_[s]);
     }
-
-    const Box3& box() const { return box_; }
 
     /// The squared distance to the facet, or `limit` if it is not below that.
     double squared(const Vec3& p, double limit) const
@@ -101,7 +98,6 @@ private:
     std::array<double, 3> side_inverse_;
     Vec3 normal_;        ///< not of unit length
     double inverse_ = 0; ///< of its squared length; 0 where the facet is but its sides
-    Box3 box_;
 };
 
 } // namespace fppg

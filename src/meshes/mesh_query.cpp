@@ -9,6 +9,7 @@
 #include "fppg/error.h"
 #include "meshes/column_cut.h"
 #include "meshes/embree.h"
+#include "meshes/unit_cube.h"
 
 namespace fppg
 {
@@ -46,10 +47,9 @@ struct MeshQuery::Scene
                 throw GeometryError("a mesh with a coordinate that is not finite has no surface");
             box.add(vertex);
         }
-        centre = box.min + 0.5 * (box.max - box.min);
-        const Vec3 half = 0.5 * (box.max - box.min);
-        scale = std::max({half.x, half.y, half.z});
-        if (!(scale > 0)) scale = 1;
+        const UnitCube cube = unit_cube_of(box);
+        centre = cube.centre;
+        scale = cube.scale;
     }
 
     const NearTree& near_tree()

@@ -85,10 +85,6 @@ void read_definition_text(std::string_view bytes)
     catch (const Error&)
     {
     }
-    catch (const std::filesystem::filesystem_error&)
-    {
-        // The program ends with exit code 4 for these, too.
-    }
     write_input("Case_Def.xml", bytes);
     (void)read_case("Case_Def.xml", options_of_case());
 }
