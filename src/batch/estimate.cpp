@@ -11,6 +11,7 @@
 #include "batch/rates.h"
 #include "core/json.h"
 #include "lattice/mesh_units.h"
+#include "meshes/outline.h"
 #include "scene/near_domain.h"
 #include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
@@ -263,17 +264,25 @@ private:
                            { return dot(p - clip.point, clip.normal) <= 0; });
     }
 
-    /// How much of the area of a mesh lies in the domain and inside the clips, by points spread
-    /// evenly over it.
+    /// How much of the area of a mesh lies in the domain and inside the clips; beside clips by
+    /// points spread evenly over it.
     double share_inside(const SurfaceMesh& mesh, const std::vector<ClipPlane>& clips) const
     {
         if (clips.empty() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                                          [&](const Vec3& v) { return is_inside(v, clips); }))
             return 1;
         const double area = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
+        const Box3 domain = box_around(def_.grid, 0.5);
         double inside = 0;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
+            if (clips.empty())
+            {
+                const auto& [a, b, c] = mesh.facets[f];
+                const Vec3 corners[3] = {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+                inside += area_in_box(domain, corners);
+                continue;
+            }
             const int samples = std::max(1, static_cast<int>(area_samples * mesh.areas[f] / area));
             const auto& c = mesh.facets[f];
             const Vec3& a = mesh.vertices[c[0]];

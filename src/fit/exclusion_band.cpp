@@ -33,6 +33,9 @@ struct WideGrid
     std::array<std::int64_t, 3> offset{0, 0, 0}; ///< of its node 0 in the lattice of the case
 };
 
+/// Nodes beside the domain along an axis: memory goes by them, however little of the wall is there.
+constexpr double most_beyond = 1 << 24;
+
 /// The lattice itself where it holds the mesh and all nodes near it, else a larger one.
 WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
 {
@@ -47,6 +50,11 @@ WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
         const double high = std::ceil((bounds.max[axis] - lattice.origin[axis]) / lattice.dp) + 2;
         const double begin = std::min(low, 0.0);
         const double end = std::max(high + 1, static_cast<double>(lattice.n[k]));
+        if (!(std::max(-begin, end - lattice.n[k]) < most_beyond))
+            throw GeometryError(fmt::format(
+                "the surface reaches from {:.6g} to {:.6g} m along {}, more than 2^24 dp of {:.6g} "
+                "m beyond the domain",
+                bounds.min[axis], bounds.max[axis], "xyz"[axis], lattice.dp));
         wide.offset[k] = static_cast<std::int64_t>(begin);
         wide.grid.n[k] = static_cast<std::uint32_t>(end - begin);
         wide.grid.origin[axis] = lattice.origin[axis] + begin * lattice.dp;

@@ -4,6 +4,7 @@
 #include "fppg/error.h"
 #include "meshes/facet_distance.h"
 #include "meshes/near_tree.h"
+#include "meshes/outline.h"
 #include "meshes/unit_cube.h"
 #include "platform/memory.h"
 
@@ -41,32 +42,6 @@ Range nodes_between(double low, double high, double origin, double dp, std::uint
     const double end = std::floor((high - origin) / dp) + 1;
     return {static_cast<std::int64_t>(std::clamp(begin, 0.0, static_cast<double>(n))),
             static_cast<std::int64_t>(std::clamp(end, 0.0, static_cast<double>(n)))};
-}
-
-/// The part of a facet between two planes across one axis: at most seven corners after two cuts.
-struct Outline
-{
-    Vec3 corners[8];
-    std::size_t count = 0;
-
-    void add(const Vec3& p) { corners[count++] = p; }
-};
-
-Outline cut_outline(const Outline& outline, int axis, double at, bool keeps_above)
-{
-    const auto is_kept = [&](const Vec3& p) { return keeps_above ? p[axis] >= at : p[axis] <= at; };
-    Outline result;
-    for (std::size_t i = 0; i < outline.count; ++i)
-    {
-        const Vec3& p = outline.corners[i];
-        const Vec3& q = outline.corners[(i + 1) % outline.count];
-        if (is_kept(p)) result.add(p);
-        if (is_kept(p) == is_kept(q)) continue;
-        Vec3 cut = p + (q - p) * ((at - p[axis]) / (q[axis] - p[axis]));
-        cut[axis] = at;
-        result.add(cut);
-    }
-    return result;
 }
 
 Range range_of(const Outline& outline, int axis, double reach, const LatticeGrid& grid)

@@ -4,6 +4,7 @@
 #include "fppg/mesh.h"
 
 #include "core/most_particles.h"
+#include "meshes/outline.h"
 #include "platform/memory.h"
 #include "scene/near_domain.h"
 #include "scene/surfaces.h"
@@ -38,17 +39,23 @@ Box3 bounds_of(const MeshFile& mesh, const Transform& transform)
     return bounds;
 }
 
-double area_of(const TriangleSoup& soup, const Transform& transform)
+/// Of all facets, and of what of them is in a box, m^2.
+struct Area
 {
-    double area = 0;
-    const std::vector<Vec3>& v = soup.vertices;
-    for (std::size_t f = 0; f + 2 < v.size(); f += 3)
+    double whole = 0;
+    double in_box = 0;
+
+    void add(const TriangleSoup& soup, const Transform& transform, const Box3& box)
     {
-        const Vec3 a = transform(v[f]);
-        area += norm(cross(transform(v[f + 1]) - a, transform(v[f + 2]) - a)) / 2;
+        const std::vector<Vec3>& v = soup.vertices;
+        for (std::size_t f = 0; f + 2 < v.size(); f += 3)
+        {
+            const Vec3 corners[3] = {transform(v[f]), transform(v[f + 1]), transform(v[f + 2])};
+            whole += norm(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
+            in_box += area_in_box(box, corners);
+        }
     }
-    return area;
-}
+};
 
 /// What spheres, cylinders and ellipsoids have at least, m^2, without making their facets; 0 of
 /// other shapes.
@@ -84,26 +91,39 @@ double least_round_area(const DrawOp& draw, double dp)
     return area;
 }
 
-/// Of the true surface that a draw leaves, m^2. Of a shape in a small box not more than that box's,
-/// of a round one that is far too large not less than it has: its surface is only made where it
-/// matters.
+/// Of the true surface that is laid of a draw, m^2. Of a shape in a small box not more than that
+/// box's, of a round one that is far too large not less than it has: its surface is only made where
+/// it matters. Of a body with plane facets of which most is beyond the domain what is near it: the
+/// rest is cut off (walls/part_in_domain.h).
 ///
 /// small  m^2; as much fits
-double area_of(const Scene& scene, const DrawOp& draw, double small, int threads)
+double laid_area(const Scene& scene, const DrawOp& draw, double small, int threads)
 {
+    const double dp = scene.def->grid.dp;
+    const Box3 near = box_near_domain(scene.def->grid);
+    Area area;
+    bool is_round = false;
     if (const auto* op = shape_as<MeshFileOp>(draw))
-        return area_of(mesh_of(scene, draw, threads)->soup, op->transform);
-    const Box3 box = bounds_of(std::get<Shape>(draw.what), scene.def->grid.dp);
-    if (box.is_empty()) return 0;
-    const Vec3 size = box.max - box.min;
-    const double of_box = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
-    if (of_box < small) return of_box;
-    double area = least_round_area(draw, scene.def->grid.dp);
-    if (area > small) return area;
-    area = 0;
-    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
-        area += area_of(shape.soup, {});
-    return area;
+        area.add(mesh_of(scene, draw, threads)->soup, op->transform, near);
+    else
+    {
+        const Box3 box = bounds_of(std::get<Shape>(draw.what), dp);
+        if (box.is_empty()) return 0;
+        const Vec3 size = box.max - box.min;
+        const double of_box = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+        if (of_box < small) return of_box;
+        const double of_round = least_round_area(draw, dp);
+        if (of_round > small) return of_round;
+        for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
+        {
+            is_round = is_round || shape.round != nullptr;
+            area.add(shape.soup, {}, near);
+        }
+    }
+    const double beyond = area.whole - area.in_box;
+    const bool is_cut = !is_round && !is_laid_whole(*scene.def, draw.state->mk.mk) &&
+                        beyond > std::max(area.in_box, least_beyond_dp2 * dp * dp);
+    return is_cut ? area.in_box : area.whole;
 }
 
 bool has_fills(const Scene& scene)
@@ -122,8 +142,7 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
            fit_settings(def.fit, state.mk.mk) != nullptr && state.mode != DrawMode::Wire;
 }
 
-/// Body-fitted walls are laid before what is outside the domain goes, but for far parts of
-/// cylinders and balls.
+/// Body-fitted walls are laid before what is outside the domain goes, but for what is far beyond.
 void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
     constexpr double bytes_per_particle = 100; // the least that laying them needs
@@ -133,7 +152,7 @@ void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
     const std::optional<DrawOp> shorter = made_near_domain(draw, *scene.def);
     // All but what is near the domain is cut off.
     if (shorter && shape_as<SphereOp>(*shorter) != nullptr) return;
-    const double area = area_of(scene, shorter ? *shorter : draw, most * dp * dp, threads);
+    const double area = laid_area(scene, shorter ? *shorter : draw, most * dp * dp, threads);
     const double count = area / (dp * dp);
     if (count <= most) return;
     const auto* op = shape_as<MeshFileOp>(draw);

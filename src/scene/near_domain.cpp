@@ -12,7 +12,7 @@ namespace
 
 /// Hardly beyond a plane of nodes, so that nodes go on a step behind the cut, as the volume asks,
 /// and not quite on it, where faces of meshes lie.
-constexpr double margin_dp = 12.001;
+constexpr double far_dp = 12.001;
 
 /// Radius, in dp and over that of the ball around the domain, from which on a ball has coarse
 /// facets beyond the domain: most of it is cut off then (walls/part_in_domain.h).
@@ -71,6 +71,11 @@ bool floats(const CaseDef& def, std::uint16_t mk)
 } // namespace
 
 Box3 box_near_domain(const LatticeGrid& grid)
+{
+    return box_around(grid, far_dp);
+}
+
+Box3 box_around(const LatticeGrid& grid, double margin_dp)
 {
     const double margin = margin_dp * grid.dp;
     const Vec3 last{grid.n[0] - 1.0, grid.n[1] - 1.0, grid.n[2] - 1.0};

@@ -14,6 +14,9 @@ namespace fppg
 /// Of bodies only those are cut of which at least so much is beyond the domain.
 inline constexpr double least_beyond_dp2 = 20000;
 
+/// From the first to the last node of the domain, with a margin on all sides.
+Box3 box_around(const LatticeGrid& grid, double margin_dp);
+
 /// The domain with a margin of 12 dp on all sides. Layers, relaxation and features reach less far.
 Box3 box_near_domain(const LatticeGrid& grid);
 

@@ -3,7 +3,7 @@
 #include "fppg/boolean.h"
 
 #include "core/parallel.h"
-#include "meshes/cut_at_plane.h"
+#include "meshes/outline.h"
 #include "scene/near_domain.h"
 
 #include <algorithm>
@@ -18,29 +18,6 @@ namespace
 
 /// The box touches nothing by intent.
 constexpr double cut_merge_dp = 1e-6;
-
-/// What of the area of a facet is in a box.
-double area_in(const Box3& box, const std::array<Vec3, 3>& corners)
-{
-    std::vector<Vec3> polygon(corners.begin(), corners.end());
-    std::vector<Vec3> kept;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const bool is_lower : {true, false})
-        {
-            const double limit = is_lower ? box.min[axis] : box.max[axis];
-            cut_at_plane(
-                polygon,
-                [&](const Vec3& p) { return is_lower ? p[axis] >= limit : p[axis] <= limit; },
-                [&](const Vec3& a, const Vec3& b)
-                { return a + ((limit - a[axis]) / (b[axis] - a[axis])) * (b - a); },
-                kept);
-            polygon.swap(kept);
-        }
-    Vec3 twice;
-    for (std::size_t i = 2; i < polygon.size(); ++i)
-        twice = twice + cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
-    return 0.5 * norm(twice);
-}
 
 /// When a body is cut: of its area so many times as much is beyond as within, and so much.
 struct CutRule
@@ -64,11 +41,19 @@ bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, const CutRule& r
         [&](std::size_t f)
         {
             const auto& [a, b, c] = mesh.facets[f];
-            within[f] = area_in(box, {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+            const Vec3 corners[3] = {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+            within[f] = area_in_box(box, corners);
         },
         1024);
     const double inside = std::accumulate(within.begin(), within.end(), 0.0);
     return all - inside > std::max(rule.times * inside, least);
+}
+
+bool is_apart(const Box3& a, const Box3& b)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (a.max[axis] < b.min[axis] || a.min[axis] > b.max[axis]) return true;
+    return false;
 }
 
 TriangleSoup soup_of_box(const Box3& box)
@@ -98,8 +83,21 @@ TriangleSoup soup_of_box(const Box3& box)
 std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
                                          const LatticeGrid& grid, int threads)
 {
-    if (settings.place == Placement::Inside || grid.is_2d) return {};
-    const Box3 box = box_near_domain(grid);
+    if (settings.place == Placement::Inside) return {};
+    Box3 bounds;
+    for (const Vec3& v : body.mesh.vertices) bounds.add(v);
+    Box3 box = box_near_domain(grid);
+    if (is_apart(bounds, box))
+    {
+        body.mesh = {};
+        body.round = nullptr;
+        return {};
+    }
+    if (grid.is_2d)
+    {
+        box.min.y = std::min(box.min.y, bounds.min.y - grid.dp);
+        box.max.y = std::max(box.max.y, bounds.max.y + grid.dp);
+    }
     const CutRule rule = body.round != nullptr ? rule_of_round : CutRule{};
     if (!is_mostly_beyond(body.mesh, box, rule, grid.dp, threads)) return {};
     body.round = nullptr;

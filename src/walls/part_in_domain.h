@@ -20,9 +20,10 @@ enum class BodyExtent : std::uint8_t
 ///
 /// Only where more of its surface lies beyond the domain and a margin of 12 dp than within, and at
 /// least 20,000 dp^2. A solid gets facets where it is cut, an open surface ends there. The measures
-/// of the body are then those of what is left. 2D cases and bodies with Placement::Inside stay
-/// whole. Round bodies are cut only where eight times as much lies beyond as within, and at least
-/// 5,000,000 dp^2.
+/// of the body are then those of what is left. In 2D the width of the body does not count as
+/// beyond. A body of which nothing is within the margin is left out, however small it is. Bodies
+/// with Placement::Inside stay whole. Round bodies are cut only where eight times as much lies
+/// beyond as within, and at least 5,000,000 dp^2.
 ///
 /// body     mesh and report are made, features are not yet; without a facet where nothing of it is
 ///          within the margin

@@ -239,6 +239,7 @@ class Units(Limits):
 
     FILE = '<setmkbound mk="0" /><drawfilestl file="{}" {}/>'
     HINT = '; if the file is in other units (mm), <drawscale x="0.001" y="0.001" z="0.001" /> turns them into metres'
+    LAID_WHOLE = '<fppg><bodyfitted mkbound="0" place="inside" /></fppg>'
     FILL = '<fppg><fill mkfluid="0" seed="0.5,0.5,0.5" level="0.5" /></fppg>'
 
     def test_of_a_fitted_mesh_are_judged_before_it_is_laid(self):
@@ -270,7 +271,7 @@ class Units(Limits):
 
     def test_a_surface_of_too_many_particles_names_the_dp_that_fits(self):
         self.write_case('<setmkbound mk="0" /><drawfilestl file="mm.stl"><drawscale x="0.6" y="0.6" z="0.6" />'
-                        "</drawfilestl>", "0.005")
+                        "</drawfilestl>", "0.005", fit=self.LAID_WHOLE)
         self.expect_refused(3, "mm.stl has a surface of ", FORMAT, " and larger ones fit",
                             calls=[("Case_Def", "out/Case", "-fit")])
 
@@ -279,7 +280,7 @@ class Units(Limits):
         for draw in ('<drawbox><boxfill>all</boxfill>' + place + '<size x="1000" y="1000" z="1000" /></drawbox>',
                      '<drawtriangle>' + place + '<point x="500" y="-500" z="0" /><point x="0" y="500" z="9" />'
                      '</drawtriangle>'):
-            self.write_case('<setmkbound mk="0" />' + draw, "0.005")
+            self.write_case('<setmkbound mk="0" />' + draw, "0.005", fit=self.LAID_WHOLE)
             self.expect_refused(3, "it has a surface of ", FORMAT, " and larger ones fit",
                                 calls=[("Case_Def", "out/Case", "-fit")])
 

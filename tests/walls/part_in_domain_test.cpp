@@ -179,6 +179,30 @@ TEST(LargeBody, BesideTheDomainHasNothingInIt)
     for (const Spans& slab : part.volume) EXPECT_TRUE(slab.empty());
 }
 
+TEST(SmallBody, FarBesideTheDomainHasNothingInIt)
+{
+    for (const double at : {3.0, 2e8, 1e15, 1e307})
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            Vec3 low{0.2, 0.2, 0.2};
+            low[axis] = at;
+            Vec3 high = low + Vec3{0.3, 0.3, 0.3};
+            high[axis] = std::max(high[axis], 1.1 * at);
+            const FittedDraw part = fit(box(low, high), true, BodyExtent::NearDomain);
+            EXPECT_EQ(part.particles.size(), 0u) << at << ' ' << axis;
+            EXPECT_TRUE(part.body.mesh.facets.empty()) << at << ' ' << axis;
+            for (const Spans& slab : part.volume) EXPECT_TRUE(slab.empty());
+        }
+}
+
+TEST(SmallBody, WhosePartsAreFarAboveEachOtherIsRefusedWhereBothCount)
+{
+    TriangleSoup soup = box({0.2, 0.2, 0.2}, {0.5, 0.5, 0.5});
+    const TriangleSoup far = box({0.2, 0.2, 2e6}, {0.5, 0.5, 2e6 + 0.3});
+    soup.vertices.insert(soup.vertices.end(), far.vertices.begin(), far.vertices.end());
+    EXPECT_THROW(fit(soup, true, BodyExtent::Whole), GeometryError);
+}
+
 TEST(LargeBody, BeyondAllNumbersIsRefused)
 {
     EXPECT_THROW(fit(box({0.2, 1e307, 0.3}, {0.3, 1.1e307, 0.4}), true, BodyExtent::Whole),
@@ -259,6 +283,42 @@ TEST(LargeBody, ThatIsABallIsFineInTheDomainAlone)
 const std::string floats =
     R"(<floatings><floating mkbound="0" relativeweight="0.5" /></floatings>)";
 const std::string lies_inside = R"(<fppg><bodyfitted place="inside" /></fppg>)";
+
+TEST(LargeBody, ThatIsCutByThePlaneOfA2DCaseIsLaidInTheDomainAlone)
+{
+    // A strip 0.6 m wide: 66 km and 6 million km long.
+    for (const double top : {65536.0, 6e9})
+    {
+        const test::TemporaryFolder folder;
+        test::CaseText text;
+        text.dp = "0.05";
+        text.pointmin = R"(<pointmin x="-1" y="0" z="-1" />)";
+        text.pointmax = R"(<pointmax x="1" y="0" z="1" />)";
+        text.mainlist = fmt::format(
+            R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawbox><boxfill>all</boxfill>)"
+            R"(<point x="-0.3" y="-0.2" z="-0.4" /><size x="0.6" y="0.4" z="{}" /></drawbox>)",
+            top);
+        test::write_text(folder / "Case_Def.xml", text.text());
+        CaseOptions options;
+        options.fit = FitChoice::On;
+        const CaseDef def = read_case(folder / "Case_Def.xml", options);
+        LatticeReport report;
+        const FittedWalls walls = draw_scene(make_scene(def), 2, {}, report).walls;
+        // The bottom and, up to the last nodes at 0.95 m and half a step, two sides.
+        EXPECT_NEAR(static_cast<double>(walls.particles.size()) * dp, 0.6 + 2 * 1.375, 3 * dp);
+        for (const Vec3& p : walls.particles.positions)
+            EXPECT_LT(std::min(std::fabs(std::fabs(p.x) - 0.3), std::fabs(p.z + 0.4)), 1e-6 * dp);
+    }
+}
+
+TEST(LargeBody, OfMoreParticlesThanAFileHoldsIsLaidInTheDomainAlone)
+{
+    // 2,000 km by 2,000 km: 1.6e15 particles, 1,600 of them in the domain.
+    const FittedWalls walls =
+        walls_of(R"(<drawbox><boxfill>bottom</boxfill><point x="-1e6" y="-1e6" z="-0.31" />)"
+                 R"(<size x="2e6" y="2e6" z="1" /></drawbox>)");
+    EXPECT_NEAR(static_cast<double>(walls.particles.size()) * dp * dp, 1.95 * 1.95, 0.4);
+}
 
 TEST(LargeBody, ThatFloatsIsMadeWhole)
 {
