@@ -13,9 +13,12 @@ namespace
 {
 
 /// Multiplies the matrix on the right; clips follow it.
-void apply(Program& p, const Transform& map)
+void apply(Program& p, const Element& e, const Transform& map)
 {
     p.matrix = p.matrix * map;
+    const auto& [x, y, z] = p.matrix.linear;
+    if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !is_finite(p.matrix.offset))
+        p.read.fail(e, "it takes places beyond all numbers, expected a smaller transformation");
     p.place_clips();
 }
 
@@ -44,12 +47,12 @@ void load_matrix(Program& p, const Element&)
 
 void move(Program& p, const Element& e)
 {
-    apply(p, translation(p.read.vec3(e)));
+    apply(p, e, translation(p.read.vec3(e)));
 }
 
 void scale(Program& p, const Element& e)
 {
-    apply(p, scaling(p.read.vec3(e)));
+    apply(p, e, scaling(p.read.vec3(e)));
 }
 
 void rotate(Program& p, const Element& e)
@@ -57,7 +60,7 @@ void rotate(Program& p, const Element& e)
     const Vec3 axis = p.read.vec3(e);
     if (norm(axis) == 0) p.read.fail(e, "the axis (x, y, z) is zero, expected a direction");
     // Clockwise seen from the tip of the axis (rule T2).
-    apply(p, rotation(axis, -radians(p.read.number(e, "ang"))));
+    apply(p, e, rotation(axis, -radians(p.read.number(e, "ang"))));
 }
 
 void rotate_line(Program& p, const Element& e)
@@ -66,7 +69,7 @@ void rotate_line(Program& p, const Element& e)
     if (points.size() != 2) p.read.fail(e, fmt::format("has {} points, expected 2", points.size()));
     const Vec3 axis = points[1] - points[0];
     if (norm(axis) == 0) p.read.fail(e, "its two points are the same, expected an axis");
-    apply(p, around(points[0], rotation(axis, -radians(p.read.number(e, "ang")))));
+    apply(p, e, around(points[0], rotation(axis, -radians(p.read.number(e, "ang")))));
 }
 
 void rotate_adv(Program& p, const Element& e)
@@ -82,7 +85,7 @@ void rotate_adv(Program& p, const Element& e)
     const Transform t =
         p.flag_of(e, "intrinsic") ? turns[0] * turns[1] * turns[2] : turns[2] * turns[1] * turns[0];
     const Element* center = e.find_child("center");
-    apply(p, (center != nullptr ? around(p.read.vec3(*center), t) : t));
+    apply(p, e, (center != nullptr ? around(p.read.vec3(*center), t) : t));
 }
 
 } // namespace fppg::commands

@@ -2,10 +2,13 @@
 
 #include "core/parallel.h"
 #include "fit/chart_grid.h"
+#include "fppg/error.h"
 
 #include <algorithm>
 #include <numbers>
 #include <queue>
+
+#include <fmt/format.h>
 
 namespace fppg
 {
@@ -86,6 +89,14 @@ void clip(std::vector<ChartPoint>& polygon, const ChartPoint& other, double squa
         }
     }
     polygon.swap(spare);
+}
+
+[[noreturn]] void refuse_endless(const Vec3& p)
+{
+    throw GeometryError(fmt::format(
+        "particles near ({:.6g}, {:.6g}, {:.6g}) found no end: the normals of facets there are not "
+        "those of their planes, as for facets far thinner than their distance from the origin",
+        p.x, p.y, p.z));
 }
 
 } // namespace
@@ -209,6 +220,19 @@ struct ChartFiller::Work
              is_irregular,
              is_at_seam});
         note(ray.position, mesh.facets[ray.facet].normal);
+    }
+
+    /// Far more than there is room for in the chart, on its area and along the sides of its facets.
+    double most_sites() const
+    {
+        double area = 0, sides = 0;
+        for (const std::uint32_t f : state.charts.facets(chart))
+        {
+            area += mesh.area(f);
+            const auto& c = mesh.facets[f].corners;
+            sides += norm(c[1] - c[0]) + norm(c[2] - c[1]) + norm(c[0] - c[2]);
+        }
+        return 4 * (area / (dp * dp) + sides / dp) + 100;
     }
 
     bool is_seam(const Vec3& position) const
@@ -468,7 +492,12 @@ void ChartFiller::advance_front(std::uint32_t chart)
         w.try_to_begin(
             {(f.corners[0] + f.corners[1] + f.corners[2]) / 3.0, facet, any_direction(f)});
     }
-    for (std::size_t i = 0; i < w.own->sites.size(); ++i) w.advance_from(i);
+    const double most = w.most_sites();
+    for (std::size_t i = 0; i < w.own->sites.size(); ++i)
+    {
+        if (static_cast<double>(i) > most) refuse_endless(w.own->sites[i].position);
+        w.advance_from(i);
+    }
 }
 
 void ChartFiller::fill_holes(std::uint32_t chart)

@@ -58,8 +58,7 @@ SurfaceRay walk(const WorkMesh& mesh, SurfaceRay ray, double length)
     for (int crossing = 0; crossing < max_crossings; ++crossing)
     {
         const WorkFacet& facet = mesh.facets[ray.facet];
-        // A facet without area has no plane to walk on, and no side would end the walk.
-        if (facet.normal == Vec3{}) break;
+        if (!facet.has_plane) break;
         const FacetExit exit = find_exit(facet, ray, entered, length);
         ray.position = ray.position + ray.direction * exit.length;
         if (exit.side == 3)

@@ -1,6 +1,8 @@
 #include "fit/work_mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace fppg
@@ -70,9 +72,7 @@ public:
             }
         if (!is_any) return false;
         sort_sides();
-        while (spread_marks())
-        {
-        }
+        spread_marks();
         name_midpoints();
         cut_marked();
         return true;
@@ -135,26 +135,41 @@ private:
     }
 
     /// A mark holds for all pieces at an edge; a piece with a mark is cut at its longest side too.
-    bool spread_marks()
+    void spread_marks()
     {
-        bool is_changed = false;
+        std::vector<std::size_t> begins; // of the edges, in sides_
+        edge_of_.resize(pieces_.size());
         for_each_edge(
             [&](std::size_t begin, std::size_t end)
             {
-                bool is_marked = false;
                 for (std::size_t k = begin; k < end; ++k)
-                    is_marked = is_marked || marked_[sides_[k].piece][sides_[k].side];
-                if (!is_marked) return;
-                for (std::size_t k = begin; k < end; ++k)
-                {
-                    auto& marks = marked_[sides_[k].piece];
-                    const std::size_t longest = longest_side(pieces_[sides_[k].piece]);
-                    is_changed = is_changed || !marks[sides_[k].side] || !marks[longest];
-                    marks[sides_[k].side] = 1;
-                    marks[longest] = 1;
-                }
+                    edge_of_[sides_[k].piece][sides_[k].side] =
+                        static_cast<std::uint32_t>(begins.size());
+                begins.push_back(begin);
             });
-        return is_changed;
+        begins.push_back(sides_.size());
+        std::vector<char> is_marked(begins.size(), 0);
+        std::vector<std::uint32_t> due;
+        const auto mark = [&](std::uint32_t piece, std::size_t side)
+        {
+            marked_[piece][side] = 1;
+            const std::uint32_t edge = edge_of_[piece][side];
+            if (is_marked[edge] == 0) due.push_back(edge);
+            is_marked[edge] = 1;
+        };
+        for (std::uint32_t i = 0; i < pieces_.size(); ++i)
+            for (std::size_t s = 0; s < 3; ++s)
+                if (marked_[i][s] != 0) mark(i, s);
+        while (!due.empty())
+        {
+            const std::uint32_t edge = due.back();
+            due.pop_back();
+            for (std::size_t k = begins[edge]; k < begins[edge + 1]; ++k)
+            {
+                mark(sides_[k].piece, sides_[k].side);
+                mark(sides_[k].piece, longest_side(pieces_[sides_[k].piece]));
+            }
+        }
     }
 
     void name_midpoints()
@@ -250,6 +265,7 @@ private:
     double longest_squared_;
     std::vector<Piece> pieces_;
     std::vector<PieceSide> sides_;
+    std::vector<std::array<std::uint32_t, 3>> edge_of_;
     std::vector<std::array<char, 3>> marked_;
     std::vector<std::array<std::uint32_t, 3>> midpoints_;
 };
@@ -302,30 +318,113 @@ WorkMesh whole_facets(const SurfaceMesh& mesh, const Features& features)
     return work;
 }
 
-} // namespace
-
-std::uint32_t WorkMesh::locate(std::uint32_t parent, const Vec3& point) const
+/// Parts slivers that lie across their normal from all others.
+void part_those_without_plane(std::vector<WorkFacet>& facets)
 {
-    std::uint32_t best = first_piece[parent];
-    double best_depth = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = first_piece[parent]; i < first_piece[parent + 1]; ++i)
+    constexpr double least_cosine = 0.02;
+    for (WorkFacet& facet : facets)
     {
-        const WorkFacet& facet = facets[i];
+        const auto& c = facet.corners;
+        const Vec3 own = cross(c[1] - c[0], c[2] - c[0]);
+        facet.has_plane = dot(own, facet.normal) > least_cosine * norm(own);
+    }
+    for (WorkFacet& facet : facets)
+        for (std::uint32_t& next : facet.neighbours)
+            if (next != no_index && !(facet.has_plane && facets[next].has_plane)) next = no_index;
+}
+
+constexpr std::uint32_t box_fanout = 16;
+
+std::vector<std::vector<Box3>> boxes_around(const std::vector<WorkFacet>& facets)
+{
+    const auto groups = [](std::size_t n) { return (n + box_fanout - 1) / box_fanout; };
+    std::vector<std::vector<Box3>> levels;
+    levels.emplace_back(groups(facets.size()));
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        for (const Vec3& corner : facets[f].corners) levels[0][f / box_fanout].add(corner);
+    while (levels.back().size() > box_fanout)
+    {
+        const std::vector<Box3>& fine = levels.back();
+        std::vector<Box3> coarse(groups(fine.size()));
+        for (std::size_t i = 0; i < fine.size(); ++i)
+            for (const Vec3& corner : {fine[i].min, fine[i].max})
+                coarse[i / box_fanout].add(corner);
+        levels.push_back(std::move(coarse));
+    }
+    return levels;
+}
+
+/// The piece among those of a facet that holds a point best: the point is deepest between its
+/// sides.
+struct PieceSearch
+{
+    const WorkMesh& mesh;
+    const Vec3& point;
+    std::uint32_t begin, end;
+    std::uint32_t best;
+    double best_depth = -std::numeric_limits<double>::infinity();
+    double margin = 0; ///< metres; what rounding may take
+
+    void look_at(std::uint32_t piece)
+    {
+        const WorkFacet& facet = mesh.facets[piece];
         double depth = std::numeric_limits<double>::infinity();
         for (std::size_t s = 0; s < 3; ++s)
         {
             const Vec3 side = facet.corners[(s + 1) % 3] - facet.corners[s];
             const Vec3 inward = cross(facet.normal, side);
             depth = std::min(depth, dot(point - facet.corners[s], inward) / norm(side));
-            if (depth <= best_depth) break;
+            if (depth <= best_depth) return;
         }
-        if (depth > best_depth)
-        {
-            best = i;
-            best_depth = depth;
-        }
+        best = piece;
+        best_depth = depth;
     }
-    return best;
+
+    void look_in_boxes()
+    {
+        constexpr double relative = 1e-12;
+        margin =
+            relative * (1 + std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}));
+        const auto top = static_cast<std::uint32_t>(mesh.boxes.size());
+        for (std::uint32_t i = 0; i < mesh.boxes.back().size(); ++i) look_below(top, i);
+    }
+
+    /// Level 0 is that of the pieces.
+    void look_below(std::uint32_t level, std::uint32_t index)
+    {
+        const std::uint32_t bits = 4 * level;
+        const std::uint64_t first = std::uint64_t{index} << bits;
+        if (first >= end || first + (std::uint64_t{1} << bits) <= begin) return;
+        if (level == 0)
+        {
+            look_at(index);
+            return;
+        }
+        const Box3& box = mesh.boxes[level - 1][index];
+        for (int axis = 0; axis < 3; ++axis)
+            if (point[axis] < box.min[axis] - margin || point[axis] > box.max[axis] + margin)
+                return;
+        for (std::uint32_t i = 0; i < box_fanout; ++i)
+            look_below(level - 1, box_fanout * index + i);
+    }
+
+    bool is_found() const { return best_depth >= -margin; }
+};
+
+} // namespace
+
+std::uint32_t WorkMesh::locate(std::uint32_t parent, const Vec3& point) const
+{
+    const std::uint32_t begin = first_piece[parent];
+    const std::uint32_t end = first_piece[parent + 1];
+    PieceSearch search{*this, point, begin, end, begin};
+    if (end - begin > box_fanout && !boxes.empty())
+    {
+        search.look_in_boxes();
+        if (search.is_found()) return search.best;
+    }
+    for (std::uint32_t i = begin; i < end; ++i) search.look_at(i);
+    return search.best;
 }
 
 double WorkMesh::area(std::uint32_t facet) const
@@ -336,12 +435,20 @@ double WorkMesh::area(std::uint32_t facet) const
 
 WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest)
 {
-    if (!has_side_longer(mesh, longest)) return whole_facets(mesh, features);
-    Cutter cutter(mesh, features, longest);
-    while (cutter.halve())
+    WorkMesh work;
+    if (has_side_longer(mesh, longest))
     {
+        Cutter cutter(mesh, features, longest);
+        while (cutter.halve())
+        {
+        }
+        work = cutter.finish(mesh);
+        work.boxes = boxes_around(work.facets);
     }
-    return cutter.finish(mesh);
+    else
+        work = whole_facets(mesh, features);
+    part_those_without_plane(work.facets);
+    return work;
 }
 
 } // namespace fppg

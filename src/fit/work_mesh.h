@@ -20,6 +20,9 @@ struct WorkFacet
     std::array<std::uint32_t, 3> neighbours;
     std::array<std::uint32_t, 3> vertices; ///< below the mesh's own count: its vertices
     std::uint32_t parent;                  ///< facet of the mesh
+    /// Its normal is about that of its own plane. A sliver with that of the facet beside it may
+    /// have no width in there, so that no side ends a walk; it has no neighbours then.
+    bool has_plane = true;
 };
 
 /// The facets of a mesh with long sides halved until none is longer than a given length, so that
@@ -28,6 +31,9 @@ struct WorkMesh
 {
     std::vector<WorkFacet> facets;          ///< sorted by parent
     std::vector<std::uint32_t> first_piece; ///< per mesh facet, and one past the end
+    /// Around 16 facets in their order, around 16 such boxes, and so on; none where no facet is
+    /// cut.
+    std::vector<std::vector<Box3>> boxes;
 
     /// The piece of a mesh facet that holds a point of that facet.
     std::uint32_t locate(std::uint32_t parent, const Vec3& point) const;

@@ -18,7 +18,7 @@ constexpr char without_side = 2;
 
 } // namespace
 
-void measure_facets(SurfaceMesh& mesh, int threads)
+void measure_facets(SurfaceMesh& mesh, int threads, double own_above)
 {
     const std::size_t n = mesh.facets.size();
     mesh.normals.resize(n);
@@ -36,9 +36,9 @@ void measure_facets(SurfaceMesh& mesh, int threads)
             for (const std::uint32_t v : mesh.facets[f])
                 size = std::max(size, largest_coordinate(mesh.vertices[v]));
             // A height of 16 roundings keeps the normal within about four degrees.
-            is_thin[f] = m.height < 16 * float_step * size ? 1 : 0;
+            is_thin[f] = m.height < std::min(16 * float_step * size, own_above) ? 1 : 0;
             // Below half a rounding nothing says which way the facet looks.
-            if (m.height < 0.5 * float_step * size) is_thin[f] = without_side;
+            if (m.height < std::min(0.5 * float_step * size, own_above)) is_thin[f] = without_side;
             longest[f] = static_cast<char>(m.longest);
         },
         4096);

@@ -2,14 +2,19 @@
 
 #include "fppg/surface_mesh.h"
 
+#include <limits>
+
 namespace fppg
 {
 
 /// Normals and areas. A facet whose height is within the rounding of its corners takes the normal
 /// of its neighbour across its longest side, through several such facets where they lie in a row.
 ///
-/// threads  number of threads; the result does not depend on it
-void measure_facets(SurfaceMesh& mesh, int threads);
+/// threads    number of threads; the result does not depend on it
+/// own_above  m; facets that are higher keep the normal of their own plane, however far from the
+///            origin they are: particles are laid across them
+void measure_facets(SurfaceMesh& mesh, int threads,
+                    double own_above = std::numeric_limits<double>::infinity());
 
 /// How much a surface turns for its area, radians a metre: 2 / R of a ball. Turns of more than a
 /// right angle count for less.

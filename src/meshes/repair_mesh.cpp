@@ -150,6 +150,9 @@ void warn_of_repairs(const Vec3& first_flipped, MeshReport& report)
 /// Deeper than this a part crosses itself, dp.
 constexpr double least_fold = 1e-3;
 
+/// Facets of this height have particles whose places go by their own plane, dp.
+constexpr double high_for_particles = 0.25;
+
 void warn_of_folds(const SurfaceMesh& mesh, double dp, int threads, MeshReport& report)
 {
     const FacetPairs pairs = find_folded_facets(mesh, least_fold * dp, threads);
@@ -193,7 +196,10 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     std::vector<char> is_turned = orient_shells(mesh, report.shells);
     turn_outwards(mesh, report.shells, threads, is_turned);
     if (options.is_solid) drop_inner_shells(mesh, threads, is_turned, report);
-    measure_facets(mesh, threads);
+    if (options.dp > 0)
+        measure_facets(mesh, threads, high_for_particles * options.dp);
+    else
+        measure_facets(mesh, threads);
     sum_up(mesh, is_turned, report, first_flipped);
     warn_of_repairs(first_flipped, report);
     judge_edges(mesh, report);

@@ -21,12 +21,12 @@ struct Node
     bool operator==(const Node&) const = default;
 };
 
-/// A whole number as an index. Far outside every lattice all are one, so that the conversion is
-/// defined.
+/// A whole number as an index. Far outside every lattice all are one, and so is what is no number,
+/// so that the conversion is defined.
 inline std::int64_t to_index(double whole)
 {
     constexpr double limit = 4e9;
-    return static_cast<std::int64_t>(whole < -limit ? -limit : whole > limit ? limit : whole);
+    return static_cast<std::int64_t>(!(whole >= -limit) ? -limit : whole > limit ? limit : whole);
 }
 
 /// Rounds a coordinate to the lattice: floor((c - origin) / dp + 0.5), in double and in this order,

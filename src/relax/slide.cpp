@@ -32,6 +32,7 @@ bool slide(const WorkMesh& mesh, SlidePlace& place, const Vec3& step, double ins
     for (int crossing = 0; crossing < max_crossings; ++crossing)
     {
         const WorkFacet& facet = mesh.facets[ray.facet];
+        if (!facet.has_plane) return false;
         const FacetExit exit = find_exit(facet, ray, entered, left);
         ray.position = ray.position + ray.direction * exit.length;
         left -= exit.length;

@@ -61,12 +61,65 @@ TEST(WorkMesh, JoinsPiecesSideToSideButNotAcrossFeatures)
 TEST(WorkMesh, FindsThePieceOfAPoint)
 {
     const FitInput input(box({0, 0, 0}, {3, 2, 1}), 0.1);
-    const WorkMesh work = work_of(input, 0.4);
+    for (const double longest : {0.4, 0.04})
+    {
+        const WorkMesh work = work_of(input, longest);
+        for (std::uint32_t f = 0; f < work.facets.size(); ++f)
+        {
+            const auto& c = work.facets[f].corners;
+            const std::uint32_t parent = work.facets[f].parent;
+            EXPECT_EQ(work.locate(parent, (c[0] + c[1] + c[2]) / 3), f);
+            // Of points on a side, either piece that has it.
+            const Vec3 on_side = 0.5 * (c[0] + c[1]);
+            const std::uint32_t at = work.locate(parent, on_side);
+            EXPECT_TRUE(at == f || at == work.facets[f].neighbours[0]);
+        }
+    }
+}
+
+TEST(WorkMesh, OfAFacetThousandsOfStepsLongFindsPiecesInTheirBoxes)
+{
+    TriangleSoup soup;
+    add_facet(soup, {0, 0, 0}, {400, 0, 1}, {0, 400, 2});
+    const FitInput input(soup, 0.1);
+    const WorkMesh work = work_of(input, 1.6);
+    ASSERT_GT(work.facets.size(), 50000u);
+    // All of them, which to ask one by one for each would take minutes.
     for (std::uint32_t f = 0; f < work.facets.size(); ++f)
     {
         const auto& c = work.facets[f].corners;
-        EXPECT_EQ(work.locate(work.facets[f].parent, (c[0] + c[1] + c[2]) / 3), f);
+        ASSERT_EQ(work.locate(0, (c[0] + c[1] + c[2]) / 3), f);
     }
+}
+
+TEST(Walk, EndsAtASliverThatLiesAcrossItsNormal)
+{
+    // A sliver 6e-8 m high in the plane y = 0 takes the normal of the facet beside it.
+    const Vec3 a{1.426, 0, 0.09}, b{1.426, -0.587, 0.09}, c{1.426, 0, 0.09000006},
+        d{0.992, 0, -0.738}, e{0.992, -0.587, -0.738};
+    TriangleSoup soup;
+    add_facet(soup, a, c, d);
+    add_facet(soup, a, b, c);
+    add_facet(soup, c, e, d);
+    add_facet(soup, c, b, e);
+    const FitInput input(soup, 0.1);
+    const WorkMesh work = work_of(input, 10);
+    for (std::uint32_t f = 0; f < work.facets.size(); ++f)
+        for (int i = 0; i < 36; ++i)
+        {
+            const auto& facet = work.facets[f];
+            const Vec3 x =
+                (facet.corners[1] - facet.corners[0]) / norm(facet.corners[1] - facet.corners[0]);
+            const double angle = std::numbers::pi * i / 18;
+            const Vec3 way = x * std::cos(angle) + cross(facet.normal, x) * std::sin(angle);
+            for (const Vec3& corner : facet.corners)
+            {
+                const SurfaceRay end = walk(work, {corner, f, way}, 0.2);
+                if (end.facet == no_index) continue;
+                EXPECT_LT(end.position.y, 1e-6) << f << ' ' << i;
+                EXPECT_GT(end.position.y, -0.587 - 1e-6) << f << ' ' << i;
+            }
+        }
 }
 
 TEST(Walk, RoundASphereComesBack)

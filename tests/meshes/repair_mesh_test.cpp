@@ -360,4 +360,25 @@ TEST(TakeInMesh, GivesTheSameForOneAndEightThreads)
     EXPECT_EQ(one_report.volume, eight_report.volume);
 }
 
+TEST(TakeInMesh, LeavesFacetsThatHaveParticlesTheirOwnPlane)
+{
+    // Half a metre high, with a corner 1,200 km away: for a facet of that place a rounding is 0.07
+    // m.
+    const Vec3 far{1, 1186837.6, 0};
+    TriangleSoup soup;
+    add_facet(soup, {0.03, 0.5, 0.6}, far, {-0.2, 1.33, 0.1});
+    add_facet(soup, {0.03, 0.5, 0.6}, {1.1, 1, 27.6}, far);
+    const auto off_plane = [&](double dp)
+    {
+        MeshReport report;
+        const SurfaceMesh mesh = repair_mesh(soup, {.dp = dp}, 1, report);
+        const auto& facet = mesh.facets[0];
+        const Vec3 side = mesh.vertices[facet[2]] - mesh.vertices[facet[0]];
+        return std::abs(dot(mesh.normals[0], side)) / norm(side);
+    };
+    EXPECT_LT(off_plane(0.1), 1e-9);
+    // Of steps that are larger than it, it is a sliver of its neighbour.
+    EXPECT_GT(off_plane(100), 0.1);
+}
+
 } // namespace fppg

@@ -311,6 +311,25 @@ TEST(LargeBody, ThatIsCutByThePlaneOfA2DCaseIsLaidInTheDomainAlone)
     }
 }
 
+TEST(LargeBody, WithACornerFarAwayHasParticlesOnItsFaces)
+{
+    // Two of its faces are 0.6 m wide and 1,200 km long.
+    const FittedWalls walls = walls_of(
+        R"(<drawpyramid><point x="0.45" y="0.52" z="1.03" /><point x="0.03" y="0.5" z="0.6" />)"
+        R"(<point x="-0.2" y="1.33" z="0.1" /><point x="1" y="1186837.6" z="0" />)"
+        R"(<point x="1.1" y="1" z="27.6" /><point x="0.003" y="1" z="0.13" /></drawpyramid>)");
+    EXPECT_GT(walls.particles.size(), 300u);
+    const SurfaceMesh& mesh = walls.bodies[0].mesh;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        const auto& [a, b, c] = mesh.facets[f];
+        const Vec3 twice =
+            cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+        if (norm(twice) < dp * dp) continue;
+        EXPECT_GT(dot(twice, mesh.normals[f]) / norm(twice), 0.999) << f;
+    }
+}
+
 TEST(LargeBody, OfMoreParticlesThanAFileHoldsIsLaidInTheDomainAlone)
 {
     // 2,000 km by 2,000 km: 1.6e15 particles, 1,600 of them in the domain.
