@@ -6,6 +6,7 @@
 
 import os
 import re
+import resource
 import shutil
 import struct
 import subprocess
@@ -14,7 +15,7 @@ import tempfile
 import time
 import unittest
 
-from sanitized import times_slower
+from sanitized import is_sanitized, times_slower
 
 PROGRAM = sys.argv[1]
 SLOWER = times_slower(PROGRAM)
@@ -59,10 +60,11 @@ class Limits(unittest.TestCase):
         with open(self.path("Case_Def.xml"), "w", encoding="utf-8") as file:
             file.write(CASE.format(draws=draws, dp=dp, lists=lists, fit=fit, ymin=ymin, ymax=ymax))
 
-    def run_it(self, *arguments, limit=AT_ONCE):
+    def run_it(self, *arguments, limit=AT_ONCE, memory=resource.RLIM_INFINITY):
         begin = time.monotonic()
         done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, check=False, timeout=120 * SLOWER, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory)))
         self.assertLess(time.monotonic() - begin, limit * SLOWER, arguments)
         return done.returncode, done.stdout
 
@@ -109,6 +111,22 @@ class TooMany(Limits):
         self.write_case(SOLID, "1e-5", ymin="0", ymax="0")
         self.expect_refused(3, "about 1e+10 particles", FORMAT,
                             calls=[("Case_Def", "out/Case", "-save:-bi"), ("estimate", "Case_Def")])
+
+    def test_nodes_of_a_grid_of_heights(self):
+        with open(self.path("ground.xyz"), "w", encoding="utf-8") as file:
+            file.writelines(f"{x} {y} 0.3\n" for x in (0, 0.5, 1) for y in (0, 0.5, 1))
+        draw = ('<setmkbound mk="0" /><drawbathymetry><zpoints file="ground.xyz" /><grid dp="0.1"><initdomain>'
+                '<point x="0" y="0" /><size x="0.8" y="{}" /></initdomain></grid></drawbathymetry>')
+        self.write_case(draw.format(65536))
+        call = ("Case_Def", "out/Case", "-save:-bi", "-threads:1")
+        if not is_sanitized(PROGRAM):
+            code, out = self.run_it(*call, memory=2_000_000_000)
+            self.assertEqual(code, 3, out)
+            self.assertIn("e+06 nodes and needs about 2.62 GB of memory, 1.", out)
+        self.write_case(draw.format(1e7))
+        code, out = self.run_it(*call)
+        self.assertEqual(code, 3, out)
+        self.assertIn("has more than 1e+08 nodes", out)
 
     def test_nodes_along_an_axis(self):
         for dp in ("1e-9", "1e-12"):

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <random>
 #include <string_view>
 #include <vector>
@@ -135,7 +136,7 @@ std::string changed_number(const std::string& text, Random& random)
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
         return values[pick(random, values.size())];
-    switch (pick(random, 4))
+    switch (pick(random, 5))
     {
         case 0:
             return fmt::format("{}", value * scales[pick(random, scales.size())]);
@@ -144,6 +145,9 @@ std::string changed_number(const std::string& text, Random& random)
         case 2:
             return fmt::format("{}",
                                value * (1 + 1e-7 * (static_cast<double>(pick(random, 21)) - 10)));
+        case 3:
+            return fmt::format("{}",
+                               value * std::pow(10, static_cast<double>(pick(random, 25)) - 10));
         default:
             return values[pick(random, values.size())];
     }
