@@ -18,7 +18,7 @@ void apply(Program& p, const Element& e, const Transform& map)
     p.matrix = p.matrix * map;
     const auto& [x, y, z] = p.matrix.linear;
     if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !is_finite(p.matrix.offset))
-        p.read.fail(e, "it takes places beyond all numbers, expected a smaller transformation");
+        p.read.fail(e, "it moves places to infinity, expected smaller numbers");
     p.place_clips();
 }
 

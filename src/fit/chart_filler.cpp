@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numbers>
 #include <queue>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -94,8 +95,8 @@ void clip(std::vector<ChartPoint>& polygon, const ChartPoint& other, double squa
 [[noreturn]] void refuse_endless(const Vec3& p)
 {
     throw GeometryError(fmt::format(
-        "particles near ({:.6g}, {:.6g}, {:.6g}) found no end: the normals of facets there are not "
-        "those of their planes, as for facets far thinner than their distance from the origin",
+        "the surface has no room for all particles near ({:.6g}, {:.6g}, {:.6g}); expected no "
+        "facets there that are far thinner than their distance from the origin",
         p.x, p.y, p.z));
 }
 
@@ -156,11 +157,13 @@ struct ChartFiller::Work
     std::vector<ChartPoint> polygon, spare;
     std::priority_queue<ChartHole> holes;
     std::uint32_t order = 0;
+    double most_sites = 0;
 
     void start(std::uint32_t which)
     {
         chart = which;
         own = &state.particles[which];
+        most_sites = count_most_sites();
         grid.start(dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
         normals.clear();
         for (const std::uint32_t f : own->features)
@@ -212,6 +215,7 @@ struct ChartFiller::Work
 
     void place(const SurfaceRay& ray, bool is_irregular, bool is_at_seam)
     {
+        if (static_cast<double>(own->sites.size()) > most_sites) refuse_endless(ray.position);
         const Vec3& d = ray.direction;
         own->sites.push_back(
             {ray.position,
@@ -222,17 +226,19 @@ struct ChartFiller::Work
         note(ray.position, mesh.facets[ray.facet].normal);
     }
 
-    /// Far more than there is room for in the chart, on its area and along the sides of its facets.
-    double most_sites() const
+    /// Far more than there is room for on the area of the chart, along the sides of its facets and
+    /// for one a facet.
+    double count_most_sites() const
     {
+        const std::span<const std::uint32_t> facets = state.charts.facets(chart);
         double area = 0, sides = 0;
-        for (const std::uint32_t f : state.charts.facets(chart))
+        for (const std::uint32_t f : facets)
         {
             area += mesh.area(f);
             const auto& c = mesh.facets[f].corners;
             sides += norm(c[1] - c[0]) + norm(c[2] - c[1]) + norm(c[0] - c[2]);
         }
-        return 4 * (area / (dp * dp) + sides / dp) + 100;
+        return 4 * (area / (dp * dp) + sides / dp + static_cast<double>(facets.size())) + 100;
     }
 
     bool is_seam(const Vec3& position) const
@@ -492,12 +498,7 @@ void ChartFiller::advance_front(std::uint32_t chart)
         w.try_to_begin(
             {(f.corners[0] + f.corners[1] + f.corners[2]) / 3.0, facet, any_direction(f)});
     }
-    const double most = w.most_sites();
-    for (std::size_t i = 0; i < w.own->sites.size(); ++i)
-    {
-        if (static_cast<double>(i) > most) refuse_endless(w.own->sites[i].position);
-        w.advance_from(i);
-    }
+    for (std::size_t i = 0; i < w.own->sites.size(); ++i) w.advance_from(i);
 }
 
 void ChartFiller::fill_holes(std::uint32_t chart)

@@ -33,7 +33,8 @@ struct WideGrid
     std::array<std::int64_t, 3> offset{0, 0, 0}; ///< of its node 0 in the lattice of the case
 };
 
-/// Nodes beside the domain along an axis: memory goes by them, however little of the wall is there.
+/// Nodes that the lattice may have beyond the domain along an axis; memory grows with them, however
+/// little of the wall is there.
 constexpr double most_beyond = 1 << 24;
 
 /// The lattice itself where it holds the mesh and all nodes near it, else a larger one.

@@ -318,7 +318,7 @@ WorkMesh whole_facets(const SurfaceMesh& mesh, const Features& features)
     return work;
 }
 
-/// Parts slivers that lie across their normal from all others.
+/// Slivers whose normal lies in their own plane get no neighbours.
 void part_those_without_plane(std::vector<WorkFacet>& facets)
 {
     constexpr double least_cosine = 0.02;

@@ -47,9 +47,11 @@ bool lacks_section(const std::vector<ShapeMesh>& shapes, const std::vector<Fitte
                    const LatticeGrid& grid)
 {
     if (!grid.is_2d) return false;
-    const bool is_empty = std::all_of(walls.begin(), walls.end(),
-                                      [](const FittedDraw& wall)
-                                      { return wall.particles.size() + wall.cut.size() == 0; });
+    // What is beside the domain has no mesh left (cut_to_domain).
+    const bool is_empty = std::all_of(
+        walls.begin(), walls.end(),
+        [](const FittedDraw& wall)
+        { return !wall.body.mesh.facets.empty() && wall.particles.size() + wall.cut.size() == 0; });
     const auto [low, high] = heights_over_plane(shapes, grid);
     const bool is_beside = low > -0.5 && high < 0.5;
     const bool touches = low <= plane_tolerance && high >= -plane_tolerance;

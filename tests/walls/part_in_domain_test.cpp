@@ -296,7 +296,9 @@ TEST(LargeBody, ThatIsCutByThePlaneOfA2DCaseIsLaidInTheDomainAlone)
         text.pointmax = R"(<pointmax x="1" y="0" z="1" />)";
         text.mainlist = fmt::format(
             R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawbox><boxfill>all</boxfill>)"
-            R"(<point x="-0.3" y="-0.2" z="-0.4" /><size x="0.6" y="0.4" z="{}" /></drawbox>)",
+            R"(<point x="-0.3" y="-0.2" z="-0.4" /><size x="0.6" y="0.4" z="{}" /></drawbox>)"
+            R"(<drawbox><boxfill>all</boxfill><point x="5" y="-0.2" z="0" /><size x="1" y="0.4" z="1" />)"
+            R"(</drawbox>)",
             top);
         test::write_text(folder / "Case_Def.xml", text.text());
         CaseOptions options;
@@ -304,6 +306,8 @@ TEST(LargeBody, ThatIsCutByThePlaneOfA2DCaseIsLaidInTheDomainAlone)
         const CaseDef def = read_case(folder / "Case_Def.xml", options);
         LatticeReport report;
         const FittedWalls walls = draw_scene(make_scene(def), 2, {}, report).walls;
+        EXPECT_EQ(walls.bodies.size(), 2u)
+            << "one of them has no particles, and is fitted all the same";
         // The bottom and, up to the last nodes at 0.95 m and half a step, two sides.
         EXPECT_NEAR(static_cast<double>(walls.particles.size()) * dp, 0.6 + 2 * 1.375, 3 * dp);
         for (const Vec3& p : walls.particles.positions)
