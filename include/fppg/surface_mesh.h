@@ -92,7 +92,8 @@ struct MeshIntakeOptions
 /// are a wall between two touching bodies (each face goes on in facets that lie behind it); slivers
 /// within the rounding of float32 that stand on an edge are dropped.
 /// Without a weld distance, a mesh with a quarter of its edges open is welded within 1e-6, 1e-5 or
-/// 1e-4 of its longest extent, the first of them that leaves a tenth of these edges open at most.
+/// 1e-4 of its longest extent, but not more than 0.15 dp: the first of them that leaves a tenth of
+/// these edges open at most, and nine tenths of the facets.
 /// A vertex inside an open edge (a T-junction) splits the facet of that edge, so that no false hole
 /// is left. Without a weld distance, ends of open edges that lie within a crack's width of one
 /// another or of an open edge are then joined with it, the narrowest cracks first, where that

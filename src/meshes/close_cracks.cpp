@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "meshes/drop_copies.h"
 #include "meshes/drop_degenerate.h"
 #include "meshes/edge_map.h"
 #include "meshes/mesh_facets.h"
@@ -49,7 +50,8 @@ double longest_extent(const SurfaceMesh& mesh)
 }
 
 /// Joins corners within a distance, drops facets that lose their area, and takes the outcome over
-/// if at most `open_left` edges are open then. Returns whether it did.
+/// if at most `open_left` edges are open then and nine tenths of the facets are left: what loses
+/// more had no cracks, but thin parts. Returns whether it did.
 bool join_within(double distance, const std::vector<char>& may_move, std::size_t open_left,
                  int threads, SurfaceMesh& mesh, MeshReport& report)
 {
@@ -60,7 +62,8 @@ bool join_within(double distance, const std::vector<char>& may_move, std::size_t
     if (joined.vertices.size() == mesh.vertices.size()) return false;
     MeshReport dropped;
     drop_degenerate(joined, dropped);
-    if (joined.facets.empty()) return false;
+    const std::size_t kept = count_different(joined.facets, threads);
+    if (10 * kept < 9 * count_different(mesh.facets, threads)) return false;
     build_edges(joined, threads);
     if (count_open(joined) > open_left) return false;
     if (!may_move.empty() && count_non_manifold(joined) > count_non_manifold(mesh)) return false;
@@ -72,9 +75,9 @@ bool join_within(double distance, const std::vector<char>& may_move, std::size_t
 }
 
 /// Splits open edges at the ends of others within a distance, if fewer edges are open then.
-void split_within(double distance, int threads, SurfaceMesh& mesh, MeshReport& report)
+void split_within(double distance, double dp, int threads, SurfaceMesh& mesh, MeshReport& report)
 {
-    const std::vector<Junction> junctions = find_t_junctions(mesh, distance, threads);
+    const std::vector<Junction> junctions = find_t_junctions(mesh, distance, widest_crack(dp), threads);
     if (junctions.empty()) return;
     SurfaceMesh split;
     split.vertices = mesh.vertices;
@@ -95,16 +98,17 @@ void split_within(double distance, int threads, SurfaceMesh& mesh, MeshReport& r
 
 } // namespace
 
-void join_rounded_corners(SurfaceMesh& mesh, int threads, MeshReport& report)
+void join_rounded_corners(double dp, SurfaceMesh& mesh, int threads, MeshReport& report)
 {
     const std::size_t open = count_open(mesh);
     if (open == 0) return;
     double size = 0;
     for (const Vec3& p : mesh.vertices) size = std::max(size, largest_coordinate(p));
-    join_within(float_step * size, find_open_ends(mesh), open - 1, threads, mesh, report);
+    join_within(std::min(float_step * size, widest_crack(dp)), find_open_ends(mesh), open - 1,
+                threads, mesh, report);
 }
 
-void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report)
+void close_cracks(double dp, SurfaceMesh& mesh, int threads, MeshReport& report)
 {
     const std::size_t open = count_open(mesh);
     if (4 * open <= mesh.edges.size()) return;
@@ -114,6 +118,7 @@ void close_cracks(SurfaceMesh& mesh, int threads, MeshReport& report)
     for (const double share : {1e-6, 1e-5, 1e-4})
     {
         const double distance = share * size;
+        if (distance > widest_crack(dp)) return;
         if (!(distance < 0.1 * sides / static_cast<double>(mesh.edges.size()))) return;
         if (join_within(distance, {}, open / 10, threads, mesh, report)) return;
     }
@@ -124,7 +129,7 @@ void close_open_ends(double dp, SurfaceMesh& mesh, int threads, MeshReport& repo
     std::size_t open = count_open(mesh);
     if (open == 0) return;
     const double size = longest_extent(mesh);
-    const double widest = 0.15 * dp;
+    const double widest = widest_crack(dp);
     std::vector<double> distances{1e-6 * size,  1e-5 * size, 1e-4 * size,
                                   0.1 * widest, widest / 3,  widest};
     std::sort(distances.begin(), distances.end());
@@ -136,7 +141,7 @@ void close_open_ends(double dp, SurfaceMesh& mesh, int threads, MeshReport& repo
                 length += norm(mesh.vertices[mesh.edges[e][1]] - mesh.vertices[mesh.edges[e][0]]);
         if (distance > widest || !(distance < 0.1 * length / static_cast<double>(open))) return;
         join_within(distance, find_open_ends(mesh), open - 1, threads, mesh, report);
-        split_within(distance, threads, mesh, report);
+        split_within(distance, dp, threads, mesh, report);
         open = count_open(mesh);
         if (open == 0) return;
     }

@@ -70,6 +70,14 @@ bool may_have_copies(const SurfaceMesh& mesh)
 
 } // namespace
 
+std::size_t count_different(const std::vector<Facet>& facets, int threads)
+{
+    std::size_t count = facets.size();
+    for (const std::vector<std::uint32_t>& group : find_copies(facets, threads))
+        count -= group.size() - 1;
+    return count;
+}
+
 void drop_copies(SurfaceMesh& mesh, int threads, MeshReport& report)
 {
     if (!may_have_copies(mesh)) return;

@@ -25,7 +25,7 @@ void drop_degenerate(SurfaceMesh& mesh, MeshReport& report)
     report.degenerate_facets += before - mesh.facets.size();
 }
 
-void drop_loose_slivers(SurfaceMesh& mesh, int threads, MeshReport& report)
+void drop_loose_slivers(double dp, SurfaceMesh& mesh, int threads, MeshReport& report)
 {
     std::vector<char> is_dropped(mesh.facets.size(), 0);
     std::size_t dropped = 0;
@@ -39,7 +39,8 @@ void drop_loose_slivers(SurfaceMesh& mesh, int threads, MeshReport& report)
         const auto s = static_cast<std::size_t>(m.longest);
         const Vec3 &a = mesh.vertices[corners[s]], &b = mesh.vertices[corners[(s + 1) % 3]];
         const double size = std::max(largest_coordinate(a), largest_coordinate(b));
-        if (m.height > std::min(float_step * size, 1e-3 * norm(b - a))) continue;
+        if (m.height > std::min({float_step * size, widest_crack(dp), 1e-3 * norm(b - a)}))
+            continue;
         is_dropped[f] = 1;
         ++dropped;
     }

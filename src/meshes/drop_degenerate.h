@@ -13,6 +13,8 @@ void drop_degenerate(SurfaceMesh& mesh, MeshReport& report);
 /// or belongs to more than two facets: slivers that stand on an edge. What they leave are
 /// T-junctions. Slivers that fit between their neighbours stay. Counts them, and keeps
 /// the edge map.
-void drop_loose_slivers(SurfaceMesh& mesh, int threads, MeshReport& report);
+///
+/// dp  metres; facets higher than 0.15 dp stay. 0: unknown
+void drop_loose_slivers(double dp, SurfaceMesh& mesh, int threads, MeshReport& report);
 
 } // namespace fppg

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fppg/surface_mesh.h"
@@ -16,6 +17,12 @@ using Facet = std::array<std::uint32_t, 3>;
 
 /// What float32 may have rounded away of a coordinate, with room for two roundings.
 inline constexpr double float_step = 1.0 / (1 << 22);
+
+/// Metres: no repair moves a corner further. 0.15 dp; without bound where dp is 0, unknown.
+inline double widest_crack(double dp)
+{
+    return dp > 0 ? 0.15 * dp : std::numeric_limits<double>::infinity();
+}
 
 inline double largest_coordinate(const Vec3& p)
 {

@@ -38,9 +38,9 @@ void check_input(const TriangleSoup& soup)
 }
 
 /// Splits facets at vertices inside their edges.
-void split_at_junctions(SurfaceMesh& mesh, int threads, MeshReport& report)
+void split_at_junctions(double dp, SurfaceMesh& mesh, int threads, MeshReport& report)
 {
-    const std::vector<Junction> junctions = find_t_junctions(mesh, 0, threads);
+    const std::vector<Junction> junctions = find_t_junctions(mesh, 0, widest_crack(dp), threads);
     if (junctions.empty()) return;
     report.first_junction = mesh.vertices[junctions.front().vertex];
     report.t_junctions = junctions.size();
@@ -182,13 +182,13 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     build_edges(mesh, threads);
     if (options.weld_distance == 0)
     {
-        join_rounded_corners(mesh, threads, report);
-        close_cracks(mesh, threads, report);
+        join_rounded_corners(options.dp, mesh, threads, report);
+        close_cracks(options.dp, mesh, threads, report);
     }
     drop_copies(mesh, threads, report);
     if (mesh.facets.empty()) throw GeometryError("no facet is left: all are walls between bodies");
-    drop_loose_slivers(mesh, threads, report);
-    split_at_junctions(mesh, threads, report);
+    drop_loose_slivers(options.dp, mesh, threads, report);
+    split_at_junctions(options.dp, mesh, threads, report);
     if (options.weld_distance == 0 && options.dp > 0)
         close_open_ends(options.dp, mesh, threads, report);
     if (options.is_solid) report.partition_facets = drop_partitions(mesh, threads);

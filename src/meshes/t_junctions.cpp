@@ -13,7 +13,8 @@
 namespace fppg
 {
 
-std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double distance, int threads)
+std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double least, double most,
+                                       int threads)
 {
     std::vector<std::uint32_t> open;
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
@@ -27,7 +28,7 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double distance,
         const Vec3 &a = mesh.vertices[mesh.edges[open[i]][0]],
                    &b = mesh.vertices[mesh.edges[open[i]][1]];
         const double rounding = float_step * std::max(largest_coordinate(a), largest_coordinate(b));
-        room[i] = std::min(std::max(rounding, distance), 0.01 * norm(b - a));
+        room[i] = std::min({std::max(rounding, least), most, 0.01 * norm(b - a)});
         for (const Vec3& end : {a, b})
             for (const double sign : {-1.0, 1.0})
                 boxes[i].add(end + sign * Vec3{room[i], room[i], room[i]});

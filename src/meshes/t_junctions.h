@@ -17,11 +17,13 @@ struct Junction
 };
 
 /// Finds the vertices of open edges that lie inside another open edge, within the rounding of
-/// float32 or a larger distance (metres), but never more than a hundredth of the edge. Sorted by
-/// edge, then along it.
+/// float32, but never more than a hundredth of the edge. Sorted by edge, then along it.
 ///
+/// least    metres; within this distance where the rounding is less
+/// most     metres; within this distance where the rounding is more
 /// threads  number of threads; the result does not depend on it
-std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double distance, int threads);
+std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double least, double most,
+                                       int threads);
 
 /// Splits the facets of open edges at the vertices inside them. The edge map is to be built anew.
 ///

@@ -265,6 +265,48 @@ TEST(TakeInMesh, LeavesSheetsWithGapsApart)
     EXPECT_EQ(report.joined_corners, 0u);
 }
 
+TEST(TakeInMesh, KeepsNarrowTanksOfAnyHeight)
+{
+    // Joined within 1e-4 of the height, the bottom has no width and the walls are one.
+    for (const bool has_bottom : {false, true})
+        for (const double height : {1e3, 1e4, 1e5, 1e6, 1e7, 4e7})
+            for (const double dp : {0.0, 0.02})
+            {
+                TriangleSoup soup;
+                add_quad(soup, {0, 0, 0}, {0, 2, 0}, {0, 2, height}, {0, 0, height});
+                add_quad(soup, {1, 0, 0}, {1, 2, 0}, {1, 2, height}, {1, 0, height});
+                if (has_bottom) add_quad(soup, {0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0});
+                MeshReport report;
+                const SurfaceMesh mesh =
+                    repair_mesh(soup, {.dp = dp, .is_solid = false}, 1, report);
+                // Without dp, what float32 may have rounded away of the height can be left out.
+                if (mesh.facets.size() != soup.size())
+                {
+                    EXPECT_TRUE(dp == 0 && height > 1e6) << height << " " << dp;
+                    EXPECT_NE(report.warnings.front().find("but for rounding"), std::string::npos);
+                }
+                EXPECT_EQ(report.joined_corners, 0u) << height << " " << dp;
+                EXPECT_EQ(report.t_junctions, 0u) << height << " " << dp;
+            }
+}
+
+TEST(TakeInMesh, ClosesCracksOfRoundedNumbersAtTheParticleDistance)
+{
+    // A ball of 1 m whose corners are off by 1e-4, as four digits leave them.
+    TriangleSoup soup = sphere(3);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> jitter(-3e-5, 3e-5);
+    for (Vec3& v : soup.vertices) v = v + Vec3{jitter(random), jitter(random), jitter(random)};
+    MeshReport report;
+    for (const double dp : {0.01, 0.1})
+    {
+        const SurfaceMesh mesh = repair_mesh(soup, {.dp = dp, .is_solid = true}, 1, report);
+        EXPECT_TRUE(report.is_watertight) << dp;
+        EXPECT_EQ(mesh.facets.size(), soup.size()) << dp;
+        EXPECT_NEAR(report.joined_within, 2e-4, 1e-7) << dp;
+    }
+}
+
 TEST(TakeInMesh, CountsFacetsThatCross)
 {
     MeshReport report;
