@@ -25,8 +25,9 @@ struct BooleanPart
 struct BooleanOptions
 {
     /// What is nearer than this touches, metres; 0: 2e-7 of the largest coordinate, three roundings
-    /// of a file in float32.
+    /// of a file in float32, but no more than 0.15 dp.
     double merge_distance = 0;
+    double dp = 0; ///< metres; 0: unknown
 };
 
 /// The surface of a combination of parts.

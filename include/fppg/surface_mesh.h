@@ -76,6 +76,8 @@ struct MeshIntakeOptions
     /// Metres: the particle distance that the mesh is used at. Cracks up to 0.15 dp wide are
     /// closed. 0: unknown; none is closed.
     double dp = 0;
+    /// The corners are as exact as doubles are, not as float32: of round shapes and CAD files.
+    bool is_exact = false;
     /// The mesh bounds a solid: what has the inside on both of its faces is dropped, walls of one
     /// facet that part it and closed shells inside others.
     bool is_solid = false;

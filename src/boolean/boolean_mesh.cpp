@@ -7,11 +7,13 @@
 #include "fppg/shapes.h"
 #include "meshes/connect_mesh.h"
 #include "meshes/inside_test.h"
+#include "meshes/mesh_facets.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -128,7 +130,7 @@ public:
         for (const BooleanPart& part : parts)
             for (const Vec3& v : part.mesh->vertices)
                 for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(v[axis]));
-        if (!(merge_ > 0)) merge_ = default_merge * largest;
+        if (!(merge_ > 0)) merge_ = std::min(default_merge * largest, widest_crack(options.dp));
         solids_.reserve(parts.size()); // a solid refers to itself
         for (const BooleanPart& part : parts) solids_.emplace_back(part, threads);
     }
@@ -477,7 +479,7 @@ private:
             normals.push_back(is_turned ? -normal(f) : normal(f));
         }
         if (out.mesh.facets.empty()) return;
-        connect_mesh(out.mesh, threads_, out.report);
+        connect_mesh(out.mesh, std::numeric_limits<double>::infinity(), threads_, out.report);
         // Slivers along a seam have the direction of the facet that they were cut from.
         out.mesh.normals = std::move(normals);
     }

@@ -9,18 +9,18 @@
 namespace fppg
 {
 
-void connect_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
+void connect_mesh(SurfaceMesh& mesh, double own_above, int threads, MeshReport& report)
 {
     build_edges(mesh, threads);
-    finish_mesh(mesh, threads, report);
+    finish_mesh(mesh, own_above, threads, report);
 }
 
-void finish_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
+void finish_mesh(SurfaceMesh& mesh, double own_above, int threads, MeshReport& report)
 {
     report = {};
     report.facets_read = mesh.facets.size();
     orient_shells(mesh, report.shells);
-    measure_facets(mesh, threads);
+    measure_facets(mesh, threads, own_above);
     for (const Facet& facet : mesh.facets)
         for (const std::uint32_t v : facet) report.bounds.add(mesh.vertices[v]);
     const Vec3 middle = report.bounds.min + 0.5 * (report.bounds.max - report.bounds.min);
@@ -32,10 +32,10 @@ void finish_mesh(SurfaceMesh& mesh, int threads, MeshReport& report)
     judge_edges(mesh, report);
 }
 
-void connect_facets(SurfaceMesh& mesh, int threads)
+void connect_facets(SurfaceMesh& mesh, double own_above, int threads)
 {
     build_edges(mesh, threads);
-    measure_facets(mesh, threads);
+    measure_facets(mesh, threads, own_above);
 }
 
 } // namespace fppg

@@ -7,6 +7,13 @@
 namespace fppg
 {
 
+/// Facets of this height have particles whose places go by their own plane, dp.
+inline constexpr double high_for_particles = 0.25;
+
+/// The same of facets whose corners are as exact as doubles are, dp: of round shapes, CAD files
+/// and surfaces that the program makes.
+inline constexpr double high_where_exact = 0.01;
+
 /// Normals and areas. A facet whose height is within the rounding of its corners takes the normal
 /// of its neighbour across its longest side, through several such facets where they lie in a row.
 ///

@@ -150,9 +150,6 @@ void warn_of_repairs(const Vec3& first_flipped, MeshReport& report)
 /// Deeper than this a part crosses itself, dp.
 constexpr double least_fold = 1e-3;
 
-/// Facets of this height have particles whose places go by their own plane, dp.
-constexpr double high_for_particles = 0.25;
-
 void warn_of_folds(const SurfaceMesh& mesh, double dp, int threads, MeshReport& report)
 {
     const FacetPairs pairs = find_folded_facets(mesh, least_fold * dp, threads);
@@ -197,7 +194,8 @@ SurfaceMesh repair_mesh(const TriangleSoup& soup, const MeshIntakeOptions& optio
     turn_outwards(mesh, report.shells, threads, is_turned);
     if (options.is_solid) drop_inner_shells(mesh, threads, is_turned, report);
     if (options.dp > 0)
-        measure_facets(mesh, threads, high_for_particles * options.dp);
+        measure_facets(mesh, threads,
+                       (options.is_exact ? high_where_exact : high_for_particles) * options.dp);
     else
         measure_facets(mesh, threads);
     sum_up(mesh, is_turned, report, first_flipped);

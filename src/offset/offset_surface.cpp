@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "meshes/connect_mesh.h"
+#include "meshes/measure_facets.h"
 #include "offset/creases.h"
 #include "offset/dual_cells.h"
 
@@ -208,10 +209,11 @@ OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options
         mesh.facets.insert(mesh.facets.end(), of_brick.begin(), of_brick.end());
     const std::size_t cut = mesh.facets.size();
     if (cut == 0) return out;
-    connect_facets(mesh, threads);
-    if (move_to_rims(wall, options, threads, mesh)) connect_facets(mesh, threads);
+    const double own_above = high_where_exact * options.cell;
+    connect_facets(mesh, own_above, threads);
+    if (move_to_rims(wall, options, threads, mesh)) connect_facets(mesh, own_above, threads);
     sharpen_creases(wall, options, threads, out);
-    finish_mesh(mesh, threads, out.report);
+    finish_mesh(mesh, own_above, threads, out.report);
     out.report.facets_read = cut;
     return out;
 }

@@ -208,7 +208,7 @@ void remove_slivers(SurfaceMesh& mesh, double cell, const std::vector<char>& on_
         if (!joined && !turned) break;
         is_changed = true;
     }
-    if (is_changed) measure_facets(mesh, threads);
+    if (is_changed) measure_facets(mesh, threads, high_where_exact * cell);
 }
 
 } // namespace fppg

@@ -118,7 +118,7 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
             out.warnings.push_back(fmt::format("{}: {}", part.name, w));
         operands.push_back({part.name, &out.meshes.back(), part.may_be_sheet});
     }
-    out.result = boolean_mesh(operands, tree, {}, threads);
+    out.result = boolean_mesh(operands, tree, {.dp = dp}, threads);
     out.warnings.insert(out.warnings.end(), out.result.warnings.begin(), out.result.warnings.end());
     if (out.result.mesh.facets.empty())
         throw GeometryError("nothing is left of the combination of its parts");

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "meshes/crowded_points.h"
+#include "meshes/mesh_facets.h"
 #include "meshes/point_grid.h"
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
@@ -83,11 +84,12 @@ int sheets_through(double thickness_dp)
     return n;
 }
 
+/// About a vertex: about the origin the digits of a body far from it would cancel out.
 double volume_of(const SurfaceMesh& mesh)
 {
     double six = 0;
-    for (const auto& f : mesh.facets)
-        six += dot(mesh.vertices[f[0]], cross(mesh.vertices[f[1]], mesh.vertices[f[2]]));
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        six += volume_times_six(mesh, f, mesh.vertices[0]);
     return six / 6;
 }
 

@@ -62,7 +62,7 @@ SurfaceMesh drawn_out(const SurfaceMesh& mesh, double plane_y, double half_width
         out.facets.push_back({quad[0], quad[1], quad[2]});
         out.facets.push_back({quad[0], quad[2], quad[3]});
     }
-    connect_mesh(out, threads, report);
+    connect_mesh(out, high_where_exact * half_width, threads, report);
     return out;
 }
 

@@ -123,6 +123,28 @@ TEST(InsideBody, OfABoxHasItsEdgesAndCorners)
     EXPECT_EQ(corners, 8);
 }
 
+TEST(InsideBody, HasItsVolumeFarFromTheOrigin)
+{
+    // As coordinates of maps are: four million dp to the north.
+    const Vec3 far{5e5 * dp, 4e6 * dp, 0};
+    const double radius = 0.37;
+    for (const Vec3& at : {Vec3{}, far})
+    {
+        Drawing ball = inside();
+        ball.def.grid.origin = ball.def.grid.origin + at;
+        ball.draw(SphereOp{at + Vec3{0.02, -0.03, 0.01}, radius, {}});
+        const std::vector<Vec3> of_ball = particles_of(relaxed(ball));
+        expect_volume(of_ball, 4.0 / 3 * std::numbers::pi * std::pow(radius, 3));
+        EXPECT_GT(nearest_pair(of_ball), 0.6 * dp);
+        Drawing box = inside();
+        box.def.grid.origin = box.def.grid.origin + at;
+        box.box(at + Vec3{-0.43, -0.37, -0.45}, {0.9, 0.8, 0.6});
+        const std::vector<Vec3> of_box = particles_of(relaxed(box));
+        expect_volume(of_box, 0.9 * 0.8 * 0.6);
+        EXPECT_GT(nearest_pair(of_box), 0.6 * dp);
+    }
+}
+
 /// Heights of sheets, from the middle of a plate of thickness t.
 struct Plate
 {

@@ -58,6 +58,27 @@ TEST(RoundLayers, OfABallAreExactSpheres)
         drawing, [&](const Vec3& p) { return 1.13 - norm(p - center); }, 3);
 }
 
+/// A ball has no edge, and its facets none that is more than rounding, wherever it is.
+TEST(RoundLayers, OfASmallBallFarFromTheOriginHaveNoCorners)
+{
+    const Vec3 far{5e5 * dp, 4e6 * dp, 0};
+    Drawing drawing = layered();
+    drawing.def.fit.all->boundary = WallBoundary::Dbc;
+    drawing.def.fit.all->depths_dp = {0, 1};
+    drawing.def.grid.origin = drawing.def.grid.origin + far;
+    drawing.draw(SphereOp{far + Vec3{0.02, -0.03, 0.01}, 0.316, {}});
+    const WallParticles particles = drawing.run().walls.particles;
+    const double of_surface = 4 * std::numbers::pi * 3.16 * 3.16;
+    std::size_t on_surface = 0;
+    for (std::size_t i = 0; i < particles.size(); ++i)
+    {
+        EXPECT_EQ(particles.kinds[i], FitKind::Surface);
+        const double depth = 0.316 - norm(particles.positions[i] - far - Vec3{0.02, -0.03, 0.01});
+        on_surface += depth < 0.5 * dp ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(on_surface), of_surface, 0.2 * of_surface);
+}
+
 /// An oblique rod with its covers: along the rims the layers have circles of particles.
 TEST(RoundLayers, OfARodMeetUnderItsRims)
 {
