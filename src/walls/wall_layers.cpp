@@ -184,13 +184,16 @@ void measure_layers(const LatticeGrid& grid, FittedDraw& out)
 
 void add_layers(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out)
 {
-    const bool is_closed = out.body.measures.volume > 0;
     LayerBuilder builder(settings, grid, threads, out);
     LayerPlan plan;
     plan.depths_dp = settings.depths_dp;
+    const bool has_volume = out.body.measures.volume > 0;
+    // A closed surface that its draw does not fill can be a tank with fluid in it.
+    const LayerSide side = out.body.is_solid && has_volume
+                               ? LayerSide::Behind
+                               : settings.side.value_or(builder.side_without_fluid());
+    const bool is_closed = has_volume && side == LayerSide::Behind;
     if (is_closed && plan.depths_dp[0] > 0) plan.middle_dp = plan.depths_dp[0] + 0.5 * merge_dp;
-    const LayerSide side =
-        is_closed ? LayerSide::Behind : settings.side.value_or(builder.side_without_fluid());
     if (side != LayerSide::Front) builder.build(WallSide::Behind, is_closed, plan);
     if (side != LayerSide::Behind) builder.build(WallSide::Front, is_closed, plan);
     if (is_closed)
@@ -203,7 +206,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
                     out.zone,
                     by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
                     threads);
-        if (!settings.side && settings.fluid_places.empty())
+        if (!settings.side && settings.fluid_places.empty() && !has_volume)
             out.warnings.push_back(
                 "layers of this sheet stand behind it, where its facets do not look: "
                 "side=\"front\" "
