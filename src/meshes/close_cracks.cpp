@@ -77,7 +77,8 @@ bool join_within(double distance, const std::vector<char>& may_move, std::size_t
 /// Splits open edges at the ends of others within a distance, if fewer edges are open then.
 void split_within(double distance, double dp, int threads, SurfaceMesh& mesh, MeshReport& report)
 {
-    const std::vector<Junction> junctions = find_t_junctions(mesh, distance, widest_crack(dp), threads);
+    const std::vector<Junction> junctions =
+        find_t_junctions(mesh, distance, widest_crack(dp), threads);
     if (junctions.empty()) return;
     SurfaceMesh split;
     split.vertices = mesh.vertices;

@@ -14,8 +14,8 @@ void join_rounded_corners(double dp, SurfaceMesh& mesh, int threads, MeshReport&
 
 /// Joins the corners of a mesh whose facets do not meet: where a quarter of all edges are open, and
 /// moving corners together by a small distance leaves a tenth of that open at most. The smallest of
-/// three distances that does is taken, if it is below a tenth of the mean side and leaves nine tenths
-/// of the facets. Keeps the edge map.
+/// three distances that does is taken, if it is below a tenth of the mean side and leaves nine
+/// tenths of the facets. Keeps the edge map.
 ///
 /// dp  metres; no corner moves further than 0.15 dp. 0: unknown
 void close_cracks(double dp, SurfaceMesh& mesh, int threads, MeshReport& report);

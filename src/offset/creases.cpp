@@ -502,7 +502,8 @@ void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int th
         CreaseFinder finder(on, std::move(on_creases));
         if (!finder.place_vertices()) return;
         on_creases = finder.on_creases();
-        if (turn_onto_creases(on, on_creases)) connect_facets(offset.mesh, high_where_exact * options.cell, threads);
+        if (turn_onto_creases(on, on_creases))
+            connect_facets(offset.mesh, high_where_exact * options.cell, threads);
         remove_slivers(offset.mesh, options.cell, on_creases, threads);
     }
     const CreaseMesh on(wall, options, threads, offset.mesh);

@@ -66,7 +66,7 @@ Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_
 
 std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving, double dp)
 {
-    constexpr double most = 0.25;
+    constexpr double most = 0.6;
     double missing = 0;
     for (const auto& [mk, volume] : space.missing) missing += volume / (dp * dp * dp);
     const auto now = static_cast<double>(moving);

@@ -274,13 +274,12 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
     FittedBody body;
     body.is_solid = shape.is_solid;
     body.round = shape.round;
-    body.mesh =
-        repair_mesh(shape.soup,
-                    {.dp = grid.dp,
-                     .is_exact = shape.round != nullptr || shape.cad != nullptr,
-                     .is_solid = shape.is_solid,
-                     .warns_of_folds = true},
-                    threads, body.report);
+    body.mesh = repair_mesh(shape.soup,
+                            {.dp = grid.dp,
+                             .is_exact = shape.round != nullptr || shape.cad != nullptr,
+                             .is_solid = shape.is_solid,
+                             .warns_of_folds = true},
+                            threads, body.report);
     unite_touching_shells(body.mesh, body.report, grid.dp, threads);
     std::vector<std::uint32_t> seams;
     if (extent == BodyExtent::NearDomain) seams = cut_to_domain(body, settings, grid, threads);

@@ -146,6 +146,44 @@ TEST(WallLayers, LookToTheSideThatFluidCanTouch)
     EXPECT_TRUE(all.report.warnings.empty());
 }
 
+std::size_t count_fluid(const RunField& field)
+{
+    const std::vector<std::uint16_t>& moved = field.walls.volume.mk;
+    auto count =
+        static_cast<std::size_t>(std::count(moved.begin(), moved.end(), Drawing::fluid_mk));
+    for (const std::vector<Run>& slab : field.slabs)
+        for (const auto& run : slab)
+            if (run.mk == Drawing::fluid_mk && !run.is_covered) count += run.z_end - run.z_begin;
+    return count;
+}
+
+/// A tank of drawn sides, with and without a lid: no wall is in the room of the fluid, whose volume
+/// is that of the tank up to its level.
+TEST(WallLayers, OfATankStandOutsideIt)
+{
+    const Vec3 low{-0.42, -0.43, -0.96};
+    const Vec3 size{0.79, 0.97, 1.9};
+    constexpr double level = -0.05; // half a step above the last nodes
+    for (const bool has_lid : {false, true})
+        for (const double first : {0.0, 0.5})
+        {
+            Drawing drawing = layered();
+            drawing.def.fit.all->depths_dp = {first, first + 1, first + 2};
+            drawing.draw(
+                make_box(low, size, {true, has_lid, true, true, true, true}, false, {}, dp)[0]);
+            drawing.fill({0, 0, -0.5}, level);
+            drawing.fluid_band();
+            const RunField field = relaxed(drawing);
+            for (const Vec3& p : field.walls.particles.positions)
+                EXPECT_LT(depth_in_box(p, low, size), 1e-6) << has_lid << first;
+            if (first == 0) continue;
+            const double volume = size.x * size.y * (level - low.z);
+            EXPECT_NEAR(static_cast<double>(count_fluid(field)), volume / std::pow(dp, 3),
+                        0.02 * volume / std::pow(dp, 3))
+                << has_lid;
+        }
+}
+
 TEST(WallLayers, AreLinesIn2D)
 {
     Drawing drawing = layered(true);
