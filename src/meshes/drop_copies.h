@@ -5,6 +5,8 @@
 
 #include "fppg/surface_mesh.h"
 
+#include "meshes/mesh_facets.h"
+
 namespace fppg
 {
 
