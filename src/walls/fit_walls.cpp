@@ -186,30 +186,69 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     return out;
 }
 
-/// Places in the fluid of a case: the seeds of its fills, and the middles of its fluid shapes.
-std::vector<Vec3> places_in_fluid(const Scene& scene, int threads)
+Box3 box_of(const ShapeMesh& shape)
 {
-    std::vector<Vec3> out;
+    Box3 box;
+    for (const Vec3& v : shape.soup.vertices) box.add(v);
+    return box;
+}
+
+/// A box about a place in fluid: of a seed the place alone.
+Box3 box_about(const Vec3& seed)
+{
+    Box3 box;
+    box.add(seed);
+    return box;
+}
+
+/// The fluid of a case: the seeds of its fills, and the boxes of its fluid shapes.
+std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
+{
+    std::vector<Box3> out;
     for (const SceneStep& step : scene.steps)
     {
         if (step.combination || step.draw->state->mk.kind != MkKind::Fluid) continue;
         if (const auto* edit = std::get_if<Edit>(&step.draw->what))
         {
-            if (const auto* fill = std::get_if<FillOp>(edit)) out.push_back(fill->seed);
-            if (const auto* fill = std::get_if<CavityFillOp>(edit)) out.push_back(fill->seed);
+            if (const auto* fill = std::get_if<FillOp>(edit)) out.push_back(box_about(fill->seed));
+            if (const auto* fill = std::get_if<CavityFillOp>(edit))
+                out.push_back(box_about(fill->seed));
         }
         if (step.shape() == nullptr) continue;
         for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
-        {
-            Box3 box;
-            for (const Vec3& v : shape.soup.vertices) box.add(v);
-            if (!box.is_empty()) out.push_back(0.5 * (box.min + box.max));
-        }
+            if (const Box3 box = box_of(shape); !box.is_empty()) out.push_back(box);
     }
     return out;
 }
 
-FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Vec3>& fluid,
+/// Middles of fluid by which the sides of a body's walls are chosen: not of fluid that surrounds
+/// the body, in whose middle it stands.
+std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& scene,
+                                  const DrawOp& draw, int threads)
+{
+    if (fluid.empty()) return {};
+    Box3 body;
+    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
+        if (const Box3 box = box_of(shape); !box.is_empty())
+            for (const Vec3& corner : {box.min, box.max}) body.add(corner);
+    const LatticeGrid& grid = scene.def->grid;
+    const auto surrounds = [&](const Box3& box, int axis) {
+        return box.min[axis] < body.min[axis] - grid.dp && box.max[axis] > body.max[axis] + grid.dp;
+    };
+    std::vector<Vec3> out;
+    for (const Box3& box : fluid)
+    {
+        const Vec3 middle = 0.5 * (box.min + box.max);
+        bool is_within = true;
+        for (int axis = 0; axis < 3; ++axis)
+            is_within = is_within && middle[axis] > body.min[axis] && middle[axis] < body.max[axis];
+        if (!is_within || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
+            out.push_back(middle);
+    }
+    return out;
+}
+
+FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Box3>& fluid,
                     int threads)
 {
     const DrawState& state = *step.draw->state;
@@ -217,14 +256,18 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
         state.mk.kind == MkKind::Bound ? fit_settings(scene.def->fit, state.mk.mk) : nullptr;
     if (given == nullptr) return {};
     FitSettings own = *given;
-    own.fluid_places = fluid;
     const FitSettings* settings = &own;
-    if (step.combination) return fit_combination(scene, *step.combination, *settings, threads);
+    if (step.combination)
+    {
+        for (const Box3& box : fluid) own.fluid_places.push_back(0.5 * (box.min + box.max));
+        return fit_combination(scene, *step.combination, *settings, threads);
+    }
     if (step.shape() == nullptr || state.mode == DrawMode::Wire) return {};
     mesh_of(scene, *step.draw, threads); // what is wrong with the file is said with its place
     try
     {
         refuse_unfittable(*step.draw);
+        own.fluid_places = places_in_fluid(fluid, scene, *step.draw, threads);
         return fit_draw(scene, *step.draw, *settings, threads);
     }
     catch (const GeometryError& e)
@@ -247,8 +290,8 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
                std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
                            [](const auto& of_mk) { return !of_mk.second.depths_dp.empty(); });
     }();
-    const std::vector<Vec3> fluid =
-        has_layers ? places_in_fluid(scene, threads) : std::vector<Vec3>{};
+    const std::vector<Box3> fluid =
+        has_layers ? boxes_of_fluid(scene, threads) : std::vector<Box3>{};
     for (std::size_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
