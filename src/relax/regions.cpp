@@ -66,6 +66,7 @@ Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_
 
 std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving, double dp)
 {
+    // Tanks 5 to 20 dp wide lack 0.25 to 0.4; with these the solver is about as calm or calmer.
     constexpr double most = 0.6;
     double missing = 0;
     for (const auto& [mk, volume] : space.missing) missing += volume / (dp * dp * dp);

@@ -235,12 +235,18 @@ TEST(TakeInMesh, KeepsOneSheetOfTwoThatFaceOppositeWays)
     EXPECT_EQ(report.open_edges, 4u);
 }
 
+/// Each corner of each facet is off by up to a distance along each axis.
+TriangleSoup jittered(TriangleSoup soup, double by)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> jitter(-by, by);
+    for (Vec3& v : soup.vertices) v = v + Vec3{jitter(random), jitter(random), jitter(random)};
+    return soup;
+}
+
 TEST(TakeInMesh, WeldsCracksWithinADistance)
 {
-    TriangleSoup soup = sphere(3);
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> jitter(-1e-5, 1e-5);
-    for (Vec3& v : soup.vertices) v = v + Vec3{jitter(random), jitter(random), jitter(random)};
+    const TriangleSoup soup = jittered(sphere(3), 1e-5);
     MeshReport report;
     taken_in(soup, report, 1e-9);
     EXPECT_GE(report.open_edges, 3 * soup.size());
@@ -292,11 +298,8 @@ TEST(TakeInMesh, KeepsNarrowTanksOfAnyHeight)
 
 TEST(TakeInMesh, ClosesCracksOfRoundedNumbersAtTheParticleDistance)
 {
-    // A ball of 1 m whose corners are off by 1e-4, as four digits leave them.
-    TriangleSoup soup = sphere(3);
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> jitter(-3e-5, 3e-5);
-    for (Vec3& v : soup.vertices) v = v + Vec3{jitter(random), jitter(random), jitter(random)};
+    // A ball of 2 m across whose corners are off by 3e-5, nearly what four digits round away.
+    const TriangleSoup soup = jittered(sphere(3), 3e-5);
     MeshReport report;
     for (const double dp : {0.01, 0.1})
     {
