@@ -67,6 +67,9 @@ struct VolumeSurroundings
     /// The place on its surface of a sliding one, by its index and where it is; called from several
     /// threads at once.
     std::function<Vec3(std::size_t, const Vec3&)> put_back{};
+    /// Whether a particle may come to a place, by the index of the moving particle that it is or
+    /// beside which it was inserted; called from several threads at once. Empty: anywhere.
+    std::function<bool(std::size_t, const Vec3&)> may_come{};
 };
 
 /// What an iteration has reached.

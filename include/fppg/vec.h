@@ -78,6 +78,13 @@ struct Box3
             max[axis] = std::max(max[axis], p[axis]);
         }
     }
+    /// Whether a point is in the box, widened by `margin` on all sides.
+    bool has(const Vec3& p, double margin) const
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            if (p[axis] < min[axis] - margin || p[axis] > max[axis] + margin) return false;
+        return true;
+    }
 };
 
 /// Affine map p -> linear * p + offset; rows of `linear` first.

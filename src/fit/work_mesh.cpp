@@ -400,10 +400,7 @@ struct PieceSearch
             look_at(index);
             return;
         }
-        const Box3& box = mesh.boxes[level - 1][index];
-        for (int axis = 0; axis < 3; ++axis)
-            if (point[axis] < box.min[axis] - margin || point[axis] > box.max[axis] + margin)
-                return;
+        if (!mesh.boxes[level - 1][index].has(point, margin)) return;
         for (std::uint32_t i = 0; i < box_fanout; ++i)
             look_below(level - 1, box_fanout * index + i);
     }

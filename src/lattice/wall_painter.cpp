@@ -27,14 +27,6 @@ constexpr double replaced_dp = 0.9;
 /// Particles this near to a cut one are held in place, dp.
 constexpr double held_distance_dp = 2;
 
-/// Whether a point is in a box that is widened by `reach`.
-bool is_within(const Vec3& p, const Box3& box, double reach)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        if (p[axis] < box.min[axis] - reach || p[axis] > box.max[axis] + reach) return false;
-    return true;
-}
-
 /// The slab's runs that belong to the zone of a wall.
 Spans zone_of(const std::vector<Run>& runs)
 {
@@ -143,7 +135,7 @@ void WallPainter::cut_by(const FittedDraw& draw)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
     double deepest = 0;
     for (const FittedBody& layer : draw.layers) deepest = std::max(deepest, layer.depth);
-    const auto is_near = [&](const Vec3& p) { return is_within(p, bounds, deepest + reach); };
+    const auto is_near = [&](const Vec3& p) { return bounds.has(p, deepest + reach); };
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     if (std::none_of(positions.begin(), positions.end(), is_near)) return;
     const InsideTest test(soup_of(draw.body.mesh), threads_);
@@ -296,8 +288,7 @@ void WallPainter::cut_crowded()
         if (is_cut_[i] != 0) continue;
         const std::vector<Box3>& others = near[owner_of(i)];
         if (std::any_of(others.begin(), others.end(),
-                        [&](const Box3& box)
-                        { return is_within(all.positions[i], box, distance); }))
+                        [&](const Box3& box) { return box.has(all.positions[i], distance); }))
             found.push_back(i);
     }
     std::vector<Vec3> points;
@@ -363,7 +354,7 @@ void WallPainter::finish()
         all.size(), threads_,
         [&](std::size_t i)
         {
-            if (!is_within(all.positions[i], cut_box, reach)) return;
+            if (!cut_box.has(all.positions[i], reach)) return;
             cut.for_each_near(all.positions[i], reach,
                               [&](std::uint32_t c, double)
                               {

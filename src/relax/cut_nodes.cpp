@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "nodes/spans.h"
+#include "relax/region_volume.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,7 @@ namespace
 /// Nodes that are missing for want of room are no farther behind the innermost layer, dp.
 constexpr double missing_dp = 1.5;
 
-} // namespace
-
+/// Of what a later draw or a void cut out of a solid.
 void add_cut_nodes(const RunField& field, const Region& region, const AllWalls& all, int threads,
                    PointGrid& cut)
 {
@@ -63,6 +63,20 @@ void add_cut_nodes(const RunField& field, const Region& region, const AllWalls& 
                  });
     for (const std::vector<Vec3>& places : found)
         for (const Vec3& p : places) cut.add(p);
+}
+
+} // namespace
+
+PointGrid places_of_cuts(const RunField& field, const Region& region, const AllWalls& all,
+                         int threads)
+{
+    const FittedWalls& walls = field.walls;
+    PointGrid cut(reach_of_cuts_dp * field.grid.dp, walls.cut.size() + walls.second_sheets.size());
+    for (const Vec3& p : walls.cut) cut.add(p);
+    if (!region.is_solid || !is_inside(walls, region))
+        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+    if (region.is_solid) add_cut_nodes(field, region, all, threads, cut);
+    return cut;
 }
 
 } // namespace fppg

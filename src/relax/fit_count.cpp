@@ -85,9 +85,9 @@ bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, doub
 }
 
 /// The place beside a particle that is farthest from others, among 26 directions (8 in 2D); the
-/// particle's own where all are too near to others or to a wall.
+/// particle's own where all are too near to others or to a wall, or no particle may come there.
 Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
-                const RelaxVolumeOptions& options, const ClosestWallPoint& closest)
+                const RelaxVolumeOptions& options, const VolumeSurroundings& surroundings)
 {
     constexpr double length = 0.75;
     constexpr double least_gap = 0.5;
@@ -110,10 +110,12 @@ Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t
         if (!is_way_free(band, band.place(i), direction, length,
                          std::min(options.min_wall_distance_dp + 0.05,
                                   static_cast<double>(band.wall_distances[i] - band.moved_by(i))),
-                         closest))
+                         surroundings.closest))
             continue;
+        const Vec3 place = band.place(i) + (band.dp * length) * direction;
+        if (surroundings.may_come && !surroundings.may_come(band.sources[i], place)) continue;
         widest = gap;
-        best = band.place(i) + (band.dp * length) * direction;
+        best = place;
     }
     return best;
 }
@@ -168,7 +170,7 @@ void add_bias(const Band& band, double wanted, double most, std::vector<float>& 
 /// Takes or gives what the number is still off, where particles are the most crowded or the most
 /// apart, each 2 dp from the others.
 void make_up_rest(const Band& band, const NeighbourList& list, const std::vector<float>& excess,
-                  const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
+                  const RelaxVolumeOptions& options, const VolumeSurroundings& surroundings,
                   CountChange& change)
 {
     constexpr double apart = 2;
@@ -211,7 +213,7 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
         }
         else
         {
-            const Vec3 place = gap_beside(band, i, list.neighbours(rows[k]), options, closest);
+            const Vec3 place = gap_beside(band, i, list.neighbours(rows[k]), options, surroundings);
             if (place == band.place(i)) continue;
             change.inserted.push_back({i, place});
         }
@@ -223,8 +225,8 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
 } // namespace
 
 CountChange find_count_change(const Band& band, const NeighbourList& list,
-                              const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
-                              bool is_last, int threads)
+                              const RelaxVolumeOptions& options,
+                              const VolumeSurroundings& surroundings, bool is_last, int threads)
 {
     constexpr double wider = 1.3;
     const double h = wider * options.h_dp;
@@ -274,14 +276,14 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         else
         {
             const std::uint32_t i = list.point(lowest);
-            const Vec3 place = gap_beside(band, i, list.neighbours(lowest), options, closest);
+            const Vec3 place = gap_beside(band, i, list.neighbours(lowest), options, surroundings);
             if (!(place == band.place(i))) change.inserted.push_back({i, place});
             sum += 1;
         }
         length = 0;
         highest = lowest = list.rows();
     }
-    if (options.wanted) make_up_rest(band, list, excess, options, closest, change);
+    if (options.wanted) make_up_rest(band, list, excess, options, surroundings, change);
     return change;
 }
 

@@ -27,8 +27,8 @@ struct CountChange
 ///
 /// is_last  only what the number is off
 CountChange find_count_change(const Band& band, const NeighbourList& list,
-                              const RelaxVolumeOptions& options, const ClosestWallPoint& closest,
-                              bool is_last, int threads);
+                              const RelaxVolumeOptions& options,
+                              const VolumeSurroundings& surroundings, bool is_last, int threads);
 
 /// Carries a change out; lists must be made anew.
 void change_count(Band& band, const CountChange& change);

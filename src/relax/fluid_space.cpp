@@ -116,6 +116,8 @@ public:
         for (const FloatingDef& floating : def.floatings)
             for (const int mkbound : floating.mkbound)
                 moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+        const Vec3& gravity = def_.constants.gravity;
+        if (norm(gravity) > 0) down_ = gravity / norm(gravity);
         closest_ = [&](const Vec3& p, double within) { return all_.closest_point(p, within); };
     }
 
@@ -174,61 +176,94 @@ private:
 
     /// The fluid that is met on the way from a place to where all walls are 2 dp away. Each step is
     /// shorter than the distance to the nearest wall, so that it passes through none.
-    std::uint16_t fluid_beside(Vec3 p) const
+    ///
+    /// up  from the wall to the place
+    std::uint16_t fluid_beside(Vec3 p, const Vec3& up) const
     {
         constexpr int most_steps = 8;
         const double dp = field_.grid.dp;
-        std::uint16_t mk = fluid_around(p, true);
+        std::uint16_t mk = fluid_near(p);
+        if (mk == 0) mk = fluid_around(p, up);
         for (int step = 0; step < most_steps && mk == 0; ++step)
         {
             const Vec3 off = p - closest_(p, off_the_wall * dp);
             const double distance = norm(off);
             if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
             p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
-            mk = fluid_around(p, false);
+            mk = fluid_near(p);
         }
         return mk;
     }
 
-    /// The fluid of the node nearest to a place, or else of any around it.
-    std::uint16_t fluid_around(const Vec3& p, bool all_around) const
+    Vec3 in_nodes(const Vec3& p) const
     {
-        const LatticeGrid& grid = field_.grid;
-        const Vec3 at = (p - grid.origin) / grid.dp;
-        const std::uint16_t nearest =
-            fluid_at(std::llround(at.x), grid.is_2d ? 0 : std::llround(at.y), std::llround(at.z));
-        if (nearest != 0 || !all_around) return nearest;
-        const auto low = [](double v) { return static_cast<std::int64_t>(std::floor(v)); };
-        for (std::int64_t i = 0; i < 8; ++i)
+        Vec3 at = (p - field_.grid.origin) / field_.grid.dp;
+        if (field_.grid.is_2d) at.y = 0;
+        return at;
+    }
+
+    /// The fluid of the node nearest to a place.
+    std::uint16_t fluid_near(const Vec3& p) const
+    {
+        const Vec3 at = in_nodes(p);
+        return fluid_at(std::llround(at.x), std::llround(at.y), std::llround(at.z));
+    }
+
+    /// The fluid of any node around a place. Above a free surface there is none: unless the wall is
+    /// a roof, nodes that are deeper than the one nearest to the place do not count.
+    std::uint16_t fluid_around(const Vec3& p, const Vec3& up) const
+    {
+        constexpr double roof = 0.3; ///< of `up` that points down
+        const Vec3 at = in_nodes(p);
+        const Vec3 nearest{std::round(at.x), std::round(at.y), std::round(at.z)};
+        const bool is_roof = dot(up, down_) > roof;
+        for (int i = 0; i < 8; ++i)
         {
-            const std::int64_t y = grid.is_2d ? 0 : low(at.y) + (i >> 1 & 1);
-            const std::uint16_t mk = fluid_at(low(at.x) + (i & 1), y, low(at.z) + (i >> 2));
+            const Vec3 node{std::floor(at.x) + (i & 1),
+                            field_.grid.is_2d ? 0 : std::floor(at.y) + (i >> 1 & 1),
+                            std::floor(at.z) + (i >> 2)};
+            if (!is_roof && dot(node - nearest, down_) > 0.5) continue;
+            const std::uint16_t mk =
+                fluid_at(std::llround(node.x), std::llround(node.y), std::llround(node.z));
             if (mk != 0) return mk;
         }
         return 0;
     }
 
+    /// Whether the wall at `near.point` is a face of a solid body, seen from behind.
+    bool is_inside_of(const AllWalls::Closest& near, const Vec3& up, bool is_before) const
+    {
+        return !is_before && field_.walls.bodies[near.body].is_solid &&
+               std::abs(dot(up, near.normal)) >= along_normal;
+    }
+
+    /// is_inside  of a solid: it is only asked whether another wall cuts the same cube
+    WallBall ball_at(const AllWalls::Closest& near, const Vec3& up, bool is_inside,
+                     double side) const
+    {
+        const double most = is_inside ? near_two_walls * side : off_the_wall;
+        return largest_ball(near.point, up, most * field_.grid.dp, closest_);
+    }
+
     /// What lies before the wall at `near.point`, seen along `up`.
     ///
     /// is_before  whether `up` points to where the wall's facet looks
-    WallFront front_of(const AllWalls::Closest& near, const Vec3& up, bool is_before) const
+    /// ball       that of ball_at()
+    WallFront front_of(const AllWalls::Closest& near, const Vec3& up, bool is_before,
+                       const WallBall& ball) const
     {
         const double dp = field_.grid.dp;
-        const FittedBody& body = field_.walls.bodies[near.body];
         const bool is_on_edge = std::abs(dot(up, near.normal)) < along_normal;
-        if (!is_before && !is_on_edge && body.is_solid) return {0, true, false, 0};
-        const WallBall ball = largest_ball(near.point, up, off_the_wall * dp, closest_);
         if (is_on_edge && all_.is_in_solid(ball.center)) return {0, true, false, 0};
         WallFront out;
         out.width_dp = 2 * ball.radius / dp;
         if (out.width_dp < touching) return out;
         if (ball.is_opposite && out.width_dp < width_of_pockets(near.mk, ball) * (1 - 1e-9))
             // The inside of a thin shell is no place for fluid.
-            out.is_pocket = is_before || body.measures.volume <= 0;
+            out.is_pocket = is_before || field_.walls.bodies[near.body].measures.volume <= 0;
         else
-            out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9)
-                            ? fluid_beside(ball.center)
-                            : fluid_around(ball.center, false);
+            out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9) ? fluid_beside(ball.center, up)
+                                                                     : fluid_near(ball.center);
         return out;
     }
 
@@ -256,43 +291,60 @@ private:
         }
     }
 
+    /// Whether the wall that a ball touches on one side of another cuts the cube about `p` as well.
+    bool is_cut_again(const WallBall& ball, const Vec3& p, double side) const
+    {
+        const double half = 0.5 * side * field_.grid.dp;
+        if (!(ball.radius < 2 * near_two_walls * half)) return false;
+        const Vec3 normal = ball.center - ball.other;
+        const double reach = half * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+        return std::abs(dot(p - ball.other, normal)) < reach;
+    }
+
     /// Adds a cube about `p` with sides of `side` dp; cubes that are cut otherwise than by one
     /// plane are cut up first.
     ///
-    /// fluid  of the node in whose cell it lies; 0: none
+    /// fluid  of the node in its middle; 0: none
     void add_cube(const Vec3& p, double side, std::uint16_t fluid, CellSpace& out) const
     {
         const double dp = field_.grid.dp;
+        const bool is_2d = field_.grid.is_2d;
         const AllWalls::Closest near = all_.closest(p);
         const Vec3 off = p - near.point;
         Vec3 up = near.distance > 1e-9 * dp ? off / near.distance : near.normal;
-        if (field_.grid.is_2d) up.y = 0;
-        const WallFront front = front_of(near, up, near.is_outside || near.distance <= 1e-9 * dp);
-        const bool is_middle = side == 1;
-        if (is_middle) out.is_in_pocket = fluid != 0 && front.is_pocket && is_relaxed(fluid);
+        if (is_2d) up.y = 0;
+        const bool is_before = near.is_outside || near.distance <= 1e-9 * dp;
         const bool is_cut = near.distance < reach_of_cell * side * dp;
-        const bool is_plain = front.width_dp == 0 || front.width_dp >= 2 * near_two_walls;
-        if (is_middle && is_cut && (!is_plain || std::abs(dot(up, near.normal)) < along_normal))
+        const double before =
+            is_cut ? share_of_cube_before(-1.0 * up, near.distance / dp / side, is_2d) : 1;
+        const bool is_inside = is_inside_of(near, up, is_before);
+        const bool is_solid_behind = is_inside_of(near, -1.0 * up, !near.is_outside);
+        WallFront own{0, true, false, 0};
+        WallBall ball, behind;
+        if (!is_inside || is_cut) ball = ball_at(near, up, is_inside, side);
+        if (before < 1) behind = ball_at(near, -1.0 * up, is_solid_behind, side);
+        if (!is_inside) own = front_of(near, up, is_before, ball);
+        const bool is_whole = side == 1;
+        if (is_whole) out.is_in_pocket = fluid != 0 && own.is_pocket && is_relaxed(fluid);
+        if (is_whole && is_cut &&
+            (std::abs(dot(up, near.normal)) < along_normal || is_cut_again(ball, p, side) ||
+             (before < 1 && is_cut_again(behind, p, side))))
         {
             for (int part = 0; part < 8; ++part)
             {
-                if (field_.grid.is_2d && (part & 2) != 0) continue;
-                const Vec3 shift{(part & 1) - 0.5, field_.grid.is_2d ? 0 : (part >> 1 & 1) - 0.5,
+                if (is_2d && (part & 2) != 0) continue;
+                const Vec3 shift{(part & 1) - 0.5, is_2d ? 0 : (part >> 1 & 1) - 0.5,
                                  (part >> 2) - 0.5};
-                add_cube(p + 0.5 * dp * shift, 0.5, fluid, out);
+                add_cube(p + 0.5 * side * dp * shift, 0.5 * side, 0, out);
             }
             return;
         }
-        const double volume = field_.grid.is_2d ? side * side : side * side * side;
-        const double before =
-            is_cut ? share_of_cube_before(-1.0 * up, near.distance / dp / side, field_.grid.is_2d)
-                   : 1;
-        WallFront own = front;
+        const double volume = is_2d ? side * side : side * side * side;
         // Where the fluid itself stands it need not be looked for.
         if (fluid != 0 && !own.is_pocket && !own.is_solid) own.fluid = fluid;
         add(own, p, before * volume, out);
-        if (before < 1)
-            add(front_of(near, -1.0 * up, !near.is_outside), p, (1 - before) * volume, out);
+        if (before < 1 && !is_solid_behind)
+            add(front_of(near, -1.0 * up, !near.is_outside, behind), p, (1 - before) * volume, out);
     }
 
     CellSpace measure(const NodeIndex& node) const
@@ -389,6 +441,7 @@ private:
     FluidNear near_;
     ClosestWallPoint closest_;
     std::set<std::uint16_t> moving_; ///< mks
+    Vec3 down_;                      ///< along gravity; zero without
 };
 
 } // namespace

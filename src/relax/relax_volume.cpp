@@ -206,7 +206,8 @@ Vec3 along_walls(const Band& band, std::size_t i, Vec3 step)
     return count < sideways.size() ? step : Vec3{};
 }
 
-ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& options, int threads)
+ChunkSums move(Band& band, const WallGuard& guard, const VolumeSurroundings& surroundings,
+               const RelaxVolumeOptions& options, int threads)
 {
     return sum_over_chunks(
         band.moving, threads,
@@ -224,6 +225,9 @@ ChunkSums move(Band& band, const WallGuard& guard, const RelaxVolumeOptions& opt
                 if (!(allowed == step)) ++sums.pushed_back;
                 step = allowed;
             }
+            if (surroundings.may_come &&
+                !surroundings.may_come(band.sources[i], band.place_after(i, step)))
+                step = {};
             const auto x = static_cast<float>(step.x);
             const auto y = static_cast<float>(step.y);
             const auto z = static_cast<float>(step.z);
@@ -373,7 +377,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (options.fit_count && (is_due || is_rest_due(band, options, iteration)))
         {
             const CountChange change =
-                find_count_change(band, list, options, surroundings.closest, !is_due, threads);
+                find_count_change(band, list, options, surroundings, !is_due, threads);
             report.removed += change.removed;
             report.inserted += change.inserted.size();
             change_count(band, change);
@@ -384,7 +388,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         const ChunkSums sums = accelerate(band, list, forces, step_length, kept, threads);
         if (sums.count == 0) break;
         kept = sums.work < 0 ? 0 : volume_momentum;
-        const ChunkSums steps = move(band, guard, options, threads);
+        const ChunkSums steps = move(band, guard, surroundings, options, threads);
         if (iteration % slides_between == 0) put_back(band, surroundings, options.is_2d, threads);
         const auto n = static_cast<double>(sums.count);
         const double mean = sums.shepard / n;

@@ -31,8 +31,6 @@ namespace fppg
 namespace
 {
 
-/// Nodes this near to a place where a wall was cut do not move, dp.
-constexpr double reach_of_cuts_dp = 3;
 /// A sheet with nodes of a region this near on both sides stays as it is, dp.
 constexpr double reach_of_sides_dp = 1.5;
 constexpr int volume_iterations = 30;
@@ -246,7 +244,8 @@ private:
 
     /// The nodes of a region that move, in the order of its runs.
     std::vector<Mover> find_movers(const Region& region, const std::vector<SlabRun>& runs,
-                                   const AllWalls& all, const NearBlocks& blocks)
+                                   const AllWalls& all, const NearBlocks& blocks,
+                                   const PointGrid& cut)
     {
         const LatticeGrid& grid = field_.grid;
         const FittedWalls& walls = field_.walls;
@@ -257,11 +256,6 @@ private:
             bool is_outside = false;
             bool is_at_sides = false;
         };
-        PointGrid cut(reach_of_cuts_dp * grid.dp, walls.cut.size() + walls.second_sheets.size());
-        for (const Vec3& p : walls.cut) cut.add(p);
-        if (!region.is_solid || !is_inside(walls, region))
-            for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
-        if (region.is_solid) add_cut_nodes(field_, region, all, threads_, cut);
         const std::optional<LatticeStrips> strips =
             region.is_solid ? std::nullopt
                             : std::optional<LatticeStrips>(std::in_place, def_, field_);
@@ -389,12 +383,7 @@ private:
             const bool is_sliding = next != sliding.particles.end() && *next == i;
             if (is_sliding) ++next;
             if (is_sliding) continue;
-            const Vec3& p = particles.positions[i];
-            bool is_near = true;
-            for (int axis = 0; axis < 3; ++axis)
-                is_near =
-                    is_near && p[axis] > box.min[axis] - reach && p[axis] < box.max[axis] + reach;
-            if (is_near) out.push_back(p);
+            if (box.has(particles.positions[i], reach)) out.push_back(particles.positions[i]);
         }
         return out;
     }
@@ -428,7 +417,8 @@ private:
             if (std::isfinite(band)) widest = std::max(widest, band);
         // Twice the side reaches from a wall particle over the band and the reach of forces.
         const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
-        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1));
+        const PointGrid cut = places_of_cuts(field_, region, all, threads_);
+        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1), cut);
         const bool is_of_inside = region.is_solid && is_inside(field_.walls, region);
         const SlidingWalls sliding =
             is_of_inside ? find_sliding(field_.walls, region) : SlidingWalls{};
@@ -457,6 +447,12 @@ private:
             return put_back(field_.walls, sliding.particles[i - movers.size()], p, grid.dp,
                             surroundings.closest);
         };
+        // So near to a cut nothing moved, and nothing comes.
+        const double off_cuts = (reach_of_cuts_dp - 1) * grid.dp;
+        const std::vector<Vec3> starts = cut.points().empty() ? std::vector<Vec3>{} : positions;
+        if (!cut.points().empty())
+            surroundings.may_come = [&](std::size_t i, const Vec3& p)
+            { return norm(p - starts[i]) < grid.dp || !cut.has_nearer(p, off_cuts); };
         surroundings.held = held;
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)

@@ -248,6 +248,23 @@ std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& s
     return out;
 }
 
+/// Warns of layers whose side no fluid decides. Closed bodies in the midst of fluid are dry inside.
+void warn_of_sides(const Scene& scene, const DrawOp& draw, const FitSettings& settings,
+                   bool has_fluid, FittedStep& step)
+{
+    if (settings.depths_dp.empty() || settings.side || !settings.fluid_places.empty()) return;
+    for (const FittedDraw& fitted : step.draws)
+    {
+        if (fitted.body.is_solid || (has_fluid && fitted.body.measures.volume > 0)) continue;
+        step.warnings.push_back(fmt::format(
+            "{}: layers of this surface stand behind it, where its facets do not look, as no fluid "
+            "beside it is drawn: side=\"front\" or \"both\" of <bodyfitted> changes that, "
+            "side=\"behind\" says that it is meant.",
+            place_of(*scene.def, draw.source)));
+        return;
+    }
+}
+
 FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Box3>& fluid,
                     int threads)
 {
@@ -268,7 +285,9 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
     {
         refuse_unfittable(*step.draw);
         own.fluid_places = places_in_fluid(fluid, scene, *step.draw, threads);
-        return fit_draw(scene, *step.draw, *settings, threads);
+        FittedStep out = fit_draw(scene, *step.draw, *settings, threads);
+        warn_of_sides(scene, *step.draw, *settings, !fluid.empty(), out);
+        return out;
     }
     catch (const GeometryError& e)
     {

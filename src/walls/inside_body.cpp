@@ -50,9 +50,6 @@ constexpr double number_tolerance = 5e-4;
 constexpr double thin_dp = 2.5;
 constexpr std::size_t thickness_samples = 600;
 
-/// Volumes are summed up about a vertex of bodies so many times their size away from the origin.
-constexpr double far_from_origin = 100;
-
 /// Of particles that are taken out one by one.
 constexpr double most_surplus = 0.05;
 
@@ -87,18 +84,12 @@ int sheets_through(double thickness_dp)
     return n;
 }
 
+/// About a vertex: about the origin the digits of a body that is far from it would cancel out.
 double volume_of(const SurfaceMesh& mesh)
 {
-    if (mesh.vertices.empty()) return 0;
-    Box3 box;
-    for (const Vec3& v : mesh.vertices) box.add(v);
-    const Vec3 size = box.max - box.min;
-    // About the origin the digits of a body that is far from it would cancel out.
-    const Vec3& at = mesh.vertices[0];
-    const bool is_far = largest_coordinate(at) > far_from_origin * largest_coordinate(size);
-    const Vec3 from = is_far ? at : Vec3{};
     double six = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) six += volume_times_six(mesh, f, from);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        six += volume_times_six(mesh, f, mesh.vertices[0]);
     return six / 6;
 }
 

@@ -206,11 +206,6 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
                     out.zone,
                     by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
                     threads);
-        if (!settings.side && settings.fluid_places.empty() && !has_volume)
-            out.warnings.push_back(
-                "layers of this sheet stand behind it, where its facets do not look: "
-                "side=\"front\" "
-                "or \"both\" of <bodyfitted> changes that, side=\"behind\" says that it is meant.");
     }
     measure_layers(grid, out);
 }

@@ -179,7 +179,7 @@ TEST(WallLayers, OfATankStandOutsideIt)
             if (first == 0) continue;
             const double volume = size.x * size.y * (level - low.z);
             EXPECT_NEAR(static_cast<double>(count_fluid(field)), volume / std::pow(dp, 3),
-                        0.02 * volume / std::pow(dp, 3))
+                        0.005 * volume / std::pow(dp, 3))
                 << has_lid;
         }
 }
