@@ -118,6 +118,9 @@ public:
                 moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
         const Vec3& gravity = def_.constants.gravity;
         if (norm(gravity) > 0) down_ = gravity / norm(gravity);
+        has_several_bodies_ =
+            std::count_if(field.walls.bodies.begin(), field.walls.bodies.end(),
+                          [](const FittedBody& body) { return !body.is_layer(); }) > 1;
         closest_ = [&](const Vec3& p, double within) { return all_.closest_point(p, within); };
     }
 
@@ -174,27 +177,6 @@ private:
                    : std::uint16_t{};
     }
 
-    /// The fluid that is met on the way from a place to where all walls are 2 dp away. Each step is
-    /// shorter than the distance to the nearest wall, so that it passes through none.
-    ///
-    /// up  from the wall to the place
-    std::uint16_t fluid_beside(Vec3 p, const Vec3& up) const
-    {
-        constexpr int most_steps = 8;
-        const double dp = field_.grid.dp;
-        std::uint16_t mk = fluid_near(p);
-        if (mk == 0) mk = fluid_around(p, up);
-        for (int step = 0; step < most_steps && mk == 0; ++step)
-        {
-            const Vec3 off = p - closest_(p, off_the_wall * dp);
-            const double distance = norm(off);
-            if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
-            p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
-            mk = fluid_near(p);
-        }
-        return mk;
-    }
-
     Vec3 in_nodes(const Vec3& p) const
     {
         Vec3 at = (p - field_.grid.origin) / field_.grid.dp;
@@ -202,32 +184,93 @@ private:
         return at;
     }
 
-    /// The fluid of the node nearest to a place.
-    std::uint16_t fluid_near(const Vec3& p) const
+    Vec3 nearest_node(const Vec3& p) const
     {
         const Vec3 at = in_nodes(p);
-        return fluid_at(std::llround(at.x), std::llround(at.y), std::llround(at.z));
+        return {std::round(at.x), std::round(at.y), std::round(at.z)};
     }
 
-    /// The fluid of any node around a place. Above a free surface there is none: unless the wall is
-    /// a roof, nodes that are deeper than the one nearest to the place do not count.
-    std::uint16_t fluid_around(const Vec3& p, const Vec3& up) const
+    std::uint16_t fluid_of(const Vec3& node) const
     {
-        constexpr double roof = 0.3; ///< of `up` that points down
-        const Vec3 at = in_nodes(p);
-        const Vec3 nearest{std::round(at.x), std::round(at.y), std::round(at.z)};
-        const bool is_roof = dot(up, down_) > roof;
-        for (int i = 0; i < 8; ++i)
+        return fluid_at(std::llround(node.x), std::llround(node.y), std::llround(node.z));
+    }
+
+    /// A cell beside a wall whose fluid is looked for.
+    struct CellAtWall
+    {
+        Vec3 node;
+        Vec3 foot;              ///< of the wall
+        Vec3 up;                ///< from there
+        bool is_behind = false; ///< the wall, with its middle
+    };
+
+    /// The fluid to which a cell belongs, that is met on the way from a place to where all walls
+    /// are 2 dp away. Each step is shorter than the distance to the nearest wall, so that it passes
+    /// through none.
+    std::uint16_t fluid_beside(const CellAtWall& cell, Vec3 p) const
+    {
+        constexpr int most_steps = 8;
+        const double dp = field_.grid.dp;
+        std::uint16_t mk = fluid_at_place(cell, p, true);
+        for (int step = 0; step < most_steps && mk == 0; ++step)
         {
-            const Vec3 node{std::floor(at.x) + (i & 1),
-                            field_.grid.is_2d ? 0 : std::floor(at.y) + (i >> 1 & 1),
-                            std::floor(at.z) + (i >> 2)};
-            if (!is_roof && dot(node - nearest, down_) > 0.5) continue;
-            const std::uint16_t mk =
-                fluid_at(std::llround(node.x), std::llround(node.y), std::llround(node.z));
+            const Vec3 off = p - closest_(p, off_the_wall * dp);
+            const double distance = norm(off);
+            if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
+            p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
+            mk = fluid_at_place(cell, p, false);
+        }
+        return mk;
+    }
+
+    /// The fluid of the node nearest to a place, or to that under it in the level of the cell;
+    /// where `all_around` that of any node around it. Fluid deeper than the cell may lie under a
+    /// free surface.
+    std::uint16_t fluid_at_place(const CellAtWall& cell, const Vec3& p, bool all_around) const
+    {
+        const double before_wall = cell.is_behind ? 0.5 : 0;
+        const Vec3 here = in_nodes(p);
+        Vec3 under = here + std::max(0.0, dot(cell.node - here, down_)) * down_;
+        if (dot(under - in_nodes(cell.foot), cell.up) < before_wall) under = here;
+        for (const Vec3& at : {here, under})
+        {
+            const auto take = [&](const Vec3& node)
+            {
+                const std::uint16_t mk = fluid_of(node);
+                const bool is_deeper = dot(node - cell.node, down_) > 0.5;
+                return mk != 0 && (!is_deeper || is_under_roof(cell)) ? mk : std::uint16_t{};
+            };
+            std::uint16_t mk = take({std::round(at.x), std::round(at.y), std::round(at.z)});
+            for (int i = 0; i < 8 && all_around && mk == 0; ++i)
+                mk = take({std::floor(at.x) + (i & 1),
+                           field_.grid.is_2d ? 0 : std::floor(at.y) + (i >> 1 & 1),
+                           std::floor(at.z) + (i >> 2)});
             if (mk != 0) return mk;
         }
         return 0;
+    }
+
+    /// Whether a cell above fluid is not above its free surface: on the level way from the wall
+    /// there is fluid, or a wall is above, before a node comes that is empty and far from all
+    /// walls.
+    bool is_under_roof(const CellAtWall& cell) const
+    {
+        constexpr double steep = 0.1;
+        constexpr int most_steps = 3;
+        const double dp = field_.grid.dp;
+        const double down = dot(cell.up, down_);
+        const Vec3 level = cell.up - down * down_;
+        if (norm(level) < steep) return down > 0;
+        for (int i = 1; i <= most_steps; ++i)
+        {
+            const Vec3 at = cell.node + (i / norm(level)) * level;
+            if (fluid_of(at) != 0) return true;
+            const Vec3 p = field_.grid.origin + dp * at;
+            const Vec3 way = closest_(p, dp) - p;
+            if (!(norm(way) < dp)) return false;
+            if (dot(way, down_) < -0.5 * norm(way)) return true;
+        }
+        return down > steep;
     }
 
     /// Whether the wall at `near.point` is a face of a solid body, seen from behind.
@@ -245,15 +288,15 @@ private:
         return largest_ball(near.point, up, most * field_.grid.dp, closest_);
     }
 
-    /// What lies before the wall at `near.point`, seen along `up`.
+    /// What lies before the wall at `near.point`, seen along `cell.up`.
     ///
-    /// is_before  whether `up` points to where the wall's facet looks
+    /// is_before  whether that points to where the wall's facet looks
     /// ball       that of ball_at()
-    WallFront front_of(const AllWalls::Closest& near, const Vec3& up, bool is_before,
+    WallFront front_of(const AllWalls::Closest& near, const CellAtWall& cell, bool is_before,
                        const WallBall& ball) const
     {
         const double dp = field_.grid.dp;
-        const bool is_on_edge = std::abs(dot(up, near.normal)) < along_normal;
+        const bool is_on_edge = std::abs(dot(cell.up, near.normal)) < along_normal;
         if (is_on_edge && all_.is_in_solid(ball.center)) return {0, true, false, 0};
         WallFront out;
         out.width_dp = 2 * ball.radius / dp;
@@ -262,8 +305,9 @@ private:
             // The inside of a thin shell is no place for fluid.
             out.is_pocket = is_before || field_.walls.bodies[near.body].measures.volume <= 0;
         else
-            out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9) ? fluid_beside(ball.center, up)
-                                                                     : fluid_near(ball.center);
+            out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9)
+                            ? fluid_beside(cell, ball.center)
+                            : fluid_at_place(cell, ball.center, false);
         return out;
     }
 
@@ -301,6 +345,12 @@ private:
         return std::abs(dot(p - ball.other, normal)) < reach;
     }
 
+    /// Whether a place before a wall is in a solid that the wall runs into.
+    bool is_in_other_solid(const Vec3& p) const
+    {
+        return has_several_bodies_ && all_.is_in_solid(p);
+    }
+
     /// Adds a cube about `p` with sides of `side` dp; cubes that are cut otherwise than by one
     /// plane are cut up first.
     ///
@@ -320,10 +370,11 @@ private:
         const bool is_inside = is_inside_of(near, up, is_before);
         const bool is_solid_behind = is_inside_of(near, -1.0 * up, !near.is_outside);
         WallFront own{0, true, false, 0};
+        const Vec3 node = nearest_node(p);
         WallBall ball, behind;
         if (!is_inside || is_cut) ball = ball_at(near, up, is_inside, side);
         if (before < 1) behind = ball_at(near, -1.0 * up, is_solid_behind, side);
-        if (!is_inside) own = front_of(near, up, is_before, ball);
+        if (!is_inside) own = front_of(near, {node, near.point, up, false}, is_before, ball);
         const bool is_whole = side == 1;
         if (is_whole) out.is_in_pocket = fluid != 0 && own.is_pocket && is_relaxed(fluid);
         if (is_whole && is_cut &&
@@ -341,10 +392,16 @@ private:
         }
         const double volume = is_2d ? side * side : side * side * side;
         // Where the fluid itself stands it need not be looked for.
-        if (fluid != 0 && !own.is_pocket && !own.is_solid) own.fluid = fluid;
+        if (fluid != 0 && !own.is_pocket && !own.is_solid)
+            own.fluid = fluid;
+        else if (own.fluid != 0 && is_in_other_solid(p))
+            own.fluid = 0;
         add(own, p, before * volume, out);
-        if (before < 1 && !is_solid_behind)
-            add(front_of(near, -1.0 * up, !near.is_outside, behind), p, (1 - before) * volume, out);
+        if (before == 1 || is_solid_behind) return;
+        const WallFront other =
+            front_of(near, {node, near.point, -1.0 * up, true}, !near.is_outside, behind);
+        if (other.fluid == 0 || !is_in_other_solid(near.point - (0.25 * side * dp) * up))
+            add(other, p, (1 - before) * volume, out);
     }
 
     CellSpace measure(const NodeIndex& node) const
@@ -441,7 +498,8 @@ private:
     FluidNear near_;
     ClosestWallPoint closest_;
     std::set<std::uint16_t> moving_; ///< mks
-    Vec3 down_;                      ///< along gravity; zero without
+    bool has_several_bodies_ = false;
+    Vec3 down_; ///< along gravity; zero without
 };
 
 } // namespace

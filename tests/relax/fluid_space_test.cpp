@@ -209,6 +209,60 @@ CaseText filled_tank(const std::string& fppg, const std::string& fill)
                    fppg + R"(<fill mkfluid="0" seed="0.6,0.1,0.2" )" + fill + " />");
 }
 
+/// Fluid from a seed up to the nodes at z = 0.4.
+std::string filled_from(const Vec3& seed)
+{
+    return fmt::format(
+        R"(<setmkfluid mk="0" /><fillbox x="{}" y="{}" z="{}"><modefill>void</modefill><point x="-0.4" y="-0.4" z="-0.4" /><size x="2" y="2" z="0.87" /></fillbox>)",
+        seed.x, seed.y, seed.z);
+}
+
+TEST(FluidSpace, UnderAFreeSurfaceEndsAtItBesideLeaningWallsToo)
+{
+    const Vec3 middle{0.613, 0.521, 0.42};
+    for (const Vec3& way : {Vec3{0.6, 0.5, 0.62}, Vec3{0.8, -0.2, 0.57}, Vec3{0, 0, 1}})
+    {
+        const Vec3 axis = way / norm(way);
+        const Vec3 a = middle - 0.4 * axis;
+        const Vec3 b = middle + 0.4 * axis;
+        constexpr double radius = 0.41;
+        const Result r = make(case_of(
+            fmt::format(
+                R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="{}"><point x="{}" y="{}" z="{}" /><point x="{}" y="{}" z="{}" /></drawcylinder>)",
+                radius, a.x, a.y, a.z, b.x, b.y, b.z) +
+                filled_from({middle.x, middle.y, 0.36}),
+            R"(<bodyfitted boundary="mdbc" />)"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        // By the middles of cubes of 5 mm.
+        constexpr double step = 0.005;
+        double litres = 0;
+        for (double x = -0.4; x < 1.5; x += step)
+            for (double y = -0.4; y < 1.5; y += step)
+                for (double z = 0.4 + dp / 2 - step / 2; z > -0.5; z -= step)
+                {
+                    const Vec3 off = Vec3{x, y, z} - middle;
+                    const double along = dot(off, axis);
+                    if (std::abs(along) < 0.4 && norm(off - along * axis) < radius)
+                        litres += 1000 * step * step * step;
+                }
+        const auto found = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;
+        EXPECT_NEAR(found, litres, 0.005 * litres) << way.x;
+    }
+}
+
+TEST(FluidSpace, WhereASolidRunsThroughTheWallsOfATankItHasNone)
+{
+    const Result r = make(case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0.013" y="0.021" z="-0.017" /><size x="1.1" y="0.9" z="1" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.45" y="-0.03" z="-0.06" /><size x="0.19" y="1" z="0.3" /></drawbox>)" +
+            filled_from({0.2, 0.4, 0.3}),
+        R"(<bodyfitted boundary="mdbc" />)"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const double litres = 1000 * (1.1 * 0.9 * (0.4 + dp / 2 + 0.017) - 0.19 * 0.9 * (0.24 + 0.017));
+    const auto found = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;
+    EXPECT_NEAR(found, litres, 0.004 * litres);
+}
+
 TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
 {
     const double asked = 777;
