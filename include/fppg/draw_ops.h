@@ -401,6 +401,9 @@ struct DrawOp
     std::shared_ptr<const DrawState> state;
     Command what;
     std::size_t call = 0; ///< number of the command that was run; its layers and parts share it
+    /// Of shells drawn by `layers vdp`: the shape itself, which those of a command share; else
+    /// null.
+    std::shared_ptr<const Shape> surface{};
 };
 
 /// The shape that a command draws if it is of this kind, else null.

@@ -54,6 +54,9 @@ std::map<std::uint16_t, std::size_t> count_fluid(const MadeCase& made)
     return out;
 }
 
+/// Fluid that is this much more than the space between walls is warned of.
+constexpr double too_much = 0.02;
+
 double missing_of(const FluidSpace& space, std::uint16_t mk)
 {
     const auto found = space.missing.find(mk);
@@ -124,8 +127,9 @@ void expect_one_mass(const CaseDef& def, const FluidBand& band)
 
 } // namespace
 
-void log_fluid_space(const RelaxReport& report, const MadeCase& made, RunLog& log)
+void log_fluid_space(const RelaxReport& report, const MadeCase& made, CaseRunState& run)
 {
+    RunLog& log = run.log;
     const FluidSpace& space = report.space;
     const Litres litres(made.field.grid);
     log_pockets(space, litres, log);
@@ -150,6 +154,11 @@ void log_fluid_space(const RelaxReport& report, const MadeCase& made, RunLog& lo
                                  {"asked_litres", asked > 0 ? Json(asked) : Json()},
                                  {"in_pockets", space.left_out.contains(mk) ? space.left_out.at(mk)
                                                                             : std::size_t{0}}});
+        if (missing < -too_much * litres.of(cavity))
+            run.warn(fmt::format(
+                "{}: fluid mk {} has {:.1f} % more particles than fit between the walls: it is "
+                "drawn beyond their surface, and takes the places of their particles there.",
+                made.def.file, mk, -100 * missing / litres.of(cavity)));
     }
 }
 

@@ -211,7 +211,7 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
         log_relaxed(part, run.log);
         if (part.what == "fluid") warn_of_fluid_count(part, report, run, made.def.file);
     }
-    log_fluid_space(report, made, run.log);
+    log_fluid_space(report, made, run);
     settle_fluid_mass(report, made, run.log);
     if (snapshots > 0)
         run.log.line(

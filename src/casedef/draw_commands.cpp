@@ -118,8 +118,11 @@ void draw_box(Program& p, const Element& e)
     for (const Program::Layer& layer : layers) layers_dp.push_back(layer.dp);
     std::vector<PolyhedronOp> polyhedra =
         make_box(corner, size, sides, is_solid, layers_dp, p.def.grid.dp);
+    if (!layers.empty())
+        p.surface = p.surface_of(make_box(corner, size, sides, is_solid, {}, p.def.grid.dp)[0]);
     for (std::size_t i = 0; i < polyhedra.size(); ++i)
         p.add_layer(e, std::move(polyhedra[i]), layers.empty() || layers[i].is_shown);
+    p.surface = nullptr;
     if (p.state.mk_next_auto && leaves_one_out) p.take_next_mk(e);
 }
 
@@ -158,12 +161,14 @@ void draw_extrude(Program& p, const Element& e)
     const bool is_closed = p.flag_of(e, "closed");
     const std::vector<Program::Layer> layers = p.layers_of(e);
     const std::vector<Vec3> points = p.points_of(e, 2, many_points);
+    if (!layers.empty()) p.surface = p.surface_of(make_extrusion(points, extrude, is_closed));
     for (const Program::Layer& layer : layers)
         p.add_layer(
             e,
             make_extrusion(shifted_polyline(points, extrude, is_closed, layer.dp * p.def.grid.dp),
                            extrude, is_closed),
             layer.is_shown);
+    p.surface = nullptr;
     if (layers.empty()) p.add_polyhedron(e, make_extrusion(points, extrude, is_closed));
 }
 

@@ -184,7 +184,8 @@ void Program::add_whole(const Element& e, Command what)
     def.ops.push_back({{e.line, e.name, name != nullptr ? read.interpolated(e, *name) : ""},
                        shared_state,
                        std::move(what),
-                       commands_run});
+                       commands_run,
+                       state.mk_next_auto ? nullptr : surface});
 }
 
 std::uint32_t Program::count_file_parts(const Element& e, const MeshFileOp& op) const

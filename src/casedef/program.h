@@ -101,6 +101,10 @@ struct Program
     std::vector<Layer> layers_of(const Element& e) const;
     /// A polyhedron that stands for a layer.
     void add_layer(const Element& e, PolyhedronOp polyhedron, bool is_shown);
+    /// The shape whose shells are added next, and no shape after the last.
+    std::shared_ptr<const Shape> surface;
+    /// The same of a polyhedron, under the current matrix.
+    std::shared_ptr<const Shape> surface_of(PolyhedronOp polyhedron) const;
     /// throws CaseError where it is not above 0
     double radius_of(const Element& e) const;
     /// The box around a cube that the matrix has moved.

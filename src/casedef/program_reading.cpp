@@ -26,6 +26,12 @@ void Program::add_layer(const Element& e, PolyhedronOp polyhedron, bool is_shown
     state.draw_shapes = draw_shapes;
 }
 
+std::shared_ptr<const Shape> Program::surface_of(PolyhedronOp polyhedron) const
+{
+    transform_polyhedron(polyhedron, matrix);
+    return std::make_shared<const Shape>(std::move(polyhedron));
+}
+
 std::vector<Vec3> Program::points_of(const Element& e, std::size_t at_least,
                                      std::size_t at_most) const
 {

@@ -74,8 +74,13 @@ void draw_sphere(Program& p, const Element& e)
             if (layer.is_shown) op.shown_layers_dp.push_back(layer.dp);
             op.limits.push_back(p.moved_cube(center, radius + layer.dp * p.def.grid.dp));
         }
-        if (layers.empty()) op.limits.push_back(p.moved_cube(center, radius));
+        if (layers.empty())
+            op.limits.push_back(p.moved_cube(center, radius));
+        else
+            p.surface = std::make_shared<const Shape>(
+                SphereOp{op.center, radius, {0}, {0}, {p.moved_cube(center, radius)}});
         p.add(e, std::move(op));
+        p.surface = nullptr;
     }
 }
 
@@ -106,7 +111,14 @@ void draw_cylinder(Program& p, const Element& e)
                              op.is_visible[1] ? p.matrix(points[1] + u * shift) : op.p1,
                              op.is_visible[2] ? radius + shift : radius, layer.is_shown});
     }
+    if (!layers.empty())
+    {
+        CylinderOp shape = op;
+        shape.layers = {{op.p0, op.p1, radius, true}};
+        p.surface = std::make_shared<const Shape>(std::move(shape));
+    }
     p.add(e, std::move(op));
+    p.surface = nullptr;
 }
 
 void draw_ellipsoid(Program& p, const Element& e)

@@ -80,6 +80,39 @@ void hint_at_parameters(CaseDef& def)
         def.file, wrong));
 }
 
+/// Shells of `layers vdp` that thicken a wall on the lattice: where walls stand in layers of their
+/// own, the shape itself is drawn once in their place.
+void draw_shells_once(CaseDef& def)
+{
+    std::vector<int> lines;
+    const Shape* drawn = nullptr;
+    for (DrawOp& op : def.ops)
+    {
+        const FitSettings* settings = op.state->mk.kind == MkKind::Bound && op.surface != nullptr
+                                          ? fit_settings(def.fit, op.state->mk.mk)
+                                          : nullptr;
+        if (settings == nullptr || settings->depths_dp.empty() ||
+            settings->place == Placement::Inside || !op.state->draw_points)
+            continue;
+        if (op.surface.get() == drawn)
+        {
+            DrawState state = *op.state;
+            state.draw_points = false;
+            op.state = std::make_shared<const DrawState>(std::move(state));
+            continue;
+        }
+        drawn = op.surface.get();
+        op.what = *op.surface;
+        if (lines.empty() || lines.back() != op.source.line) lines.push_back(op.source.line);
+    }
+    if (lines.empty()) return;
+    def.warnings.push_back(
+        fmt::format("{}: <layers vdp> of the shapes of line{} {} is left out: body-fitted walls "
+                    "stand in layers "
+                    "of their own, behind the shapes themselves.",
+                    def.file, lines.size() == 1 ? "" : "s", fmt::join(lines, ", ")));
+}
+
 } // namespace
 
 void settle_boundaries(CaseDef& def)
@@ -121,6 +154,7 @@ void settle_boundaries(CaseDef& def)
         judged = of_mk.second.line;
     }
     if (is_mdbc) hint_at_parameters(def);
+    draw_shells_once(def);
 }
 
 } // namespace fppg

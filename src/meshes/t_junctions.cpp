@@ -58,8 +58,8 @@ std::vector<Junction> find_t_junctions(const SurfaceMesh& mesh, double least, do
                                       const double share = dot(away, along) / dot(along, along);
                                       // At an end it is no junction: a piece between them would
                                       // have no area.
-                                      const double least = room[k] / norm(along);
-                                      if (!(share > least && share < 1 - least) ||
+                                      const double at_end = room[k] / norm(along);
+                                      if (!(share > at_end && share < 1 - at_end) ||
                                           norm(away - share * along) > room[k])
                                           return;
                                       found[i].push_back({open[k], ends[i], share});

@@ -239,4 +239,51 @@ TEST(FluidUnderALeaningWall, KeepsItsLevel)
     EXPECT_LE(highest(make(leaning_tank("")).cloud), 0.8 + 0.2501 * 0.025);
 }
 
+/// A tank of one of the shapes that can have layers, with fluid.
+CaseText shell_with_fluid(const std::string& shape, const std::string& shells,
+                          const std::string& fppg)
+{
+    CaseText text = tank();
+    text.dp = fmt::format("{}", dp);
+    text.mainlist =
+        R"(<setdrawmode mode="face" /><setmkbound mk="0" />)" +
+        fmt::format(fmt::runtime(shape), shells) +
+        R"(<setmkfluid mk="0" /><fillbox x="0.51" y="0.5" z="0.4"><modefill>void</modefill>
+<point x="-1" y="-1" z="-1" /><size x="4" y="4" z="1.5" /></fillbox>)";
+    text.after_geometry = "<fppg>" + fppg + "</fppg>";
+    return text;
+}
+
+class ShellOfACase : public testing::TestWithParam<std::string>
+{
+};
+
+TEST_P(ShellOfACase, IsDrawnOnceWhereWallsHaveLayersOfTheirOwn)
+{
+    const std::string mdbc = R"(<bodyfitted boundary="mdbc" />)";
+    const Made bare = make(shell_with_fluid(GetParam(), "", mdbc));
+    const std::string shells = R"(<layers vdp="0,1,2" />)";
+    const Made made = make(shell_with_fluid(GetParam(), shells, mdbc));
+    EXPECT_EQ(made.cloud.positions, bare.cloud.positions);
+    EXPECT_EQ(made.cloud.mk, bare.cloud.mk);
+    EXPECT_TRUE(contains(made.output, "<layers vdp> of the shapes of line")) << made.output;
+    EXPECT_FALSE(contains(bare.output, "<layers vdp>")) << bare.output;
+    // Sheets on the surface are those that the case draws.
+    const Made sheets = make(shell_with_fluid(GetParam(), shells, "<bodyfitted />"));
+    const Made sheet = make(shell_with_fluid(GetParam(), "", "<bodyfitted />"));
+    EXPECT_GT(std::count_if(sheets.cloud.mk.begin(), sheets.cloud.mk.end(),
+                            [](std::uint16_t mk) { return mk == bound_mk; }),
+              2 * std::count_if(sheet.cloud.mk.begin(), sheet.cloud.mk.end(),
+                                [](std::uint16_t mk) { return mk == bound_mk; }));
+    EXPECT_FALSE(contains(sheets.output, "<layers vdp>")) << sheets.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, ShellOfACase,
+    testing::Values(
+        R"(<drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0.02" y="0.01" z="0.03" /><size x="0.9" y="0.8" z="0.8" />{}</drawbox>)",
+        R"(<drawsphere radius="0.43"><point x="0.51" y="0.5" z="0.45" />{}</drawsphere>)",
+        R"(<drawcylinder radius="0.43"><point x="0.51" y="0.5" z="0.05" /><point x="0.51" y="0.5" z="0.85" />{}</drawcylinder>)",
+        R"(<drawextrude closed="true"><extrude x="0" y="0.8" z="0" /><point x="0.1" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.8" /><point x="0.1" y="0.1" z="0.8" />{}</drawextrude>)"));
+
 } // namespace
