@@ -9,6 +9,7 @@
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
 #include "walls/fit_shape.h"
+#include "walls/stacked_shells.h"
 
 #include <fmt/format.h>
 
@@ -316,6 +317,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
         if (progress) progress(i, out.size());
         out[i] = fit_step(scene, scene.steps[i], fluid, threads);
     }
+    if (has_layers) warn_of_stacked_shells(scene, out);
     return out;
 }
 

@@ -286,4 +286,31 @@ INSTANTIATE_TEST_SUITE_P(
         R"(<drawcylinder radius="0.43"><point x="0.51" y="0.5" z="0.05" /><point x="0.51" y="0.5" z="0.85" />{}</drawcylinder>)",
         R"(<drawextrude closed="true"><extrude x="0" y="0.8" z="0" /><point x="0.1" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.8" /><point x="0.1" y="0.1" z="0.8" />{}</drawextrude>)"));
 
+/// A tank whose walls are thickened shell by shell, or that is divided by a sheet.
+TEST(ShellsOfACase, ThatStandAmongTheLayersOfAnotherAreSaid)
+{
+    const auto open_box = [](double off)
+    {
+        return fmt::format(
+            R"(<drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="{0}" y="{0}" z="{0}" /><size x="{1}" y="{1}" z="0.8" /></drawbox>)",
+            0.02 - off, 0.9 + 2 * off);
+    };
+    const std::string sheet =
+        R"(<drawbox><boxfill>left</boxfill><point x="0.4" y="0.02" z="0.02" /><size x="0.1" y="0.9" z="0.2" /></drawbox>)";
+    const std::string mdbc = R"(<bodyfitted boundary="mdbc" />)";
+    const std::string said = "stands among the layers of <drawbox>";
+    for (const double off : {dp, 2 * dp})
+        for (const bool is_inner_first : {false, true})
+        {
+            const std::string both =
+                is_inner_first ? open_box(0) + open_box(off) : open_box(off) + open_box(0);
+            EXPECT_TRUE(contains(make(shell_with_fluid(both, "", mdbc)).output, said)) << off;
+        }
+    EXPECT_FALSE(contains(make(shell_with_fluid(open_box(0) + sheet, "", mdbc)).output, said));
+    EXPECT_FALSE(
+        contains(make(shell_with_fluid(open_box(0) + open_box(5 * dp), "", mdbc)).output, said));
+    EXPECT_FALSE(contains(
+        make(shell_with_fluid(open_box(0) + open_box(dp), "", "<bodyfitted />")).output, said));
+}
+
 } // namespace
