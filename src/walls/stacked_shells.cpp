@@ -27,20 +27,17 @@ struct Shell
     std::vector<Vec3> samples;
 };
 
-/// Middles and corners of facets.
+/// Places inside facets: one on a rim may be beyond the rim of the other surface.
 std::vector<Vec3> samples_of(const SurfaceMesh& mesh, const LatticeGrid& grid)
 {
     std::vector<Vec3> out;
     const std::size_t stride = mesh.facets.size() / most_samples + 1;
     for (std::size_t f = 0; f < mesh.facets.size(); f += stride)
     {
-        Vec3 sum;
+        Vec3 middle;
+        for (const std::uint32_t v : mesh.facets[f]) middle = middle + mesh.vertices[v] / 3;
         for (const std::uint32_t v : mesh.facets[f])
-        {
-            out.push_back(mesh.vertices[v]);
-            sum = sum + mesh.vertices[v];
-        }
-        out.push_back(sum / 3);
+            out.push_back(0.4 * mesh.vertices[v] + 0.6 * middle);
     }
     if (grid.is_2d)
         for (Vec3& p : out) p.y = grid.origin.y;
