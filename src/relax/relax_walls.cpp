@@ -408,6 +408,25 @@ private:
         return std::nullopt;
     }
 
+    RelaxVolumeOptions options_of(const Region& region, const std::vector<SlabRun>& runs,
+                                  std::size_t moving, bool is_of_inside) const
+    {
+        RelaxVolumeOptions options;
+        options.dp = field_.grid.dp;
+        options.h_dp = region.h_dp;
+        options.iterations =
+            region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
+        options.is_2d = field_.grid.is_2d;
+        options.fit_count = region.fits_count;
+        options.wanted = number_wanted(region, runs, moving);
+        if (is_of_inside || (!region.is_solid && are_layered())) options.behind_wall_dp = 0;
+        if (is_of_inside) options.min_wall_distance_dp = 0.5;
+        options.has_free_surface = !is_of_inside;
+        if (options.wanted && region.is_solid && !is_of_inside)
+            options.least_pair_dp = least_pair_dp;
+        return options;
+    }
+
     /// runs  of the region, and of what is beside it, in their order in the field
     void relax_region(const Region& region, const AllWalls& all, const std::vector<SlabRun>& runs)
     {
@@ -457,19 +476,7 @@ private:
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)
         { return all.closest_point(p, within); };
-        RelaxVolumeOptions options;
-        options.dp = grid.dp;
-        options.h_dp = region.h_dp;
-        options.iterations =
-            region.iterations.value_or(is_of_inside ? inside_iterations : volume_iterations);
-        options.is_2d = grid.is_2d;
-        options.fit_count = region.fits_count;
-        options.wanted = number_wanted(region, runs, positions.size());
-        if (is_before_layers || is_of_inside) options.behind_wall_dp = 0;
-        if (is_of_inside) options.min_wall_distance_dp = 0.5;
-        options.has_free_surface = !is_of_inside;
-        if (options.wanted && region.is_solid && !is_of_inside)
-            options.least_pair_dp = least_pair_dp;
+        RelaxVolumeOptions options = options_of(region, runs, positions.size(), is_of_inside);
         options.on_iteration = [&](const RelaxVolumeProgress& p)
         {
             return observe({region.what, p.iteration, options.iterations,
@@ -483,16 +490,13 @@ private:
         if (!sliding.particles.empty()) keep_slid(sliding, movers.size(), positions, done);
         keep_moved(region, all, movers, positions, done.sources);
         if (region.is_solid) take_new_nodes(field_.walls, region, more, field_.grid.dp);
-
-        RelaxedPart part;
-        part.what = region.what;
-        part.iterations = done.iterations;
-        part.particles = relaxed;
-        part.inserted = done.inserted;
-        part.removed = done.removed;
-        part.mean = done.shepard_mean;
-        part.variation = done.shepard_variation;
-        report_.parts.push_back(part);
+        report_.parts.push_back({.what = region.what,
+                                 .iterations = done.iterations,
+                                 .particles = relaxed,
+                                 .inserted = done.inserted,
+                                 .removed = done.removed,
+                                 .mean = done.shepard_mean,
+                                 .variation = done.shepard_variation});
     }
 
     /// Puts wall particles that slid to their new places; those of the volume stay in `positions`.
