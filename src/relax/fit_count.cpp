@@ -95,8 +95,8 @@ Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t
     Vec3 best = band.place(i);
     for (int number = 0; number < 27; ++number)
     {
-        Vec3 direction{static_cast<double>(number % 3 - 1), static_cast<double>(number / 3 % 3 - 1),
-                       static_cast<double>(number / 9 - 1)};
+        const int x = number % 3 - 1, y = number / 3 % 3 - 1, z = number / 9 - 1;
+        Vec3 direction{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
         if (number == 13 || (options.is_2d && direction.y != 0)) continue;
         direction = direction / norm(direction);
         double gap = 2;
