@@ -156,8 +156,8 @@ void log_fluid_space(const RelaxReport& report, const MadeCase& made, CaseRunSta
                                                                             : std::size_t{0}}});
         if (missing < -too_much * litres.of(cavity))
             run.warn(fmt::format(
-                "{}: fluid mk {} has {:.1f} % more particles than fit between the walls: it is "
-                "drawn beyond their surface, and takes the places of their particles there.",
+                "{}: fluid mk {} has {:.1f} % more particles than fit between the walls; where it "
+                "is drawn beyond their surface it takes the places of their particles.",
                 made.def.file, mk, -100 * missing / litres.of(cavity)));
     }
 }

@@ -240,10 +240,7 @@ std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& s
     for (const Box3& box : fluid)
     {
         const Vec3 middle = 0.5 * (box.min + box.max);
-        bool is_within = true;
-        for (int axis = 0; axis < 3; ++axis)
-            is_within = is_within && middle[axis] > body.min[axis] && middle[axis] < body.max[axis];
-        if (!is_within || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
+        if (!body.has(middle, 0) || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
             out.push_back(middle);
     }
     return out;

@@ -263,6 +263,26 @@ TEST(FluidSpace, WhereASolidRunsThroughTheWallsOfATankItHasNone)
     EXPECT_NEAR(found, litres, 0.004 * litres);
 }
 
+TEST(FluidSpace, ThatIsDrawnThroughWallsIsWarnedOf)
+{
+    const auto column = [](double radius)
+    {
+        return make(case_of(
+            fmt::format(
+                R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.1375"><point x="0" y="0" z="0" /><point x="0" y="0" z="0.75" /></drawcylinder>
+<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0" y="0" z="0.1" /><point x="0" y="0" z="0.6" /></drawcylinder>)",
+                radius),
+            R"(<bodyfitted boundary="mdbc" />)"));
+    };
+    const std::string said = "more particles than fit between the walls";
+    const Result wide = column(0.18);
+    ASSERT_EQ(wide.code, 0) << wide.output;
+    EXPECT_TRUE(contains(wide.log, said)) << wide.log;
+    const Result narrow = column(0.07);
+    ASSERT_EQ(narrow.code, 0) << narrow.output;
+    EXPECT_FALSE(contains(narrow.log, said)) << narrow.log;
+}
+
 TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
 {
     const double asked = 777;
