@@ -28,8 +28,9 @@ struct FaultWords
 
 constexpr FaultWords words[fault_count] = {
     {"no_normal", "no normal", "boundary particles within 2h of fluid have no normal",
-     "The solver keeps them plain DBC. Give <norgeometry> a surface that covers them, or a larger "
-     "distanceh."},
+     "The solver keeps them plain DBC, with SlipMode 2 and 3 at an undefined velocity: a run can "
+     "lose fluid there, and two runs differ. Give <norgeometry> a surface that covers them, or a "
+     "larger distanceh."},
     {"ghost_outside", "outside", "ghost nodes lie outside the domain",
      "Normals lead out of the case, to the dry side of a wall or the wrong one: give <norgeometry> "
      "the wet side only (setnormalinvert turns a surface round), or draw the wall thicker."},

@@ -169,6 +169,7 @@ public:
         for (const NormalOp& op : def_.normals.ops) execute(op);
         if (particles_.off_lattice.size() > 0) fill_on_surfaces();
         summarise();
+        warn_of_no_normals();
         return std::move(normals_);
     }
 
@@ -469,6 +470,29 @@ private:
             report_.log.emplace_back("  *** All boundary particles without normal data.");
         else if (zeros > 0)
             report_.log.emplace_back("  *** There are boundary particles without normal data.");
+    }
+
+    /// Under SlipMode 2 and 3 the solver (v5.4, JSphCpuSingle::MdbcBoundCorrection) sets velocities
+    /// for viscosity at particles with a normal only: at others fluid meets what the memory held.
+    void warn_of_no_normals()
+    {
+        if (def_.solver.boundary != 2 || def_.solver.slip_mode < 2) return;
+        std::vector<std::uint16_t> mks;
+        for (const ParticleBlock& block : particles_.blocks)
+        {
+            if (block.type != ParticleType::Fixed && block.type != ParticleType::Moving) continue;
+            const Float3* first = normals_.data() + block.begin;
+            if (std::all_of(first, first + block.count,
+                            [](const Float3& n) { return n == Float3{}; }))
+                mks.push_back(block.mk_type);
+        }
+        if (mks.empty()) return;
+        report_.warnings.push_back(fmt::format(
+            "{}: mkbound {} has no normals. With SlipMode {} the solver takes an undefined "
+            "velocity "
+            "at such walls: a run can lose fluid there, and two runs differ. Let <bodyfitted> have "
+            "this mkbound too, or give it <normals>.",
+            def_.file, fmt::join(mks, ", "), def_.solver.slip_mode));
     }
 
     const CaseDef& def_;

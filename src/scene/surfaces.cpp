@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 
 #include "meshes/mesh_library.h"
+#include "scene/flat_shape.h"
 
 #include <fmt/format.h>
 
@@ -43,10 +44,11 @@ std::vector<ShapeMesh> surfaces_of(const Scene& scene, const DrawOp& draw, Parts
     const LatticeGrid& grid = scene.def->grid;
     const auto* polyhedron = shape_as<PolyhedronOp>(draw);
     const bool is_part = polyhedron != nullptr && polyhedron->part_count > 0;
-    if (parts == PartsAs::Drawn || (!is_part && !draw.state->mk_next_auto))
-        return shape_meshes(draw, mesh, grid);
-    if (is_part && polyhedron->part > 0) return {};
-    return shape_meshes(whole_of(draw), mesh, grid);
+    const bool is_whole = parts == PartsAs::Drawn || (!is_part && !draw.state->mk_next_auto);
+    if (!is_whole && is_part && polyhedron->part > 0) return {};
+    std::vector<ShapeMesh> shapes = shape_meshes(is_whole ? draw : whole_of(draw), mesh, grid);
+    give_section(shapes, grid);
+    return shapes;
 }
 
 ShapeMesh surface_of_part(const Scene& scene, const Combination& combination, std::size_t part,

@@ -17,8 +17,8 @@ enum class PartsAs
     One,   ///< as one body: at the first part the whole, at the others nothing
 };
 
-/// The true surfaces of a shape of a scene, as shape_meshes() gives them; none for a mesh file
-/// without facets and for what is no shape.
+/// The true surfaces of a shape of a scene, as shape_meshes() gives them, in 2D with what
+/// give_section() adds; none for a mesh file without facets and for what is no shape.
 ///
 /// throws  IoError, GeometryError for mesh files, with their places; GeometryError as
 ///         shape_meshes(), without

@@ -34,16 +34,8 @@ std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shape
 /// Rounding of the place of a shape, dp.
 constexpr double plane_tolerance = 1e-9;
 
-bool lies_in_plane(const std::vector<ShapeMesh>& shapes, const LatticeGrid& grid)
-{
-    if (!grid.is_2d) return false;
-    const auto [low, high] = heights_over_plane(shapes, grid);
-    return low >= -plane_tolerance && high <= plane_tolerance;
-}
-
 /// In 2D, whether shapes have no line in common with the plane of the particles though the lattice
-/// has nodes for them: they lie in the plane, beside it by less than half a step, or touch it in
-/// points.
+/// has nodes for them: they are beside it by less than half a step, or touch it in points.
 bool lacks_section(const std::vector<ShapeMesh>& shapes, const std::vector<FittedDraw>& walls,
                    const LatticeGrid& grid)
 {
@@ -138,7 +130,7 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
             "particles cannot follow; draw this shape with a mk that is not "
             "body-fitted, or without a pattern");
     std::vector<FittedDraw> walls;
-    if (state.draw_points && !lies_in_plane(shapes, grid))
+    if (state.draw_points)
         for (const ShapeMesh& shape : shapes)
             walls.push_back(fit(scene, draw, shape, settings, threads));
     if (state.draw_points && lacks_section(shapes, walls, grid))

@@ -417,27 +417,76 @@ TEST(FittedCase2d, HasTheParticlesOfACircleEvenlyOnIt)
         EXPECT_NEAR(angles[i] - angles[i - 1], even, 0.02 * even);
 }
 
-TEST(FittedCase2d, DrawsWhatLiesInThePlaneOnTheLatticeAndSaysSo)
+std::string side_box(const std::string& fill, const std::string& y, const std::string& size_y)
 {
-    for (const std::string shape :
-         {R"(<drawtriangle><point x="0.1" y="0.2" z="0.1" /><point x="0.9" y="0.2" z="0.1" />
-<point x="0.6" y="0.2" z="0.77" /></drawtriangle>)",
-          R"(<drawbox><boxfill>solid</boxfill><point x="0.1" y="0.2" z="0.1" />
-<size x="0.6" y="0" z="0.5" /></drawbox>)",
-          R"(<drawbox><boxfill>front</boxfill><point x="0.1" y="0.21" z="0.1" />
-<size x="0.6" y="0.3" z="0.5" /></drawbox>)"})
-    {
-        const TemporaryFolder folder;
-        const RunResult result = run_case(folder, flat_case(shape), {"-fit"});
-        ASSERT_EQ(result.code, 0) << result.output;
-        EXPECT_TRUE(
-            contains(result.output, "lies within dp/2 of the plane y = 0.2 of this 2D case"))
-            << result.output;
-        const TemporaryFolder lattice;
-        ASSERT_EQ(run_case(lattice, flat_case(shape)).code, 0);
-        EXPECT_GT(particles(folder).positions.size(), 100u);
-        EXPECT_EQ(read_text(folder / "out/Case.bi4") == read_text(lattice / "out/Case.bi4"), true);
-    }
+    return R"(<drawbox><boxfill>)" + fill + R"(</boxfill><point x="0.11" y=")" + y +
+           R"(" z="0.13" /><size x="0.61" y=")" + size_y + R"(" z="0.53" /></drawbox>)";
+}
+
+TEST(FittedCase2d, FitsWhatLiesInThePlaneAsWhatCrossesIt)
+{
+    const std::string water =
+        R"(<setmkfluid mk="0" /><fillbox x="0.4" y="0.2" z="0.3"><modefill>void</modefill><point x="0" y="0" z="0" /><size x="1" y="1" z="0.5" /></fillbox>)";
+    // The front of a box without a width covers all of it; beside the plane it has its nodes too.
+    for (const auto& [flat, deep] :
+         {std::pair{side_box("solid", "0.2", "0"), side_box("solid", "-0.8", "2")},
+          std::pair{side_box("all", "0.2", "0"), side_box("solid", "-0.8", "2")},
+          std::pair{side_box("front", "0.21", "0.3"), side_box("solid", "-0.8", "2")},
+          std::pair{side_box("bottom | left | right", "0.2", "0") + water,
+                    side_box("bottom | left | right", "-0.8", "2") + water}})
+        for (const std::string walls : {"<bodyfitted />", R"(<bodyfitted boundary="mdbc" />)"})
+        {
+            std::vector<std::vector<Vec3>> places;
+            for (const std::string& shape : {flat, deep})
+            {
+                const TemporaryFolder folder;
+                CaseText text = flat_case(shape);
+                text.after_geometry = "<fppg>" + walls + "</fppg>";
+                const RunResult result = run_case(folder, text);
+                ASSERT_EQ(result.code, 0) << result.output;
+                places.push_back(particles(folder).positions);
+            }
+            ASSERT_EQ(places[0].size(), places[1].size()) << flat << walls;
+            EXPECT_GT(places[0].size(), 100u);
+            for (const Vec3& p : places[0])
+                EXPECT_TRUE(std::any_of(places[1].begin(), places[1].end(),
+                                        [&](const Vec3& q) { return norm(p - q) < 1e-6; }))
+                    << flat << walls << p.x << ' ' << p.z;
+        }
+}
+
+TEST(FittedCase2d, FitsAFlatTriangle)
+{
+    const TemporaryFolder folder;
+    const RunResult result = run_case(
+        folder,
+        flat_case(
+            R"(<drawtriangle><point x="0.1" y="0.2" z="0.1" /><point x="0.9" y="0.2" z="0.1" />
+<point x="0.6" y="0.2" z="0.77" /></drawtriangle>)"),
+        {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::vector<Vec3> places = particles(folder).positions;
+    for (const Vec3& corner : {Vec3{0.1, 0.2, 0.1}, Vec3{0.9, 0.2, 0.1}, Vec3{0.6, 0.2, 0.77}})
+        EXPECT_TRUE(std::any_of(places.begin(), places.end(),
+                                [&](const Vec3& p) { return norm(p - corner) < 1e-9; }));
+    // Half of the outermost particles stands for the inside.
+    const double outline = 0.8 + std::hypot(0.5, 0.67) + std::hypot(0.3, 0.67);
+    EXPECT_NEAR(static_cast<double>(places.size()) * 0.05 * 0.05,
+                0.5 * 0.8 * 0.67 + outline * 0.025, 0.03 * 0.268);
+}
+
+TEST(FittedCase2d, DrawsWhatEndsBesideThePlaneOnTheLatticeAndSaysSo)
+{
+    const std::string shape = side_box("solid", "0.205", "0.01");
+    const TemporaryFolder folder;
+    const RunResult result = run_case(folder, flat_case(shape), {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "lies within dp/2 of the plane y = 0.2 of this 2D case"))
+        << result.output;
+    const TemporaryFolder lattice;
+    ASSERT_EQ(run_case(lattice, flat_case(shape)).code, 0);
+    EXPECT_GT(particles(folder).positions.size(), 100u);
+    EXPECT_EQ(read_text(folder / "out/Case.bi4") == read_text(lattice / "out/Case.bi4"), true);
 }
 
 TEST(FittedCase2d, HasTheSameParticlesHoweverFarABoxReachesBeyondThePlane)

@@ -83,6 +83,27 @@ std::size_t for_each_in_layers(const ParticleCloud& cloud, std::uint16_t mk, con
     return count;
 }
 
+/// The solver (v5.4) leaves the velocity of walls without normals undefined with SlipMode 2 and 3.
+TEST(WallsWithoutNormals, AreNamedWhereTheSolverLeavesTheirVelocityUndefined)
+{
+    for (const auto& [fitted, slip] : {std::pair{"0", "2"}, {"0", "1"}, {"0-1", "2"}})
+    {
+        CaseText text = body_in_tank(solid({-0.6, -0.4, 0.35}, {0.6, 0.4, 0.55}), true);
+        text.after_geometry =
+            fmt::format(R"(<fppg><bodyfitted mkbound="{}" boundary="mdbc" /></fppg>)", fitted);
+        text.execution = fmt::format(
+            R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="{}" /></parameters>)",
+            slip);
+        const TemporaryFolder folder;
+        write_text(folder / "Case_Def.xml", text.text());
+        const RunResult result = run(folder, {"Case_Def", "out/Case"});
+        EXPECT_EQ(result.code, 0) << result.output;
+        EXPECT_EQ(contains(result.output, "mkbound 1 has no normals. With SlipMode 2"),
+                  fitted == std::string("0") && slip == std::string("2"))
+            << result.output;
+    }
+}
+
 /// Water comes to the upper face of a plate of 4 dp over the water in waves, or when it goes down.
 class PlateOverWater : public testing::TestWithParam<std::tuple<bool, bool>>
 {
