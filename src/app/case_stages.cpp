@@ -20,6 +20,7 @@
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
 #include "scene/part_colours.h"
+#include "walls/lattice_shift.h"
 
 #include <fmt/format.h>
 
@@ -169,6 +170,13 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
                                        run.limit);
                   expect_metres(made.scene, run.threads);
+                  if (const Vec3 shift = lattice_shift(made.scene, run.threads); shift != Vec3{})
+                  {
+                      move_lattice(shift, made.def);
+                      run.log.line(fmt::format(
+                          "Lattice moved by ({:g}, {:g}, {:g}) m: fluid half a dp off flat walls",
+                          shift.x, shift.y, shift.z));
+                  }
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);

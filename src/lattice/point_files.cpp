@@ -8,6 +8,7 @@
 #include "lattice/point_text.h"
 #include "meshes/mesh_library.h"
 #include "nodes/domain.h"
+#include "nodes/run_at.h"
 #include "nodes/snap.h"
 
 #include <fmt/format.h>
@@ -19,20 +20,6 @@ namespace fppg
 {
 namespace
 {
-
-/// The run that a node is in; null: nothing is there.
-const Run* run_at(const RunField& field, const Node& n)
-{
-    if (!is_inside(n, field.grid)) return nullptr;
-    const std::vector<Run>& slab = field.slabs[static_cast<std::size_t>(n.x)];
-    const auto after =
-        std::upper_bound(slab.begin(), slab.end(), std::pair(n.y, n.z),
-                         [](const std::pair<std::int64_t, std::int64_t>& at, const Run& r)
-                         { return std::tuple(at.first, at.second) < std::tuple(r.y, r.z_begin); });
-    if (after == slab.begin()) return nullptr;
-    const Run& r = *std::prev(after);
-    return r.y == n.y && n.z < r.z_end ? &r : nullptr;
-}
 
 /// Whether a particle stands on a node.
 bool is_taken(const RunField& field, const Node& n)

@@ -18,6 +18,8 @@ namespace
 
 /// A stretch of this many particles that together make up for less than half of one is even enough.
 constexpr std::size_t even_stretch = 40;
+/// Where the number is known, sums of less are those of the planes that stand for walls.
+constexpr float least_excess = 0.04F;
 
 /// The share of the kernel's integral that is farther than a radius, by the rule of rectangles.
 double share_beyond(double radius, double h, bool is_2d)
@@ -266,6 +268,9 @@ CountChange find_count_change(const Band& band, const NeighbourList& list,
         if (lowest == list.rows() || excess[at] < excess[list.point(lowest)]) lowest = row;
         if (std::abs(sum) < 0.5) continue;
         if (length > even_stretch && !options.wanted)
+            sum = 0;
+        else if (options.wanted &&
+                 std::abs(excess[list.point(sum > 0 ? highest : lowest)]) < least_excess)
             sum = 0;
         else if (sum > 0)
         {

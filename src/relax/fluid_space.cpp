@@ -5,6 +5,7 @@
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "fit/near_nodes.h"
+#include "nodes/run_at.h"
 #include "relax/cube_share.h"
 #include "relax/regions.h"
 #include "relax/wall_ball.h"
@@ -153,25 +154,9 @@ public:
     }
 
 private:
-    /// The run of a node; null: none.
-    const Run* run_at(std::int64_t x, std::int64_t y, std::int64_t z) const
-    {
-        const LatticeGrid& grid = field_.grid;
-        if (x < 0 || y < 0 || z < 0 || x >= std::int64_t{grid.n[0]} ||
-            y >= std::int64_t{grid.n[1]} || z >= std::int64_t{grid.n[2]})
-            return nullptr;
-        const std::vector<Run>& runs = field_.slabs[static_cast<std::size_t>(x)];
-        const auto after = std::upper_bound(
-            runs.begin(), runs.end(), std::pair(y, z),
-            [](const auto& at, const Run& run)
-            { return at < std::pair<std::int64_t, std::int64_t>(run.y, run.z_begin); });
-        if (after == runs.begin()) return nullptr;
-        const Run& run = *(after - 1);
-        return run.y == y && run.z_end > z ? &run : nullptr;
-    }
     std::uint16_t fluid_at(std::int64_t x, std::int64_t y, std::int64_t z) const
     {
-        const Run* run = run_at(x, y, z);
+        const Run* run = run_at(field_, {x, y, z});
         return run != nullptr && !run->is_covered && run->mk < def_.mk_bound_first
                    ? run->mk
                    : std::uint16_t{};

@@ -50,10 +50,11 @@ bool has_old_walls(const Band& band, std::size_t i, float reach)
 }
 
 /// Whether no wall particle around a particle is in front of the plane of the nearest wall: then no
-/// second wall meets it there.
+/// second wall meets it there. Unknown, and so false, where walls have no particles here.
 bool is_alone(const Band& band, std::size_t i, std::span<const std::uint32_t> near,
               const WallPlane& plane)
 {
+    if (band.volume_end == band.points.size()) return false;
     constexpr float flatness = 0.3f;
     const auto x = static_cast<float>(plane.normal.x);
     const auto y = static_cast<float>(plane.normal.y);

@@ -3,6 +3,9 @@
 #include "core/lanes.h"
 #include "relax/kernel.h"
 
+#include <algorithm>
+#include <array>
+
 namespace fppg
 {
 
@@ -50,6 +53,59 @@ FPPG_AVX2 PairSums sum_pairs_avx2(const PointArrays& points, std::uint32_t i,
     return sum_pairs(points, i, near, factors);
 }
 
+/// A medium beyond a wall: its force on a particle and its share of the kernel's support.
+struct Beyond
+{
+    BandPlane plane;
+    double force;
+    double share;
+};
+
+double cosine(const Beyond& a, const Beyond& b)
+{
+    return double{a.plane.x * b.plane.x + a.plane.y * b.plane.y + a.plane.z * b.plane.z};
+}
+
+/// What lies beyond two walls at once, of shares `a` and `b`: their product where the walls are at
+/// right angles (exact for a Gaussian kernel), nothing between walls that face each other, the
+/// smaller where they turn little.
+double overlap(double a, double b, double cosine)
+{
+    return cosine < 0 ? (1 + cosine) * a * b : (1 - cosine) * a * b + cosine * std::min(a, b);
+}
+
+/// Its derivative by `a`.
+double overlap_slope(double a, double b, double cosine)
+{
+    if (cosine < 0) return (1 + cosine) * b;
+    return (1 - cosine) * b + (a < b ? cosine : a > b ? 0 : cosine / 2);
+}
+
+/// Adds walls that may meet: what is beyond several counts once.
+void add_walls(std::span<const Beyond> walls, VolumeForces::Result& result)
+{
+    double all = 0;
+    for (std::size_t k = 0; k < walls.size(); ++k)
+    {
+        const Beyond& wall = walls[k];
+        double kept = 1;
+        double turn = -1;
+        for (std::size_t j = 0; j < walls.size(); ++j)
+        {
+            if (j == k) continue;
+            const double c = cosine(wall, walls[j]);
+            kept *= 1 - overlap_slope(wall.share, walls[j].share, c);
+            if (j < k) turn = std::max(turn, c);
+        }
+        all += wall.share - (k > 0 ? overlap(wall.share, all, turn) : 0);
+        const auto size = static_cast<float>(wall.force * kept);
+        result.x -= size * wall.plane.x;
+        result.y -= size * wall.plane.y;
+        result.z -= size * wall.plane.z;
+    }
+    result.shepard += all;
+}
+
 } // namespace
 
 VolumeForces::VolumeForces(double h, double behind_wall, bool is_2d)
@@ -67,17 +123,16 @@ VolumeForces::Result VolumeForces::on(const Band& band, std::uint32_t i,
 {
     const PairSums pairs = sum_pairs_(band.points, i, near, factors_);
     Result result{pairs.x, pairs.y, pairs.z, alpha_ * (1 + static_cast<double>(pairs.weight))};
+    std::array<Beyond, 3> walls;
+    std::size_t count = 0;
     for_each_wall(band, i,
                   [&](const BandPlane& plane, float distance)
                   {
                       const double way = double{distance} + behind_wall_;
                       if (way >= beyond_.reach()) return;
-                      const auto size = static_cast<float>(beyond_.force(way));
-                      result.x -= size * plane.x;
-                      result.y -= size * plane.y;
-                      result.z -= size * plane.z;
-                      result.shepard += beyond_.share(way);
+                      walls[count++] = {plane, beyond_.force(way), beyond_.share(way)};
                   });
+    add_walls(std::span(walls).first(count), result);
     return result;
 }
 

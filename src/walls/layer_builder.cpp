@@ -11,6 +11,7 @@
 #include "offset/layer_place.h"
 #include "offset/offset_surface.h"
 #include "walls/fit_shape.h"
+#include "walls/flat_layers.h"
 
 #include <fmt/format.h>
 
@@ -304,6 +305,9 @@ void LayerBuilder::add_particles(FittedBody& layer, std::uint32_t index)
                                              : surface_of(layer, settings_, spaced, threads_);
     for (std::size_t kind = 0; kind < layer.left_out.size(); ++kind)
         out_.body.left_out[kind] += std::exchange(layer.left_out[kind], 0);
+    // Bodies with Placement::Inside need not fit to fluid.
+    std::vector<char> is_node(particles.positions.size(), 0);
+    if (!grid_.is_2d && !layer.is_inside) is_node = take_nodes_on_flats(layer, grid_, particles);
     const LayerPlaces places(layer, grid_.dp);
     std::vector<char> is_out(particles.positions.size());
     parallel_for(
@@ -328,7 +332,7 @@ void LayerBuilder::add_particles(FittedBody& layer, std::uint32_t index)
         to.bodies.push_back(index);
         to.facets.push_back(particles.facets[i]);
         to.mk.push_back(0);
-        to.held.push_back(0);
+        to.held.push_back(is_node[i]);
     }
 }
 

@@ -1,0 +1,243 @@
+#include "walls/lattice_shift.h"
+
+#include "fppg/error.h"
+#include "fppg/lattice.h"
+
+#include "nodes/run_at.h"
+#include "walls/step_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace fppg
+{
+namespace
+{
+
+/// Of the normal of a facet across an axis, less one.
+constexpr double off_axis = 1e-8;
+/// Facets are judged in pieces of about this length, dp; a side in this many at most.
+constexpr double piece_dp = 4;
+constexpr int most_pieces = 24;
+/// Where fluid is looked for off a facet, dp.
+constexpr std::array<double, 2> looks_dp{1.0, 2.0};
+/// What is nearer than a bin of dp counts as one place.
+constexpr std::size_t bins = 100;
+constexpr double rounding = 1e-6;
+constexpr double wider_dp = 0.01;
+
+/// Area of walls beside fluid, by the place of their planes within a step of the lattice, 0 to 1.
+class WallPlaces
+{
+public:
+    void add(double place, double wet)
+    {
+        // Round places are in the middles of bins.
+        const double at = place * bins + 0.5;
+        const double bin = std::floor(at);
+        const auto b = static_cast<std::size_t>(bin) % bins;
+        area_[b] += wet;
+        off_[b] += wet * (at - bin - 0.5);
+    }
+
+    /// The place of the most area; nothing without any.
+    std::optional<double> most() const
+    {
+        std::size_t best = 0;
+        for (std::size_t b = 1; b < bins; ++b)
+            if (area_[b] > area_[best] * (1 + rounding)) best = b;
+        if (!(area_[best] > 0)) return std::nullopt;
+        return (static_cast<double>(best) + off_[best] / area_[best]) / bins;
+    }
+
+private:
+    std::array<double, bins> area_{};
+    std::array<double, bins> off_{}; ///< times area, in bins from the middle
+};
+
+bool has_layers(const FitSettings& settings)
+{
+    return !settings.depths_dp.empty() && settings.depths_dp[0] > 0;
+}
+
+bool relaxes_fluid(const CaseDef& def)
+{
+    for (std::uint16_t mk = 0; mk < def.mk_bound_first; ++mk)
+        if (const FluidBand* band = fluid_band(def, mk); band != nullptr && band->is_active)
+            return true;
+    return false;
+}
+
+/// Whether a step leaves boundary particles on the lattice.
+bool bounds_lattice(const SceneStep& step, const FitDef& fit)
+{
+    const DrawState& state = *step.draw->state;
+    if (state.mk.kind != MkKind::Bound || step.is_part) return false;
+    if (step.edit() != nullptr) return true;
+    if (!step.combination && step.shape() == nullptr) return false;
+    if (!state.draw_points) return false;
+    return fit_settings(fit, state.mk.mk) == nullptr ||
+           (!step.combination && state.mode == DrawMode::Wire);
+}
+
+bool may_move(const Scene& scene)
+{
+    const CaseDef& def = *scene.def;
+    const InOutZones& inout = def.solver.inout;
+    if (def.fit.is_empty() || def.vres.is_active() || !inout.mk.empty() || !inout.boxes.empty() ||
+        !relaxes_fluid(def))
+        return false;
+    const auto remaining = scene.remaining();
+    return std::none_of(remaining.begin(), remaining.end(),
+                        [&](const SceneStep& step) { return bounds_lattice(step, def.fit); });
+}
+
+class WetPlanes
+{
+public:
+    WetPlanes(const RunField& field, std::uint16_t first_bound)
+        : field_(field), first_bound_(first_bound)
+    {
+    }
+
+    void add(const ShapeMesh& shape)
+    {
+        const std::vector<Vec3>& v = shape.soup.vertices;
+        for (std::size_t i = 0; i + 2 < v.size(); i += 3)
+        {
+            const Vec3 across = cross(v[i + 1] - v[i], v[i + 2] - v[i]);
+            const double size = norm(across);
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                if (!(std::abs(across[axis]) > (1 - off_axis) * size)) continue;
+                const double at = (v[i][axis] - field_.grid.origin[axis]) / field_.grid.dp;
+                const double wet =
+                    wet_share({v[i], v[i + 1], v[i + 2]}, across / size, !shape.is_solid);
+                places_[static_cast<std::size_t>(axis)].add(at - std::floor(at), wet * size / 2);
+            }
+        }
+    }
+
+    const WallPlaces& of(int axis) const { return places_[static_cast<std::size_t>(axis)]; }
+
+private:
+    bool is_fluid(const Vec3& p) const
+    {
+        Node n;
+        const Vec3 at = (p - field_.grid.origin) / field_.grid.dp;
+        n.x = index_near(at.x);
+        n.y = field_.grid.is_2d ? 0 : index_near(at.y);
+        n.z = index_near(at.z);
+        const Run* run = run_at(field_, n);
+        return run != nullptr && run->mk < first_bound_;
+    }
+
+    static std::int64_t index_near(double at)
+    {
+        return static_cast<std::int64_t>(std::clamp(std::round(at), -1.0, 1e10));
+    }
+
+    /// How much of a facet has fluid before it, or behind it where it is a sheet.
+    double wet_share(const std::array<Vec3, 3>& corners, const Vec3& normal, bool is_sheet) const
+    {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, norm(corners[(k + 1) % 3] - corners[k]));
+        const int parts = static_cast<int>(std::clamp(longest / (piece_dp * field_.grid.dp), 1.0,
+                                                      static_cast<double>(most_pieces)));
+        int wet = 0;
+        int all = 0;
+        for (int a = 0; a < parts; ++a)
+            for (int b = 0; a + b < parts; ++b)
+            {
+                const double s = (a + 1.0 / 3) / parts;
+                const double t = (b + 1.0 / 3) / parts;
+                const Vec3 p =
+                    corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
+                ++all;
+                for (const double look : looks_dp)
+                {
+                    const Vec3 off = (look * field_.grid.dp) * normal;
+                    if (!is_fluid(p + off) && !(is_sheet && is_fluid(p - off))) continue;
+                    ++wet;
+                    break;
+                }
+            }
+        return static_cast<double>(wet) / all;
+    }
+
+    const RunField& field_;
+    std::uint16_t first_bound_;
+    std::array<WallPlaces, 3> places_;
+};
+
+/// Fills end at nodes. What a box of them holds between two nodes is in it, not left to rounding.
+void widen(BoxRegion& box, const Vec3& shift, double dp)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (shift[axis] == 0) continue;
+        const bool is_upward = box.corner0[axis] <= box.corner1[axis];
+        (is_upward ? box.corner0 : box.corner1)[axis] -= wider_dp * dp;
+        (is_upward ? box.corner1 : box.corner0)[axis] += wider_dp * dp;
+    }
+}
+
+} // namespace
+
+Vec3 lattice_shift(const Scene& scene, int threads)
+{
+    const CaseDef& def = *scene.def;
+    if (!may_move(scene)) return {};
+    Vec3 shift;
+    try
+    {
+        LatticeReport unused;
+        const RunField field = draw_on_lattice(scene, threads, {}, unused);
+        WetPlanes walls(field, def.mk_bound_first);
+        for (const SceneStep& step : scene.remaining())
+        {
+            const DrawState& state = *step.draw->state;
+            if (step.is_part || state.mk.kind != MkKind::Bound || !state.draw_points) continue;
+            const FitSettings* settings = fit_settings(def.fit, state.mk.mk);
+            if (settings == nullptr || !has_layers(*settings)) continue;
+            for (const StepSurface& surface : step_surfaces(scene, step, threads))
+                walls.add(surface.shape);
+        }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (def.grid.is_periodic[static_cast<std::size_t>(axis)]) continue;
+            if (axis == 1 && def.grid.is_2d) continue;
+            const std::optional<double> place = walls.of(axis).most();
+            if (!place) continue;
+            const double moved = *place + 0.5 - std::floor(*place + 0.5);
+            if (moved > rounding && moved < 1 - rounding) shift[axis] = moved * def.grid.dp;
+        }
+    }
+    catch (const Error&)
+    {
+        return {}; // drawing the walls says what is wrong
+    }
+    return shift;
+}
+
+void move_lattice(const Vec3& shift, CaseDef& def)
+{
+    LatticeGrid& grid = def.grid;
+    for (DrawOp& op : def.ops)
+        if (auto* edit = std::get_if<Edit>(&op.what))
+            if (auto* fill = std::get_if<FillOp>(edit); fill != nullptr && fill->region)
+                if (auto* box = std::get_if<BoxRegion>(&*fill->region)) widen(*box, shift, grid.dp);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (shift[axis] == 0) continue;
+        std::uint32_t& n = grid.n[static_cast<std::size_t>(axis)];
+        grid.origin[axis] += shift[axis];
+        const double last = grid.origin[axis] + (n - 1) * grid.dp;
+        if (n > 1 && last > def.case_pos_max[axis] + rounding * grid.dp) --n;
+    }
+}
+
+} // namespace fppg
