@@ -27,6 +27,8 @@ constexpr double narrow_moving = 2; ///< the same where one of two moves past th
 constexpr double touching = 0.05;   ///< between walls: none
 constexpr double off_the_wall = 2;  ///< where the fluid is looked for that a place belongs to
 constexpr double reach_of_cell = 0.87;
+/// A node on a face of a solid is asked so far before it whether another solid is there, dp.
+constexpr double off_the_face = 1e-3;
 /// Walls whose ball is smaller than this may both cut a cell.
 constexpr double near_two_walls = 1.2;
 /// A wall's point whose direction differs more from its facet's normal is on an edge.
@@ -192,27 +194,33 @@ private:
     /// The fluid to which a cell belongs, that is met on the way from a place to where all walls
     /// are 2 dp away. Each step is shorter than the distance to the nearest wall, so that it passes
     /// through none.
-    std::uint16_t fluid_beside(const CellAtWall& cell, Vec3 p) const
+    std::uint16_t fluid_beside(const CellAtWall& cell, const WallBall& ball) const
     {
         constexpr int most_steps = 8;
         const double dp = field_.grid.dp;
-        std::uint16_t mk = fluid_at_place(cell, p, true);
+        Vec3 p = ball.center;
+        std::uint16_t mk = fluid_at_place(cell, p, &ball);
         for (int step = 0; step < most_steps && mk == 0; ++step)
         {
             const Vec3 off = p - closest_(p, off_the_wall * dp);
             const double distance = norm(off);
             if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
             p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
-            mk = fluid_at_place(cell, p, false);
+            mk = fluid_at_place(cell, p, nullptr);
         }
         return mk;
     }
 
     /// The fluid of the node nearest to a place, or to that under it in the level of the cell;
-    /// where `all_around` that of any node around it. Fluid deeper than the cell may lie under a
-    /// free surface.
-    std::uint16_t fluid_at_place(const CellAtWall& cell, const Vec3& p, bool all_around) const
+    /// with a ball that of any node around it which is not beyond the other wall that this touches.
+    /// Fluid deeper than the cell may lie under a free surface.
+    std::uint16_t fluid_at_place(const CellAtWall& cell, const Vec3& p, const WallBall* ball) const
     {
+        const auto is_beyond = [&](const Vec3& node)
+        {
+            const Vec3 off = field_.grid.origin + field_.grid.dp * node - ball->other;
+            return dot(off, ball->center - ball->other) < 0;
+        };
         const double before_wall = cell.is_behind ? 0.5 : 0;
         const Vec3 here = in_nodes(p);
         Vec3 under = here + std::max(0.0, dot(cell.node - here, down_)) * down_;
@@ -226,10 +234,13 @@ private:
                 return mk != 0 && (!is_deeper || is_under_roof(cell)) ? mk : std::uint16_t{};
             };
             std::uint16_t mk = take({std::round(at.x), std::round(at.y), std::round(at.z)});
-            for (int i = 0; i < 8 && all_around && mk == 0; ++i)
-                mk = take({std::floor(at.x) + (i & 1),
-                           field_.grid.is_2d ? 0 : std::floor(at.y) + (i >> 1 & 1),
-                           std::floor(at.z) + (i >> 2)});
+            for (int i = 0; i < 8 && ball != nullptr && mk == 0; ++i)
+            {
+                const Vec3 node{std::floor(at.x) + (i & 1),
+                                field_.grid.is_2d ? 0 : std::floor(at.y) + (i >> 1 & 1),
+                                std::floor(at.z) + (i >> 2)};
+                if (!is_beyond(node)) mk = take(node);
+            }
             if (mk != 0) return mk;
         }
         return 0;
@@ -291,8 +302,8 @@ private:
             out.is_pocket = is_before || field_.walls.bodies[near.body].measures.volume <= 0;
         else
             out.fluid = ball.radius < off_the_wall * dp * (1 - 1e-9)
-                            ? fluid_beside(cell, ball.center)
-                            : fluid_at_place(cell, ball.center, false);
+                            ? fluid_beside(cell, ball)
+                            : fluid_at_place(cell, ball.center, nullptr);
         return out;
     }
 
@@ -379,7 +390,7 @@ private:
         // Where the fluid itself stands it need not be looked for.
         if (fluid != 0 && !own.is_pocket && !own.is_solid)
             own.fluid = fluid;
-        else if (own.fluid != 0 && is_in_other_solid(p))
+        else if (own.fluid != 0 && is_in_other_solid(p + off_the_face * dp * up))
             own.fluid = 0;
         add(own, p, before * volume, out);
         if (before == 1 || is_solid_behind) return;

@@ -63,7 +63,8 @@ Result make(const TemporaryFolder& folder, const CaseText& text, const Arguments
 /// What gravity is in these cases.
 constexpr double g = 9.81;
 
-/// Accelerations of the fluid over gravity, as the solver with dynamic boundaries sums them.
+/// Accelerations of the fluid over gravity, as the solver with dynamic boundaries sums them; of the
+/// two highest rows along the surface only, as they draw together in every lattice.
 std::vector<double> accelerations(const Result& r, double b)
 {
     std::vector<double> out;
@@ -72,6 +73,9 @@ std::vector<double> accelerations(const Result& r, double b)
     const double mass = 1000 * dp * dp * dp;
     const double factor = -5 * 21 / (16 * std::numbers::pi) / (h * h * h * h * h);
     const std::vector<Vec3>& at = r.cloud.positions;
+    double highest = 0;
+    for (std::size_t i = 0; i < at.size(); ++i)
+        if (r.cloud.mk[i] < first_bound) highest = std::max(highest, at[i].z);
     for (std::size_t i = 0; i < at.size(); ++i)
     {
         if (r.cloud.mk[i] >= first_bound) continue;
@@ -85,6 +89,7 @@ std::vector<double> accelerations(const Result& r, double b)
                         (double{r.densities[i]} * double{r.densities[j]}) * factor *
                         std::pow(1 - q / 2, 3) * away;
         }
+        if (at[i].z > highest - 1.5 * dp) a.z = 0;
         out.push_back(norm(a) / g);
     }
     std::sort(out.begin(), out.end());
