@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace fppg
 {
@@ -20,6 +21,12 @@ constexpr double off_nodes_dp = 0.01;
 /// From nodes to particles on edges and corners, and to those of other parts, dp.
 constexpr double off_features_dp = 0.7;
 constexpr double off_others_dp = 0.75;
+/// From nodes to the edges around them, dp: how far to look.
+constexpr double farthest_border_dp = 1.6;
+/// Edges a step away that run between two nodes are 1.12 dp from these.
+constexpr double nearest_border_dp = 0.96;
+constexpr double far_border_dp = 1.13;
+constexpr double least_matched = 0.6; ///< of the particles on edges around a plane
 constexpr double node_rounding = 1e-9;
 
 /// The axis across which a facet lies on a plane of nodes.
@@ -70,22 +77,19 @@ void add_nodes(const SurfaceMesh& mesh, std::uint32_t facet, int axis, const Lat
         }
 }
 
-} // namespace
+/// A plane of nodes.
+using Plane = std::pair<int, std::int64_t>;
 
-std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid& grid,
-                                      SurfaceParticles& particles)
+Vec3 place_of(const std::array<std::int64_t, 3>& node, const LatticeGrid& grid)
 {
-    const SurfaceMesh& mesh = layer.mesh;
-    std::vector<char> is_flat(mesh.facets.size(), 0);
-    FlatNodes nodes;
-    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
-        if (const std::optional<int> axis = axis_of(mesh, f, grid))
-        {
-            is_flat[f] = 1;
-            add_nodes(mesh, f, *axis, grid, nodes);
-        }
-    std::vector<char> is_node(particles.positions.size(), 0);
-    if (nodes.empty()) return is_node;
+    return grid.origin + grid.dp * Vec3{static_cast<double>(node[0]), static_cast<double>(node[1]),
+                                        static_cast<double>(node[2])};
+}
+
+/// Leaves nodes out that are too near to particles which stay.
+void keep_off_others(const std::vector<char>& is_flat, const LatticeGrid& grid,
+                     const SurfaceParticles& particles, FlatNodes& nodes)
+{
     PointGrid features(off_features_dp * grid.dp, particles.positions.size() / 4);
     PointGrid others(off_others_dp * grid.dp, particles.positions.size() / 4);
     for (std::size_t i = 0; i < particles.positions.size(); ++i)
@@ -93,41 +97,96 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
             features.add(particles.positions[i]);
         else if (is_flat[particles.facets[i]] == 0)
             others.add(particles.positions[i]);
-    PointGrid taken(off_others_dp * grid.dp, nodes.size());
-    SurfaceParticles found;
+    std::erase_if(nodes,
+                  [&](const auto& node)
+                  {
+                      const Vec3 place = place_of(node.first, grid);
+                      return features.has_nearer(place, off_features_dp * grid.dp) ||
+                             others.has_nearer(place, off_others_dp * grid.dp);
+                  });
+}
+
+/// Whether most particles on edges at a plane are a step from its outermost nodes: else these would
+/// leave gaps along the edges, or crowd there.
+bool is_matched(const Plane& plane, const FlatNodes& nodes, const LatticeGrid& grid,
+                const SurfaceParticles& particles)
+{
+    PointGrid on_plane(farthest_border_dp * grid.dp, nodes.size());
     for (const auto& [node, facet] : nodes)
-    {
-        const Vec3 place =
-            grid.origin + grid.dp * Vec3{static_cast<double>(node[0]), static_cast<double>(node[1]),
-                                         static_cast<double>(node[2])};
-        if (features.has_nearer(place, off_features_dp * grid.dp) ||
-            others.has_nearer(place, off_others_dp * grid.dp))
-            continue;
-        taken.add(place);
-        found.positions.push_back(place);
-        found.kinds.push_back(FitKind::Surface);
-        found.facets.push_back(facet);
-    }
-    std::size_t kept = 0;
+        if (node[static_cast<std::size_t>(plane.first)] == plane.second)
+            on_plane.add(place_of(node, grid));
+    const double height = grid.origin[plane.first] + static_cast<double>(plane.second) * grid.dp;
+    std::size_t all = 0;
+    std::size_t matched = 0;
     for (std::size_t i = 0; i < particles.positions.size(); ++i)
     {
-        if (particles.kinds[i] == FitKind::Surface && is_flat[particles.facets[i]] != 0 &&
-            taken.has_nearer(particles.positions[i], off_others_dp * grid.dp))
+        const Vec3& p = particles.positions[i];
+        if (particles.kinds[i] != FitKind::Edge ||
+            std::abs(p[plane.first] - height) > off_nodes_dp * grid.dp ||
+            !on_plane.has_nearer(p, farthest_border_dp * grid.dp))
             continue;
-        particles.positions[kept] = particles.positions[i];
-        particles.kinds[kept] = particles.kinds[i];
-        particles.facets[kept++] = particles.facets[i];
+        ++all;
+        if (on_plane.has_nearer(p, far_border_dp * grid.dp) &&
+            !on_plane.has_nearer(p, nearest_border_dp * grid.dp))
+            ++matched;
     }
-    const auto replace = [&](auto& array, const auto& more)
+    return static_cast<double>(matched) >= least_matched * static_cast<double>(all);
+}
+
+/// Gives planes whose edges do not fit to their nodes up.
+void keep_matched(const LatticeGrid& grid, const SurfaceParticles& particles,
+                  const std::map<std::uint32_t, Plane>& plane_of, std::vector<char>& is_flat,
+                  FlatNodes& nodes)
+{
+    std::map<Plane, bool> fits;
+    for (const auto& [facet, plane] : plane_of)
     {
-        array.resize(kept);
-        array.insert(array.end(), more.begin(), more.end());
+        const auto [at, is_new] = fits.try_emplace(plane, false);
+        if (is_new) at->second = is_matched(plane, nodes, grid, particles);
+        is_flat[facet] = at->second;
+    }
+    std::erase_if(nodes, [&](const auto& node) { return is_flat[node.second] == 0; });
+}
+
+} // namespace
+
+std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid& grid,
+                                      SurfaceParticles& particles)
+{
+    const SurfaceMesh& mesh = layer.mesh;
+    std::vector<char> is_flat(mesh.facets.size(), 0);
+    std::map<std::uint32_t, Plane> plane_of;
+    FlatNodes nodes;
+    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+        if (const std::optional<int> axis = axis_of(mesh, f, grid))
+        {
+            is_flat[f] = 1;
+            const double at = mesh.vertices[mesh.facets[f][0]][*axis] - grid.origin[*axis];
+            plane_of[f] = {*axis, std::llround(at / grid.dp)};
+            add_nodes(mesh, f, *axis, grid, nodes);
+        }
+    if (!nodes.empty())
+    {
+        keep_off_others(is_flat, grid, particles, nodes);
+        keep_matched(grid, particles, plane_of, is_flat, nodes);
+    }
+    PointGrid taken(off_others_dp * grid.dp, nodes.size());
+    for (const auto& [node, facet] : nodes) taken.add(place_of(node, grid));
+    SurfaceParticles out;
+    const auto add = [&](const Vec3& place, FitKind kind, std::uint32_t facet)
+    {
+        out.positions.push_back(place);
+        out.kinds.push_back(kind);
+        out.facets.push_back(facet);
     };
-    replace(particles.positions, found.positions);
-    replace(particles.kinds, found.kinds);
-    replace(particles.facets, found.facets);
-    is_node.assign(kept, 0);
-    is_node.resize(particles.positions.size(), 1);
+    for (std::size_t i = 0; i < particles.positions.size(); ++i)
+        if (particles.kinds[i] != FitKind::Surface || is_flat[particles.facets[i]] == 0 ||
+            !taken.has_nearer(particles.positions[i], off_others_dp * grid.dp))
+            add(particles.positions[i], particles.kinds[i], particles.facets[i]);
+    std::vector<char> is_node(out.positions.size(), 0);
+    for (const auto& [node, facet] : nodes) add(place_of(node, grid), FitKind::Surface, facet);
+    is_node.resize(out.positions.size(), 1);
+    particles = std::move(out);
     return is_node;
 }
 

@@ -10,11 +10,11 @@
 namespace fppg
 {
 
-/// Gives flat parts of a layer that lie on a plane of the lattice's nodes these nodes as their
-/// particles, up to 0.7 dp from particles on edges and corners and 0.75 dp from those of other
-/// parts. Fluid beside them stands on nodes too (lattice_shift()), and walls and fluid are one
-/// crystal, as on the lattice: beside rows that are even but run otherwise, water in a tank of
-/// 16 x 16 x 12 dp circulates at 0.009 m/s.
+/// Gives flat parts of a layer that lie on a plane of the lattice's nodes, and whose edges are a
+/// step from these, the nodes as their particles. Fluid beside them stands on nodes too
+/// (lattice_shift()), and walls and fluid are one crystal, as on the lattice: beside even rows that
+/// run otherwise, water in a tank of 16 x 16 x 12 dp moves twice as fast in the first half second
+/// (mDBC: mean 0.0066 m/s, beside nodes 0.0034).
 ///
 /// particles  of the layer; those that nodes replace go, nodes come behind the others
 /// returns    per particle, whether it is such a node

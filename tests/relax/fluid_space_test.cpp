@@ -226,6 +226,61 @@ std::string filled_from(const Vec3& seed)
         seed.x, seed.y, seed.z);
 }
 
+/// The walls at x = 0.013 and so on are off the nodes of the definition, which are at multiples of
+/// dp.
+TEST(FluidSpace, BetweenWallsAWholeNumberOfStepsApartIsACrystalWithThem)
+{
+    constexpr double x = 0.013, y = 0.021, z = -0.017;
+    const Result r = make(case_of(
+        fmt::format(
+            R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="{}" y="{}" z="{}" /><size x="0.8" y="0.7" z="0.9" /></drawbox>)",
+            x, y, z) +
+            filled_from({0.2, 0.4, 0.3}),
+        R"(<bodyfitted boundary="mdbc" /><fluidband balance="false" />)"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto off_crystal = [&](const Vec3& p)
+    {
+        const Vec3 at = (p - Vec3{x, y, z}) / dp - Vec3{0.5, 0.5, 0.5};
+        return norm(at - Vec3{std::round(at.x), std::round(at.y), std::round(at.z)});
+    };
+    std::size_t fluid = 0;
+    std::size_t floor = 0;
+    for (std::size_t i = 0; i < r.cloud.positions.size(); ++i)
+    {
+        const Vec3& p = r.cloud.positions[i];
+        const bool is_fluid = r.cloud.mk[i] < first_bound;
+        const bool is_floor = p.z < z && p.z > z - dp && p.x > x + dp && p.x < x + 0.8 - dp &&
+                              p.y > y + dp && p.y < y + 0.7 - dp;
+        fluid += is_fluid ? 1 : 0;
+        floor += is_floor ? 1 : 0;
+        if (is_fluid || is_floor)
+        {
+            EXPECT_LT(off_crystal(p), 0.12) << p.x << ' ' << p.y << ' ' << p.z;
+        }
+    }
+    EXPECT_EQ(fluid, 16u * 14u * 9u);
+    EXPECT_EQ(floor, 14u * 12u);
+}
+
+TEST(FluidSpace, AFaceOfASolidOnNodesHasItsFluid)
+{
+    // The lattice moves to the floor, and a face under the block comes to lie on nodes.
+    for (const double below : {0.125, 0.135})
+    {
+        const std::string block = fmt::format(
+            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.41" y="0.32" z="{}" /><size x="0.4" y="0.4" z="0.09" /></drawbox>)",
+            below);
+        const Result r = make(case_of(
+            R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.23" y="1.04" z="1" /></drawbox>)" +
+                block + filled_from({0.2, 0.2, 0.2}),
+            R"(<bodyfitted boundary="mdbc" />)"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        const double litres = 1000 * (1.23 * 1.04 * r.level() - 0.4 * 0.4 * 0.09);
+        const auto found = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;
+        EXPECT_NEAR(found, litres, 0.001 * litres) << below;
+    }
+}
+
 TEST(FluidSpace, UnderAFreeSurfaceEndsAtItBesideLeaningWallsToo)
 {
     const Vec3 middle{0.613, 0.521, 0.42};
