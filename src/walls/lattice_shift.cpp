@@ -233,10 +233,9 @@ void move_lattice(const Vec3& shift, CaseDef& def)
     for (int axis = 0; axis < 3; ++axis)
     {
         if (shift[axis] == 0) continue;
-        std::uint32_t& n = grid.n[static_cast<std::size_t>(axis)];
-        grid.origin[axis] += shift[axis];
-        const double last = grid.origin[axis] + (n - 1) * grid.dp;
-        if (n > 1 && last > def.case_pos_max[axis] + rounding * grid.dp) --n;
+        // A node more: walls at the ends of the domain keep all of their layers.
+        grid.origin[axis] += shift[axis] - grid.dp;
+        ++grid.n[static_cast<std::size_t>(axis)];
     }
 }
 

@@ -18,7 +18,7 @@ namespace fppg
 /// returns  metres, from 0 to below dp along each axis
 Vec3 lattice_shift(const Scene& scene, int threads);
 
-/// Moves the lattice, within the domain.
+/// Moves the lattice, which then begins and ends less than dp beyond the domain.
 void move_lattice(const Vec3& shift, CaseDef& def);
 
 } // namespace fppg

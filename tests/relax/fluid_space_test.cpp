@@ -262,6 +262,29 @@ TEST(FluidSpace, BetweenWallsAWholeNumberOfStepsApartIsACrystalWithThem)
     EXPECT_EQ(floor, 14u * 12u);
 }
 
+TEST(FluidSpace, AMovedLatticeKeepsLayersAtTheEndOfTheDomain)
+{
+    std::vector<std::size_t> numbers;
+    for (const char* low : {"-0.4", "-0.145", "-0.13"})
+    {
+        CaseText text = case_of(
+            R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="0.8" y="0.7" z="0.9" /></drawbox>)" +
+                filled_from({0.2, 0.4, 0.3}),
+            R"(<bodyfitted boundary="mdbc" />)");
+        text.pointmin = fmt::format(R"(<pointmin x="-0.4" y="-0.4" z="{}" />)", low);
+        const Result r = make(text);
+        ASSERT_EQ(r.code, 0) << r.output;
+        numbers.push_back(r.cloud.positions.size());
+        EXPECT_EQ(
+            std::count_if(r.cloud.positions.begin(), r.cloud.positions.end(),
+                          [](const Vec3& p) { return std::abs(p.z + 2.5 * dp) < 1e-6; }) > 200,
+            true)
+            << low;
+    }
+    EXPECT_EQ(numbers[1], numbers[0]);
+    EXPECT_EQ(numbers[2], numbers[0]);
+}
+
 TEST(FluidSpace, AFaceOfASolidOnNodesHasItsFluid)
 {
     // The lattice moves to the floor, and a face under the block comes to lie on nodes.
