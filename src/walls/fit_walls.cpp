@@ -9,6 +9,7 @@
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
 #include "walls/fit_shape.h"
+#include "walls/lost_layers.h"
 #include "walls/stacked_shells.h"
 
 #include <fmt/format.h>
@@ -162,6 +163,7 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     FittedStep out;
     out.is_fitted = true;
     if (!state.draw_points) return out;
+    const std::string place = place_of(*scene.def, combination.whole.source);
     try
     {
         FittedDraw draw =
@@ -170,11 +172,11 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
         draw.body.name = boolean.name.empty() ? "boolean" : "boolean " + boolean.name;
         say_place(scene, combination.whole, draw);
         out.draws.push_back(std::move(draw));
+        warn_of_lost_layers(place, scene.def->grid, out);
     }
     catch (const GeometryError& e)
     {
-        throw GeometryError(
-            fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
+        throw GeometryError(fmt::format("{}: {}", place, e.what()));
     }
     return out;
 }
@@ -277,6 +279,8 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
         own.fluid_places = places_in_fluid(fluid, scene, *step.draw, threads);
         FittedStep out = fit_draw(scene, *step.draw, *settings, threads);
         warn_of_sides(scene, *step.draw, *settings, !fluid.empty(), out);
+        if (scene.def->zone == 0 && !scene.def->vres.is_active())
+            warn_of_lost_layers(place_of(*scene.def, step.draw->source), scene.def->grid, out);
         return out;
     }
     catch (const GeometryError& e)
