@@ -30,7 +30,8 @@ constexpr double least_distance_dbc = 0.5;
 /// To walls whose first particles stand half a dp behind the surface.
 constexpr double least_distance_mdbc = 0.2;
 constexpr double reach_of_walls = 2.5;
-/// Nearer particles are pushed apart: so high up that pressures do not.
+/// Nearer particles are pushed apart: high up, where pressures do not, and where they press what
+/// moves against fluid that is held. The push grows with the depth from here on, in dp.
 constexpr float least_pair = 0.6F;
 constexpr double depth_of_pushes = 2;
 /// Walls are looked for again where a particle has moved so far, when lists are made anew.
@@ -205,25 +206,23 @@ private:
     {
         set_field();
         const double scale = rest_.slope_scale();
-        const PairShape shape{static_cast<float>(rest_.h / rest_.dp), rest_.is_cubic};
+        PairShape shape{static_cast<float>(rest_.h / rest_.dp), rest_.is_cubic};
+        shape.least_pair = least_pair;
         const double g = norm(rest_.gravity);
         const double deep = rest_.pressure(depth_of_pushes * rest_.dp);
         list_.for_each_group(
             threads_,
             [&](const PointGroup& group)
             {
-                PairShape of_group = shape;
-                for (const std::uint32_t i : group.points)
-                    if (rest_.pressures[i] <= deep) of_group.least_pair = least_pair;
-                const PressureSums sums = pressure_sums(field_, group, of_group);
+                const PressureSums sums = pressure_sums(field_, group, shape);
                 for (std::size_t l = 0; l < group.count; ++l)
                 {
                     const std::uint32_t i = group.points[l];
                     if (!moves(i)) continue;
                     accelerations_[i] =
                         at_surface(i, rest_.gravity - scale / rest_.densities[i] * sums.of(l));
-                    pushes_[i] =
-                        rest_.pressures[i] > deep ? Vec3{} : at_surface(i, g * sums.push_of(l));
+                    pushes_[i] = at_surface(
+                        i, g * std::max(1.0, rest_.pressures[i] / deep) * sums.push_of(l));
                 }
             });
     }

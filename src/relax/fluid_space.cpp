@@ -27,6 +27,9 @@ constexpr double narrow_moving = 2; ///< the same where one of two moves past th
 constexpr double touching = 0.05;   ///< between walls: none
 constexpr double off_the_wall = 2;  ///< where the fluid is looked for that a place belongs to
 constexpr double reach_of_cell = 0.87;
+/// A node is added where so much of its cell is a fluid's, this far off walls, dp.
+constexpr double least_owned = 0.8;
+constexpr double off_added = 0.4;
 /// A node on a face of a solid is asked so far before it whether another solid is there, dp.
 constexpr double off_the_face = 1e-3;
 /// Walls whose ball is smaller than this may both cut a cell.
@@ -111,8 +114,14 @@ struct CellSpace
 class SpaceMeter
 {
 public:
-    SpaceMeter(const CaseDef& def, RunField& field, const AllWalls& all, int threads)
-        : def_(def), field_(field), all_(all), threads_(threads), near_(field, def.mk_bound_first)
+    SpaceMeter(const CaseDef& def, RunField& field, const AllWalls& all, bool is_before_layers,
+               int threads)
+        : def_(def),
+          field_(field),
+          all_(all),
+          adds_nodes_(is_before_layers && !def.fills_litres()),
+          threads_(threads),
+          near_(field, def.mk_bound_first)
     {
         for (const int mkbound : moving_mkbound(def.motion))
             moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
@@ -142,6 +151,7 @@ public:
             nodes_per_chunk);
         FluidSpace out;
         count_nodes(out);
+        if (adds_nodes_) add_nodes(cells, out);
         const double dp = field_.grid.dp;
         for (const CellSpace& cell : cells)
         {
@@ -473,6 +483,23 @@ private:
                          { return a.volume > b.volume; });
     }
 
+    /// Nodes without fluid in cells that are nearly all the fluid's: rows beside walls of shapes
+    /// that were drawn up to a step before them.
+    void add_nodes(std::vector<CellSpace>& cells, FluidSpace& out)
+    {
+        for (CellSpace& cell : cells)
+        {
+            const NodeIndex& n = cell.node;
+            if (cell.fluid != 0 || cell.owned < least_owned || !is_relaxed(cell.owner) ||
+                run_at(field_, {n.x, n.y, n.z}) != nullptr ||
+                all_.closest(place_of(n, field_.grid)).distance < off_added * field_.grid.dp)
+                continue;
+            paint(field_.slabs[n.x], {{n.y, n.z, n.z + 1}}, cell.owner);
+            cell.fluid = cell.owner;
+            ++out.nodes[cell.owner];
+        }
+    }
+
     void empty_pockets(const std::vector<CellSpace>& cells, FluidSpace& out)
     {
         std::vector<std::vector<Mover>> left(field_.slabs.size());
@@ -490,6 +517,7 @@ private:
     const CaseDef& def_;
     RunField& field_;
     const AllWalls& all_;
+    bool adds_nodes_;
     int threads_;
     FluidNear near_;
     ClosestWallPoint closest_;
@@ -501,9 +529,9 @@ private:
 } // namespace
 
 FluidSpace measure_fluid_space(const CaseDef& def, RunField& field, const AllWalls& all,
-                               int threads)
+                               bool is_before_layers, int threads)
 {
-    return SpaceMeter(def, field, all, threads).run();
+    return SpaceMeter(def, field, all, is_before_layers, threads).run();
 }
 
 } // namespace fppg

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <numeric>
 
@@ -134,6 +135,24 @@ TEST(Balance, WaterBesideFittedWallsStartsAtRest)
     EXPECT_LT(mean_of(after), 0.02);
     EXPECT_LT(after[after.size() / 2], 0.01);
     EXPECT_LT(after[after.size() * 9 / 10], 0.05);
+}
+
+/// Its walls are 3 to 4 dp thick here. Where the lattice stood a whole dp off its sides, this water
+/// was not at rest at 0.0124 to 0.013 m, and a tenth of the walls was missing.
+TEST(Balance, TheWaterOfCasesRestStartsAtRestAtOtherDistancesToo)
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path rest = std::filesystem::path(FPPG_CASES) / "rest";
+    for (const char* name : {"basin.stl", "CaseRest_Def.xml"})
+        std::filesystem::copy(rest / name, folder.path() / name);
+    for (const char* distance : {"0.0124", "0.0125", "0.0127", "0.013"})
+    {
+        const RunResult result =
+            run(folder, {"CaseRest_Def", "out/Case", fmt::format("-dp:{}", distance)});
+        EXPECT_EQ(result.code, 0) << result.output;
+        EXPECT_TRUE(contains(result.output, "Balanced fluid")) << distance;
+        EXPECT_FALSE(contains(result.output, "do not have the volume of their solids")) << distance;
+    }
 }
 
 TEST(Balance, DensitiesAreThoseOfTheDepthBelowTheSurface)
