@@ -490,8 +490,8 @@ private:
         report_.warnings.push_back(fmt::format(
             "{}: mkbound {} has no normals. With SlipMode {} the solver takes an undefined "
             "velocity "
-            "at such walls: a run can lose fluid there, and two runs differ. Let <bodyfitted> have "
-            "this mkbound too, or give it <normals>.",
+            "where fluid meets such walls: a run can lose fluid there, and two runs differ. Let "
+            "<bodyfitted> have this mkbound too, or give it <normals>.",
             def_.file, fmt::join(mks, ", "), def_.solver.slip_mode));
     }
 

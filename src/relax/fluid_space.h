@@ -22,11 +22,11 @@ namespace fppg
 /// stands 2 dp off the wall, or in the middle between two walls: so the space ends half a dp above
 /// the fluid's highest nodes.
 ///
-/// field       with the fluid as drawn, on its nodes
+/// field             with the fluid as drawn, on its nodes
 /// is_before_layers  fluid gets the nodes without particles whose cells are nearly all its own, but
 ///                   for fills by litres
-/// threads     number of threads; the result does not depend on it
-/// cost        about 5 microseconds per dp^2 of wall beside fluid on one core
+/// threads           number of threads; the result does not depend on it
+/// cost              about 5 microseconds per dp^2 of wall beside fluid on one core
 FluidSpace measure_fluid_space(const CaseDef& def, RunField& field, const AllWalls& all,
                                bool is_before_layers, int threads);
 

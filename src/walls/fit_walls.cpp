@@ -163,7 +163,6 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     FittedStep out;
     out.is_fitted = true;
     if (!state.draw_points) return out;
-    const std::string place = place_of(*scene.def, combination.whole.source);
     try
     {
         FittedDraw draw =
@@ -172,11 +171,11 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
         draw.body.name = boolean.name.empty() ? "boolean" : "boolean " + boolean.name;
         say_place(scene, combination.whole, draw);
         out.draws.push_back(std::move(draw));
-        warn_of_lost_layers(place, scene.def->grid, out);
     }
     catch (const GeometryError& e)
     {
-        throw GeometryError(fmt::format("{}: {}", place, e.what()));
+        throw GeometryError(
+            fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
     }
     return out;
 }
@@ -279,8 +278,6 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
         own.fluid_places = places_in_fluid(fluid, scene, *step.draw, threads);
         FittedStep out = fit_draw(scene, *step.draw, *settings, threads);
         warn_of_sides(scene, *step.draw, *settings, !fluid.empty(), out);
-        if (scene.def->zone == 0 && !scene.def->vres.is_active())
-            warn_of_lost_layers(place_of(*scene.def, step.draw->source), scene.def->grid, out);
         return out;
     }
     catch (const GeometryError& e)
@@ -309,6 +306,10 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
     {
         if (progress) progress(i, out.size());
         out[i] = fit_step(scene, scene.steps[i], fluid, threads);
+        // Zones of <vres> are meant to have parts of a case only.
+        if (!scene.def->vres.is_active())
+            warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,
+                                out[i]);
     }
     if (has_layers) warn_of_stacked_shells(scene, out);
     return out;

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace fppg
 {
@@ -46,8 +47,8 @@ std::optional<int> axis_of(const SurfaceMesh& mesh, std::size_t facet, const Lat
     return std::nullopt;
 }
 
-/// A node on a flat part: its indices, and a facet that holds it.
-using FlatNodes = std::map<std::array<std::int64_t, 3>, std::uint32_t>;
+/// Nodes on flat parts: their indices, and a facet that holds them.
+using FlatNodes = std::vector<std::pair<std::array<std::int64_t, 3>, std::uint32_t>>;
 
 void add_nodes(const SurfaceMesh& mesh, std::uint32_t facet, int axis, const LatticeGrid& grid,
                FlatNodes& nodes)
@@ -73,7 +74,7 @@ void add_nodes(const SurfaceMesh& mesh, std::uint32_t facet, int axis, const Lat
             node[static_cast<std::size_t>(axis)] = std::llround(c[0][axis]);
             node[static_cast<std::size_t>(u)] = std::llround(pu);
             node[static_cast<std::size_t>(v)] = std::llround(pv);
-            nodes.try_emplace(node, facet);
+            nodes.emplace_back(node, facet);
         }
 }
 
@@ -106,44 +107,48 @@ void keep_off_others(const std::vector<char>& is_flat, const LatticeGrid& grid,
                   });
 }
 
-/// Whether most particles on edges at a plane are a step from its outermost nodes: else these would
-/// leave gaps along the edges, or crowd there.
-bool is_matched(const Plane& plane, const FlatNodes& nodes, const LatticeGrid& grid,
-                const SurfaceParticles& particles)
+/// How the edges around a plane fit to its nodes.
+struct PlaneFit
 {
-    PointGrid on_plane(farthest_border_dp * grid.dp, nodes.size());
-    for (const auto& [node, facet] : nodes)
-        if (node[static_cast<std::size_t>(plane.first)] == plane.second)
-            on_plane.add(place_of(node, grid));
-    const double height = grid.origin[plane.first] + static_cast<double>(plane.second) * grid.dp;
-    std::size_t all = 0;
+    PointGrid nodes;
+    std::size_t edges = 0; ///< particles on them
     std::size_t matched = 0;
-    for (std::size_t i = 0; i < particles.positions.size(); ++i)
-    {
-        const Vec3& p = particles.positions[i];
-        if (particles.kinds[i] != FitKind::Edge ||
-            std::abs(p[plane.first] - height) > off_nodes_dp * grid.dp ||
-            !on_plane.has_nearer(p, farthest_border_dp * grid.dp))
-            continue;
-        ++all;
-        if (on_plane.has_nearer(p, far_border_dp * grid.dp) &&
-            !on_plane.has_nearer(p, nearest_border_dp * grid.dp))
-            ++matched;
-    }
-    return static_cast<double>(matched) >= least_matched * static_cast<double>(all);
-}
+};
 
-/// Gives planes whose edges do not fit to their nodes up.
+/// Gives planes up most of whose particles on edges are not a step from the outermost nodes: there
+/// these would leave gaps along the edges, or crowd.
 void keep_matched(const LatticeGrid& grid, const SurfaceParticles& particles,
                   const std::map<std::uint32_t, Plane>& plane_of, std::vector<char>& is_flat,
                   FlatNodes& nodes)
 {
-    std::map<Plane, bool> fits;
+    std::map<Plane, PlaneFit> fits;
+    for (const auto& [node, facet] : nodes)
+        fits.try_emplace(plane_of.at(facet), PlaneFit{PointGrid(farthest_border_dp * grid.dp, 64)})
+            .first->second.nodes.add(place_of(node, grid));
+    for (std::size_t i = 0; i < particles.positions.size(); ++i)
+    {
+        if (particles.kinds[i] != FitKind::Edge) continue;
+        const Vec3& p = particles.positions[i];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double at = (p[axis] - grid.origin[axis]) / grid.dp;
+            if (std::abs(at - std::round(at)) > off_nodes_dp) continue;
+            const auto found = fits.find({axis, std::llround(at)});
+            if (found == fits.end()) continue;
+            PlaneFit& fit = found->second;
+            if (!fit.nodes.has_nearer(p, farthest_border_dp * grid.dp)) continue;
+            ++fit.edges;
+            if (fit.nodes.has_nearer(p, far_border_dp * grid.dp) &&
+                !fit.nodes.has_nearer(p, nearest_border_dp * grid.dp))
+                ++fit.matched;
+        }
+    }
     for (const auto& [facet, plane] : plane_of)
     {
-        const auto [at, is_new] = fits.try_emplace(plane, false);
-        if (is_new) at->second = is_matched(plane, nodes, grid, particles);
-        is_flat[facet] = at->second;
+        const auto found = fits.find(plane);
+        is_flat[facet] =
+            found != fits.end() && static_cast<double>(found->second.matched) >=
+                                       least_matched * static_cast<double>(found->second.edges);
     }
     std::erase_if(nodes, [&](const auto& node) { return is_flat[node.second] == 0; });
 }
@@ -165,6 +170,11 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
             plane_of[f] = {*axis, std::llround(at / grid.dp)};
             add_nodes(mesh, f, *axis, grid, nodes);
         }
+    // Of the facets that meet at a node the first one holds it.
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end(),
+                            [](const auto& a, const auto& b) { return a.first == b.first; }),
+                nodes.end());
     if (!nodes.empty())
     {
         keep_off_others(is_flat, grid, particles, nodes);

@@ -200,11 +200,13 @@ Vec3 lattice_shift(const Scene& scene, int threads)
         for (const SceneStep& step : scene.remaining())
         {
             const DrawState& state = *step.draw->state;
-            if (step.is_part || state.mk.kind != MkKind::Bound || !state.draw_points) continue;
-            const FitSettings* settings = fit_settings(def.fit, state.mk.mk);
-            if (settings == nullptr || !has_layers(*settings)) continue;
-            for (const StepSurface& surface : step_surfaces(scene, step, threads))
-                walls.add(surface.shape);
+            const bool is_drawn = (step.combination || step.shape() != nullptr) && !step.is_part;
+            if (!is_drawn || state.mk.kind != MkKind::Bound || !state.draw_points) continue;
+            const std::vector<StepSurface> surfaces = step_surfaces(scene, step, threads);
+            if (surfaces.empty()) return {}; // points and lines stand on the lattice
+            if (const FitSettings* of_mk = fit_settings(def.fit, state.mk.mk);
+                of_mk != nullptr && has_layers(*of_mk))
+                for (const StepSurface& surface : surfaces) walls.add(surface.shape);
         }
         for (int axis = 0; axis < 3; ++axis)
         {

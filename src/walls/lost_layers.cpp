@@ -62,11 +62,10 @@ void warn_of_lost_layers(const std::string& place, const LatticeGrid& grid, Fitt
                 lost.add(draw.cut[i], grid);
         }
     if (lost.count == 0) return;
-    step.warnings.push_back(
-        fmt::format("{}: {} particles of layers lie beyond the domain, the wall in it: they are "
-                    "left out, and fluid "
-                    "can get through; expected a <definition> that reaches further to {}",
-                    place, lost.count, fmt::join(lost.ways(), ", ")));
+    step.warnings.push_back(fmt::format(
+        "{}: {} particles of layers lie beyond the domain and are left out, though their wall is "
+        "in it: fluid can get through. Let <definition> reach further to {}.",
+        place, lost.count, fmt::join(lost.ways(), ", ")));
 }
 
 } // namespace fppg
