@@ -50,19 +50,37 @@ WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
     if (pieces_.empty()) return;
     if (std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.is_closed; }))
         judge(field, FluidWay(field, setup.first_bound, setup.gravity), threads);
-    TriangleSoup wet;
-    for (const Piece& piece : pieces_)
-    {
-        if (piece.state == is_dry)
-        {
-            has_dry_sides_ = true;
-            continue;
-        }
-        wet.vertices.insert(wet.vertices.end(), piece.corners.begin(), piece.corners.end());
-        exact_walls_.push_back(piece.exact_wall);
-    }
     note_thin_walls(field);
-    pieces_.clear();
+    make_query(threads);
+    pieces_ = {};
+    facets_ = {};
+}
+
+/// Of the wet pieces; those of a facet that is wet all over are the facet.
+void WetSurface::make_query(int threads)
+{
+    TriangleSoup wet;
+    const auto add = [&](const std::array<Vec3, 3>& corners, const WallDepth* exact_wall)
+    {
+        wet.vertices.insert(wet.vertices.end(), corners.begin(), corners.end());
+        exact_walls_.push_back(exact_wall);
+    };
+    for (std::size_t f = 0; f < facets_.size(); ++f)
+    {
+        const auto begin = pieces_.begin() + static_cast<std::ptrdiff_t>(facets_[f].first_piece);
+        const auto end =
+            f + 1 < facets_.size()
+                ? pieces_.begin() + static_cast<std::ptrdiff_t>(facets_[f + 1].first_piece)
+                : pieces_.end();
+        const auto dry =
+            std::count_if(begin, end, [](const Piece& p) { return p.state == is_dry; });
+        if (dry == 0)
+            add(facets_[f].corners, begin->exact_wall);
+        else
+            for (auto piece = begin; piece != end; ++piece)
+                if (piece->state != is_dry) add(piece->corners, piece->exact_wall);
+        has_dry_sides_ = has_dry_sides_ || dry > 0;
+    }
     if (wet.vertices.empty()) return;
     query_ = std::make_unique<MeshQuery>(std::move(wet), threads);
     query_->prepare_nearest();
@@ -88,6 +106,7 @@ void WetSurface::cut_pieces(const RunField& field)
             const FittedBody& owner = bodies[piece.body];
             piece.mk = owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f];
             piece.is_moving = setup_.is_moving[piece.mk] != 0;
+            facets_.push_back({piece.corners, pieces_.size()});
             add_pieces(piece, piece.is_closed ? longest : std::numeric_limits<double>::infinity());
         }
     }

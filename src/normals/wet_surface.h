@@ -70,6 +70,11 @@ private:
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
     };
+    struct Facet
+    {
+        std::array<Vec3, 3> corners;
+        std::size_t first_piece = 0;
+    };
     /// The wall of a body with layers.
     struct BodyWall
     {
@@ -86,10 +91,12 @@ private:
     void dry_to_the_rims();
     void dry_along_edges(int threads);
     void note_thin_walls(const RunField& field);
+    void make_query(int threads);
 
     Setup setup_;
     double reach_;
-    std::vector<Piece> pieces_;
+    std::vector<Facet> facets_;
+    std::vector<Piece> pieces_; ///< of one facet after the other
     std::vector<ThinWall> thin_walls_;
     std::unique_ptr<MeshQuery> query_;
     std::vector<const WallDepth*>

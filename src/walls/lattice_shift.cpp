@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace fppg
@@ -26,7 +27,6 @@ constexpr std::array<double, 2> looks_dp{1.0, 2.0};
 /// What is nearer than a bin of dp counts as one place.
 constexpr std::size_t bins = 100;
 constexpr double rounding = 1e-6;
-constexpr double wider_dp = 0.01;
 
 /// Area of walls beside fluid, by the place of their planes within a step of the lattice, 0 to 1.
 class WallPlaces
@@ -173,15 +173,68 @@ private:
     std::array<WallPlaces, 3> places_;
 };
 
-/// Fills end at nodes. What a box of them holds between two nodes is in it, not left to rounding.
-void widen(BoxRegion& box, const Vec3& shift, double dp)
+/// The outermost nodes of a moved lattice within [low, high] along an axis, metres; empty: none.
+std::optional<std::array<double, 2>> nodes_within(double low, double high, int axis,
+                                                  const LatticeGrid& grid)
 {
-    for (int axis = 0; axis < 3; ++axis)
+    const double first = std::ceil((low - grid.origin[axis]) / grid.dp - rounding);
+    const double last = std::floor((high - grid.origin[axis]) / grid.dp + rounding);
+    if (last < first) return std::nullopt;
+    return std::array<double, 2>{grid.origin[axis] + first * grid.dp,
+                                 grid.origin[axis] + last * grid.dp};
+}
+
+/// The limits of a fill, which takes the nodes strictly inside its snapped box.
+///
+/// grown  metres by which setboxlimitmode full has moved them out
+void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
+{
+    double& low = box.corner0[axis] <= box.corner1[axis] ? box.corner0[axis] : box.corner1[axis];
+    double& high = &low == &box.corner0[axis] ? box.corner1[axis] : box.corner0[axis];
+    const auto nodes = nodes_within(low + grown, high - grown, axis, grid);
+    if (!nodes) return;
+    low = (*nodes)[0] - grid.dp;
+    high = (*nodes)[1] + grid.dp;
+}
+
+/// The ends of a drawn body of fluid.
+void fit_ends(PolyhedronOp& body, int axis, const LatticeGrid& grid)
+{
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec3& v : body.vertices)
     {
-        if (shift[axis] == 0) continue;
-        const bool is_upward = box.corner0[axis] <= box.corner1[axis];
-        (is_upward ? box.corner0 : box.corner1)[axis] -= wider_dp * dp;
-        (is_upward ? box.corner1 : box.corner0)[axis] += wider_dp * dp;
+        low = std::min(low, v[axis]);
+        high = std::max(high, v[axis]);
+    }
+    const auto nodes = nodes_within(low, high, axis, grid);
+    if (!nodes) return;
+    for (Vec3& v : body.vertices)
+    {
+        if (v[axis] < low + rounding * grid.dp) v[axis] = (*nodes)[0];
+        if (v[axis] > high - rounding * grid.dp) v[axis] = (*nodes)[1];
+    }
+}
+
+/// Bodies of fluid end at nodes, and a node stands for a cell around it. Moved, a lattice has in
+/// them the nodes that lie in them: so many as fill their volume, not those that ends halfway
+/// between nodes are rounded to.
+void fit_fluid(DrawOp& op, int axis, const LatticeGrid& grid)
+{
+    const bool is_fluid = op.state->mk.kind == MkKind::Fluid;
+    if (auto* edit = std::get_if<Edit>(&op.what))
+    {
+        auto* fill = std::get_if<FillOp>(edit);
+        if (fill == nullptr || !fill->region || !is_fluid) return;
+        if (auto* box = std::get_if<BoxRegion>(&*fill->region))
+            fit_limits(*box, op.state->box_limit_full ? grid.dp : 0, axis, grid);
+    }
+    else if (auto* shape = std::get_if<Shape>(&op.what))
+    {
+        auto* body = std::get_if<PolyhedronOp>(shape);
+        if (body != nullptr && body->solid != SolidKind::None && is_fluid &&
+            op.state->mode != DrawMode::Wire)
+            fit_ends(*body, axis, grid);
     }
 }
 
@@ -228,16 +281,13 @@ Vec3 lattice_shift(const Scene& scene, int threads)
 void move_lattice(const Vec3& shift, CaseDef& def)
 {
     LatticeGrid& grid = def.grid;
-    for (DrawOp& op : def.ops)
-        if (auto* edit = std::get_if<Edit>(&op.what))
-            if (auto* fill = std::get_if<FillOp>(edit); fill != nullptr && fill->region)
-                if (auto* box = std::get_if<BoxRegion>(&*fill->region)) widen(*box, shift, grid.dp);
     for (int axis = 0; axis < 3; ++axis)
     {
         if (shift[axis] == 0) continue;
         // A node more: walls at the ends of the domain keep all of their layers.
         grid.origin[axis] += shift[axis] - grid.dp;
         ++grid.n[static_cast<std::size_t>(axis)];
+        for (DrawOp& op : def.ops) fit_fluid(op, axis, grid);
     }
 }
 

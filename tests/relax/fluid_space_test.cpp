@@ -218,7 +218,7 @@ CaseText filled_tank(const std::string& fppg, const std::string& fill)
                    fppg + R"(<fill mkfluid="0" seed="0.6,0.1,0.2" )" + fill + " />");
 }
 
-/// Fluid from a seed up to z = 0.47; nodes that nothing moves end at 0.4.
+/// Fluid from a seed up to z = 0.47; nodes that nothing moves end at 0.4, as GenCase's do.
 std::string filled_from(const Vec3& seed)
 {
     return fmt::format(
@@ -235,7 +235,9 @@ TEST(FluidSpace, BetweenWallsAWholeNumberOfStepsApartIsACrystalWithThem)
     const std::string box = fmt::format(
         R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="{}" y="{}" z="{}" /><size x="0.7" y="0.6" z="0.38" /></drawbox>)",
         x + dp, y + dp, z + dp);
-    for (const std::string& water : {filled_from({0.2, 0.4, 0.3}), box})
+    // Rows end at 0.458 and 0.408 m.
+    for (const auto& [water, rows] :
+         {std::pair(filled_from({0.2, 0.4, 0.3}), 10u), std::pair(box, 9u)})
     {
         const Result r = make(case_of(
             fmt::format(
@@ -264,7 +266,7 @@ TEST(FluidSpace, BetweenWallsAWholeNumberOfStepsApartIsACrystalWithThem)
                 EXPECT_LT(off_crystal(p), 0.12) << p.x << ' ' << p.y << ' ' << p.z;
             }
         }
-        EXPECT_EQ(fluid, 16u * 14u * 9u);
+        EXPECT_EQ(fluid, 16u * 14u * rows);
         EXPECT_EQ(floor, 14u * 12u);
     }
 }
@@ -395,6 +397,34 @@ TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)
         EXPECT_NEAR(litres, r.one("fill")["litres"].get<double>(), 0.001 * asked);
         EXPECT_NEAR(litres, asked, 0.03 * asked); // to half a layer
     }
+}
+
+/// However water is drawn between layers, before its walls, after them or by a fill with or without
+/// its limits: its rows end where the drawn box ends.
+TEST(FluidSpace, WaterBetweenLayersHasTheVolumeThatIsDrawn)
+{
+    const std::string walls =
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.6" z="1" /></drawbox>)";
+    for (const double width : {1.0, 0.5})
+        for (const double level : {0.4, 0.42})
+        {
+            const std::string box = fmt::format(
+                R"(<point x="0" y="0" z="0" /><size x="{}" y="0.6" z="{}" />)", width, level);
+            const std::string water =
+                R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>)" + box + "</drawbox>";
+            const std::string fill =
+                R"(<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill>)" +
+                box + "</fillbox>";
+            for (const std::string& drawn : {water + walls, walls + water, walls + fill,
+                                             walls + R"(<setboxlimitmode mode="full" />)" + fill})
+            {
+                const Result r = make(case_of(drawn, R"(<bodyfitted boundary="mdbc" />)"));
+                ASSERT_EQ(r.code, 0) << r.output;
+                const double volume = static_cast<double>(r.fluid().size()) * dp * dp * dp;
+                EXPECT_NEAR(volume, width * 0.6 * 0.4, 0.0015 * volume) << drawn;
+                EXPECT_NEAR(r.level(), 0.4, 0.01 * dp) << drawn;
+            }
+        }
 }
 
 TEST(FluidSpace, ExactMassIsThatOfTheLitresAskedFor)
