@@ -57,7 +57,7 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
                         const std::vector<FeatureParticle>& feature_particles, double dp,
                         int threads, SurfaceParticles& result)
 {
-    const WorkMesh work = make_work_mesh(mesh, features, longest_chart_side * dp);
+    const WorkMesh work = make_work_mesh(mesh, features, longest_chart_side * dp, threads);
     const Charts charts(work, dp);
     const std::vector<FeatureSite> sites =
         make_feature_sites(mesh, work, feature_particles, threads);

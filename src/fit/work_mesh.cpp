@@ -1,8 +1,11 @@
 #include "fit/work_mesh.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace fppg
@@ -10,6 +13,8 @@ namespace fppg
 
 namespace
 {
+
+constexpr std::size_t facets_per_task = 1024;
 
 /// A facet while it is being cut.
 struct Piece
@@ -292,50 +297,63 @@ bool agree(const SurfaceMesh& mesh, std::uint32_t f, std::uint32_t g, std::uint3
     return runs_up(f) != runs_up(g);
 }
 
-WorkMesh whole_facets(const SurfaceMesh& mesh, const Features& features)
+WorkMesh whole_facets(const SurfaceMesh& mesh, const Features& features, int threads)
 {
     WorkMesh work;
     work.facets.resize(mesh.facets.size());
     work.first_piece.resize(mesh.facets.size() + 1);
-    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        WorkFacet& facet = work.facets[f];
-        for (std::size_t s = 0; s < 3; ++s)
+    std::iota(work.first_piece.begin(), work.first_piece.end(), 0U);
+    parallel_for(
+        mesh.facets.size(), threads,
+        [&](std::size_t f)
         {
-            const std::uint32_t edge = mesh.facet_edges[f][s];
-            const std::uint32_t next = mesh.neighbours[f][s];
-            facet.corners[s] = mesh.vertices[mesh.facets[f][s]];
-            const bool is_border = next == no_index || features.is_feature_edge[edge] ||
-                                   !mesh.is_manifold[edge] || !agree(mesh, f, next, edge);
-            facet.neighbours[s] = is_border ? no_index : next;
-        }
-        facet.normal = mesh.normals[f];
-        facet.vertices = mesh.facets[f];
-        facet.parent = f;
-        work.first_piece[f] = f;
-    }
-    work.first_piece.back() = static_cast<std::uint32_t>(mesh.facets.size());
+            WorkFacet facet{};
+            for (std::size_t s = 0; s < 3; ++s)
+            {
+                const std::uint32_t edge = mesh.facet_edges[f][s];
+                const std::uint32_t next = mesh.neighbours[f][s];
+                facet.corners[s] = mesh.vertices[mesh.facets[f][s]];
+                const bool is_border = next == no_index || features.is_feature_edge[edge] ||
+                                       !mesh.is_manifold[edge] ||
+                                       !agree(mesh, static_cast<std::uint32_t>(f), next, edge);
+                facet.neighbours[s] = is_border ? no_index : next;
+            }
+            facet.normal = mesh.normals[f];
+            facet.vertices = mesh.facets[f];
+            facet.parent = static_cast<std::uint32_t>(f);
+            work.facets[f] = facet;
+        },
+        facets_per_task);
     return work;
 }
 
 /// Slivers whose normal lies in their own plane get no neighbours.
-void part_those_without_plane(std::vector<WorkFacet>& facets)
+void part_those_without_plane(RawArray<WorkFacet>& facets, int threads)
 {
     constexpr double least_cosine = 0.02;
-    for (WorkFacet& facet : facets)
-    {
-        const auto& c = facet.corners;
-        const Vec3 own = cross(c[1] - c[0], c[2] - c[0]);
-        facet.has_plane = dot(own, facet.normal) > least_cosine * norm(own);
-    }
-    for (WorkFacet& facet : facets)
-        for (std::uint32_t& next : facet.neighbours)
-            if (next != no_index && !(facet.has_plane && facets[next].has_plane)) next = no_index;
+    parallel_for(
+        facets.size(), threads,
+        [&](std::size_t f)
+        {
+            const auto& c = facets[f].corners;
+            const Vec3 own = cross(c[1] - c[0], c[2] - c[0]);
+            facets[f].has_plane = dot(own, facets[f].normal) > least_cosine * norm(own);
+        },
+        facets_per_task);
+    parallel_for(
+        facets.size(), threads,
+        [&](std::size_t f)
+        {
+            for (std::uint32_t& next : facets[f].neighbours)
+                if (next != no_index && !(facets[f].has_plane && facets[next].has_plane))
+                    next = no_index;
+        },
+        facets_per_task);
 }
 
 constexpr std::uint32_t box_fanout = 16;
 
-std::vector<std::vector<Box3>> boxes_around(const std::vector<WorkFacet>& facets)
+std::vector<std::vector<Box3>> boxes_around(const RawArray<WorkFacet>& facets)
 {
     const auto groups = [](std::size_t n) { return (n + box_fanout - 1) / box_fanout; };
     std::vector<std::vector<Box3>> levels;
@@ -430,7 +448,8 @@ double WorkMesh::area(std::uint32_t facet) const
     return 0.5 * norm(cross(c[1] - c[0], c[2] - c[0]));
 }
 
-WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest)
+WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest,
+                        int threads)
 {
     WorkMesh work;
     if (has_side_longer(mesh, longest))
@@ -443,8 +462,8 @@ WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, doubl
         work.boxes = boxes_around(work.facets);
     }
     else
-        work = whole_facets(mesh, features);
-    part_those_without_plane(work.facets);
+        work = whole_facets(mesh, features, threads);
+    part_those_without_plane(work.facets, threads);
     return work;
 }
 

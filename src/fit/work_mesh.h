@@ -3,6 +3,8 @@
 #include "fppg/features.h"
 #include "fppg/surface_mesh.h"
 
+#include "core/raw_array.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -29,7 +31,7 @@ struct WorkFacet
 /// any surface can be cut into pieces of about one size. Pieces meet side to side.
 struct WorkMesh
 {
-    std::vector<WorkFacet> facets;          ///< sorted by parent
+    RawArray<WorkFacet> facets;             ///< sorted by parent
     std::vector<std::uint32_t> first_piece; ///< per mesh facet, and one past the end
     /// Around 16 facets in their order, around 16 such boxes, and so on; none where no facet is
     /// cut.
@@ -41,6 +43,7 @@ struct WorkMesh
 };
 
 /// longest  metres, above 0: the longest side that is left whole
-WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest);
+WorkMesh make_work_mesh(const SurfaceMesh& mesh, const Features& features, double longest,
+                        int threads);
 
 } // namespace fppg

@@ -8,6 +8,8 @@
 #include "offset/wall_depth.h"
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -16,8 +18,9 @@ namespace fppg
 namespace
 {
 
-/// Later fitted bodies cut the particles of earlier ones within this distance of their surface, dp.
-constexpr double cut_distance_dp = 0.5;
+/// Later fitted bodies cut the particles of earlier ones within this distance of their surface, dp;
+/// those of a lattice that are half a dp off it stay.
+constexpr double cut_distance_dp = 0.5 - 1e-6;
 /// Mark of a particle that a later body cuts although its place is not inside it.
 constexpr char touched = 2;
 /// Deeper in a later body than this a place is inside it, dp.
@@ -42,6 +45,17 @@ std::uint64_t count_nodes(const Spans& spans)
     std::uint64_t count = 0;
     for (const Span& s : spans) count += s.z_end - s.z_begin;
     return count;
+}
+
+/// How near to the surface of a later body others are cut, dp: what touches one whose particles
+/// stand half a dp inside is far enough from them.
+double cut_distance(const FittedDraw& draw, double dp)
+{
+    if (draw.body.is_inside) return touching_dp;
+    double first = std::numeric_limits<double>::infinity();
+    for (const FittedBody& layer : draw.layers) first = std::min(first, layer.depth / dp);
+    return draw.layers.empty() ? cut_distance_dp
+                               : std::clamp(least_pair_dp - first, touching_dp, cut_distance_dp);
 }
 
 } // namespace
@@ -128,8 +142,7 @@ void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& z
 
 void WallPainter::cut_by(const FittedDraw& draw)
 {
-    // The particles of a body that has all inside are half a dp away from what touches it.
-    const double reach = (draw.body.is_inside ? touching_dp : cut_distance_dp) * field_->grid.dp;
+    const double reach = cut_distance(draw, field_->grid.dp) * field_->grid.dp;
     Box3 bounds;
     for (const auto& f : draw.body.mesh.facets)
         for (const std::uint32_t v : f) bounds.add(draw.body.mesh.vertices[v]);
@@ -310,6 +323,46 @@ void WallPainter::cut_crowded()
     }
 }
 
+/// Names the particles that were cut to the walls; where a later layer has taken the place of
+/// another nothing is missing.
+void WallPainter::note_missing()
+{
+    FittedWalls& walls = field_->walls;
+    const WallParticles& all = walls.particles;
+    const double replaced = replaced_dp * field_->grid.dp;
+    const auto is_of_layer = [&](std::size_t i) { return walls.bodies[all.bodies[i]].is_layer(); };
+    PointGrid of_layers(replaced, 0);
+    Box3 box;
+    std::vector<std::size_t> cut;
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        if (is_cut_[i] == 0) continue;
+        cut.push_back(i);
+        if (!is_of_layer(i)) continue;
+        of_layers.add(all.positions[i]);
+        box.add(all.positions[i]);
+    }
+    std::vector<std::atomic<bool>> is_replaced(of_layers.points().size());
+    parallel_for(
+        all.size(), threads_,
+        [&](std::size_t i)
+        {
+            const Vec3& p = all.positions[i];
+            if (is_cut_[i] == 0 && box.has(p, replaced) && is_of_layer(i))
+                of_layers.for_each_near(p, replaced,
+                                        [&](std::uint32_t c, double)
+                                        { is_replaced[c].store(true, std::memory_order_relaxed); });
+        },
+        1024);
+    std::size_t layered = 0;
+    for (const std::size_t i : cut)
+    {
+        if (is_of_layer(i) && is_replaced[layered++].load(std::memory_order_relaxed)) continue;
+        walls.cut.push_back(all.positions[i]);
+        walls.cut_bodies.push_back(all.bodies[i]);
+    }
+}
+
 void WallPainter::finish()
 {
     cut_crowded();
@@ -323,19 +376,7 @@ void WallPainter::finish()
     FittedWalls& walls = field_->walls;
     WallParticles& all = walls.particles;
     hand_over_shares();
-    // Where a later layer has taken the place of another nothing is missing.
-    const double replaced = replaced_dp * field_->grid.dp;
-    PointGrid kept(replaced, 0);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (!is_cut_[i] && walls.bodies[all.bodies[i]].is_layer()) kept.add(all.positions[i]);
-    for (std::size_t i = 0; i < all.size(); ++i)
-    {
-        if (!is_cut_[i]) continue;
-        if (walls.bodies[all.bodies[i]].is_layer() && kept.has_nearer(all.positions[i], replaced))
-            continue;
-        walls.cut.push_back(all.positions[i]);
-        walls.cut_bodies.push_back(all.bodies[i]);
-    }
+    note_missing();
     anchors_.clear();
     if (std::any_of(is_cut_.begin(), is_cut_.end(), [](char c) { return c != 0; }))
         all.erase(is_cut_);

@@ -13,7 +13,8 @@ namespace fppg
 ///
 /// Draws on the lattice cut the particles whose node (the nearest one of the wall's zone at the
 /// corners of their cell) they paint. A later fitted body cuts by its true shape: everything inside
-/// it when it is solid, and everything nearer than 0.5 dp to its surface. In the end no particles
+/// it when it is solid, and everything nearer than 0.5 dp to its surface (0.1 dp where its own
+/// particles stand half a dp behind that). In the end no particles
 /// of two bodies are nearer than least_pair_dp to one another.
 class WallPainter
 {
@@ -61,6 +62,7 @@ private:
     /// Where walls of several draws are near one another, the shallower layer stays, then corners,
     /// edges, and the later draw: the others within least_pair_dp are cut.
     void cut_crowded();
+    void note_missing();
     void cut_by(const FittedDraw& draw);
     /// What is left of a sheet beside the part that was taken out would flow into its place.
     void hold_beside_second_sheets();

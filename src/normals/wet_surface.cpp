@@ -20,6 +20,12 @@ constexpr double longer_way_dp = 10;
 constexpr double higher_way_dp = 10;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
+/// Those that another wall covers in part are cut down to this length, dp.
+constexpr double least_piece_dp = 0.25;
+/// Where another wall that covers a facet is looked for before it, dp, and how far from its corners
+/// to its middle.
+constexpr double cover_dp = 0.3;
+constexpr double off_corner = 1e-3;
 constexpr double opposing = -0.5;
 /// Pieces of one side turn by less than 60 degrees from one to the next.
 constexpr double same_facing = 0.5;
@@ -44,11 +50,13 @@ bool is_dry_beside(const FluidWay::Way& here, const FluidWay::Way& there, bool i
 } // namespace
 
 WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
-    : setup_(setup), reach_(setup.reach)
+    : setup_(setup), reach_(setup.reach), dp_(field.grid.dp)
 {
-    cut_pieces(field);
+    find_walls(field.walls.bodies);
+    cut_pieces(field.walls.bodies);
     if (pieces_.empty()) return;
-    if (std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.is_closed; }))
+    find_covered(threads);
+    if (std::any_of(walls_.begin(), walls_.end(), [](const Wall& w) { return w.is_closed; }))
         judge(field, FluidWay(field, setup.first_bound, setup.gravity), threads);
     note_thin_walls(field);
     make_query(threads);
@@ -60,10 +68,10 @@ WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
 void WetSurface::make_query(int threads)
 {
     TriangleSoup wet;
-    const auto add = [&](const std::array<Vec3, 3>& corners, const WallDepth* exact_wall)
+    const auto add = [&](const std::array<Vec3, 3>& corners, const WallDepth* wall)
     {
         wet.vertices.insert(wet.vertices.end(), corners.begin(), corners.end());
-        exact_walls_.push_back(exact_wall);
+        exact_walls_.push_back(wall->is_exact() ? wall : nullptr);
     };
     for (std::size_t f = 0; f < facets_.size(); ++f)
     {
@@ -75,10 +83,10 @@ void WetSurface::make_query(int threads)
         const auto dry =
             std::count_if(begin, end, [](const Piece& p) { return p.state == is_dry; });
         if (dry == 0)
-            add(facets_[f].corners, begin->exact_wall);
+            add(facets_[f].corners, walls_[begin->wall].depth);
         else
             for (auto piece = begin; piece != end; ++piece)
-                if (piece->state != is_dry) add(piece->corners, piece->exact_wall);
+                if (piece->state != is_dry) add(piece->corners, walls_[piece->wall].depth);
         has_dry_sides_ = has_dry_sides_ || dry > 0;
     }
     if (wet.vertices.empty()) return;
@@ -86,30 +94,89 @@ void WetSurface::make_query(int threads)
     query_->prepare_nearest();
 }
 
-void WetSurface::cut_pieces(const RunField& field)
+/// The first layer on each side names the surface and the way to the fluid.
+void WetSurface::find_walls(const std::vector<FittedBody>& bodies)
 {
-    const double longest = longest_piece_dp * field.grid.dp;
-    const std::vector<FittedBody>& bodies = field.walls.bodies;
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
-        // The first layer on each side names the surface and the way to the fluid.
-        if (!bodies[b].is_layer() || is_same_side(bodies[b - 1], bodies[b])) continue;
-        const SurfaceMesh& mesh = bodies[b].wall->mesh();
-        Piece piece;
-        piece.body = bodies[b].owner;
-        piece.is_closed = bodies[piece.body].measures.volume > 0;
-        piece.exact_wall = bodies[b].wall->is_exact() ? bodies[b].wall.get() : nullptr;
+        if (!bodies[b].is_layer()) continue;
+        if (!is_same_side(bodies[b - 1], bodies[b]))
+        {
+            Wall wall;
+            wall.body = bodies[b].owner;
+            wall.depth = bodies[b].wall.get();
+            wall.is_closed = bodies[wall.body].measures.volume > 0;
+            wall.is_moving = setup_.is_moving[bodies[b].mk] != 0;
+            for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
+            walls_.push_back(wall);
+        }
+        walls_.back().deepest = std::max(walls_.back().deepest, bodies[b].depth + 0.5 * dp_);
+    }
+}
+
+bool WetSurface::may_be_covered(const Piece& piece) const
+{
+    Box3 box;
+    for (const Vec3& corner : piece.corners) box.add(corner);
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+    {
+        if (walls_[w].body == walls_[piece.wall].body) continue;
+        const double room = walls_[w].deepest + cover_dp * dp_;
+        bool meet = true;
+        for (int axis = 0; axis < 3; ++axis)
+            meet = meet && box.min[axis] <= walls_[w].box.max[axis] + room &&
+                   walls_[w].box.min[axis] <= box.max[axis] + room;
+        if (meet) return true;
+    }
+    return false;
+}
+
+void WetSurface::cut_pieces(const std::vector<FittedBody>& bodies)
+{
+    constexpr double whole = std::numeric_limits<double>::infinity();
+    for (std::uint32_t w = 0; w < walls_.size(); ++w)
+    {
+        const Wall& wall = walls_[w];
+        const FittedBody& owner = bodies[wall.body];
+        const SurfaceMesh& mesh = wall.depth->mesh();
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
+            Piece piece;
+            piece.wall = w;
             for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = mesh.vertices[mesh.facets[f][c]];
-            piece.normal = bodies[b].wall->sign() * mesh.normals[f];
-            const FittedBody& owner = bodies[piece.body];
+            piece.normal = wall.depth->sign() * mesh.normals[f];
             piece.mk = owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f];
             piece.is_moving = setup_.is_moving[piece.mk] != 0;
             facets_.push_back({piece.corners, pieces_.size()});
-            add_pieces(piece, piece.is_closed ? longest : std::numeric_limits<double>::infinity());
+            const bool is_judged = wall.is_closed || may_be_covered(piece);
+            add_pieces(piece, is_judged ? longest_piece_dp * dp_ : whole);
         }
     }
+}
+
+double WetSurface::Piece::length() const
+{
+    return std::max({norm(corners[1] - corners[0]), norm(corners[2] - corners[1]),
+                     norm(corners[0] - corners[2])});
+}
+
+/// Across its longest side.
+std::array<WetSurface::Piece, 2> WetSurface::Piece::halves() const
+{
+    std::size_t side = 0;
+    double length = 0;
+    for (std::size_t s = 0; s < 3; ++s)
+    {
+        const double l = norm(corners[(s + 1) % 3] - corners[s]);
+        if (l <= length) continue;
+        length = l;
+        side = s;
+    }
+    const Vec3 at = 0.5 * (corners[side] + corners[(side + 1) % 3]);
+    std::array<Piece, 2> out{*this, *this};
+    out[0].corners[side] = at;
+    out[1].corners[(side + 1) % 3] = at;
+    return out;
 }
 
 void WetSurface::add_pieces(const Piece& whole, double longest)
@@ -119,56 +186,77 @@ void WetSurface::add_pieces(const Piece& whole, double longest)
     {
         const Piece now = todo.back();
         todo.pop_back();
-        std::size_t side = 0;
-        double length = 0;
-        for (std::size_t s = 0; s < 3; ++s)
-        {
-            const double l = norm(now.corners[(s + 1) % 3] - now.corners[s]);
-            if (l <= length) continue;
-            length = l;
-            side = s;
-        }
-        if (length <= longest)
-        {
+        if (now.length() <= longest)
             pieces_.push_back(now);
-            continue;
-        }
-        const Vec3 middle = 0.5 * (now.corners[side] + now.corners[(side + 1) % 3]);
-        for (const std::size_t kept : {side, (side + 1) % 3})
-        {
-            Piece half = now;
-            half.corners[kept] = middle;
-            todo.push_back(half);
-        }
+        else
+            for (const Piece& half : now.halves()) todo.push_back(half);
     }
+}
+
+/// Pieces that another wall covers in part are cut along its border.
+void WetSurface::find_covered(int threads)
+{
+    if (walls_.size() < 2) return;
+    std::vector<std::vector<Piece>> cut(pieces_.size());
+    parallel_for(
+        pieces_.size(), threads, [&](std::size_t i) { cut[i] = cut_at_covers(pieces_[i]); }, 64);
+    std::vector<Piece> all;
+    std::size_t facet = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+    {
+        while (facet < facets_.size() && facets_[facet].first_piece == i)
+            facets_[facet++].first_piece = all.size();
+        if (cut[i].empty())
+            all.push_back(pieces_[i]);
+        else
+            all.insert(all.end(), cut[i].begin(), cut[i].end());
+    }
+    pieces_ = std::move(all);
+}
+
+/// Sets the state of a piece; returns the parts into which it was cut, none where it stays whole.
+std::vector<WetSurface::Piece> WetSurface::cut_at_covers(Piece& piece) const
+{
+    std::vector<Piece> out;
+    if (!may_be_covered(piece)) return out;
+    std::vector<Piece> todo{piece};
+    while (!todo.empty())
+    {
+        Piece now = todo.back();
+        todo.pop_back();
+        const Vec3 middle = now.middle();
+        const bool is_middle_covered = is_covered(now, middle);
+        now.state = is_middle_covered ? is_dry : is_wet;
+        const bool is_mixed =
+            std::any_of(now.corners.begin(), now.corners.end(),
+                        [&](const Vec3& corner) {
+                            return is_covered(now, corner + off_corner * (middle - corner)) !=
+                                   is_middle_covered;
+                        });
+        if (is_mixed && now.length() > least_piece_dp * dp_)
+            for (const Piece& half : now.halves()) todo.push_back(half);
+        else
+            out.push_back(now);
+    }
+    if (out.size() > 1) return out;
+    piece.state = out[0].state;
+    return {};
 }
 
 void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
 {
-    const double dp = field.grid.dp;
-    std::vector<BodyWall> walls(field.walls.bodies.size());
-    for (const FittedBody& body : field.walls.bodies)
-    {
-        if (!body.is_layer()) continue;
-        BodyWall& wall = walls[body.owner];
-        wall.depth = body.wall.get();
-        wall.is_closed = field.walls.bodies[body.owner].measures.volume > 0;
-        wall.is_moving = setup_.is_moving[body.mk] != 0;
-        if (wall.box.is_empty())
-            for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
-    }
     const auto before = [&](const Piece& piece)
-    { return piece.middle() + (off_surface_dp * dp) * piece.normal; };
+    { return piece.middle() + (off_surface_dp * dp_) * piece.normal; };
     std::vector<char> is_closed_in(65536, 0);
     parallel_for(
         pieces_.size(), threads,
         [&](std::size_t i)
         {
-            if (pieces_[i].is_closed) pieces_[i].way = way.to(before(pieces_[i]));
+            if (is_closed(pieces_[i])) pieces_[i].way = way.to(before(pieces_[i]));
         },
         256);
     for (const Piece& piece : pieces_)
-        if (piece.is_closed && piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
+        if (is_closed(piece) && piece.is_moving && !piece.way.is_free) is_closed_in[piece.mk] = 1;
     // What others are too near to at the start gets free when it moves.
     std::vector<std::uint16_t> closed_in;
     for (std::size_t mk = 0; mk < is_closed_in.size(); ++mk)
@@ -179,7 +267,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
                      const std::uint16_t mk = closed_in[i];
                      const FluidWay alone = FluidWay::around(field, setup_.first_bound, mk);
                      for (Piece& piece : pieces_)
-                         if (piece.is_closed && piece.mk == mk && !piece.way.is_free)
+                         if (is_closed(piece) && piece.mk == mk && !piece.way.is_free)
                              piece.way = alone.to(before(piece));
                  });
     parallel_for(
@@ -187,11 +275,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         [&](std::size_t i)
         {
             Piece& piece = pieces_[i];
-            if (!piece.is_closed) return;
-            if (is_covered(piece, walls, dp))
-                piece.state = is_dry;
-            else
-                compare_sides(piece, *walls[piece.body].depth, way, dp);
+            if (is_closed(piece) && piece.state != is_dry) compare_sides(piece, way);
         },
         64);
     const auto is_reached = [](const Piece& p)
@@ -203,29 +287,29 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
     dry_along_edges(threads);
 }
 
-/// Whether another closed wall begins right before a piece.
-bool WetSurface::is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp)
+/// Whether another wall begins right before a place of a piece: a closed one, or the layers of a
+/// sheet.
+bool WetSurface::is_covered(const Piece& piece, const Vec3& at) const
 {
-    const Vec3 before = piece.middle() + (0.3 * dp) * piece.normal;
-    for (std::size_t b = 0; b < walls.size(); ++b)
-    {
-        const BodyWall& wall = walls[b];
-        if (b == piece.body || wall.depth == nullptr || !wall.is_closed ||
-            wall.is_moving != piece.is_moving)
-            continue;
-        bool is_in_box = true;
-        for (int axis = 0; axis < 3; ++axis)
-            is_in_box =
-                is_in_box && before[axis] > wall.box.min[axis] && before[axis] < wall.box.max[axis];
-        if (is_in_box && wall.depth->at(before).depth > 0) return true;
-    }
-    return false;
+    const Vec3 before = at + (cover_dp * dp_) * piece.normal;
+    const std::uint32_t body = walls_[piece.wall].body;
+    return std::any_of(
+        walls_.begin(), walls_.end(),
+        [&](const Wall& wall)
+        {
+            if (wall.body == body || wall.is_moving != piece.is_moving ||
+                !wall.box.has(before, wall.is_closed ? 0 : wall.deepest))
+                return false;
+            const DepthPlace place = wall.depth->at(before);
+            return place.depth > 0 &&
+                   (wall.is_closed || (place.depth < wall.deepest && !place.is_beyond_rim));
+        });
 }
 
 /// The other side of a thin wall is looked for half a reach and a reach under a piece.
-void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way,
-                               double dp) const
+void WetSurface::compare_sides(Piece& piece, const FluidWay& way) const
 {
+    const WallDepth& wall = *walls_[piece.wall].depth;
     const Vec3 middle = piece.middle();
     DepthPlace other;
     Vec3 other_normal = piece.normal;
@@ -241,7 +325,7 @@ void WetSurface::compare_sides(Piece& piece, const WallDepth& wall, const FluidW
         norm(middle - piece.thickness * piece.normal - other.nearest) < piece.thickness;
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
-    const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp) * other_normal);
+    const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp_) * other_normal);
     piece.other_way = there.length;
     if (!std::isfinite(piece.way.length) && !std::isfinite(there.length)) return;
     if (is_dry_beside(piece.way, there, piece.is_moving))
@@ -273,7 +357,7 @@ void WetSurface::dry_to_the_rims()
                            [&](std::uint32_t c, double)
                            {
                                Piece& piece = pieces_[candidates[c]];
-                               if (piece.state == is_dry || piece.body != from.body ||
+                               if (piece.state == is_dry || piece.wall != from.wall ||
                                    dot(piece.normal, from.normal) < same_facing)
                                    return;
                                piece.state = is_dry;
@@ -300,7 +384,7 @@ void WetSurface::dry_along_edges(int threads)
         [&](std::size_t i)
         {
             Piece& piece = pieces_[i];
-            if (piece.is_closed && piece.state == is_wet && piece.thickness == 0 &&
+            if (is_closed(piece) && piece.state == is_wet && piece.thickness == 0 &&
                 is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
                 piece.state = is_dry;
         },
@@ -313,7 +397,7 @@ void WetSurface::note_thin_walls(const RunField& field)
     for (const Piece& piece : pieces_)
     {
         if (piece.state != is_thin || !piece.is_straight || !(piece.thickness < enough)) continue;
-        const std::uint16_t mk = field.walls.bodies[piece.body].mk;
+        const std::uint16_t mk = field.walls.bodies[walls_[piece.wall].body].mk;
         auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
                                   [&](const ThinWall& wall) { return wall.mk == mk; });
         if (found == thin_walls_.end()) found = thin_walls_.insert(found, {mk, piece.thickness, 0});

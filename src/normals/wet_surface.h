@@ -22,8 +22,8 @@ namespace fppg
 /// - it has to rise 10 dp more, above where it stands (the inside of a boat).
 /// The parts that move come to where fluid is: of these a side is dry only where fluid would run
 /// out of the domain and from the other side would not (a tank that moves; not the teeth of a
-/// gear). A dry side goes on up to its rim, where the way is not so much longer. What another body
-/// covers is dry too. Everything else is wet.
+/// gear). A dry side goes on up to its rim, where the way is not so much longer. What another body,
+/// or the layers of a sheet, cover is dry too. Everything else is wet.
 class WetSurface
 {
 public:
@@ -56,10 +56,8 @@ private:
     struct Piece
     {
         std::array<Vec3, 3> corners;
-        Vec3 normal; ///< to the fluid
-        std::uint32_t body = 0;
-        const WallDepth* exact_wall = nullptr;
-        bool is_closed = false;
+        Vec3 normal;            ///< to the fluid
+        std::uint32_t wall = 0; ///< in walls_
         std::uint16_t mk = 0;
         bool is_moving = false;
         char state = 0;
@@ -69,25 +67,34 @@ private:
         double other_way = 0;     ///< the length of that to the other side, dp
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
+        double length() const; ///< of the longest side
+        std::array<Piece, 2> halves() const;
     };
     struct Facet
     {
         std::array<Vec3, 3> corners;
         std::size_t first_piece = 0;
     };
-    /// The wall of a body with layers.
-    struct BodyWall
+    /// A side of a body that has layers.
+    struct Wall
     {
+        std::uint32_t body = 0;
         const WallDepth* depth = nullptr;
+        double deepest = 0; ///< metres, to where its layers end
         bool is_closed = false;
         bool is_moving = false;
         Box3 box;
     };
-    void cut_pieces(const RunField& field);
+    void find_walls(const std::vector<FittedBody>& bodies);
+    void cut_pieces(const std::vector<FittedBody>& bodies);
     void add_pieces(const Piece& whole, double longest);
+    void find_covered(int threads);
+    std::vector<Piece> cut_at_covers(Piece& piece) const;
+    bool may_be_covered(const Piece& piece) const;
+    bool is_covered(const Piece& piece, const Vec3& at) const;
+    bool is_closed(const Piece& piece) const { return walls_[piece.wall].is_closed; }
     void judge(const RunField& field, const FluidWay& way, int threads);
-    static bool is_covered(const Piece& piece, const std::vector<BodyWall>& walls, double dp);
-    void compare_sides(Piece& piece, const WallDepth& wall, const FluidWay& way, double dp) const;
+    void compare_sides(Piece& piece, const FluidWay& way) const;
     void dry_to_the_rims();
     void dry_along_edges(int threads);
     void note_thin_walls(const RunField& field);
@@ -95,6 +102,8 @@ private:
 
     Setup setup_;
     double reach_;
+    double dp_;
+    std::vector<Wall> walls_;
     std::vector<Facet> facets_;
     std::vector<Piece> pieces_; ///< of one facet after the other
     std::vector<ThinWall> thin_walls_;

@@ -4,11 +4,15 @@
 #include "fppg/lattice.h"
 
 #include "fit/wall_section.h"
+#include "meshes/mesh_facets.h"
 #include "meshes/mesh_query.h"
+#include "meshes/pseudo_normals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -17,7 +21,8 @@
 namespace fppg
 {
 
-/// The walls of all bodies as one: their facets, or in 2D the lines where they meet the plane.
+/// The walls of all bodies as one: their facets, or in 2D the lines where they meet the plane. The
+/// bodies must outlive it.
 class AllWalls
 {
 public:
@@ -26,7 +31,7 @@ public:
         Vec3 point;
         double distance = 0; ///< metres
         std::size_t body = 0;
-        bool is_outside = false; ///< on the side where the facet looks
+        bool is_outside = false; ///< on the side where the facets look
         Vec3 normal;             ///< of the facet
         std::uint16_t mk = 0;    ///< of the facet, absolute
     };
@@ -45,6 +50,9 @@ public:
             soup.vertices.insert(soup.vertices.end(), of_body.vertices.begin(),
                                  of_body.vertices.end());
             const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
+            sides_.push_back(
+                {first_.size() - 1, PseudoNormals(body.mesh), std::move(section.facets)});
+            for (const Vec3& v : body.mesh.vertices) size_ = std::max(size_, largest_coordinate(v));
             normals_.insert(normals_.end(), normals.begin(), normals.end());
             is_of_solid_.resize(normals_.size(), body.is_solid ? 1 : 0);
             // Lines in the plane of a 2D case are not its facets.
@@ -68,7 +76,7 @@ public:
         return {near.point,
                 near.distance,
                 static_cast<std::size_t>(after - first_.begin()) - 1,
-                dot(p - near.point, normals_[near.facet]) > 0,
+                is_outside(p, near),
                 normals_[near.facet],
                 mks_[near.facet]};
     }
@@ -90,7 +98,33 @@ public:
     }
 
 private:
+    /// By the facet where a point is straight over it, else by those that meet at the edge or
+    /// corner.
+    bool is_outside(const Vec3& p, const ClosestPoint& near) const
+    {
+        const Vec3 off = p - near.point;
+        const double height = dot(off, normals_[near.facet]);
+        if (std::fabs(height) > (1 - 1e-12) * near.distance) return height > 0;
+        const auto after = std::upper_bound(sides_.begin(), sides_.end(), near.facet,
+                                            [&](std::uint32_t facet, const Sides& sides)
+                                            { return facet < first_[sides.body]; });
+        const Sides& sides = *std::prev(after);
+        auto facet = static_cast<std::uint32_t>(near.facet - first_[sides.body]);
+        if (is_2d_) facet = sides.facets[facet];
+        const FacetPlace place = sides.normals.place_on_facet(facet, near.point, 1e-12 * size_);
+        return dot(off, sides.normals.at(facet, place)) > 0;
+    }
+
+    /// Of a body that is no layer.
+    struct Sides
+    {
+        std::size_t body = 0;
+        PseudoNormals normals;
+        std::vector<std::uint32_t> facets; ///< of its lines in 2D
+    };
     bool is_2d_ = false;
+    double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
+    std::vector<Sides> sides_;
     std::vector<char> is_of_solid_;  ///< facets
     std::vector<std::uint16_t> mks_; ///< facets
     std::vector<std::size_t> first_; ///< facet or line of each body

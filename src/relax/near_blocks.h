@@ -21,25 +21,32 @@ public:
                int reach)
         : side_(side)
     {
-        std::vector<std::array<std::int64_t, 3>> cores;
+        // Blocks are counted from `reach` before the lattice on, so that all near it have a key.
         for (const Vec3& p : points)
         {
-            std::array<std::int64_t, 3> block{};
+            std::array<double, 3> block{};
             for (int axis = 0; axis < 3; ++axis)
-                block[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(
-                    std::floor((p[axis] - grid.origin[axis]) / grid.dp / side));
-            if (cores.empty() || cores.back() != block) cores.push_back(block);
+                block[static_cast<std::size_t>(axis)] =
+                    std::floor((p[axis] - grid.origin[axis]) / grid.dp / side) + reach;
+            if (std::any_of(block.begin(), block.end(), [](double b) { return b < 0; })) continue;
+            const std::uint64_t of_point = key(block[0], block[1], block[2]);
+            if (keys_.empty() || keys_.back() != of_point) keys_.push_back(of_point);
         }
-        std::sort(cores.begin(), cores.end());
-        cores.erase(std::unique(cores.begin(), cores.end()), cores.end());
-        // Nested because the blocks around one are walked along three axes.
-        for (const auto& c : cores)
-            for (std::int64_t x = c[0] - reach; x <= c[0] + reach; ++x)
-                for (std::int64_t y = c[1] - reach; y <= c[1] + reach; ++y)
-                    for (std::int64_t z = c[2] - reach; z <= c[2] + reach; ++z)
-                        if (x >= 0 && y >= 0 && z >= 0) keys_.push_back(key(x, y, z));
-        std::sort(keys_.begin(), keys_.end());
-        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+        sort_once();
+        for (const std::uint64_t step : {key(0, 0, 1), key(0, 1, 0), key(1, 0, 0)})
+        {
+            std::vector<std::uint64_t> spread;
+            for (const std::uint64_t k : keys_)
+                for (int d = 0; d <= 2 * reach; ++d)
+                    spread.push_back(k + static_cast<std::uint64_t>(d) * step);
+            keys_ = std::move(spread);
+            sort_once();
+        }
+        // Both shifts, from the lattice to the first key and from there to the first neighbour.
+        const std::uint64_t off = 2 * static_cast<std::uint64_t>(reach);
+        std::erase_if(keys_, [&](std::uint64_t k)
+                      { return k >> 42 < off || (k >> 21 & part) < off || (k & part) < off; });
+        for (std::uint64_t& k : keys_) k -= key(off, off, off);
     }
 
     /// Calls visit(z begin, z end) for the stretches of a column that lie in blocks.
@@ -50,13 +57,19 @@ public:
         for (auto at = std::lower_bound(keys_.begin(), keys_.end(), first); at != keys_.end(); ++at)
         {
             if (*at >> 21 != first >> 21) break;
-            const auto begin = static_cast<std::uint32_t>(*at & 0x1FFFFF) * side_;
+            const auto begin = static_cast<std::uint32_t>(*at & part) * side_;
             if (begin >= run.z_end) break;
             visit(std::max(begin, run.z_begin), std::min(begin + side_, run.z_end));
         }
     }
 
 private:
+    static constexpr std::uint64_t part = 0x1FFFFF; ///< of a key, a coordinate
+    void sort_once()
+    {
+        std::sort(keys_.begin(), keys_.end());
+        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    }
     static std::uint64_t key(std::uint64_t x, std::uint64_t y, std::uint64_t z)
     {
         return x << 42 | y << 21 | z;

@@ -140,7 +140,7 @@ SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> pa
     : body_(&body),
       dp_(dp),
       threads_(threads),
-      work_(make_work_mesh(body.mesh, body.features, longest_chart_side * dp)),
+      work_(make_work_mesh(body.mesh, body.features, longest_chart_side * dp, threads)),
       forces_of_(static_cast<float>(h)),
       step_over_force_(static_cast<float>(pace_of(particles.size()).share /
                                           (stiffest_mode(h) + SurfaceForces::stiffness_of_push()))),

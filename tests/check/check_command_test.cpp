@@ -76,6 +76,24 @@ TEST_F(CheckCommand, FindsNothingInALatticeTankOfLayers)
     EXPECT_TRUE(contains(result.output, "100 %")) << result.output;
 }
 
+/// Behind a floor in layers the sides of a sheet that stands through it are out of the fluid's
+/// reach: particles of its layers there look to the part above the floor.
+TEST_F(CheckCommand, FindsNoGhostInAFloorInLayersThatASheetStandsThrough)
+{
+    CaseText text = layered_tank();
+    text.mainlist =
+        R"(<setdrawmode mode="face"/><setmkbound mk="0"/><drawbox><boxfill>bottom|left|right|front|back</boxfill><point x="0" y="0" z="0"/><size x="1" y="0.8" z="0.6"/></drawbox><setmkbound mk="1"/><drawbox><boxfill>all^bottom</boxfill><point x="0.4" y="0.3" z="-0.1"/><size x="0.2" y="0.2" z="0.27"/></drawbox><setmkfluid mk="0"/><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill><point x="0" y="0" z="0"/><size x="1" y="0.8" z="0.4"/></fillbox>)";
+    text.after_geometry =
+        R"(<fppg><bodyfitted mkbound="0" side="front"/><bodyfitted mkbound="1" side="behind"/></fppg>)";
+    generate(text);
+    const RunResult checked = run(folder_, {"check", "Case", "--json", "c.json"});
+    EXPECT_EQ(checked.code, 0) << checked.output;
+    const Json json = Json::parse(read_text(folder_ / "c.json"));
+    for (const Json& mk : json.at("mks").items())
+        for (const char* fault : {"no_normal", "ghost_in_wall", "through_wall", "looks_away"})
+            EXPECT_EQ(mk.at("faults").at(fault).get<int>(), 0) << fault;
+}
+
 TEST_F(CheckCommand, MakesFindingsErrorsWhereItIsAskedTo)
 {
     CaseText text = layered_tank();

@@ -14,7 +14,7 @@ using namespace test;
 
 WorkMesh work_of(const FitInput& input, double longest)
 {
-    return make_work_mesh(input.mesh, input.features, longest);
+    return make_work_mesh(input.mesh, input.features, longest, 1);
 }
 
 double area_of(const WorkMesh& work)

@@ -410,11 +410,11 @@ TEST(FluidSpace, WaterBetweenLayersHasTheVolumeThatIsDrawn)
         {
             const std::string box = fmt::format(
                 R"(<point x="0" y="0" z="0" /><size x="{}" y="0.6" z="{}" />)", width, level);
-            const std::string water =
-                R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>)" + box + "</drawbox>";
-            const std::string fill =
-                R"(<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill>)" +
-                box + "</fillbox>";
+            const std::string water = fmt::format(
+                R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>{}</drawbox>)", box);
+            const std::string fill = fmt::format(
+                R"(<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill>{}</fillbox>)",
+                box);
             for (const std::string& drawn : {water + walls, walls + water, walls + fill,
                                              walls + R"(<setboxlimitmode mode="full" />)" + fill})
             {

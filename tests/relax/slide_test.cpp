@@ -16,7 +16,7 @@ using namespace test;
 WorkMesh work_mesh(const TriangleSoup& soup)
 {
     const FitInput input(soup, 0.1);
-    return make_work_mesh(input.mesh, input.features, 10);
+    return make_work_mesh(input.mesh, input.features, 10, 1);
 }
 
 SlidePlace on_top(const WorkMesh& mesh, const Vec3& position)
