@@ -20,6 +20,7 @@
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
 #include "scene/part_colours.h"
+#include "walls/fluid_ends.h"
 #include "walls/lattice_shift.h"
 
 #include <fmt/format.h>
@@ -177,6 +178,7 @@ void draw(CaseRunState& run, MadeCase& made)
                           "Lattice moved by ({:g}, {:g}, {:g}) m: fluid half a dp off flat walls",
                           shift.x, shift.y, shift.z));
                   }
+                  end_fluid_at_walls(made.scene, run.threads, made.def);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);

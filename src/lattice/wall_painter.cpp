@@ -323,8 +323,8 @@ void WallPainter::cut_crowded()
     }
 }
 
-/// Names the particles that were cut to the walls; where a later layer has taken the place of
-/// another nothing is missing.
+/// Tells the walls which particles were cut; where a later layer has taken the place of another
+/// nothing is missing.
 void WallPainter::note_missing()
 {
     FittedWalls& walls = field_->walls;
@@ -357,9 +357,10 @@ void WallPainter::note_missing()
     std::size_t layered = 0;
     for (const std::size_t i : cut)
     {
-        if (is_of_layer(i) && is_replaced[layered++].load(std::memory_order_relaxed)) continue;
-        walls.cut.push_back(all.positions[i]);
-        walls.cut_bodies.push_back(all.bodies[i]);
+        const bool has_other =
+            is_of_layer(i) && is_replaced[layered++].load(std::memory_order_relaxed);
+        (has_other ? walls.replaced : walls.cut).push_back(all.positions[i]);
+        (has_other ? walls.replaced_bodies : walls.cut_bodies).push_back(all.bodies[i]);
     }
 }
 

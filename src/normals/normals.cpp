@@ -7,6 +7,8 @@
 #include "fppg/particles.h"
 
 #include "core/parallel.h"
+#include "nodes/run_at.h"
+#include "nodes/snap.h"
 #include "normals/cad_normals.h"
 #include "normals/geometry_normals.h"
 #include "normals/part_normals.h"
@@ -18,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace fppg
 {
@@ -170,6 +173,7 @@ public:
         if (particles_.off_lattice.size() > 0) fill_on_surfaces();
         summarise();
         warn_of_no_normals();
+        warn_of_cut_walls();
         return std::move(normals_);
     }
 
@@ -284,16 +288,14 @@ private:
     /// Layers and what is under them look to the nearest place that fluid can touch.
     void from_layers()
     {
-        std::vector<char> is_layered(65536, 0);
-        bool has_layers = false;
         for (const FittedBody& body : field_.walls.bodies)
         {
             if (!body.is_layer()) continue;
-            has_layers = true;
-            is_layered[body.mk] = 1;
-            for (const std::uint16_t mk : body.facet_mk) is_layered[mk] = 1;
+            is_layered_.resize(65536, 0);
+            is_layered_[body.mk] = 1;
+            for (const std::uint16_t mk : body.facet_mk) is_layered_[mk] = 1;
         }
-        if (!has_layers) return;
+        if (is_layered_.empty()) return;
         const double reach = 2 * def_.h;
         std::vector<char> is_moving(65536, 0);
         for (const ParticleBlock& block : particles_.blocks)
@@ -305,7 +307,7 @@ private:
         const auto visit = [&](std::size_t r)
         {
             const RunPlace& place = places_[r];
-            if (is_layered[place.block->mk] == 0) return;
+            if (is_layered_[place.block->mk] == 0) return;
             Transform turn = motion_of(*place.block);
             turn.offset = {};
             for (std::uint32_t k = place.begin; k < place.end; ++k)
@@ -495,11 +497,57 @@ private:
             def_.file, fmt::join(mks, ", "), def_.solver.slip_mode));
     }
 
+    bool is_beside_fluid(const Vec3& p) const
+    {
+        for (int i = -1; i <= 1; ++i)
+            for (int j = -1; j <= 1; ++j)
+                for (int k = -1; k <= 1; ++k)
+                {
+                    Node n = snap(p, field_.grid);
+                    n.x += i;
+                    n.y += j;
+                    n.z += k;
+                    const Run* run = run_at(field_, n);
+                    if (run != nullptr && run->mk < def_.mk_bound_first) return true;
+                }
+        return false;
+    }
+
+    /// What a void or another draw takes out of a body leaves a face that is not fitted, and the
+    /// particles there without a normal.
+    void warn_of_cut_walls()
+    {
+        if (def_.solver.boundary != 2 || is_layered_.empty()) return;
+        std::vector<std::uint64_t> bare(places_.size(), 0);
+        parallel_for(
+            places_.size(), threads_,
+            [&](std::size_t r)
+            {
+                const RunPlace& place = places_[r];
+                if (is_layered_[place.block->mk] == 0) return;
+                for (std::uint32_t k = place.begin; k < place.end; ++k)
+                    if (normals_[place.id + k] == Float3{} && is_beside_fluid(position(place, k)))
+                        ++bare[r];
+            },
+            64);
+        std::map<std::uint16_t, std::uint64_t> of_mk;
+        for (std::size_t r = 0; r < places_.size(); ++r)
+            if (bare[r] > 0) of_mk[places_[r].block->mk_type] += bare[r];
+        for (const auto& [mk, count] : of_mk)
+            report_.warnings.push_back(fmt::format(
+                "{}: {} particles of mkbound {} beside fluid have no normal, so the solver takes "
+                "them for plain DBC: they stand where a void or another draw cut into their body, "
+                "and the cut is not a fitted surface. Draw the body with that shape taken out of "
+                "it (<boolean op=\"difference\">), or as sheets around the fluid.",
+                def_.file, count, mk));
+    }
+
     const CaseDef& def_;
     const CaseParticles& particles_;
     const RunField& field_;
     int threads_;
     NormalsReport& report_;
+    std::vector<char> is_layered_; ///< by mk: has layers; empty: none has
     std::vector<RunPlace> places_; ///< of all runs of boundary particles
     std::vector<Float3> normals_;
 };

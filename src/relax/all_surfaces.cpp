@@ -23,6 +23,8 @@ namespace
 constexpr double cell_of_cuts_dp = 3;
 /// None is put so near to it again, dp.
 constexpr double reach_of_insertion_dp = 1.5;
+/// The same where layers of another body stand instead, dp: less than a step of what was taken out.
+constexpr double reach_of_replaced_dp = 0.75;
 constexpr int surface_iterations = 100;
 /// Value of WallParticles::held of those that are there for a relaxation only.
 constexpr char of_border = 2;
@@ -32,6 +34,13 @@ constexpr double alone_dp = 2;
 constexpr double reach_of_crowd_dp = 2;
 /// No more than this share of the particles in the layers of a body is taken out.
 constexpr double most_thinned = 0.05;
+
+PointGrid grid_of(const std::vector<Vec3>& points, double cell)
+{
+    PointGrid out(cell, points.size());
+    for (const Vec3& p : points) out.add(p);
+    return out;
+}
 
 class AllSurfaces
 {
@@ -118,18 +127,19 @@ private:
         options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
         options.on_snapshot = [&](int iteration, const WallParticles& now)
         { snapshot_(surface_iterations_done_ + iteration, join(now, others)); };
-        PointGrid cut(cell_of_cuts_dp * dp, walls.cut.size());
-        for (const Vec3& p : walls.cut) cut.add(p);
+        const PointGrid cut = grid_of(walls.cut, cell_of_cuts_dp * dp);
+        const PointGrid replaced = grid_of(walls.replaced, reach_of_replaced_dp * dp);
         const WallParticles& second = walls.second_sheets;
-        PointGrid second_sheets(cell_of_cuts_dp * dp, second.size());
-        for (const Vec3& p : second.positions) second_sheets.add(p);
+        const PointGrid second_sheets = grid_of(second.positions, cell_of_cuts_dp * dp);
         const WallParticles all =
             walls.bodies.size() > 1 ? join(particles, others) : WallParticles{};
-        PointGrid of_others(least_pair_dp * dp, all.size());
-        for (const Vec3& p : all.positions) of_others.add(p);
+        const PointGrid of_others = grid_of(all.positions, least_pair_dp * dp);
         const auto is_apart = [&](std::size_t body, const Vec3& p)
         {
             bool out = true;
+            replaced.for_each_near(p, reach_of_replaced_dp * dp,
+                                   [&](std::uint32_t c, double)
+                                   { out = out && walls.replaced_bodies[c] != body; });
             of_others.for_each_near(p, least_pair_dp * dp,
                                     [&](std::uint32_t i, double)
                                     { out = out && all.bodies[i] == body; });

@@ -4,12 +4,12 @@
 #include "fppg/lattice.h"
 
 #include "nodes/run_at.h"
+#include "walls/fluid_ends.h"
 #include "walls/step_surfaces.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace fppg
@@ -17,8 +17,6 @@ namespace fppg
 namespace
 {
 
-/// Of the normal of a facet across an axis, less one.
-constexpr double off_axis = 1e-8;
 /// Facets are judged in pieces of about this length, dp; a side in this many at most.
 constexpr double piece_dp = 4;
 constexpr int most_pieces = 24;
@@ -111,7 +109,7 @@ public:
             const double size = norm(across);
             for (int axis = 0; axis < 3; ++axis)
             {
-                if (!(std::abs(across[axis]) > (1 - off_axis) * size)) continue;
+                if (!lies_across(across, axis)) continue;
                 const double at = (v[i][axis] - field_.grid.origin[axis]) / field_.grid.dp;
                 const double wet =
                     wet_share({v[i], v[i + 1], v[i + 2]}, across / size, !shape.is_solid);
@@ -173,71 +171,6 @@ private:
     std::array<WallPlaces, 3> places_;
 };
 
-/// The outermost nodes of a moved lattice within [low, high] along an axis, metres; empty: none.
-std::optional<std::array<double, 2>> nodes_within(double low, double high, int axis,
-                                                  const LatticeGrid& grid)
-{
-    const double first = std::ceil((low - grid.origin[axis]) / grid.dp - rounding);
-    const double last = std::floor((high - grid.origin[axis]) / grid.dp + rounding);
-    if (last < first) return std::nullopt;
-    return std::array<double, 2>{grid.origin[axis] + first * grid.dp,
-                                 grid.origin[axis] + last * grid.dp};
-}
-
-/// The limits of a fill, which takes the nodes strictly inside its snapped box.
-///
-/// grown  metres by which setboxlimitmode full has moved them out
-void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
-{
-    double& low = box.corner0[axis] <= box.corner1[axis] ? box.corner0[axis] : box.corner1[axis];
-    double& high = &low == &box.corner0[axis] ? box.corner1[axis] : box.corner0[axis];
-    const auto nodes = nodes_within(low + grown, high - grown, axis, grid);
-    if (!nodes) return;
-    low = (*nodes)[0] - grid.dp;
-    high = (*nodes)[1] + grid.dp;
-}
-
-/// The ends of a drawn body of fluid.
-void fit_ends(PolyhedronOp& body, int axis, const LatticeGrid& grid)
-{
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const Vec3& v : body.vertices)
-    {
-        low = std::min(low, v[axis]);
-        high = std::max(high, v[axis]);
-    }
-    const auto nodes = nodes_within(low, high, axis, grid);
-    if (!nodes) return;
-    for (Vec3& v : body.vertices)
-    {
-        if (v[axis] < low + rounding * grid.dp) v[axis] = (*nodes)[0];
-        if (v[axis] > high - rounding * grid.dp) v[axis] = (*nodes)[1];
-    }
-}
-
-/// Bodies of fluid end at nodes, and a node stands for a cell around it. Moved, a lattice has in
-/// them the nodes that lie in them: so many as fill their volume, not those that ends halfway
-/// between nodes are rounded to.
-void fit_fluid(DrawOp& op, int axis, const LatticeGrid& grid)
-{
-    const bool is_fluid = op.state->mk.kind == MkKind::Fluid;
-    if (auto* edit = std::get_if<Edit>(&op.what))
-    {
-        auto* fill = std::get_if<FillOp>(edit);
-        if (fill == nullptr || !fill->region || !is_fluid) return;
-        if (auto* box = std::get_if<BoxRegion>(&*fill->region))
-            fit_limits(*box, op.state->box_limit_full ? grid.dp : 0, axis, grid);
-    }
-    else if (auto* shape = std::get_if<Shape>(&op.what))
-    {
-        auto* body = std::get_if<PolyhedronOp>(shape);
-        if (body != nullptr && body->solid != SolidKind::None && is_fluid &&
-            op.state->mode != DrawMode::Wire)
-            fit_ends(*body, axis, grid);
-    }
-}
-
 } // namespace
 
 Vec3 lattice_shift(const Scene& scene, int threads)
@@ -287,7 +220,7 @@ void move_lattice(const Vec3& shift, CaseDef& def)
         // A node more: walls at the ends of the domain keep all of their layers.
         grid.origin[axis] += shift[axis] - grid.dp;
         ++grid.n[static_cast<std::size_t>(axis)];
-        for (DrawOp& op : def.ops) fit_fluid(op, axis, grid);
+        end_fluid_between_nodes(axis, def);
     }
 }
 

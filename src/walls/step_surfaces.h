@@ -4,6 +4,7 @@
 
 #include "scene/surfaces.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -23,5 +24,14 @@ struct StepSurface
 ///
 /// throws  IoError, GeometryError with the place of the draw
 std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads);
+
+/// Whether a facet lies across an axis.
+///
+/// normal  of any length
+inline bool lies_across(const Vec3& normal, int axis)
+{
+    constexpr double off_axis = 1e-8;
+    return std::abs(normal[axis]) > (1 - off_axis) * norm(normal);
+}
 
 } // namespace fppg

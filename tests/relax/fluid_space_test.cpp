@@ -427,6 +427,84 @@ TEST(FluidSpace, WaterBetweenLayersHasTheVolumeThatIsDrawn)
         }
 }
 
+/// Drawn first and off the lattice, a box of water would end at the nearest nodes, which along the
+/// edges of the tank lie beyond it and farther than half a dp from its walls.
+TEST(FluidSpace, WaterThatIsDrawnUpToWallsStaysBetweenThem)
+{
+    const std::string place = R"(<point x="0.023" y="-0.018" z="0.022" />)";
+    for (const char* boundary : {"dbc", "mdbc"})
+    {
+        const Result r = make(case_of(
+            R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>)" + place +
+                R"(<size x="0.9" y="0.73" z="0.4" /></drawbox><setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill>)" +
+                place + R"(<size x="0.9" y="0.73" z="0.8" /></drawbox>)",
+            fmt::format(R"(<bodyfitted boundary="{}" />)", boundary)));
+        ASSERT_EQ(r.code, 0) << r.output;
+        ASSERT_GT(r.fluid().size(), 1000u);
+        for (const Vec3& p : r.fluid())
+        {
+            EXPECT_GT(std::min({p.x - 0.023, 0.923 - p.x, p.y + 0.018, 0.712 - p.y, p.z - 0.022}),
+                      0)
+                << boundary << ' ' << p.x << ' ' << p.y << ' ' << p.z;
+        }
+    }
+}
+
+/// Faces of a hollow box that lie on nodes, and its edges beside them, do not make its outside its
+/// inside: water before them is evened out as it is before a solid one.
+TEST(FluidSpace, WaterBesideAHollowBoxIsEvenedOut)
+{
+    const auto nearest = [](const char* fill)
+    {
+        const Result r = make(case_of(
+            fmt::format(
+                R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.2" y="1" z="0.9" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>{}</boxfill><point x="0.4" y="0.325" z="0" /><size x="0.35" y="0.35" z="0.375" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x="2" y="2" z="0.8" /></fillbox>)",
+                fill),
+            R"(<bodyfitted boundary="mdbc" /><fluidband balance="false" />)"));
+        EXPECT_EQ(r.code, 0) << r.output;
+        EXPECT_FALSE(contains(r.output, "both sides")) << r.output;
+        double sum = 0;
+        int count = 0;
+        // Before the faces across y, at mid height.
+        for (const Vec3& p : r.fluid())
+        {
+            const double off = std::max(0.325 - p.y, p.y - 0.675);
+            if (p.x < 0.45 || p.x > 0.7 || p.z < 0.1 || p.z > 0.3 || off > 0.9 * dp) continue;
+            sum += off / dp;
+            ++count;
+        }
+        return count > 0 ? sum / count : 1.0;
+    };
+    EXPECT_NEAR(nearest("all"), 0.5, 0.1);
+    EXPECT_NEAR(nearest("solid"), 0.5, 0.1);
+}
+
+/// A wall in layers that stands on a floor in layers takes no row of the floor beside it.
+TEST(FluidSpace, AFloorKeepsItsRowsBesideAWallThatStandsOnIt)
+{
+    const Result r = make(case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.2" y="0.6" z="0.8" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.5" y="-0.1" z="-0.05" /><size x="0.2" y="0.8" z="0.9" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.2" y="0.3" z="0.2"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x="2" y="2" z="0.7" /></fillbox>
+<fillbox x="0.9" y="0.3" z="0.2"><modefill>void</modefill><point x="-0.2" y="-0.2" z="-0.2" /><size x="2" y="2" z="0.7" /></fillbox>)",
+        R"(<bodyfitted boundary="mdbc" /><fluidband balance="false" />)"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    int beside = 0;
+    for (const Vec3& p : r.fluid())
+    {
+        if (p.z > 0.8 * dp || std::abs(std::abs(p.x - 0.6) - 0.1) > 0.8 * dp) continue;
+        ++beside;
+        double below = 1;
+        for (std::size_t i = 0; i < r.cloud.positions.size(); ++i)
+            if (r.cloud.mk[i] >= first_bound)
+                below = std::min(below, norm(r.cloud.positions[i] - (p - Vec3{0, 0, dp})));
+        EXPECT_LT(below, 0.4 * dp) << p.x << ' ' << p.y;
+    }
+    EXPECT_EQ(beside, 2 * 12);
+}
+
 TEST(FluidSpace, ExactMassIsThatOfTheLitresAskedFor)
 {
     const Result r =

@@ -1,0 +1,162 @@
+#include "walls/fluid_ends.h"
+
+#include "fppg/draw_ops.h"
+#include "fppg/error.h"
+
+#include "walls/step_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace fppg
+{
+namespace
+{
+
+/// Places nearer than this are one, dp.
+constexpr double same_place = 1e-6;
+
+/// The outermost nodes of the lattice within [low, high] along an axis, metres; empty: none.
+std::optional<std::array<double, 2>> nodes_within(double low, double high, int axis,
+                                                  const LatticeGrid& grid)
+{
+    const double first = std::ceil((low - grid.origin[axis]) / grid.dp - same_place);
+    const double last = std::floor((high - grid.origin[axis]) / grid.dp + same_place);
+    if (last < first) return std::nullopt;
+    return std::array<double, 2>{grid.origin[axis] + first * grid.dp,
+                                 grid.origin[axis] + last * grid.dp};
+}
+
+/// The limits of a fill, which takes the nodes strictly inside its snapped box.
+///
+/// grown  metres by which setboxlimitmode full has moved them out
+void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
+{
+    double& low = box.corner0[axis] <= box.corner1[axis] ? box.corner0[axis] : box.corner1[axis];
+    double& high = &low == &box.corner0[axis] ? box.corner1[axis] : box.corner0[axis];
+    const auto nodes = nodes_within(low + grown, high - grown, axis, grid);
+    if (!nodes) return;
+    low = (*nodes)[0] - grid.dp;
+    high = (*nodes)[1] + grid.dp;
+}
+
+PolyhedronOp* body_of_fluid(DrawOp& op)
+{
+    if (op.state->mk.kind != MkKind::Fluid || op.state->mode == DrawMode::Wire ||
+        op.state->off_lattice)
+        return nullptr;
+    auto* shape = std::get_if<Shape>(&op.what);
+    auto* body = shape != nullptr ? std::get_if<PolyhedronOp>(shape) : nullptr;
+    return body != nullptr && body->solid != SolidKind::None ? body : nullptr;
+}
+
+/// Moves the ends of a body along an axis to the outermost nodes in it.
+///
+/// may_move  bool(double): whether an end at this place moves
+template <typename MayMove>
+void fit_ends(PolyhedronOp& body, int axis, const LatticeGrid& grid, const MayMove& may_move)
+{
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec3& v : body.vertices)
+    {
+        low = std::min(low, v[axis]);
+        high = std::max(high, v[axis]);
+    }
+    const auto nodes = nodes_within(low, high, axis, grid);
+    if (!nodes) return;
+    const bool moves_low = may_move(low);
+    const bool moves_high = may_move(high);
+    for (Vec3& v : body.vertices)
+    {
+        if (moves_low && v[axis] < low + same_place * grid.dp) v[axis] = (*nodes)[0];
+        if (moves_high && v[axis] > high - same_place * grid.dp) v[axis] = (*nodes)[1];
+    }
+}
+
+using Planes = std::array<std::vector<double>, 3>;
+
+void add_planes(const TriangleSoup& soup, Planes& planes)
+{
+    const std::vector<Vec3>& v = soup.vertices;
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3)
+    {
+        const Vec3 across = cross(v[i + 1] - v[i], v[i + 2] - v[i]);
+        for (int axis = 0; axis < 3; ++axis)
+            if (lies_across(across, axis))
+                planes[static_cast<std::size_t>(axis)].push_back(v[i][axis]);
+    }
+}
+
+/// Where the fitted walls of a case have facets across the axes, sorted.
+Planes planes_of_walls(const Scene& scene, int threads)
+{
+    Planes out;
+    for (const SceneStep& step : scene.remaining())
+    {
+        const DrawState& state = *step.draw->state;
+        const bool is_drawn = (step.combination || step.shape() != nullptr) && !step.is_part;
+        if (!is_drawn || state.mk.kind != MkKind::Bound || !state.draw_points ||
+            fit_settings(scene.def->fit, state.mk.mk) == nullptr)
+            continue;
+        for (const StepSurface& surface : step_surfaces(scene, step, threads))
+            add_planes(surface.shape.soup, out);
+    }
+    for (std::vector<double>& places : out)
+    {
+        std::sort(places.begin(), places.end());
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+    }
+    return out;
+}
+
+} // namespace
+
+void end_fluid_between_nodes(int axis, CaseDef& def)
+{
+    for (DrawOp& op : def.ops)
+    {
+        if (PolyhedronOp* body = body_of_fluid(op))
+            fit_ends(*body, axis, def.grid, [](double) { return true; });
+        auto* edit = std::get_if<Edit>(&op.what);
+        auto* fill = edit != nullptr ? std::get_if<FillOp>(edit) : nullptr;
+        if (fill == nullptr || !fill->region || op.state->mk.kind != MkKind::Fluid) continue;
+        if (auto* box = std::get_if<BoxRegion>(&*fill->region))
+            fit_limits(*box, op.state->box_limit_full ? def.grid.dp : 0, axis, def.grid);
+    }
+}
+
+void end_fluid_at_walls(const Scene& scene, int threads, CaseDef& def)
+{
+    if (def.fit.is_empty() || std::none_of(def.ops.begin(), def.ops.end(),
+                                           [](DrawOp& op) { return body_of_fluid(op) != nullptr; }))
+        return;
+    Planes planes;
+    try
+    {
+        planes = planes_of_walls(scene, threads);
+    }
+    catch (const Error&)
+    {
+        return; // drawing the walls says what is wrong
+    }
+    const double room = same_place * def.grid.dp;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (axis == 1 && def.grid.is_2d) continue;
+        const std::vector<double>& places = planes[static_cast<std::size_t>(axis)];
+        const auto is_at_wall = [&](double end)
+        {
+            const auto next = std::lower_bound(places.begin(), places.end(), end - room);
+            return next != places.end() && *next <= end + room;
+        };
+        for (DrawOp& op : def.ops)
+            if (PolyhedronOp* body = body_of_fluid(op)) fit_ends(*body, axis, def.grid, is_at_wall);
+    }
+}
+
+} // namespace fppg

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "fppg/case_def.h"
+#include "fppg/scene.h"
+
+namespace fppg
+{
+
+/// Along an axis whose nodes were moved, lets boxes and fills of fluid end at the nodes that lie in
+/// them. A node stands for the cell around it: so many nodes fill the volume that is drawn, not
+/// those that ends halfway between nodes are rounded to.
+void end_fluid_between_nodes(int axis, CaseDef& def);
+
+/// Lets bodies of fluid that are drawn up to fitted walls end at the last nodes before these. As on
+/// the lattice they would end at the nearest nodes, which are those of a wall there; beside fitted
+/// walls some would be fluid up to half a dp beyond them, along their edges.
+void end_fluid_at_walls(const Scene& scene, int threads, CaseDef& def);
+
+} // namespace fppg
