@@ -297,12 +297,14 @@ private:
         }
         if (is_layered_.empty()) return;
         const double reach = 2 * def_.h;
-        std::vector<char> is_moving(65536, 0);
+        WetSurface::Setup setup{def_.mk_bound_first, def_.constants.gravity, reach,
+                                std::vector<char>(65536, 0), std::vector<char>(65536, 0)};
         for (const ParticleBlock& block : particles_.blocks)
-            if (block.type == ParticleType::Moving) is_moving[block.mk] = 1;
-        const WetSurface wet(
-            field_, {def_.mk_bound_first, def_.constants.gravity, reach, std::move(is_moving)},
-            threads_);
+        {
+            if (block.type == ParticleType::Moving) setup.is_moving[block.mk] = 1;
+            if (block.type == ParticleType::Floating) setup.floats[block.mk] = 1;
+        }
+        const WetSurface wet(field_, setup, threads_);
         if (wet.is_empty()) return;
         const auto visit = [&](std::size_t r)
         {

@@ -107,28 +107,37 @@ void WetSurface::find_walls(const std::vector<FittedBody>& bodies)
             wall.depth = bodies[b].wall.get();
             wall.is_closed = bodies[wall.body].measures.volume > 0;
             wall.is_moving = setup_.is_moving[bodies[b].mk] != 0;
+            wall.floats = setup_.floats[bodies[b].mk] != 0;
             for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
             walls_.push_back(wall);
         }
         walls_.back().deepest = std::max(walls_.back().deepest, bodies[b].depth + 0.5 * dp_);
     }
+    for (Wall& wall : walls_)
+        for (std::uint32_t w = 0; w < walls_.size(); ++w)
+            if (may_cover(walls_[w], wall.box) && walls_[w].body != wall.body &&
+                walls_[w].is_moving == wall.is_moving && !wall.floats)
+                wall.near.push_back(w);
+}
+
+/// What floats leaves the place where it stands at the start.
+bool WetSurface::may_cover(const Wall& wall, const Box3& box) const
+{
+    const double room = wall.deepest + cover_dp * dp_;
+    bool meet = !wall.floats;
+    for (int axis = 0; axis < 3; ++axis)
+        meet = meet && box.min[axis] <= wall.box.max[axis] + room &&
+               wall.box.min[axis] <= box.max[axis] + room;
+    return meet;
 }
 
 bool WetSurface::may_be_covered(const Piece& piece) const
 {
     Box3 box;
     for (const Vec3& corner : piece.corners) box.add(corner);
-    for (std::size_t w = 0; w < walls_.size(); ++w)
-    {
-        if (walls_[w].body == walls_[piece.wall].body) continue;
-        const double room = walls_[w].deepest + cover_dp * dp_;
-        bool meet = true;
-        for (int axis = 0; axis < 3; ++axis)
-            meet = meet && box.min[axis] <= walls_[w].box.max[axis] + room &&
-                   walls_[w].box.min[axis] <= box.max[axis] + room;
-        if (meet) return true;
-    }
-    return false;
+    const std::vector<std::uint32_t>& near = walls_[piece.wall].near;
+    return std::any_of(near.begin(), near.end(),
+                       [&](std::uint32_t w) { return may_cover(walls_[w], box); });
 }
 
 void WetSurface::cut_pieces(const std::vector<FittedBody>& bodies)
@@ -292,14 +301,13 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
 bool WetSurface::is_covered(const Piece& piece, const Vec3& at) const
 {
     const Vec3 before = at + (cover_dp * dp_) * piece.normal;
-    const std::uint32_t body = walls_[piece.wall].body;
+    const std::vector<std::uint32_t>& near = walls_[piece.wall].near;
     return std::any_of(
-        walls_.begin(), walls_.end(),
-        [&](const Wall& wall)
+        near.begin(), near.end(),
+        [&](std::uint32_t w)
         {
-            if (wall.body == body || wall.is_moving != piece.is_moving ||
-                !wall.box.has(before, wall.is_closed ? 0 : wall.deepest))
-                return false;
+            const Wall& wall = walls_[w];
+            if (!wall.box.has(before, wall.is_closed ? 0 : wall.deepest)) return false;
             const DepthPlace place = wall.depth->at(before);
             return place.depth > 0 &&
                    (wall.is_closed || (place.depth < wall.deepest && !place.is_beyond_rim));

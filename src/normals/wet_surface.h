@@ -33,6 +33,7 @@ public:
         Vec3 gravity;
         double reach = 0;            ///< metres, 2 h
         std::vector<char> is_moving; ///< by mk: moves on a given path
+        std::vector<char> floats;    ///< by mk
     };
     WetSurface(const RunField& field, const Setup& setup, int threads);
 
@@ -83,13 +84,16 @@ private:
         double deepest = 0; ///< metres, to where its layers end
         bool is_closed = false;
         bool is_moving = false;
+        bool floats = false;
         Box3 box;
+        std::vector<std::uint32_t> near; ///< other bodies' walls that may cover parts of it
     };
     void find_walls(const std::vector<FittedBody>& bodies);
     void cut_pieces(const std::vector<FittedBody>& bodies);
     void add_pieces(const Piece& whole, double longest);
     void find_covered(int threads);
     std::vector<Piece> cut_at_covers(Piece& piece) const;
+    bool may_cover(const Wall& wall, const Box3& box) const;
     bool may_be_covered(const Piece& piece) const;
     bool is_covered(const Piece& piece, const Vec3& at) const;
     bool is_closed(const Piece& piece) const { return walls_[piece.wall].is_closed; }

@@ -44,10 +44,10 @@ void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
     high = (*nodes)[1] + grid.dp;
 }
 
-PolyhedronOp* body_of_fluid(DrawOp& op)
+/// The body that a draw fills with this kind of mk; null: none.
+PolyhedronOp* body_of(MkKind kind, DrawOp& op)
 {
-    if (op.state->mk.kind != MkKind::Fluid || op.state->mode == DrawMode::Wire ||
-        op.state->off_lattice)
+    if (op.state->mk.kind != kind || op.state->mode == DrawMode::Wire || op.state->off_lattice)
         return nullptr;
     auto* shape = std::get_if<Shape>(&op.what);
     auto* body = shape != nullptr ? std::get_if<PolyhedronOp>(shape) : nullptr;
@@ -120,8 +120,9 @@ void end_fluid_between_nodes(int axis, CaseDef& def)
 {
     for (DrawOp& op : def.ops)
     {
-        if (PolyhedronOp* body = body_of_fluid(op))
-            fit_ends(*body, axis, def.grid, [](double) { return true; });
+        for (const MkKind kind : {MkKind::Fluid, MkKind::Void})
+            if (PolyhedronOp* body = body_of(kind, op))
+                fit_ends(*body, axis, def.grid, [](double) { return true; });
         auto* edit = std::get_if<Edit>(&op.what);
         auto* fill = edit != nullptr ? std::get_if<FillOp>(edit) : nullptr;
         if (fill == nullptr || !fill->region || op.state->mk.kind != MkKind::Fluid) continue;
@@ -132,8 +133,9 @@ void end_fluid_between_nodes(int axis, CaseDef& def)
 
 void end_fluid_at_walls(const Scene& scene, int threads, CaseDef& def)
 {
-    if (def.fit.is_empty() || std::none_of(def.ops.begin(), def.ops.end(),
-                                           [](DrawOp& op) { return body_of_fluid(op) != nullptr; }))
+    if (def.fit.is_empty() ||
+        std::none_of(def.ops.begin(), def.ops.end(),
+                     [](DrawOp& op) { return body_of(MkKind::Fluid, op) != nullptr; }))
         return;
     Planes planes;
     try
@@ -155,7 +157,8 @@ void end_fluid_at_walls(const Scene& scene, int threads, CaseDef& def)
             return next != places.end() && *next <= end + room;
         };
         for (DrawOp& op : def.ops)
-            if (PolyhedronOp* body = body_of_fluid(op)) fit_ends(*body, axis, def.grid, is_at_wall);
+            if (PolyhedronOp* body = body_of(MkKind::Fluid, op))
+                fit_ends(*body, axis, def.grid, is_at_wall);
     }
 }
 

@@ -6,9 +6,9 @@
 namespace fppg
 {
 
-/// Along an axis whose nodes were moved, lets boxes and fills of fluid end at the nodes that lie in
-/// them. A node stands for the cell around it: so many nodes fill the volume that is drawn, not
-/// those that ends halfway between nodes are rounded to.
+/// Along an axis whose nodes were moved, lets boxes and fills of fluid, and voids in it, end at the
+/// nodes that lie in them. A node stands for the cell around it: so many nodes fill the volume that
+/// is drawn, not those that ends halfway between nodes are rounded to.
 void end_fluid_between_nodes(int axis, CaseDef& def);
 
 /// Lets bodies of fluid that are drawn up to fitted walls end at the last nodes before these. As on

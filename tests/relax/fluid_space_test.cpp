@@ -505,6 +505,28 @@ TEST(FluidSpace, AFloorKeepsItsRowsBesideAWallThatStandsOnIt)
     EXPECT_EQ(beside, 2 * 12);
 }
 
+/// A void takes the nodes that lie in it out of water, and no row beside it: the block that is
+/// drawn in its place leaves the same water as without the void.
+TEST(FluidSpace, AVoidMakesRoomForABlockWithoutARowTooMany)
+{
+    const std::string block =
+        R"(<drawbox><boxfill>solid</boxfill><point x="0.4" y="0.2" z="0" /><size x="0.2" y="0.2" z="0.6" /></drawbox>)";
+    const auto water = [&](const std::string& voids)
+    {
+        const Result r = make(case_of(
+            R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.6" z="0.4" /></drawbox>)" +
+                voids +
+                R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.6" z="1" /></drawbox><setmkbound mk="1" />)" +
+                block,
+            R"(<bodyfitted boundary="mdbc" /><fluidband balance="false" />)"));
+        EXPECT_EQ(r.code, 0) << r.output;
+        return r.fluid();
+    };
+    const std::vector<Vec3> fluid = water("<setmkvoid />" + block);
+    EXPECT_EQ(fluid.size(), (20u * 12 - 4 * 4) * 8);
+    EXPECT_EQ(fluid, water(""));
+}
+
 TEST(FluidSpace, ExactMassIsThatOfTheLitresAskedFor)
 {
     const Result r =
