@@ -197,7 +197,7 @@ struct FittedWalls
     /// no particle may be put there again.
     std::vector<Vec3> cut;
     std::vector<std::uint32_t> cut_bodies;
-    /// The same where a layer of a later draw took the place: nothing is missing there.
+    /// The same inside a later draw whose layers took the place: nothing is missing there.
     std::vector<Vec3> replaced;
     std::vector<std::uint32_t> replaced_bodies;
     /// Particles of the second sheets of plates, which were taken out: none may be put on their

@@ -359,6 +359,7 @@ void WallPainter::note_missing()
     {
         const bool has_other =
             is_of_layer(i) && is_replaced[layered++].load(std::memory_order_relaxed);
+        if (has_other && is_cut_[i] == touched) continue; // beside the other, some may be missing
         (has_other ? walls.replaced : walls.cut).push_back(all.positions[i]);
         (has_other ? walls.replaced_bodies : walls.cut_bodies).push_back(all.bodies[i]);
     }
