@@ -55,9 +55,12 @@ private:
     std::array<double, bins> off_{}; ///< times area, in bins from the middle
 };
 
-bool has_layers(const FitSettings& settings)
+/// Whether a step draws a wall in layers behind its surface.
+bool has_layers(const SceneStep& step, const FitDef& fit)
 {
-    return !settings.depths_dp.empty() && settings.depths_dp[0] > 0;
+    const MkValue& mk = step.draw->state->mk;
+    const FitSettings* settings = mk.kind == MkKind::Bound ? fit_settings(fit, mk.mk) : nullptr;
+    return settings != nullptr && !settings->depths_dp.empty() && settings->depths_dp[0] > 0;
 }
 
 bool relaxes_fluid(const CaseDef& def)
@@ -89,7 +92,9 @@ bool may_move(const Scene& scene)
         return false;
     const auto remaining = scene.remaining();
     return std::none_of(remaining.begin(), remaining.end(),
-                        [&](const SceneStep& step) { return bounds_lattice(step, def.fit); });
+                        [&](const SceneStep& step) { return bounds_lattice(step, def.fit); }) &&
+           std::any_of(remaining.begin(), remaining.end(),
+                       [&](const SceneStep& step) { return has_layers(step, def.fit); });
 }
 
 class WetPlanes
@@ -190,8 +195,7 @@ Vec3 lattice_shift(const Scene& scene, int threads)
             if (!is_drawn || state.mk.kind != MkKind::Bound || !state.draw_points) continue;
             const std::vector<StepSurface> surfaces = step_surfaces(scene, step, threads);
             if (surfaces.empty()) return {}; // points and lines stand on the lattice
-            if (const FitSettings* of_mk = fit_settings(def.fit, state.mk.mk);
-                of_mk != nullptr && has_layers(*of_mk))
+            if (has_layers(step, def.fit))
                 for (const StepSurface& surface : surfaces) walls.add(surface.shape);
         }
         for (int axis = 0; axis < 3; ++axis)
