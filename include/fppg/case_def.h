@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -167,9 +168,11 @@ struct FluidBand
 /// Where the solver lets fluid in and out: the zones of `<special><inout>`.
 struct InOutZones
 {
-    /// Absolute, ascending: of fluid whose particles are the points of a zone.
-    std::vector<std::uint16_t> mk;
+    /// Absolute mks of fluid whose particles are the points of a zone, and the unit vectors in
+    /// which fluid comes in there; zero where that is not known.
+    std::map<std::uint16_t, Vec3> fluids;
     std::vector<Box3> boxes; ///< limits of the zones that are given by their shape
+    std::vector<Vec3> ways;  ///< of each box, as above
 };
 
 /// What the solver is told on which places and densities depend.

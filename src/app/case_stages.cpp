@@ -19,6 +19,7 @@
 #include "lattice/mesh_units.h"
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
+#include "particles/simulation_domain.h"
 #include "scene/part_colours.h"
 #include "walls/fluid_ends.h"
 #include "walls/lattice_shift.h"
@@ -239,6 +240,8 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   std::vector<std::string> periods;
                   set_period(made.def, made.particles, periods);
                   for (std::string& w : periods) run.diagnose(std::move(w));
+                  for (std::string& w : widen_simulation_domain(made.particles, made.def))
+                      run.warn(std::move(w));
                   log_particles(made.def, made.particles, made.constants, run.log);
                   const SettledFloatings floatings =
                       settle_floatings(made.scene, made.field.walls, made.particles);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 namespace fppg
 {
@@ -84,6 +86,23 @@ std::vector<Vec3> corners_of(const Element& shape)
     return out;
 }
 
+/// The way in which fluid comes in, of `<particles direction="right">`.
+Vec3 way_of(const Element& particles)
+{
+    constexpr std::array<std::pair<std::string_view, Vec3>, 6> ways{{{"left", {-1, 0, 0}},
+                                                                     {"right", {1, 0, 0}},
+                                                                     {"front", {0, -1, 0}},
+                                                                     {"back", {0, 1, 0}},
+                                                                     {"bottom", {0, 0, -1}},
+                                                                     {"top", {0, 0, 1}}}};
+    const std::string* text = particles.find_attribute("direction");
+    if (text == nullptr) return {};
+    const std::string name = lower_case(trimmed(*text));
+    for (const auto& [word, way] : ways)
+        if (name == word) return way;
+    return {};
+}
+
 /// Adds the zone that a shape gives. False: it is not known.
 bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
 {
@@ -91,7 +110,7 @@ bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
     {
         const double mkfluid = number(&shape, "mkfluid");
         if (mkfluid >= 0 && mkfluid + def.mk_fluid_first < def.mk_bound_first)
-            zones.mk.push_back(static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first));
+            zones.fluids[static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first)] = way_of(shape);
         return true;
     }
     std::vector<Vec3> corners = corners_of(shape);
@@ -110,6 +129,8 @@ bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
         box.add(*by_euler - Vec3{reach, reach, reach});
     }
     zones.boxes.push_back(box);
+    const Vec3 way = turn(vector(shape.find_child("direction"))) - turn(Vec3{});
+    zones.ways.push_back(norm(way) > 0 && !by_euler ? (1 / norm(way)) * way : Vec3{});
     return true;
 }
 
@@ -162,8 +183,6 @@ InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnin
                                           });
                        });
     }
-    std::sort(zones.mk.begin(), zones.mk.end());
-    zones.mk.erase(std::unique(zones.mk.begin(), zones.mk.end()), zones.mk.end());
     return zones;
 }
 

@@ -3,6 +3,7 @@
 #include "fppg/fitted_walls.h"
 #include "fppg/lattice.h"
 
+#include "lattice/wall_openings.h"
 #include "nodes/spans.h"
 
 #include <string>
@@ -41,6 +42,8 @@ struct FittedStep
 {
     bool is_fitted = false;        ///< false: the shape stays on the lattice
     std::vector<FittedDraw> draws; ///< in order; none for a draw that paints nothing
+    /// Of a void or the fluid of an inlet: the holes that it makes in sheets.
+    std::vector<WallOpening> openings;
     /// Whole sentences that name the draw.
     std::vector<std::string> warnings;
 };

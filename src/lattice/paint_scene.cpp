@@ -94,7 +94,7 @@ void add_fitted(Painting& painting, FittedStep& fitted)
 /// A shape on the lattice, or its true surface where it was fitted.
 void paint_shape(Painting& painting, const DrawOp& draw, FittedStep& fitted)
 {
-    const Brush brush(draw);
+    Brush brush(draw);
     const auto& shape = std::get<Shape>(draw.what);
     const auto* file = std::get_if<MeshFileOp>(&shape);
     if (file != nullptr)
@@ -102,6 +102,8 @@ void paint_shape(Painting& painting, const DrawOp& draw, FittedStep& fitted)
     else if (painting.def.zone == 0) // the limits of other zones are meant to cut shapes
         painting.checks.check_shape(draw, bounds_of(shape, painting.grid().dp));
     add_fitted(painting, fitted);
+    brush.opens_walls = !fitted.openings.empty() && painting.canvas.has_walls();
+    if (brush.opens_walls) painting.canvas.open_walls(std::move(fitted.openings));
     if (!fitted.is_fitted)
         std::visit([&](const auto& kind) { paint_kind(painting, brush, kind); }, shape);
     else if (file != nullptr && !file->advanced)

@@ -178,7 +178,18 @@ void WallPainter::cut_by(const FittedDraw& draw)
         1024);
 }
 
-Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls)
+void WallPainter::open_walls(std::vector<WallOpening>&& openings)
+{
+    is_sheet_ = sheets_among(field_->walls.bodies);
+    for (WallOpening& opening : openings)
+    {
+        opening.bodies = static_cast<std::uint32_t>(field_->walls.bodies.size());
+        openings_.push_back(std::move(opening));
+    }
+}
+
+Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls,
+                              bool opens_walls)
 {
     if (!has_walls() || spans.empty()) return {};
     std::vector<std::uint16_t>& mks = field_->walls.particles.mk;
@@ -193,7 +204,7 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
             if (span->y != a.y || a.z < span->z_begin || is_cut_[a.particle]) continue;
             if (keeps_walls)
                 mks[a.particle] = mk;
-            else
+            else if (!opens_walls || is_sheet_[field_->walls.particles.bodies[a.particle]] == 0)
                 is_cut_[a.particle] = 1;
         }
     }
@@ -218,6 +229,7 @@ void WallPainter::reset()
     hollows_.clear();
     anchors_.clear();
     is_cut_.clear();
+    openings_.clear();
 }
 
 /// How much of a hollow body fills gave the mk of its wall.
@@ -367,6 +379,8 @@ void WallPainter::note_missing()
 
 void WallPainter::finish()
 {
+    cut_openings(openings_, field_->walls, field_->grid.dp, threads_, is_cut_);
+    openings_.clear();
     cut_crowded();
     for (const Hollow& hollow : hollows_)
     {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lattice/fitted_draw.h"
+#include "lattice/wall_openings.h"
 
 #include <cstdint>
 #include <functional>
@@ -29,7 +30,13 @@ public:
     /// Before the spans of slab x are painted with `mk` (0: void). A redraw gives walls another mk
     /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
     /// same time. Returns the spans that must be painted with `mk` as covered.
-    Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls);
+    ///
+    /// opens_walls  sheets are cut by open_walls() instead
+    Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls,
+                     bool opens_walls);
+
+    /// Holes in the sheets that were drawn so far, through all their layers.
+    void open_walls(std::vector<WallOpening>&& openings);
 
     /// Cuts the particles at some places.
     ///
@@ -73,6 +80,8 @@ private:
     std::vector<Hollow> hollows_;
     std::vector<std::vector<Anchor>> anchors_; ///< per slab, sorted by (y, z, particle)
     std::vector<char> is_cut_;                 ///< per particle of field.walls
+    std::vector<WallOpening> openings_;
+    std::vector<char> is_sheet_; ///< per body, sheets_among(); once there is an opening
 };
 
 } // namespace fppg

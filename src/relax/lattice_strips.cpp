@@ -22,14 +22,14 @@ bool contains(const Box3& box, const Vec3& p)
     return true;
 }
 
-std::vector<Vec3> nodes_of(const std::vector<std::uint16_t>& mks, const RunField& field)
+std::vector<Vec3> nodes_of(const InOutZones& inout, const RunField& field)
 {
     std::vector<Vec3> out;
     const LatticeGrid& grid = field.grid;
-    for (std::size_t x = 0; x < field.slabs.size() && !mks.empty(); ++x)
+    for (std::size_t x = 0; x < field.slabs.size() && !inout.fluids.empty(); ++x)
         for (const Run& run : field.slabs[x])
             for (std::uint32_t z = run.z_begin; z < run.z_end; ++z)
-                if (!run.is_covered && std::binary_search(mks.begin(), mks.end(), run.mk))
+                if (!run.is_covered && inout.fluids.contains(run.mk))
                     out.push_back({grid.origin.x + static_cast<double>(x) * grid.dp,
                                    grid.origin.y + run.y * grid.dp, grid.origin.z + z * grid.dp});
     return out;
@@ -51,7 +51,7 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
         inside_.max[axis] =
             grid.origin[axis] + (static_cast<double>(grid.n[a]) - 0.5) * grid.dp - reach_;
     }
-    for (const Vec3& p : nodes_of(def.solver.inout.mk, field)) points_.add(p);
+    for (const Vec3& p : nodes_of(def.solver.inout, field)) points_.add(p);
     for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));
     for (std::size_t z = 0; z < def.vres.zones.size(); ++z)
         if (def.vres.zones[z].parent == static_cast<int>(def.zone))

@@ -180,11 +180,26 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     return out;
 }
 
+/// Whether any wall has layers behind its surface.
+bool has_layers(const FitDef& fit)
+{
+    return (fit.all && !fit.all->depths_dp.empty()) ||
+           std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
+                       [](const auto& of_mk) { return !of_mk.second.depths_dp.empty(); });
+}
+
 Box3 box_of(const ShapeMesh& shape)
 {
     Box3 box;
     for (const Vec3& v : shape.soup.vertices) box.add(v);
     return box;
+}
+
+/// Fluid that comes in lies in the wall: it will be a step before it.
+Box3 moved_in(const Box3& box, const Vec3& way, const LatticeGrid& grid)
+{
+    const Vec3 step = (2 * grid.dp) * way;
+    return {box.min + step, box.max + step};
 }
 
 /// A box about a place in fluid: of a seed the place alone.
@@ -195,9 +210,10 @@ Box3 box_about(const Vec3& seed)
     return box;
 }
 
-/// The fluid of a case: the seeds of its fills, and the boxes of its fluid shapes.
+/// The fluid of a case: the seeds of its fills, the boxes of its fluid shapes, and its inlets.
 std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
 {
+    const InOutZones& inout = scene.def->solver.inout;
     std::vector<Box3> out;
     for (const SceneStep& step : scene.steps)
     {
@@ -210,8 +226,17 @@ std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
         }
         if (step.shape() == nullptr) continue;
         for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
-            if (const Box3 box = box_of(shape); !box.is_empty()) out.push_back(box);
+            if (const Box3 box = box_of(shape); !box.is_empty())
+            {
+                const auto inlet = inout.fluids.find(step.draw->state->mk.mk);
+                out.push_back(inlet == inout.fluids.end()
+                                  ? box
+                                  : moved_in(box, inlet->second, scene.def->grid));
+            }
     }
+    for (std::size_t z = 0; z < inout.boxes.size(); ++z)
+        if (inout.ways[z] != Vec3{})
+            out.push_back(moved_in(inout.boxes[z], inout.ways[z], scene.def->grid));
     return out;
 }
 
@@ -256,12 +281,39 @@ void warn_of_sides(const Scene& scene, const DrawOp& draw, const FitSettings& se
     }
 }
 
+/// The holes that a void or the fluid of an inlet makes in sheets.
+std::vector<WallOpening> openings_of(const Scene& scene, const SceneStep& step, int threads)
+{
+    const DrawState& state = *step.draw->state;
+    const bool is_inlet =
+        state.mk.kind == MkKind::Fluid && scene.def->solver.inout.fluids.contains(state.mk.mk);
+    const bool draws = step.shape() != nullptr && state.draw_points && state.clips.empty() &&
+                       !state.pattern && state.mode != DrawMode::Wire;
+    if (!draws || (state.mk.kind != MkKind::Void && !is_inlet)) return {};
+    std::vector<WallOpening> out;
+    try
+    {
+        for (ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::Drawn, threads))
+            if (!shape.soup.vertices.empty()) out.push_back({std::move(shape), is_inlet});
+    }
+    catch (const GeometryError&) // its nodes cut what they cover
+    {
+        out.clear();
+    }
+    return out;
+}
+
 FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Box3>& fluid,
                     int threads)
 {
     const DrawState& state = *step.draw->state;
-    const FitSettings* given =
-        state.mk.kind == MkKind::Bound ? fit_settings(scene.def->fit, state.mk.mk) : nullptr;
+    if (state.mk.kind != MkKind::Bound)
+    {
+        FittedStep out;
+        out.openings = openings_of(scene, step, threads);
+        return out;
+    }
+    const FitSettings* given = fit_settings(scene.def->fit, state.mk.mk);
     if (given == nullptr) return {};
     FitSettings own = *given;
     const FitSettings* settings = &own;
@@ -293,15 +345,8 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
 {
     std::vector<FittedStep> out(scene.steps.size());
     if (scene.def->fit.is_empty()) return out;
-    const bool has_layers = [&]
-    {
-        const FitDef& fit = scene.def->fit;
-        return (fit.all && !fit.all->depths_dp.empty()) ||
-               std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
-                           [](const auto& of_mk) { return !of_mk.second.depths_dp.empty(); });
-    }();
-    const std::vector<Box3> fluid =
-        has_layers ? boxes_of_fluid(scene, threads) : std::vector<Box3>{};
+    const bool layered = has_layers(scene.def->fit);
+    const std::vector<Box3> fluid = layered ? boxes_of_fluid(scene, threads) : std::vector<Box3>{};
     for (std::size_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
@@ -311,7 +356,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
             warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,
                                 out[i]);
     }
-    if (has_layers) warn_of_stacked_shells(scene, out);
+    if (layered) warn_of_stacked_shells(scene, out);
     return out;
 }
 

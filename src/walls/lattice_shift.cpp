@@ -87,7 +87,7 @@ bool may_move(const Scene& scene)
 {
     const CaseDef& def = *scene.def;
     const InOutZones& inout = def.solver.inout;
-    if (def.fit.is_empty() || def.vres.is_active() || !inout.mk.empty() || !inout.boxes.empty() ||
+    if (def.fit.is_empty() || def.vres.is_active() || !inout.fluids.empty() || !inout.boxes.empty() ||
         !relaxes_fluid(def))
         return false;
     const auto remaining = scene.remaining();

@@ -31,6 +31,8 @@ namespace
 constexpr double no_edge_deg = 180;
 /// Sides whose normals turn by more than 120 degrees face away from each other.
 constexpr double opposing = -0.5;
+/// Fluid that is drawn in the wall, so near, decides no side, dp.
+constexpr double in_wall_dp = 0.25;
 /// No particle of a layer is so near to the middle of a thin part, which has its own, dp.
 constexpr double off_middle_dp = 0.35;
 
@@ -84,7 +86,7 @@ LayerSide LayerBuilder::side_without_fluid() const
     for (const Vec3& p : settings_.fluid_places)
     {
         const double depth = wall->at(p).depth;
-        if (std::fabs(depth) >= nearest) continue;
+        if (std::fabs(depth) >= nearest || std::fabs(depth) < in_wall_dp * grid_.dp) continue;
         nearest = std::fabs(depth);
         side = depth > 0 ? LayerSide::Front : LayerSide::Behind;
     }

@@ -1035,7 +1035,21 @@ TEST(Definition, TurnsZonesOfInOutAsTheSolver)
         const Box3& box = def.solver.inout.boxes[0];
         EXPECT_LT(norm(box.min - Vec3{0.7, 0.3, 0.1}), 1e-12);
         EXPECT_LT(norm(box.max - Vec3{0.7, 0.5, 0.5}), 1e-12);
+        ASSERT_EQ(def.solver.inout.ways.size(), 1u);
+        EXPECT_LT(norm(def.solver.inout.ways[0] - Vec3{1, 0, 0}), 1e-12);
     }
+}
+
+TEST(Definition, KnowsTheWayInAtThePointsOfAnInlet)
+{
+    CaseText text;
+    text.after_geometry = "<fppg><bodyfitted /></fppg>";
+    text.execution +=
+        R"(<special><inout><inoutzone><zone3d><particles mkfluid="3" direction="back" /></zone3d></inoutzone></inout></special>)";
+    const CaseDef def = read(text);
+    ASSERT_EQ(def.solver.inout.fluids.size(), 1u);
+    EXPECT_EQ(def.solver.inout.fluids.begin()->first, def.mk_fluid_first + 3);
+    EXPECT_EQ(def.solver.inout.fluids.begin()->second, (Vec3{0, 1, 0}));
 }
 
 } // namespace
