@@ -43,6 +43,13 @@ public:
     int exit_code() const override { return 3; }
 };
 
+/// Of a combination of parts nothing is left.
+class NothingLeft : public GeometryError
+{
+public:
+    using GeometryError::GeometryError;
+};
+
 /// A file cannot be read or written. The text names the file and the cause.
 class IoError : public Error
 {

@@ -12,7 +12,16 @@ namespace fppg
 
 class MeshLibrary;
 
-/// Parts of a case that are drawn as one, where the last of them stands: `<fppg><boolean>`.
+/// A solid and what is drawn into it later, as they are when the scene is made.
+struct HollowedSolid
+{
+    BooleanDef boolean; ///< the solid less all others
+    std::vector<DrawOp> parts;
+    std::vector<const SourceRef*> by; ///< the draws into it, in the case
+};
+
+/// Parts of a case that are drawn as one: those of a `<fppg><boolean>`, where the last of them
+/// stands, or a solid less what is drawn into it later, in the solid's place.
 struct Combination
 {
     const BooleanDef* boolean = nullptr;
@@ -22,6 +31,7 @@ struct Combination
     std::vector<const DrawOp*> parts;
     std::vector<MkValue> mks; ///< per part, what its particles get
     std::vector<char> stays;  ///< per part, whether its solid stays in the result
+    std::shared_ptr<const HollowedSolid> hollowed; ///< what `boolean` and `parts` are of; or null
 };
 
 /// A command of a case, or a combination.

@@ -89,8 +89,8 @@ void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans, c
 {
     std::vector<Run>& slab = field_.slabs[x];
     const std::size_t before = slab.size();
-    const Spans zone = walls_.paint_over(x, spans, mk.mk, brush.keeps_walls, brush.opens_walls);
-    fppg::paint(slab, spans, mk.mk);
+    const Spans zone = walls_.paint_over(x, spans, mk.mk, brush.keeps_walls, brush.spares_walls);
+    fppg::paint(slab, brush.spares_walls ? walls_.without_spared(x, spans) : spans, mk.mk);
     if (!zone.empty()) fppg::paint(slab, zone, mk.mk, true);
     const std::uint64_t runs = runs_ += slab.size() - before; // wraps where runs were joined
     if (runs > run_limit_ && runs < UINT64_MAX / 2)

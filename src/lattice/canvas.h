@@ -29,7 +29,7 @@ struct Brush
     bool heeds_pattern = true;     ///< false: every node is painted, whatever the pattern
     bool empties_left_out = false; ///< nodes on '-' of the pattern become void without setmkback
     bool keeps_walls = false;      ///< walls stay where they are and take the mk
-    bool opens_walls = false;      ///< Canvas::open_walls() has the shape
+    bool spares_walls = false;     ///< it cuts some by its true shape: Canvas::cut_walls()
 };
 
 /// The nodes of a case while its commands run: each draw paints over what was there (rule O1).
@@ -54,9 +54,11 @@ public:
     /// A body-fitted body on top of all that was drawn.
     void add_wall(FittedDraw&& draw) { walls_.add(std::move(draw)); }
 
-    bool has_walls() const { return walls_.has_walls(); }
-    /// Holes in body-fitted sheets.
-    void open_walls(std::vector<WallOpening>&& openings) { walls_.open_walls(std::move(openings)); }
+    /// Before a shape is painted: what it cuts of body-fitted walls by its true shape. False: none.
+    bool cut_walls(const SourceRef& draw, std::vector<WallOpening>&& openings)
+    {
+        return walls_.has_walls() && walls_.cut_by_shape(draw, std::move(openings));
+    }
 
     /// Forgets all that was drawn.
     void reset();

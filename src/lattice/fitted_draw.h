@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/draw_ops.h"
 #include "fppg/fitted_walls.h"
 #include "fppg/lattice.h"
 
@@ -34,6 +35,8 @@ struct FittedDraw
     std::vector<Spans> zone;    ///< likewise; every particle has a node of it at its cell's corners
     /// Nodes of `volume` and `zone` with another mk than the body's.
     std::vector<NodeShare> shares;
+    /// Voids that its surface is cut by already: they leave its particles and its zone.
+    std::vector<const SourceRef*> hollowed_by;
     std::vector<std::string> warnings;
 };
 

@@ -79,6 +79,8 @@ void WallPainter::add(FittedDraw&& draw)
             }
         });
     walls.bodies.push_back(std::move(draw.body));
+    hollowed_by_.resize(body + 1 + draw.layers.size());
+    hollowed_by_[body] = std::move(draw.hollowed_by);
     for (FittedBody& layer : draw.layers)
     {
         layer.owner = body;
@@ -178,18 +180,42 @@ void WallPainter::cut_by(const FittedDraw& draw)
         1024);
 }
 
-void WallPainter::open_walls(std::vector<WallOpening>&& openings)
+bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings)
 {
-    is_sheet_ = sheets_among(field_->walls.bodies);
+    const std::vector<FittedBody>& bodies = field_->walls.bodies;
+    is_spared_.assign(bodies.size(), 0);
+    if (!openings.empty()) is_spared_ = sheets_among(bodies);
+    spared_mks_.clear();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+    {
+        const std::vector<const SourceRef*>& by =
+            hollowed_by_[bodies[b].is_layer() ? bodies[b].owner : b];
+        if (std::find(by.begin(), by.end(), &draw) == by.end()) continue;
+        is_spared_[b] = 1;
+        spared_mks_.push_back(bodies[b].mk);
+    }
     for (WallOpening& opening : openings)
     {
-        opening.bodies = static_cast<std::uint32_t>(field_->walls.bodies.size());
+        opening.bodies = static_cast<std::uint32_t>(bodies.size());
         openings_.push_back(std::move(opening));
     }
+    return std::find(is_spared_.begin(), is_spared_.end(), 1) != is_spared_.end();
+}
+
+Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
+{
+    if (spared_mks_.empty()) return spans;
+    Spans zone;
+    for (const Run& r : field_->slabs[x])
+        if (r.is_covered &&
+            std::find(spared_mks_.begin(), spared_mks_.end(), r.mk) != spared_mks_.end())
+            zone.push_back({r.y, r.z_begin, r.z_end});
+    sort_and_join(zone);
+    return subtract(spans, zone);
 }
 
 Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls,
-                              bool opens_walls)
+                              bool spares)
 {
     if (!has_walls() || spans.empty()) return {};
     std::vector<std::uint16_t>& mks = field_->walls.particles.mk;
@@ -204,7 +230,7 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
             if (span->y != a.y || a.z < span->z_begin || is_cut_[a.particle]) continue;
             if (keeps_walls)
                 mks[a.particle] = mk;
-            else if (!opens_walls || is_sheet_[field_->walls.particles.bodies[a.particle]] == 0)
+            else if (!spares || is_spared_[field_->walls.particles.bodies[a.particle]] == 0)
                 is_cut_[a.particle] = 1;
         }
     }
@@ -230,6 +256,7 @@ void WallPainter::reset()
     anchors_.clear();
     is_cut_.clear();
     openings_.clear();
+    hollowed_by_.clear();
 }
 
 /// How much of a hollow body fills gave the mk of its wall.

@@ -31,12 +31,18 @@ public:
     /// and leaves them where they are if `keeps_walls`. Calls for different slabs may run at the
     /// same time. Returns the spans that must be painted with `mk` as covered.
     ///
-    /// opens_walls  sheets are cut by open_walls() instead
+    /// spares  what cut_by_shape() found is left
     Spans paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls,
-                     bool opens_walls);
+                     bool spares);
 
-    /// Holes in the sheets that were drawn so far, through all their layers.
-    void open_walls(std::vector<WallOpening>&& openings);
+    /// Before a shape is painted: its holes in the sheets that were drawn so far, through all their
+    /// layers. Sheets, where it makes such, and the bodies that it hollows are cut by its true
+    /// shape, not by its nodes.
+    ///
+    /// returns  whether there are any
+    bool cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings);
+    /// Of spans to be painted, those without the zones of the bodies that the draw hollows.
+    Spans without_spared(std::size_t x, const Spans& spans) const;
 
     /// Cuts the particles at some places.
     ///
@@ -81,7 +87,9 @@ private:
     std::vector<std::vector<Anchor>> anchors_; ///< per slab, sorted by (y, z, particle)
     std::vector<char> is_cut_;                 ///< per particle of field.walls
     std::vector<WallOpening> openings_;
-    std::vector<char> is_sheet_; ///< per body, sheets_among(); once there is an opening
+    std::vector<std::vector<const SourceRef*>> hollowed_by_; ///< per body
+    std::vector<char> is_spared_;                            ///< per body
+    std::vector<std::uint16_t> spared_mks_; ///< absolute, of the bodies that the draw hollows
 };
 
 } // namespace fppg

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 namespace fppg
 {
@@ -34,6 +35,20 @@ std::optional<std::string> widen(Element& limit, int axis, bool is_min, double o
     return line;
 }
 
+void widen(Element& limit, const CaseParticles& particles, const CaseDef& def,
+           std::vector<std::string>& lines)
+{
+    const bool is_min = limit.name == "posmin";
+    if (!is_min && limit.name != "posmax") return;
+    const Vec3& outermost = is_min ? particles.pos_min : particles.pos_max;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (def.grid.is_2d && axis == 1) continue;
+        if (auto line = widen(limit, axis, is_min, outermost[axis], def))
+            lines.push_back(std::move(*line));
+    }
+}
+
 } // namespace
 
 std::vector<std::string> widen_simulation_domain(const CaseParticles& particles, CaseDef& def)
@@ -45,16 +60,7 @@ std::vector<std::string> widen_simulation_domain(const CaseParticles& particles,
         for (Element& domain : parameters.children)
         {
             if (domain.name != "simulationdomain") continue;
-            for (Element& limit : domain.children)
-                for (int axis = 0; axis < 3; ++axis)
-                {
-                    const bool is_min = limit.name == "posmin";
-                    if ((!is_min && limit.name != "posmax") || (def.grid.is_2d && axis == 1))
-                        continue;
-                    const Vec3& outermost = is_min ? particles.pos_min : particles.pos_max;
-                    if (auto line = widen(limit, axis, is_min, outermost[axis], def))
-                        lines.push_back(std::move(*line));
-                }
+            for (Element& limit : domain.children) widen(limit, particles, def, lines);
         }
     return lines;
 }

@@ -3,6 +3,7 @@
 #include "fppg/combination.h"
 
 #include "meshes/mesh_library.h"
+#include "scene/hollowed_solids.h"
 
 #include <algorithm>
 #include <utility>
@@ -83,6 +84,7 @@ Scene make_scene(const CaseDef& def)
             scene.steps.push_back({whole, std::move(combination), false});
         }
     }
+    hollow_solids(scene);
     return scene;
 }
 

@@ -121,7 +121,7 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
     out.result = boolean_mesh(operands, tree, {.dp = dp}, threads);
     out.warnings.insert(out.warnings.end(), out.result.warnings.begin(), out.result.warnings.end());
     if (out.result.mesh.facets.empty())
-        throw GeometryError("nothing is left of the combination of its parts");
+        throw NothingLeft("nothing is left of the combination of its parts");
     return out;
 }
 

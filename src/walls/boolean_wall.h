@@ -40,7 +40,7 @@ struct CombinedParts
 };
 
 /// dp      metres; cracks of parts narrower than 0.15 dp are closed
-/// throws  GeometryError that names the part, or for a result without a facet
+/// throws  GeometryError that names the part, NothingLeft for a result without a facet
 CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
                             double dp, int threads);
 

@@ -167,13 +167,17 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     {
         FittedDraw draw =
             fit_boolean(parts, boolean.tree, settings, scene.def->grid, state.clips, threads);
+        const SourceRef& source = combination.whole.source;
         draw.body.line = boolean.line;
-        draw.body.name = boolean.name.empty() ? "boolean" : "boolean " + boolean.name;
+        draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
+        if (combination.hollowed != nullptr) draw.hollowed_by = combination.hollowed->by;
         say_place(scene, combination.whole, draw);
         out.draws.push_back(std::move(draw));
     }
     catch (const GeometryError& e)
     {
+        const bool is_void = combination.hollowed != nullptr;
+        if (is_void && dynamic_cast<const NothingLeft*>(&e) != nullptr) return out;
         throw GeometryError(
             fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
     }

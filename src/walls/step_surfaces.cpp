@@ -40,6 +40,8 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
     }
     catch (const GeometryError& e)
     {
+        const bool is_void = step.combination && step.combination->hollowed != nullptr;
+        if (is_void && dynamic_cast<const NothingLeft*>(&e) != nullptr) return {};
         throw GeometryError(
             fmt::format("{}: {}", place_of(*scene.def, step.draw->source), e.what()));
     }

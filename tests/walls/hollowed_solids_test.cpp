@@ -1,0 +1,128 @@
+#include "layered_drawing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fppg::test
+{
+namespace
+{
+
+constexpr double dp = Drawing::dp;
+const Vec3 low{-1.5, -1.4, -1.5};
+const Vec3 size{3.0, 2.8, 2.5};
+const Vec3 cavity_low{-0.83, -0.74, -0.95};
+const Vec3 cavity_size{1.63, 1.46, 3.0}; // open at the top of the block
+
+enum class By
+{
+    Void,
+    Fluid,
+    Boolean,
+};
+
+/// A block with a cavity; what is left of it has layers, or particles on its surface.
+Drawing hollowed(By by, bool has_layers)
+{
+    Drawing drawing = layered();
+    if (!has_layers) drawing.def.fit.all->depths_dp.clear();
+    drawing.box(low, size);
+    if (by == By::Void) drawing.empty();
+    if (by == By::Fluid) drawing.fluid();
+    drawing.box(cavity_low, cavity_size);
+    if (by != By::Boolean) return drawing;
+    BooleanDef boolean;
+    boolean.line = 7;
+    boolean.tree.op = BooleanOp::Difference;
+    boolean.tree.operands = {{BooleanOp::Part, 0, {}}, {BooleanOp::Part, 1, {}}};
+    boolean.parts = {{0, false}, {1, false}};
+    drawing.def.booleans.push_back(boolean);
+    return drawing;
+}
+
+class Hollowed : public testing::TestWithParam<bool>
+{
+};
+
+/// A void, or fluid, that is drawn into a solid makes the walls that a Boolean difference makes.
+TEST_P(Hollowed, ByAVoidOrByFluidHasTheWallsOfADifference)
+{
+    const std::vector<Vec3> wanted =
+        hollowed(By::Boolean, GetParam()).run().walls.particles.positions;
+    EXPECT_GT(wanted.size(), 3000u);
+    for (const By by : {By::Void, By::Fluid})
+        EXPECT_EQ(hollowed(by, GetParam()).run().walls.particles.positions, wanted);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layers, Hollowed, testing::Bool());
+
+std::size_t fluid_particles(const RunField& field)
+{
+    std::size_t count = 0;
+    for (const auto& slab : field.slabs)
+        for (const Run& run : slab)
+            if (run.mk == Drawing::fluid_mk && !run.is_covered) count += run.z_end - run.z_begin;
+    for (const std::uint16_t mk : field.walls.volume.mk) count += mk == Drawing::fluid_mk ? 1 : 0;
+    return count;
+}
+
+TEST(HollowedSolid, HoldsTheFluidOfItsCavityAndLooksAtIt)
+{
+    constexpr double level = 0.05; // half a step above the last nodes
+    Drawing drawing = hollowed(By::Void, true);
+    drawing.fill({0, 0, -0.5}, level);
+    drawing.fluid_band();
+    const RunField field = relaxed(drawing);
+    const double volume = cavity_size.x * cavity_size.y * (level - cavity_low.z);
+    EXPECT_NEAR(static_cast<double>(fluid_particles(field)) * std::pow(dp, 3), volume,
+                0.005 * volume);
+    const WallNormals walls = normals_of(drawing, field);
+    EXPECT_TRUE(walls.report.warnings.empty());
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < walls.positions.size(); ++i)
+    {
+        const Vec3& p = walls.positions[i];
+        const double outside =
+            std::max({cavity_low.x - p.x, p.x - cavity_low.x - cavity_size.x, cavity_low.y - p.y,
+                      p.y - cavity_low.y - cavity_size.y, cavity_low.z - p.z});
+        if (p.z < low.z + size.z) EXPECT_GT(outside, 0.49 * dp) << p.x << " " << p.y << " " << p.z;
+        // Beside the cavity's faces, below the level.
+        const bool is_beside = p.z > cavity_low.z && p.z < level && outside < 2.6 * dp &&
+                               std::abs(p.x) < 0.75 && std::abs(p.y) > 0.5;
+        if (!is_beside) continue;
+        ++near;
+        EXPECT_NEAR(norm(walls.normals[i]), outside, 1e-4 * dp);
+    }
+    EXPECT_GT(near, 500u);
+}
+
+/// GenCase draws nothing then, and says nothing.
+TEST(HollowedSolid, OfWhichNothingIsLeftDrawsNothing)
+{
+    Drawing drawing = layered();
+    drawing.box(low, size);
+    drawing.empty();
+    drawing.box(low - Vec3{0.1, 0.1, 0.1}, size + Vec3{0.2, 0.2, 0.2});
+    EXPECT_EQ(drawing.run().walls.particles.size(), 0u);
+}
+
+/// As on the lattice, fluid that is drawn up to a solid, or a little into it, leaves it whole.
+TEST(HollowedSolid, IsLeftWholeByFluidUpToItsFace)
+{
+    std::vector<std::size_t> counts;
+    for (const double into : {-0.2, 0.0, 0.4})
+    {
+        Drawing drawing = layered();
+        drawing.box(low, size);
+        drawing.fluid();
+        drawing.box({-0.5, -0.5, low.z + size.z - into * dp}, {1, 1, 0.6});
+        counts.push_back(drawing.run().walls.bodies.front().mesh.facets.size());
+    }
+    EXPECT_EQ(counts, (std::vector<std::size_t>{12, 12, 12}));
+}
+
+} // namespace
+} // namespace fppg::test
