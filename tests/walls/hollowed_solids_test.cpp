@@ -71,7 +71,7 @@ std::size_t fluid_particles(const RunField& field)
 
 TEST(HollowedSolid, HoldsTheFluidOfItsCavityAndLooksAtIt)
 {
-    constexpr double level = 0.05; // half a step above the last nodes
+    constexpr double level = -0.05; // half a step above the last nodes
     Drawing drawing = hollowed(By::Void, true);
     drawing.fill({0, 0, -0.5}, level);
     drawing.fluid_band();
