@@ -31,6 +31,20 @@ namespace fppg
 namespace
 {
 
+/// Whether a shape of boundary particles is drawn by nodes.
+bool has_walls_on_lattice(const CaseDef& def)
+{
+    return std::any_of(
+        def.ops.begin(), def.ops.end(),
+        [&](const DrawOp& op)
+        {
+            const MkValue& mk = op.state->mk;
+            return mk.kind == MkKind::Bound && std::holds_alternative<Shape>(op.what) &&
+                   (fit_settings(def.fit, mk.mk) == nullptr || op.state->mode == DrawMode::Wire ||
+                    shape_as<PointsOp>(op) != nullptr || shape_as<LinesOp>(op) != nullptr);
+        });
+}
+
 /// The version of GenCase whose language this is.
 constexpr std::array<int, 3> language_version{5, 4, 354};
 
@@ -103,12 +117,7 @@ public:
                     "{}:{}: <{}>: is a command of fppg's own; GenCase does not know it and refuses "
                     "the case.",
                     def_.file, line, name));
-        if (!def_.fit.is_empty() &&
-            (def_.constants.lattice_bound != 1 || def_.constants.lattice_fluid != 1))
-            read_.fail(casedef,
-                       "<lattice> with two particles per node is not possible together with "
-                       "body-fitted walls, expected bound=\"1\" and fluid=\"1\", or no -fit and no "
-                       "<bodyfitted>");
+        if (!def_.fit.is_empty()) settle_lattice(casedef);
         if (vres != nullptr) check_vres(*vres);
         apply_overrides(def_.casedef);
         for (const Variable& v : variables_.exported())
@@ -125,6 +134,24 @@ public:
     }
 
 private:
+    /// Body-fitted walls need no second particle per node.
+    void settle_lattice(const Element& casedef)
+    {
+        ConstantsDef& c = def_.constants;
+        if (c.lattice_fluid != 1 || (c.lattice_bound != 1 && has_walls_on_lattice(def_)))
+            read_.fail(casedef,
+                       "<lattice> with two particles per node is not possible together with "
+                       "body-fitted walls, expected bound=\"1\" and fluid=\"1\", or no -fit and no "
+                       "<bodyfitted>");
+        if (c.lattice_bound == 1) return;
+        def_.warnings.push_back(fmt::format(
+            "{}:{}: <lattice bound=\"{}\">: all walls are body-fitted, which have one particle per "
+            "dp^2: taken for bound=\"1\".",
+            def_.file, casedef.line, c.lattice_bound));
+        c.lattice_bound = 1;
+        apply_formulas();
+    }
+
     void check_version(const Element& casedef) const
     {
         const std::string* wanted = casedef.find_attribute("requiredversion");

@@ -82,6 +82,17 @@ FacetPlace PseudoNormals::place_on_facet(std::uint32_t facet, const Vec3& p, dou
     return {};
 }
 
+double PseudoNormals::side_of(const Vec3& p, std::uint32_t facet, const Vec3& foot, double room,
+                              FacetPlace& place) const
+{
+    const Vec3 off = p - foot;
+    const double height = dot(off, mesh_.normals[facet]);
+    // Straight over the facet there is no doubt, and no need to look for edges.
+    if (std::fabs(height) > (1 - 1e-12) * norm(off)) return height;
+    place = place_on_facet(facet, foot, room);
+    return dot(off, at(facet, place));
+}
+
 bool PseudoNormals::is_open_at(std::uint32_t facet, const FacetPlace& place) const
 {
     const auto is_open = [&](std::uint32_t edge) { return mesh_.edge_facets[edge][1] == no_index; };

@@ -36,6 +36,14 @@ public:
     ///
     /// room  metres
     FacetPlace place_on_facet(std::uint32_t facet, const Vec3& p, double room) const;
+    /// On which side of the surface a point is: above 0 where the facets look. By the facet where
+    /// the point is straight over it, else by the normal at the side or corner.
+    ///
+    /// foot   the point of the surface nearest to p, on this facet
+    /// room   metres
+    /// place  of the foot; left as it is where p is straight over the facet
+    double side_of(const Vec3& p, std::uint32_t facet, const Vec3& foot, double room,
+                   FacetPlace& place) const;
     /// Whether an open edge runs along the side, or through the corner.
     bool is_open_at(std::uint32_t facet, const FacetPlace& place) const;
 

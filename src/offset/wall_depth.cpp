@@ -108,13 +108,9 @@ DepthPlace WallDepth::seen_from(const ExactPlace& place, const Vec3& p, std::uin
 
 bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& place) const
 {
-    const Vec3 out = p - foot.point;
-    const double height = dot(out, mesh_.normals[foot.facet]);
-    // Straight over the facet there is no doubt, and no need to look for edges.
-    if (std::fabs(height) > (1 - 1e-12) * foot.distance) return height < 0;
-    place = normals_.place_on_facet(foot.facet, foot.point, 1e-12 * size_);
-    if (asks_inside_) return test_.is_inside(p);
-    return dot(out, normals_.at(foot.facet, place)) < 0;
+    const double side = normals_.side_of(p, foot.facet, foot.point, 1e-12 * size_, place);
+    const bool is_beside = place.side >= 0 || place.corner >= 0;
+    return asks_inside_ && is_beside ? test_.is_inside(p) : side < 0;
 }
 
 DepthPlace WallDepth::at(const Vec3& p, double within) const

@@ -43,6 +43,7 @@ public:
         for (const FittedBody& body : bodies)
         {
             first_.push_back(normals_.size());
+            sides_.emplace_back();
             if (body.is_layer()) continue;
             WallSection section;
             if (grid.is_2d) section = wall_section(body.mesh, grid.origin.y);
@@ -50,8 +51,8 @@ public:
             soup.vertices.insert(soup.vertices.end(), of_body.vertices.begin(),
                                  of_body.vertices.end());
             const std::vector<Vec3>& normals = grid.is_2d ? section.normals : body.mesh.normals;
-            sides_.push_back(
-                {first_.size() - 1, PseudoNormals(body.mesh), std::move(section.facets)});
+            sides_.back().normals.emplace(body.mesh);
+            sides_.back().facets = std::move(section.facets);
             for (const Vec3& v : body.mesh.vertices) size_ = std::max(size_, largest_coordinate(v));
             normals_.insert(normals_.end(), normals.begin(), normals.end());
             is_of_solid_.resize(normals_.size(), body.is_solid ? 1 : 0);
@@ -73,10 +74,15 @@ public:
         if (near.distance == std::numeric_limits<double>::infinity())
             return {near.point, near.distance, 0, false, {}, 0};
         const auto after = std::upper_bound(first_.begin(), first_.end(), near.facet);
+        const auto body = static_cast<std::size_t>(after - first_.begin()) - 1;
+        const Sides& sides = sides_[body];
+        auto facet = static_cast<std::uint32_t>(near.facet - first_[body]);
+        if (is_2d_) facet = sides.facets[facet];
+        FacetPlace place;
         return {near.point,
                 near.distance,
-                static_cast<std::size_t>(after - first_.begin()) - 1,
-                is_outside(p, near),
+                body,
+                sides.normals->side_of(p, facet, near.point, 1e-12 * size_, place) > 0,
                 normals_[near.facet],
                 mks_[near.facet]};
     }
@@ -98,33 +104,14 @@ public:
     }
 
 private:
-    /// By the facet where a point is straight over it, else by those that meet at the edge or
-    /// corner.
-    bool is_outside(const Vec3& p, const ClosestPoint& near) const
-    {
-        const Vec3 off = p - near.point;
-        const double height = dot(off, normals_[near.facet]);
-        if (std::fabs(height) > (1 - 1e-12) * near.distance) return height > 0;
-        const auto after = std::upper_bound(sides_.begin(), sides_.end(), near.facet,
-                                            [&](std::uint32_t facet, const Sides& sides)
-                                            { return facet < first_[sides.body]; });
-        const Sides& sides = *std::prev(after);
-        auto facet = static_cast<std::uint32_t>(near.facet - first_[sides.body]);
-        if (is_2d_) facet = sides.facets[facet];
-        const FacetPlace place = sides.normals.place_on_facet(facet, near.point, 1e-12 * size_);
-        return dot(off, sides.normals.at(facet, place)) > 0;
-    }
-
-    /// Of a body that is no layer.
     struct Sides
     {
-        std::size_t body = 0;
-        PseudoNormals normals;
-        std::vector<std::uint32_t> facets; ///< of its lines in 2D
+        std::optional<PseudoNormals> normals; ///< of a body that is no layer
+        std::vector<std::uint32_t> facets;    ///< of its lines in 2D
     };
     bool is_2d_ = false;
-    double size_ = 0; ///< metres, the largest coordinate: by it rounding is measured
-    std::vector<Sides> sides_;
+    double size_ = 0;                ///< metres, the largest coordinate: by it rounding is measured
+    std::vector<Sides> sides_;       ///< of each body
     std::vector<char> is_of_solid_;  ///< facets
     std::vector<std::uint16_t> mks_; ///< facets
     std::vector<std::size_t> first_; ///< facet or line of each body

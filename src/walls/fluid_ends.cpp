@@ -98,10 +98,7 @@ Planes planes_of_walls(const Scene& scene, int threads)
     Planes out;
     for (const SceneStep& step : scene.remaining())
     {
-        const DrawState& state = *step.draw->state;
-        const bool is_drawn = (step.combination || step.shape() != nullptr) && !step.is_part;
-        if (!is_drawn || state.mk.kind != MkKind::Bound || !state.draw_points ||
-            fit_settings(scene.def->fit, state.mk.mk) == nullptr)
+        if (!draws_bound(step) || fit_settings(scene.def->fit, step.draw->state->mk.mk) == nullptr)
             continue;
         for (const StepSurface& surface : step_surfaces(scene, step, threads))
             add_planes(surface.shape.soup, out);

@@ -75,10 +75,8 @@ bool relaxes_fluid(const CaseDef& def)
 bool bounds_lattice(const SceneStep& step, const FitDef& fit)
 {
     const DrawState& state = *step.draw->state;
-    if (state.mk.kind != MkKind::Bound || step.is_part) return false;
-    if (step.edit() != nullptr) return true;
-    if (!step.combination && step.shape() == nullptr) return false;
-    if (!state.draw_points) return false;
+    if (state.mk.kind == MkKind::Bound && step.edit() != nullptr) return true;
+    if (!draws_bound(step)) return false;
     return fit_settings(fit, state.mk.mk) == nullptr ||
            (!step.combination && state.mode == DrawMode::Wire);
 }
@@ -87,8 +85,8 @@ bool may_move(const Scene& scene)
 {
     const CaseDef& def = *scene.def;
     const InOutZones& inout = def.solver.inout;
-    if (def.fit.is_empty() || def.vres.is_active() || !inout.fluids.empty() || !inout.boxes.empty() ||
-        !relaxes_fluid(def))
+    if (def.fit.is_empty() || def.vres.is_active() || !inout.fluids.empty() ||
+        !inout.boxes.empty() || !relaxes_fluid(def))
         return false;
     const auto remaining = scene.remaining();
     return std::none_of(remaining.begin(), remaining.end(),
@@ -190,9 +188,7 @@ Vec3 lattice_shift(const Scene& scene, int threads)
         WetPlanes walls(field, def.mk_bound_first);
         for (const SceneStep& step : scene.remaining())
         {
-            const DrawState& state = *step.draw->state;
-            const bool is_drawn = (step.combination || step.shape() != nullptr) && !step.is_part;
-            if (!is_drawn || state.mk.kind != MkKind::Bound || !state.draw_points) continue;
+            if (!draws_bound(step)) continue;
             const std::vector<StepSurface> surfaces = step_surfaces(scene, step, threads);
             if (surfaces.empty()) return {}; // points and lines stand on the lattice
             if (has_layers(step, def.fit))

@@ -25,6 +25,14 @@ struct StepSurface
 /// throws  IoError, GeometryError with the place of the draw
 std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads);
 
+/// Whether a step draws boundary particles as a shape or a combination.
+inline bool draws_bound(const SceneStep& step)
+{
+    const DrawState& state = *step.draw->state;
+    return (step.combination || step.shape() != nullptr) && state.mk.kind == MkKind::Bound &&
+           state.draw_points;
+}
+
 /// Whether a facet lies across an axis.
 ///
 /// normal  of any length
