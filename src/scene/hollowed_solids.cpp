@@ -100,6 +100,7 @@ void hollow_solids(Scene& scene)
         const SceneStep& step = scene.steps[i];
         const MkValue& mk = step.draw->state->mk;
         const bool is_bound = mk.kind == MkKind::Bound;
+        if (mk.kind == MkKind::Fluid && def.solver.inout.fluids.contains(mk.mk)) continue;
         if (is_bound ? fit_settings(def.fit, mk.mk) == nullptr
                      : solids.empty() || !step.draw->state->clips.empty())
             continue;

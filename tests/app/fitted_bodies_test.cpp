@@ -247,12 +247,25 @@ TEST(FloatingMass, OfABodyThatALaterDrawCutsIsTold)
 {
     const TemporaryFolder folder;
     CaseText text = floating(box(0.41, 0.33, 0.25));
-    text.mainlist += "<setmkvoid />" +
-                     box_command(R"(x="-0.1" y="-0.1" z="-0.1")", R"(x="0.3" y="0.6" z="0.6")");
+    text.mainlist +=
+        R"(<setmkvoid /><clipplane><point x="5" y="0" z="0" /><vector x="1" y="0" z="0" /></clipplane>)" +
+        box_command(R"(x="-0.1" y="-0.1" z="-0.1")", R"(x="0.3" y="0.6" z="0.6")");
     const RunResult result = run_case(folder, text, {"-fit"});
     ASSERT_EQ(result.code, 0) << result.output;
     EXPECT_TRUE(contains(result.output, "cut them, mkbound 0: -")) << result.output;
     EXPECT_LT(mass(folder), 0.6 * rhop_body * 0.41 * 0.33 * 0.25);
+}
+
+TEST(FloatingMass, OfABodyThatAVoidHollowsIsThatOfWhatIsLeft)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.mainlist += "<setmkvoid />" +
+                     box_command(R"(x="-0.1" y="-0.1" z="-0.1")", R"(x="0.3" y="0.6" z="0.6")");
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_FALSE(contains(result.output, mass_warning)) << result.output;
+    EXPECT_NEAR(mass(folder) / (rhop_body * 0.223 * 0.33 * 0.25), 1, 0.02);
 }
 
 TEST(FloatingMass, OfBodiesThatTouchIsThatOfEach)

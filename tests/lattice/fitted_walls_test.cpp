@@ -80,13 +80,23 @@ TEST(FittedWalls, ParticlesOfARoundShapeStandOnTheExactRoundSurface)
     for (const Vec3& p : field.walls.particles.positions) EXPECT_NEAR(norm(p), 1.05, 1e-12);
 }
 
-TEST(FittedWalls, ALaterVoidBoxCutsThem)
+/// A ball, and a void that takes half of it by its nodes: one with a clip hollows no body.
+Drawing half_a_ball()
+{
+    Drawing drawing;
+    drawing.draw(SphereOp{{0, 0, 0}, 1.1, {}});
+    drawing.empty();
+    drawing.state.clips = {{{5, 0, 0}, {1, 0, 0}}};
+    drawing.box({0, -2, -2}, {2, 4, 4});
+    return drawing;
+}
+
+TEST(FittedWalls, ALaterVoidBoxWithAClipCutsThem)
 {
     Drawing drawing;
     drawing.draw(SphereOp{{0, 0, 0}, 1.1, {}});
     const std::size_t whole = drawing.run().walls.particles.size();
-    drawing.empty();
-    drawing.box({0, -2, -2}, {2, 4, 4});
+    drawing = half_a_ball();
     const RunField field = drawing.run();
     std::size_t left = 0;
     for (const Vec3& p : field.walls.particles.positions)
@@ -101,11 +111,7 @@ TEST(FittedWalls, ALaterVoidBoxCutsThem)
 
 TEST(FittedWalls, ThoseNextToACutAreHeld)
 {
-    Drawing drawing;
-    drawing.draw(SphereOp{{0, 0, 0}, 1.1, {}});
-    drawing.empty();
-    drawing.box({0, -2, -2}, {2, 4, 4});
-    const RunField field = drawing.run();
+    const RunField field = half_a_ball().run();
     const WallParticles& particles = field.walls.particles;
     for (std::size_t i = 0; i < particles.size(); ++i)
     {
