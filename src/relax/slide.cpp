@@ -70,8 +70,9 @@ SlidePlace place_on_facet(const WorkMesh& mesh, std::uint32_t parent, const Vec3
         share[s] = std::max(0.0, barycentric(facet, s, point));
         sum += share[s];
     }
-    // A facet without area has no coordinates within.
-    if (!std::isfinite(sum)) return {facet.corners[0], piece};
+    // A facet without area has no coordinates within: they are infinite or, as 0 / 0 is left out
+    // above, nothing.
+    if (!std::isfinite(sum) || !(sum > 0.5)) return {facet.corners[0], piece};
     if (std::abs(sum - 1) < 1e-9) return {onto_plane(facet, point), piece};
     return {
         (facet.corners[2] * share[0] + facet.corners[0] * share[1] + facet.corners[1] * share[2]) /

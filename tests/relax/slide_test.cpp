@@ -74,6 +74,15 @@ TEST(Slide, LeavesThePlaceAsItIsWhenItWouldCrossTooManyFacets)
     EXPECT_EQ(place.facet, before.facet);
 }
 
+TEST(PlaceOnFacet, OfAFacetWithoutAreaIsItsCorner)
+{
+    WorkMesh mesh = work_mesh(box({0, 0, 0}, {1, 1, 1}));
+    const Vec3 corner{0.3, 0.4, 1};
+    mesh.facets[0].corners = {corner, corner, corner};
+    const SlidePlace place = place_on_facet(mesh, mesh.facets[0].parent, {0.3, 0.5, 1});
+    EXPECT_EQ(place.position, corner);
+}
+
 TEST(StiffestMode, IsThatOfAHexagonalLayer)
 {
     // Eigenvalues of the Hessian over the Brillouin zone, from a program of their own.
