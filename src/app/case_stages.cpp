@@ -28,6 +28,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 
@@ -133,6 +134,24 @@ std::vector<double> volumes_of_bodies(const CaseRunState& run, const MadeCase& m
     {
         throw GeometryError(fmt::format("{}: {}", made.def.file, error.what()));
     }
+}
+
+/// A place that is no number would spoil the result without a word.
+///
+/// throws  Error, as it is a fault of ours
+void expect_numbers(const MadeCase& made)
+{
+    const auto lost = static_cast<std::size_t>(std::count_if(
+        made.particles.off_lattice.positions.begin(), made.particles.off_lattice.positions.end(),
+        [](const Vec3& p) { return !std::isfinite(p.x + p.y + p.z); }));
+    const auto bare = static_cast<std::size_t>(std::count_if(
+        made.particles.bound_normals.begin(), made.particles.bound_normals.end(),
+        [](const std::array<float, 3>& n) { return !std::isfinite(n[0] + n[1] + n[2]); }));
+    if (lost + bare > 0)
+        throw Error(fmt::format(
+            "{}: {} and {} are no numbers; this is a fault of fppg, nothing is "
+            "written. -fit:raw may avoid it.",
+            made.def.file, counted(lost, "place", "places"), counted(bare, "normal", "normals")));
 }
 
 } // namespace
@@ -304,6 +323,7 @@ void make_particles_of_case(CaseRunState& run, MadeCase& made)
     prepare_particles(run, made);
     make_normals(run, made);
     balance(run, made);
+    expect_numbers(made);
 }
 
 } // namespace fppg
