@@ -11,6 +11,7 @@
 #include "nodes/snap.h"
 #include "normals/cad_normals.h"
 #include "normals/geometry_normals.h"
+#include "normals/other_surface.h"
 #include "normals/part_normals.h"
 #include "normals/wet_surface.h"
 #include "particles/initials.h"
@@ -167,7 +168,12 @@ public:
             report_.log.emplace_back("  *** No boundary particles for computing normals.");
             return {};
         }
-        if (def_.normals.geometry) from_geometry(*def_.normals.geometry, geometry);
+        if (def_.normals.geometry)
+        {
+            from_geometry(*def_.normals.geometry, geometry);
+            if (auto w = note_other_surfaces(def_, field_.walls.bodies, geometry, threads_))
+                report_.warnings.push_back(std::move(*w));
+        }
         from_layers();
         for (const NormalOp& op : def_.normals.ops) execute(op);
         if (particles_.off_lattice.size() > 0) fill_on_surfaces();

@@ -559,6 +559,27 @@ INSTANTIATE_TEST_SUITE_P(
             "<radius>: v=\"-1\" is invalid"},
         Mistake{"<norparts />", "<norparts>: is possible in 2-D cases only"}));
 
+/// GenCase's cases for mDBC draw walls half a step behind the surface that normals lead to; fitted
+/// walls have theirs where they are drawn.
+TEST(NorGeometry, InAnotherPlaceThanFittedWallsIsWarnedOf)
+{
+    CaseText text = blocks(
+        R"(<norgeometry><geometryfile file="shape.vtk" /><distanceh v="2" /></norgeometry>)");
+    text.after_geometry += R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
+    for (const double off : {0.0, 0.05})
+    {
+        const double z = 0.5 + off;
+        ShapePolygons top = polygon({{0, 0, z}, {0.5, 0, z}, {0.5, 0.5, z}, {0, 0.5, z}});
+        top.mk = 10;
+        const Made made = make(text, {top});
+        const bool is_warned =
+            std::any_of(made.report.warnings.begin(), made.report.warnings.end(),
+                        [](const std::string& w)
+                        { return w.find("(mkbound 0: 0.5 dp)") != std::string::npos; });
+        EXPECT_EQ(is_warned, off > 0);
+    }
+}
+
 TEST(NormalsThatAreNotActive, AreNotRead)
 {
     CaseText text = blocks("<norfoo />");
