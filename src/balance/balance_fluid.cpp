@@ -1,5 +1,6 @@
 #include "fppg/balance.h"
 
+#include "balance/coarse_steps.h"
 #include "balance/fluid_at_rest.h"
 #include "balance/pressure_sums.h"
 #include "balance/take_places.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace fppg
 {
@@ -45,6 +47,9 @@ constexpr double surface_depth = 2;
 /// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
 constexpr double step_factor = 0.05;
 constexpr double momentum = 0.85;
+constexpr double coarse_cell = 4; ///< of what particles' steps have in common
+/// Of gravity; what is larger is of the particle alone, beside walls that do not hold it.
+constexpr double most_in_common = 0.05;
 /// What stays of a particle's momentum that leads it against the force on it.
 constexpr double against_force = 0.5;
 constexpr int least_iterations = 40;
@@ -111,6 +116,8 @@ public:
         looked_at_ = rest_.positions;
         renew_lists(true);
         report.held = hold_free_faces(rest_, list_, threads_);
+        coarse_.emplace(
+            start_, [&](std::size_t i) { return moves(i); }, coarse_cell * rest_.dp);
         renew_pressures();
         accelerate();
         report.before = judge();
@@ -276,21 +283,32 @@ private:
 
     void step()
     {
-        const double g = norm(rest_.gravity);
-        const double soft = rest_.rhop0 * g * rest_.dp;
+        const double soft = rest_.rhop0 * norm(rest_.gravity) * rest_.dp;
+        const auto scale = [&](std::size_t i)
+        {
+            return step_factor * rest_.h * rest_.h * rest_.rhop0 /
+                   (std::max(rest_.pressures[i], soft / 2) + soft);
+        };
+        const double most = most_in_common * norm(rest_.gravity);
+        coarse_->add(
+            [&](std::size_t i)
+            {
+                const double size = norm(accelerations_[i]);
+                return (size > most ? most / size : 1.0) * scale(i) * accelerations_[i];
+            },
+            threads_);
         parallel_for(
             rest_.size(), threads_,
             [&](std::size_t i)
             {
                 if (!moves(i)) return;
-                const double scale = step_factor * rest_.h * rest_.h * rest_.rhop0 /
-                                     (std::max(rest_.pressures[i], soft / 2) + soft);
                 Vec3& v = velocities_[i];
                 const Vec3 force = accelerations_[i] + pushes_[i];
-                v = momentum * (dot(v, force) < 0 ? against_force : 1.0) * v + scale * force;
+                v = momentum * (dot(v, force) < 0 ? against_force : 1.0) * v + scale(i) * force;
                 const double length = norm(v);
                 if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
-                rest_.positions[i] = allowed_place(i, rest_.positions[i] + v);
+                const Vec3 common = at_surface(i, coarse_->at(rest_.positions[i]));
+                rest_.positions[i] = allowed_place(i, rest_.positions[i] + v + common);
             },
             256);
     }
@@ -384,6 +402,7 @@ private:
     double least_distance_;        ///< to a wall, dp
     std::vector<Vec3> velocities_; ///< metres a step
     std::vector<Vec3> accelerations_;
+    std::optional<CoarseSteps> coarse_;
     std::vector<Vec3> pushes_; ///< besides, only while particles move
     PressureField field_;
     std::vector<Vec3> start_;
