@@ -72,7 +72,7 @@ void add(const NearParticle& p, RestRole role, double mass, FluidAtRest& rest)
     const double pressure = is_fluid ? rest.pressure_of_density(double{p.rhop}) : 0;
     rest.pressures.push_back(pressure);
     rest.densities.push_back(is_fluid ? double{p.rhop} : rest.rhop0);
-    rest.levels.push_back(rest.height(p.position) + rest.by_depth->depth_of(pressure));
+    rest.levels.push_back(rest.height(p.position) + pressure / rest.pressure_per_depth());
 }
 
 /// Puts all arrays into the order of a Morton curve over cells of eight particles.
@@ -129,7 +129,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     rest.rhop0 = constants.rhop0;
     rest.gamma = constants.gamma;
     rest.b = constants.b;
-    rest.by_depth.emplace(def, constants.b);
+    rest.fullness = def.fluid_fullness;
     rest.gravity = constants.gravity;
     rest.is_2d = constants.is_2d;
     rest.is_cubic = def.solver.kernel == 1;

@@ -5,7 +5,6 @@
 #include "fppg/particles.h"
 #include "fppg/relax_volume.h"
 
-#include "particles/rest_pressure.h"
 #include "relax/group_list.h"
 #include "relax/kernel.h"
 
@@ -13,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,7 +36,7 @@ struct FluidAtRest
     double rhop0 = 0;
     double gamma = 0;
     double b = 0;
-    std::optional<RestPressure> by_depth; ///< always there
+    double fullness = 1; ///< CaseDef::fluid_fullness
     Vec3 gravity;
     bool is_2d = false;
     bool is_cubic = false; ///< kernel; else that of Wendland
@@ -55,8 +53,10 @@ struct FluidAtRest
 
     std::size_t size() const { return positions.size(); }
     double height(const Vec3& p) const { return -dot(p, gravity) / norm(gravity); }
-    /// The pressure at a depth below the level; 0 above.
-    double pressure(double depth) const { return by_depth->at(depth); }
+    /// The pressure at a depth below the level; 0 above. Its sums over particles that are heavier
+    /// by `fullness` come out larger by as much, so it is lower.
+    double pressure(double depth) const { return std::max(0.0, pressure_per_depth() * depth); }
+    double pressure_per_depth() const { return rhop0 * norm(gravity) / fullness; }
     double density(double pressure) const { return rhop0 * std::pow(1 + pressure / b, 1 / gamma); }
     double pressure_of_density(double density) const
     {

@@ -2,12 +2,10 @@
 
 #include "core/parallel.h"
 #include "particles/depths.h"
-#include "particles/rest_pressure.h"
 #include "particles/roofs.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace fppg
 {
@@ -57,7 +55,6 @@ public:
         set_speeds(def_, g_, constants_);
         const ConstantsDef& c = def_.constants;
         is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
-        if (!is_uniform_ && def_.balances()) at_rest_.emplace(def_, constants_.b);
         const auto rhop0 = static_cast<float>(c.rhop0);
         std::fill(particles_.off_lattice.rhop.begin(), particles_.off_lattice.rhop.end(), rhop0);
         if (particles_.n_fluid == 0) return;
@@ -89,8 +86,8 @@ private:
         const ConstantsDef& c = def_.constants;
         if (is_uniform_) return static_cast<float>(c.rhop0);
         // GenCase's surface goes through the highest particles, that of the fluid lies above them.
-        const double pressure = at_rest_ ? at_rest_->at(depth + def_.grid.dp / 2)
-                                         : c.rhop0 * g_ * depth / def_.fluid_fullness;
+        if (def_.balances()) depth += def_.grid.dp / 2;
+        const double pressure = c.rhop0 * g_ * depth / def_.fluid_fullness;
         return static_cast<float>(c.rhop0 * std::pow(1 + pressure / constants_.b, 1 / c.gamma));
     }
 
@@ -314,7 +311,6 @@ private:
     bool is_vertical_; ///< gravity is along z, or there is none
     bool by_height_;   ///< rhopgradient 3
     bool is_uniform_ = false;
-    std::optional<RestPressure> at_rest_;         ///< of cases that start at rest
     std::vector<std::vector<std::uint32_t>> top_; ///< per run, steps from its highest node
     WaterLimits water_;
     double excess_ = 0; ///< height of the highest particle off the lattice over the highest node
