@@ -5,7 +5,7 @@
 #include "offset/wall_depth.h"
 
 #include <algorithm>
-#include <memory>
+#include <cmath>
 
 namespace fppg
 {

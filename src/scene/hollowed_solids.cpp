@@ -3,6 +3,7 @@
 #include "fppg/combination.h"
 #include "fppg/error.h"
 
+#include "meshes/open_edges.h"
 #include "scene/surfaces.h"
 
 #include <algorithm>
@@ -17,33 +18,40 @@ namespace
 constexpr double void_reach_dp = 1e-3;
 constexpr double fluid_reach_dp = 0.5 + 1e-6;
 
-/// A step that draws a filled body.
+/// A step that draws a filled body, and those that are drawn into it.
 struct Solid
 {
     std::size_t step = 0;
     Box3 box;
+    bool is_closed = false;
+    std::vector<std::size_t> drawn_into{};
 };
 
-/// The box of the filled body that a step draws; empty: it draws none.
-Box3 box_of_solid(const Scene& scene, const SceneStep& step)
+/// What a step fills, by its true shape; an empty box: nothing. Surfaces with open edges, whose
+/// inside is a guess, cannot be cut exactly.
+Solid solid_of(const Scene& scene, std::size_t index)
 {
+    const SceneStep& step = scene.steps[index];
     const DrawState& state = *step.draw->state;
     const auto* file = shape_as<MeshFileOp>(*step.draw);
-    Box3 box;
-    if (step.shape() == nullptr || !state.draw_points || state.pattern || state.mk_next_auto ||
-        state.off_lattice || state.mode == DrawMode::Wire || (file != nullptr && file->advanced))
-        return box;
+    Solid out{index, {}, true};
+    if (!state.draw_points || state.pattern || state.mk_next_auto || state.off_lattice ||
+        state.mode == DrawMode::Wire || (file != nullptr && file->advanced))
+        return out;
     try
     {
         for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::Drawn, 1))
-            for (const Vec3& v : shape.soup.vertices)
-                if (shape.is_solid) box.add(v);
+        {
+            if (!shape.is_solid) continue;
+            for (const Vec3& v : shape.soup.vertices) out.box.add(v);
+            out.is_closed = out.is_closed && open_edge_count(shape.soup) == 0;
+        }
     }
     catch (const Error&)
     {
-        return {}; // drawing it says what is wrong
+        out.box = {}; // drawing it says what is wrong
     }
-    return box;
+    return out;
 }
 
 bool overlap(const Box3& a, const Box3& b, double reach_dp, const LatticeGrid& grid)
@@ -93,36 +101,45 @@ void hollow_solids(Scene& scene)
 {
     const CaseDef& def = *scene.def;
     if (def.fit.is_empty()) return;
-    std::vector<Solid> solids;
-    std::vector<std::vector<std::size_t>> drawn_into; // each solid
-    for (std::size_t i = scene.first_remaining; i < scene.steps.size(); ++i)
+    const auto is_fitted = [&](const SceneStep& step)
     {
-        const SceneStep& step = scene.steps[i];
         const MkValue& mk = step.draw->state->mk;
-        const bool is_bound = mk.kind == MkKind::Bound;
-        if (mk.kind == MkKind::Fluid && def.solver.inout.fluids.contains(mk.mk)) continue;
-        if (is_bound ? fit_settings(def.fit, mk.mk) == nullptr
-                     : solids.empty() || !step.draw->state->clips.empty())
-            continue;
-        const Box3 box = box_of_solid(scene, step);
-        if (box.is_empty()) continue;
+        return step.shape() != nullptr && mk.kind == MkKind::Bound &&
+               fit_settings(def.fit, mk.mk) != nullptr;
+    };
+    const auto may_hollow = [&](const SceneStep& step)
+    {
+        const DrawState& state = *step.draw->state;
+        return step.shape() != nullptr && state.mk.kind != MkKind::Bound && state.clips.empty() &&
+               !def.solver.inout.fluids.contains(state.mk.mk);
+    };
+    // Meshes are not looked at where nothing is drawn behind them.
+    std::size_t end = scene.steps.size();
+    while (end > scene.first_remaining && !may_hollow(scene.steps[end - 1])) --end;
+    std::vector<Solid> solids;
+    for (std::size_t i = scene.first_remaining; i < end; ++i)
+    {
+        const bool is_bound = is_fitted(scene.steps[i]);
+        if (!is_bound && (solids.empty() || !may_hollow(scene.steps[i]))) continue;
+        Solid here = solid_of(scene, i);
+        if (here.box.is_empty() || !here.is_closed) continue;
         if (is_bound)
         {
-            solids.push_back({i, box});
-            drawn_into.emplace_back();
+            solids.push_back(std::move(here));
             continue;
         }
-        const double reach = mk.kind == MkKind::Void ? void_reach_dp : fluid_reach_dp;
-        for (std::size_t s = 0; s < solids.size(); ++s)
-            if (overlap(solids[s].box, box, reach, def.grid)) drawn_into[s].push_back(i);
+        const bool is_void = scene.steps[i].draw->state->mk.kind == MkKind::Void;
+        for (Solid& solid : solids)
+            if (overlap(solid.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def.grid))
+                solid.drawn_into.push_back(i);
     }
-    for (std::size_t s = 0; s < solids.size(); ++s)
+    for (const Solid& solid : solids)
     {
-        if (drawn_into[s].empty()) continue;
+        if (solid.drawn_into.empty()) continue;
         std::shared_ptr<const Combination> combination =
-            difference(scene, solids[s].step, drawn_into[s]);
+            difference(scene, solid.step, solid.drawn_into);
         const DrawOp* whole = &combination->whole;
-        scene.steps[solids[s].step] = {whole, std::move(combination), false};
+        scene.steps[solid.step] = {whole, std::move(combination), false};
     }
 }
 

@@ -9,9 +9,9 @@ namespace fppg
 /// cavity then has a fitted surface, with layers and normals, as it has by
 /// `<boolean op="difference">`. These stay steps of their own, for all else that they draw over.
 ///
-/// Left as they are: solids drawn part by part or as a depth of a file, draws into them with a clip
-/// or a pattern, fluid of inlets, and fluid that reaches less than half a dp into a solid, as on
-/// the lattice. What is wrong with a file is left for the drawing to say.
+/// Left as they are: solids drawn part by part or as a depth of a file, surfaces with open edges,
+/// draws with a clip or a pattern, fluid of inlets, and fluid that reaches less than half a dp into
+/// a solid, as on the lattice. What is wrong with a file is left for the drawing to say.
 void hollow_solids(Scene& scene);
 
 } // namespace fppg

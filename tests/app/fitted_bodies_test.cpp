@@ -268,6 +268,22 @@ TEST(FloatingMass, OfABodyThatAVoidHollowsIsThatOfWhatIsLeft)
     EXPECT_NEAR(mass(folder) / (rhop_body * 0.223 * 0.33 * 0.25), 1, 0.02);
 }
 
+/// The inside of an open mesh is a guess: on the lattice it cuts nodes, as before.
+TEST(FloatingMass, OfABodyThatAnOpenMeshIsDrawnIntoIsNoError)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "open.stl",
+               "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0.1 0.1 0.1\nvertex 0.3 0.1 0.1\n"
+               "vertex 0.3 0.3 0.1\nendloop\nendfacet\nfacet normal 0 1 0\nouter loop\n"
+               "vertex 0.1 0.1 0.1\nvertex 0.1 0.1 0.2\nvertex 0.3 0.1 0.1\nendloop\nendfacet\n"
+               "endsolid s\n");
+    CaseText text = floating(box(0.41, 0.33, 0.25));
+    text.mainlist += R"(<setmkvoid /><drawfilestl file="open.stl" autofill="true" />)";
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output, "open edges")) << result.output;
+}
+
 TEST(FloatingMass, OfBodiesThatTouchIsThatOfEach)
 {
     const TemporaryFolder folder;
