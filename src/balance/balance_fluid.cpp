@@ -44,14 +44,11 @@ constexpr double least_depth = 0.25;
 /// its depth the two highest rows draw together (-0.16 and 0.12 g at h = 2 dp), which the solver's
 /// densities stop and these pressures do not.
 constexpr double surface_depth = 2;
-/// Of the step, by trial: 0.1 with this momentum throws particles out of the corners of a lattice.
+/// Of the step, by trial: 0.1 throws particles out of the corners of a lattice.
 constexpr double step_factor = 0.05;
-constexpr double momentum = 0.85;
 constexpr double coarse_cell = 4; ///< of what particles' steps have in common
 /// Of gravity; what is larger is of the particle alone, beside walls that do not hold it.
 constexpr double most_in_common = 0.05;
-/// What stays of a particle's momentum that leads it against the force on it.
-constexpr double against_force = 0.5;
 constexpr int least_iterations = 40;
 constexpr int most_iterations = 100;
 constexpr int iterations_per_look = 10; ///< at mDBC's pressures
@@ -69,9 +66,11 @@ constexpr double calm_mean = 0.1;
 constexpr double hopeless_mean = 0.25;
 
 /// Why a case is not balanced; empty where it is.
-std::string reason_against(const CaseDef& def, const CaseParticles& particles)
+std::string reason_against(const CaseDef& def, const CaseConstants& constants,
+                           const CaseParticles& particles)
 {
     if (!def.balances()) return "the case does not ask for it";
+    if (!(constants.b > 0)) return "constant B, and with it pressure, is not above zero";
     for (const ParticleBlock& block : particles.blocks)
     {
         if (!motion_of(block).is_identity() || scatters(block))
@@ -304,7 +303,7 @@ private:
                 if (!moves(i)) return;
                 Vec3& v = velocities_[i];
                 const Vec3 force = accelerations_[i] + pushes_[i];
-                v = momentum * (dot(v, force) < 0 ? against_force : 1.0) * v + scale(i) * force;
+                v = momentum_of(v, force) + scale(i) * force;
                 const double length = norm(v);
                 if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
                 const Vec3 common = at_surface(i, coarse_->at(rest_.positions[i]));
@@ -454,7 +453,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const std::function<bool(const BalanceProgress&)>& on_iteration)
 {
     BalanceReport report;
-    report.why_not = reason_against(def, particles);
+    report.why_not = reason_against(def, constants, particles);
     if (!report.why_not.empty() || field.walls.particles.size() == 0) return report;
     const AllWalls all(field.walls.bodies, field.grid, threads);
     if (all.is_empty()) return report;

@@ -15,10 +15,15 @@ namespace
 /// that cells resolve, 8 dp, stay stable up to about 15.
 constexpr double gain = 4;
 constexpr double momentum = 0.85;
-/// What stays of a cell's momentum that leads it against the force on it.
+/// Besides, of what leads against the force.
 constexpr double against_force = 0.5;
 
 } // namespace
+
+Vec3 momentum_of(const Vec3& v, const Vec3& force)
+{
+    return momentum * (dot(v, force) < 0 ? against_force : 1.0) * v;
+}
 
 CoarseSteps::CoarseSteps(const std::vector<Vec3>& positions,
                          const std::function<bool(std::size_t)>& takes, double cell)
@@ -65,7 +70,7 @@ void CoarseSteps::add(const std::function<Vec3(std::size_t)>& step, int threads)
                 mean = mean + step(members_[m]);
             mean = mean / count;
             Vec3& v = velocities_[c];
-            v = momentum * (dot(v, mean) < 0 ? against_force : 1.0) * v + gain * mean;
+            v = momentum_of(v, mean) + gain * mean;
         },
         64);
 }

@@ -125,6 +125,12 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
     return out;
 }
 
+bool is_hollowed_away(const Combination* combination, const GeometryError& error)
+{
+    return combination != nullptr && combination->hollowed != nullptr &&
+           dynamic_cast<const NothingLeft*>(&error) != nullptr;
+}
+
 FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
                        const FitSettings& settings, const LatticeGrid& grid,
                        const std::vector<ClipPlane>& clips, int threads)

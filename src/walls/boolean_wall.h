@@ -2,6 +2,7 @@
 
 #include "fppg/boolean.h"
 #include "fppg/case_def.h"
+#include "fppg/error.h"
 
 #include "lattice/fitted_draw.h"
 #include "scene/surfaces.h"
@@ -43,6 +44,9 @@ struct CombinedParts
 /// throws  GeometryError that names the part, NothingLeft for a result without a facet
 CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
                             double dp, int threads);
+
+/// Whether the error only says that voids or fluid hollow all of a solid away, which is none.
+bool is_hollowed_away(const Combination* combination, const GeometryError& error);
 
 /// Puts particles on the true surface of a combination of parts and finds the nodes inside and
 /// around it.

@@ -176,8 +176,7 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     }
     catch (const GeometryError& e)
     {
-        const bool is_void = combination.hollowed != nullptr;
-        if (is_void && dynamic_cast<const NothingLeft*>(&e) != nullptr) return out;
+        if (is_hollowed_away(&combination, e)) return out;
         throw GeometryError(
             fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
     }

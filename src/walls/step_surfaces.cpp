@@ -1,7 +1,6 @@
 #include "walls/step_surfaces.h"
 
 #include "fppg/boolean.h"
-#include "fppg/error.h"
 
 #include "walls/boolean_wall.h"
 
@@ -40,8 +39,7 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
     }
     catch (const GeometryError& e)
     {
-        const bool is_void = step.combination && step.combination->hollowed != nullptr;
-        if (is_void && dynamic_cast<const NothingLeft*>(&e) != nullptr) return {};
+        if (is_hollowed_away(step.combination.get(), e)) return {};
         throw GeometryError(
             fmt::format("{}: {}", place_of(*scene.def, step.draw->source), e.what()));
     }

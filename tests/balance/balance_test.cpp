@@ -237,6 +237,19 @@ TEST(Balance, NothingIsDoneWithoutFittedWallsGravityOrDepths)
         "Balance"));
 }
 
+TEST(Balance, NothingIsDoneWhereTheEquationOfStateHasNoStiffness)
+{
+    const TemporaryFolder folder;
+    CaseText text = tank(R"(<bodyfitted layers="3" />)");
+    text.constants =
+        R"(<rhop0 value="1000" /><hswl value="0" /><gamma value="7" /><coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />)";
+    const Result made = make(folder, text);
+    EXPECT_TRUE(contains(made.output, "Constant B is zero"));
+    EXPECT_TRUE(contains(made.output, "Balance: left out, as constant B"));
+    EXPECT_EQ(*std::min_element(made.densities.begin(), made.densities.end()), 1000);
+    EXPECT_EQ(*std::max_element(made.densities.begin(), made.densities.end()), 1000);
+}
+
 TEST(Balance, WaterUnderARoofHasThePressureOfTheOpenSurface)
 {
     const TemporaryFolder folder;
