@@ -105,23 +105,17 @@ public:
     void run(BalanceReport& report, const std::function<bool(const BalanceProgress&)>& on_iteration)
     {
         set_depth_pressures(rest_, threads_);
-        start_ = rest_.positions;
-        velocities_.resize(rest_.size());
-        pushes_.resize(rest_.size());
-        accelerations_.resize(rest_.size());
-        walls_.resize(rest_.size());
-        allowed_.assign(rest_.size(), least_distance_ * rest_.dp);
+        start_at_rest();
         set_points();
-        looked_at_ = rest_.positions;
         renew_lists(true);
         report.held = hold_free_faces(rest_, list_, threads_);
         coarse_.emplace(
-            start_, [&](std::size_t i) { return moves(i); }, coarse_cell * rest_.dp);
+            rest_.positions, [&](std::size_t i) { return moves(i); }, coarse_cell * rest_.dp);
         renew_pressures();
         accelerate();
         report.before = judge();
-        const State even{rest_.positions, rest_.pressures, report.before.mean};
-        State best = even;
+        const State even = state(report.before.mean);
+        State best = state(report.before.mean);
         int last_best = 0;
         for (int it = 1; it <= most_iterations && report.particles > report.held; ++it)
         {
@@ -137,7 +131,7 @@ public:
             if (it == first_judged && mean > hopeless_mean) break;
             const bool falls = mean < slow_fall * best.mean;
             const bool is_slow = mean < best.mean && !falls;
-            if (mean < best.mean) best = {rest_.positions, rest_.pressures, mean};
+            if (mean < best.mean) best = state(mean);
             if (falls) last_best = it;
             // What is left hardly falls any more: currents that the boundary condition drives.
             if ((is_slow && it >= least_iterations) || it - last_best >= 2 * iterations_per_check)
@@ -152,17 +146,59 @@ public:
 private:
     struct State
     {
-        std::vector<Vec3> positions;
-        std::vector<double> pressures;
+        RawArray<Vec3> positions;
+        RawArray<double> pressures;
         double mean = 0; ///< acceleration
     };
 
+    State state(double mean) const
+    {
+        State out;
+        out.positions.resize(rest_.size());
+        out.pressures.resize(rest_.size());
+        out.mean = mean;
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                out.positions[i] = rest_.positions[i];
+                out.pressures[i] = rest_.pressures[i];
+            },
+            4096);
+        return out;
+    }
+
+    void start_at_rest()
+    {
+        start_.resize(rest_.size());
+        looked_at_.resize(rest_.size());
+        velocities_.resize(rest_.size());
+        pushes_.resize(rest_.size());
+        accelerations_.resize(rest_.size());
+        allowed_.resize(rest_.size());
+        walls_.resize(rest_.size());
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                start_[i] = looked_at_[i] = rest_.positions[i];
+                velocities_[i] = pushes_[i] = accelerations_[i] = {};
+                allowed_[i] = least_distance_ * rest_.dp;
+            },
+            4096);
+    }
+
     void return_to(const State& state)
     {
-        rest_.positions = state.positions;
-        rest_.pressures = state.pressures;
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-            rest_.densities[i] = rest_.density(rest_.pressures[i]);
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                rest_.positions[i] = state.positions[i];
+                rest_.pressures[i] = state.pressures[i];
+                rest_.densities[i] = rest_.density(rest_.pressures[i]);
+            },
+            1024);
         set_points();
         renew_lists(false);
         renew_pressures();
@@ -245,16 +281,7 @@ private:
     void set_points()
     {
         field_.resize(rest_.size());
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                const Vec3 at = (rest_.positions[i] - rest_.origin) / rest_.dp;
-                field_.points.x[i] = static_cast<float>(at.x);
-                field_.points.y[i] = static_cast<float>(at.y);
-                field_.points.z[i] = static_cast<float>(at.z);
-            },
-            1024);
+        rest_.set_in_dp([&](std::size_t i) { return rest_.positions[i]; }, threads_, field_.points);
     }
 
     /// Of all particles, those that move at the pressures of their depth.
@@ -398,16 +425,16 @@ private:
     GroupList list_;
     GhostPressures ghosts_;
     bool has_ghosts_;
-    double least_distance_;        ///< to a wall, dp
-    std::vector<Vec3> velocities_; ///< metres a step
-    std::vector<Vec3> accelerations_;
+    double least_distance_;     ///< to a wall, dp
+    RawArray<Vec3> velocities_; ///< metres a step
+    RawArray<Vec3> accelerations_;
     std::optional<CoarseSteps> coarse_;
-    std::vector<Vec3> pushes_; ///< besides, only while particles move
+    RawArray<Vec3> pushes_; ///< besides, only while particles move
     PressureField field_;
-    std::vector<Vec3> start_;
-    std::vector<Vec3> looked_at_; ///< places when walls were looked for
+    RawArray<Vec3> start_;
+    RawArray<Vec3> looked_at_; ///< places when walls were looked for
     std::vector<WallPlanes> walls_;
-    std::vector<double> allowed_; ///< metres to a wall
+    RawArray<double> allowed_; ///< metres to a wall
 };
 
 std::vector<double> bands(const CaseDef& def)

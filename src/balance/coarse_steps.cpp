@@ -25,7 +25,7 @@ Vec3 momentum_of(const Vec3& v, const Vec3& force)
     return momentum * (dot(v, force) < 0 ? against_force : 1.0) * v;
 }
 
-CoarseSteps::CoarseSteps(const std::vector<Vec3>& positions,
+CoarseSteps::CoarseSteps(std::span<const Vec3> positions,
                          const std::function<bool(std::size_t)>& takes, double cell)
     : cell_(cell)
 {

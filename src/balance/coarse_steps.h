@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace fppg
@@ -26,7 +27,7 @@ public:
     /// positions  where the particles start; they stay in their cells
     /// takes      bool(std::size_t): whether a particle's steps count, and are added to
     /// cell       metres
-    CoarseSteps(const std::vector<Vec3>& positions, const std::function<bool(std::size_t)>& takes,
+    CoarseSteps(std::span<const Vec3> positions, const std::function<bool(std::size_t)>& takes,
                 double cell);
 
     /// Takes in the steps that forces alone would make.

@@ -24,37 +24,42 @@ struct NearParticle
     float rhop = 0;
 };
 
-/// Particles in the blocks of nodes around fitted walls, in the order of ids.
-template <typename Wanted>
-std::vector<NearParticle> near_particles(const CaseParticles& particles, const NearBlocks& blocks,
-                                         float rhop0, const Wanted& wanted)
+/// Consecutive particles of a block that one thread works through.
+struct BlockPart
 {
-    std::vector<NearParticle> out;
+    const ParticleBlock* block = nullptr;
+    std::size_t run = 0;     ///< the first
+    std::uint32_t begin = 0; ///< of its particles, the first
+    std::uint32_t end = 0;   ///< one past the last, where this is one run off the lattice
+    std::uint64_t id = 0;    ///< of the first
+    std::size_t runs = 0;
+};
+
+/// The blocks in parts of about `most` particles; runs of nodes stay whole.
+template <typename Wanted>
+std::vector<BlockPart> parts_of(const CaseParticles& particles, const Wanted& wanted)
+{
+    constexpr std::uint32_t most = 16384;
+    std::vector<BlockPart> out;
     for (const ParticleBlock& block : particles.blocks)
     {
         if (!wanted(block)) continue;
         std::uint64_t id = block.begin;
-        for (const ParticleRun& run : block.runs)
+        std::uint64_t begin = id;
+        for (std::size_t r = 0; r < block.runs.size(); ++r)
         {
-            const auto take = [&](std::uint32_t k)
+            const ParticleRun& run = block.runs[r];
+            for (std::uint32_t k = 0; run.is_off_lattice && k < run.count; k += most)
+                out.push_back({&block, r, k, std::min(k + most, run.count), id + k, 1});
+            const bool goes_on = !out.empty() && out.back().block == &block &&
+                                 !run.is_off_lattice && out.back().run + out.back().runs == r &&
+                                 out.back().end == 0 && id - begin < most;
+            if (!run.is_off_lattice && goes_on)
+                ++out.back().runs;
+            else if (!run.is_off_lattice)
             {
-                out.push_back({id + k, &block, place_in_run(particles, block, run, k),
-                               density_in_run(particles, block, run, k, id + k, rhop0)});
-            };
-            if (run.is_off_lattice)
-                for (std::uint32_t k = 0; k < run.count; ++k) take(k);
-            else
-            {
-                Run nodes;
-                nodes.y = run.y;
-                nodes.z_begin = block.run_descending ? run.z + 1 - run.count : run.z;
-                nodes.z_end = nodes.z_begin + run.count;
-                blocks.for_each_stretch(run.x, nodes,
-                                        [&](std::uint32_t begin, std::uint32_t end)
-                                        {
-                                            for (std::uint32_t z = begin; z < end; ++z)
-                                                take(block.run_descending ? run.z - z : z - run.z);
-                                        });
+                out.push_back({&block, r, 0, 0, id, 1});
+                begin = id;
             }
             id += run.count;
         }
@@ -62,37 +67,69 @@ std::vector<NearParticle> near_particles(const CaseParticles& particles, const N
     return out;
 }
 
-void add(const NearParticle& p, RestRole role, double mass, FluidAtRest& rest)
+/// Calls take(run, k, id) for the particles of a part that lie in the blocks of nodes around fitted
+/// walls.
+template <typename Take>
+void for_each_near(const BlockPart& part, const NearBlocks& blocks, const Take& take)
 {
-    rest.ids.push_back(p.id);
-    rest.roles.push_back(role);
-    rest.positions.push_back(p.position);
-    rest.masses.push_back(mass);
-    const bool is_fluid = role != RestRole::Bound;
-    const double pressure = is_fluid ? rest.pressure_of_density(double{p.rhop}) : 0;
-    rest.pressures.push_back(pressure);
-    rest.densities.push_back(is_fluid ? double{p.rhop} : rest.rhop0);
-    rest.levels.push_back(rest.height(p.position) + pressure / rest.pressure_per_depth());
+    const ParticleBlock& block = *part.block;
+    std::uint64_t id = part.id - part.begin;
+    for (std::size_t r = part.run; r < part.run + part.runs; ++r)
+    {
+        const ParticleRun& run = block.runs[r];
+        if (run.is_off_lattice)
+            for (std::uint32_t k = part.begin; k < part.end; ++k) take(run, k, id + k);
+        else
+        {
+            Run nodes;
+            nodes.y = run.y;
+            nodes.z_begin = block.run_descending ? run.z + 1 - run.count : run.z;
+            nodes.z_end = nodes.z_begin + run.count;
+            blocks.for_each_stretch(run.x, nodes,
+                                    [&](std::uint32_t begin, std::uint32_t end)
+                                    {
+                                        for (std::uint32_t z = begin; z < end; ++z)
+                                        {
+                                            const std::uint32_t k =
+                                                block.run_descending ? run.z - z : z - run.z;
+                                            take(run, k, id + k);
+                                        }
+                                    });
+        }
+        id += run.count;
+    }
 }
 
-/// Puts all arrays into the order of a Morton curve over cells of eight particles.
-void sort_along_curve(FluidAtRest& rest, int threads)
+/// Particles in the blocks of nodes around fitted walls, run after run.
+template <typename Wanted>
+RawArray<NearParticle> near_particles(const CaseParticles& particles, const NearBlocks& blocks,
+                                      float rhop0, int threads, const Wanted& wanted)
 {
-    const std::vector<std::uint32_t> order = morton_order(rest.in_dp(rest.positions), 2, threads);
-    const auto permute = [&](auto& values)
-    {
-        auto sorted = values;
-        for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = values[order[i]];
-        values.swap(sorted);
-    };
-    permute(rest.ids);
-    permute(rest.roles);
-    permute(rest.positions);
-    permute(rest.levels);
-    permute(rest.masses);
-    permute(rest.pressures);
-    permute(rest.densities);
-    permute(rest.ghosts);
+    const std::vector<BlockPart> parts = parts_of(particles, wanted);
+    std::vector<std::vector<NearParticle>> of_part(parts.size());
+    parallel_for(parts.size(), threads,
+                 [&](std::size_t i)
+                 {
+                     const ParticleBlock& block = *parts[i].block;
+                     for_each_near(parts[i], blocks,
+                                   [&](const ParticleRun& run, std::uint32_t k, std::uint64_t id)
+                                   {
+                                       of_part[i].push_back(
+                                           {id, &block, place_in_run(particles, block, run, k),
+                                            density_in_run(particles, block, run, k, id, rhop0)});
+                                   });
+                 });
+    std::vector<std::size_t> first(parts.size() + 1, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) first[i + 1] = first[i] + of_part[i].size();
+    RawArray<NearParticle> out(first.back());
+    parallel_for(parts.size(), threads,
+                 [&](std::size_t i)
+                 {
+                     std::copy(of_part[i].begin(), of_part[i].end(),
+                               out.begin() + static_cast<std::ptrdiff_t>(first[i]));
+                     of_part[i] = {};
+                 });
+    return out;
 }
 
 double mass_of(const NearParticle& p, const CaseConstants& constants,
@@ -104,21 +141,48 @@ double mass_of(const NearParticle& p, const CaseConstants& constants,
     return constants.mass_bound;
 }
 
-} // namespace
-
-PointArrays FluidAtRest::in_dp(std::span<const Vec3> points) const
+/// A particle of the result.
+struct Taken
 {
-    PointArrays out;
-    out.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-        const Vec3 at = (points[i] - origin) / dp;
-        out.x[i] = static_cast<float>(at.x);
-        out.y[i] = static_cast<float>(at.y);
-        out.z[i] = static_cast<float>(at.z);
-    }
-    return out;
+    const NearParticle* particle = nullptr;
+    RestRole role{};
+};
+
+/// Fills all arrays, in the order of a Morton curve over cells of eight particles.
+void take_all(const RawArray<Taken>& taken, const CaseConstants& constants,
+              const CaseParticles& particles, int threads, FluidAtRest& rest)
+{
+    constexpr std::size_t chunk = 4096;
+    const std::size_t n = taken.size();
+    PointArrays points;
+    points.resize(n);
+    rest.set_in_dp([&](std::size_t i) { return taken[i].particle->position; }, threads, points);
+    const std::vector<std::uint32_t> order = morton_order(points, 2, threads);
+    rest.resize(n);
+    parallel_for(
+        n, threads,
+        [&](std::size_t i)
+        {
+            const NearParticle& p = *taken[order[i]].particle;
+            const RestRole role = taken[order[i]].role;
+            const bool is_fluid = role != RestRole::Bound;
+            const double pressure = is_fluid ? rest.pressure_of_density(double{p.rhop}) : 0;
+            rest.ids[i] = p.id;
+            rest.roles[i] = role;
+            rest.positions[i] = p.position;
+            rest.masses[i] = mass_of(p, constants, particles);
+            rest.pressures[i] = pressure;
+            rest.densities[i] = is_fluid ? double{p.rhop} : rest.rhop0;
+            rest.levels[i] = rest.height(p.position) + pressure / rest.pressure_per_depth();
+            rest.ghosts[i] = {};
+            if (is_fluid || particles.bound_normals.empty()) return;
+            const auto& normal = particles.bound_normals[p.id];
+            rest.ghosts[i] = 2.0 * Vec3{double{normal[0]}, double{normal[1]}, double{normal[2]}};
+        },
+        chunk);
 }
+
+} // namespace
 
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach)
@@ -141,8 +205,8 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const auto rhop0 = static_cast<float>(constants.rhop0);
     const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2);
 
-    const std::vector<NearParticle> fluid = near_particles(
-        particles, blocks, rhop0,
+    const RawArray<NearParticle> fluid = near_particles(
+        particles, blocks, rhop0, reach.threads,
         [](const ParticleBlock& block) { return block.type == ParticleType::Fluid; });
     const LatticeStrips strips(def, field);
     std::vector<char> moves(fluid.size(), 0);
@@ -162,36 +226,31 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     for (std::size_t i = 0; i < fluid.size(); ++i)
         if (moves[i]) movers.add(fluid[i].position);
     rest.origin = movers.points().front();
-    const auto add_near = [&](const std::vector<NearParticle>& from, RestRole role, auto&& taken)
+    const auto near_of = [&](const RawArray<NearParticle>& from, const auto& is_taken)
     {
         std::vector<char> is_near(from.size(), 0);
         parallel_for(
             from.size(), reach.threads,
             [&](std::size_t i)
-            { is_near[i] = taken(i) || movers.has_nearer(from[i].position, forces * rest.dp); },
+            { is_near[i] = is_taken(i) || movers.has_nearer(from[i].position, forces * rest.dp); },
             256);
-        for (std::size_t i = 0; i < from.size(); ++i)
-            if (is_near[i])
-                add(from[i], taken(i) ? RestRole::Moving : role,
-                    mass_of(from[i], constants, particles), rest);
+        return is_near;
     };
-    add_near(fluid, RestRole::Held, [&](std::size_t i) { return moves[i] != 0; });
-    rest.ghosts.resize(rest.size());
-    const std::vector<NearParticle> bound = near_particles(
-        particles, blocks, rhop0,
+    const std::vector<char> near_fluid =
+        near_of(fluid, [&](std::size_t i) { return moves[i] != 0; });
+    const RawArray<NearParticle> bound = near_particles(
+        particles, blocks, rhop0, reach.threads,
         [](const ParticleBlock& block) { return block.type != ParticleType::Fluid; });
-    add_near(bound, RestRole::Bound, [](std::size_t) { return false; });
-    for (std::size_t i = rest.ghosts.size(); i < rest.size(); ++i)
-    {
-        Vec3 ghost;
-        if (!particles.bound_normals.empty())
-        {
-            const auto& n = particles.bound_normals[rest.ids[i]];
-            ghost = 2.0 * Vec3{double{n[0]}, double{n[1]}, double{n[2]}};
-        }
-        rest.ghosts.push_back(ghost);
-    }
-    sort_along_curve(rest, reach.threads);
+    const std::vector<char> near_bound = near_of(bound, [](std::size_t) { return false; });
+    RawArray<Taken> taken;
+    taken.reserve(static_cast<std::size_t>(std::count(near_fluid.begin(), near_fluid.end(), 1) +
+                                           std::count(near_bound.begin(), near_bound.end(), 1)));
+    for (std::size_t i = 0; i < fluid.size(); ++i)
+        if (near_fluid[i])
+            taken.push_back({&fluid[i], moves[i] ? RestRole::Moving : RestRole::Held});
+    for (std::size_t i = 0; i < bound.size(); ++i)
+        if (near_bound[i]) taken.push_back({&bound[i], RestRole::Bound});
+    take_all(taken, constants, particles, reach.threads, rest);
     return rest;
 }
 
@@ -204,11 +263,17 @@ std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int thread
     const double scale = rest.slope_scale();
     // Volumes of 1 and pressures that add up to 1: the sums are those of the kernel's slope.
     PressureField field;
-    field.points = rest.in_dp(rest.positions);
-    field.pressures.assign(rest.size(), 0.5F);
-    for (std::size_t i = 0; i < rest.size(); ++i)
-        field.packed.push_back(
-            PackedPoint{field.points.x[i], field.points.y[i], field.points.z[i], 1});
+    field.resize(rest.size());
+    rest.set_in_dp([&](std::size_t i) { return rest.positions[i]; }, threads, field.points);
+    parallel_for(
+        rest.size(), threads,
+        [&](std::size_t i)
+        {
+            field.pressures[i] = 0.5F;
+            field.packed[i] =
+                PackedPoint{field.points.x[i], field.points.y[i], field.points.z[i], 1};
+        },
+        4096);
     const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
     std::vector<char> is_face(rest.size(), 0);
     list.for_each_group(threads,

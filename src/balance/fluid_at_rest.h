@@ -5,6 +5,8 @@
 #include "fppg/particles.h"
 #include "fppg/relax_volume.h"
 
+#include "core/parallel.h"
+#include "core/raw_array.h"
 #include "relax/group_list.h"
 #include "relax/kernel.h"
 
@@ -12,7 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <span>
 #include <vector>
 
 namespace fppg
@@ -42,16 +43,28 @@ struct FluidAtRest
     bool is_cubic = false; ///< kernel; else that of Wendland
     Vec3 origin;           ///< of GroupList's coordinates
 
-    std::vector<std::uint64_t> ids;
-    std::vector<RestRole> roles;
-    std::vector<Vec3> positions;
-    std::vector<double> levels; ///< height at which the pressure is 0, of fluid
-    std::vector<double> masses;
-    std::vector<double> pressures;
-    std::vector<double> densities;
-    std::vector<Vec3> ghosts; ///< from a boundary particle to its ghost node; zero: none
+    RawArray<std::uint64_t> ids;
+    RawArray<RestRole> roles;
+    RawArray<Vec3> positions;
+    RawArray<double> levels; ///< height at which the pressure is 0, of fluid
+    RawArray<double> masses;
+    RawArray<double> pressures;
+    RawArray<double> densities;
+    RawArray<Vec3> ghosts; ///< from a boundary particle to its ghost node; zero: none
 
     std::size_t size() const { return positions.size(); }
+    /// New values are not written.
+    void resize(std::size_t n)
+    {
+        ids.resize(n);
+        roles.resize(n);
+        positions.resize(n);
+        levels.resize(n);
+        masses.resize(n);
+        pressures.resize(n);
+        densities.resize(n);
+        ghosts.resize(n);
+    }
     double height(const Vec3& p) const { return -dot(p, gravity) / norm(gravity); }
     /// The pressure at a depth below the level; 0 above. Its sums over particles that are heavier
     /// by `fullness` come out larger by as much, so it is lower.
@@ -71,8 +84,23 @@ struct FluidAtRest
     }
     /// From sums of the kernel's slope in dp and dp^3 (2D: dp^2) to those in metres.
     double slope_scale() const { return alpha() / (h * h) * dp * (is_2d ? dp * dp : dp * dp * dp); }
-    /// Positions as GroupList takes them: in dp from the origin.
-    PointArrays in_dp(std::span<const Vec3> points) const;
+    /// Places as GroupList takes them: in dp from the origin, as many as `out` has.
+    ///
+    /// place  Vec3(std::size_t)
+    template <typename Place>
+    void set_in_dp(const Place& place, int threads, PointArrays& out) const
+    {
+        parallel_for(
+            out.size(), threads,
+            [&](std::size_t i)
+            {
+                const Vec3 at = (place(i) - origin) / dp;
+                out.x[i] = static_cast<float>(at.x);
+                out.y[i] = static_cast<float>(at.y);
+                out.z[i] = static_cast<float>(at.z);
+            },
+            1024);
+    }
 };
 
 /// Reach of the neighbour lists in dp without their skin.

@@ -2,6 +2,7 @@
 
 #include "fppg/vec.h"
 
+#include "core/raw_array.h"
 #include "relax/group_list.h"
 
 #include <array>
@@ -14,10 +15,11 @@ namespace fppg
 /// Of the particles that are summed up, one entry each in all arrays.
 struct PressureField
 {
-    PointArrays points;              ///< dp from some origin
-    std::vector<PackedPoint> packed; ///< these, and mass over density, dp^3 (2D: dp^2)
-    std::vector<float> pressures;    ///< Pa; for density_sums() the density over rhop0, kg/m^3
+    PointArrays points;           ///< dp from some origin
+    RawArray<PackedPoint> packed; ///< these, and mass over density, dp^3 (2D: dp^2)
+    RawArray<float> pressures;    ///< Pa; for density_sums() the density over rhop0, kg/m^3
 
+    /// New values of `packed` and `pressures` are not written.
     void resize(std::size_t n)
     {
         points.resize(n);

@@ -2,6 +2,8 @@
 
 #include "fppg/vec.h"
 
+#include "core/raw_array.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -89,8 +91,8 @@ private:
 
     double reach_;
     std::array<std::uint64_t, 2> row_of_{}; ///< keys from a cell to the next along x and y
-    std::vector<std::uint64_t> keys_;       ///< of the cells, ascending; those along z by 1 apart
-    std::vector<Place> points_;             ///< in the order of the keys
+    RawArray<std::uint64_t> keys_;          ///< of the cells, ascending; those along z by 1 apart
+    RawArray<Place> points_;                ///< in the order of the keys
 };
 
 } // namespace fppg

@@ -21,7 +21,8 @@ public:
     PointGrid(double cell, std::size_t expected) : cell_(cell)
     {
         std::size_t size = 64;
-        while (size < 2 * expected) size *= 2;
+        // Mostly several points share a cell; with more cells the slots grow.
+        while (size < expected / 4) size *= 2;
         slots_.resize(size);
         points_.reserve(expected);
         next_.reserve(expected);

@@ -180,7 +180,7 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
                        static_cast<double>(change.removed);
     const double too_many = std::round(now - *options.wanted);
     if (too_many == 0) return;
-    std::vector<std::size_t> rows;
+    std::vector<std::size_t> rows; // a heap: only the first few are needed
     PointGrid changed(apart, change.removed + change.inserted.size());
     const auto place_of = [&](std::uint32_t i) {
         return Vec3{band.points.x[i], band.points.y[i], band.points.z[i]};
@@ -196,16 +196,22 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
     }
     for (const CountChange::Inserted& one : change.inserted) changed.add(place_of(one.beside));
     const float sign = too_many > 0 ? 1.0f : -1.0f;
-    std::stable_sort(rows.begin(), rows.end(),
-                     [&](std::size_t a, std::size_t b)
-                     { return sign * excess[list.point(a)] > sign * excess[list.point(b)]; });
+    const auto is_later = [&](std::size_t a, std::size_t b)
+    {
+        const float of_a = sign * excess[list.point(a)], of_b = sign * excess[list.point(b)];
+        return of_a != of_b ? of_a < of_b : a > b;
+    };
+    std::make_heap(rows.begin(), rows.end(), is_later);
     auto left = static_cast<std::size_t>(std::abs(too_many));
     if (options.least_pair_dp > 0)
         left = std::min(left,
                         static_cast<std::size_t>(most_change * static_cast<double>(rows.size())));
-    for (std::size_t k = 0; k < rows.size() && left > 0; ++k)
+    while (!rows.empty() && left > 0)
     {
-        const std::uint32_t i = list.point(rows[k]);
+        std::pop_heap(rows.begin(), rows.end(), is_later);
+        const std::size_t row = rows.back();
+        rows.pop_back();
+        const std::uint32_t i = list.point(row);
         const Vec3 here = place_of(i);
         if (changed.has_nearer(here, apart)) continue;
         if (too_many > 0)
@@ -215,7 +221,7 @@ void make_up_rest(const Band& band, const NeighbourList& list, const std::vector
         }
         else
         {
-            const Vec3 place = gap_beside(band, i, list.neighbours(rows[k]), options, surroundings);
+            const Vec3 place = gap_beside(band, i, list.neighbours(row), options, surroundings);
             if (place == band.place(i)) continue;
             change.inserted.push_back({i, place});
         }
