@@ -1,6 +1,6 @@
 """What the codes that fppg convert writes for read of its files.
 
-check_readers.py READER FPPG    READER: vtk, meshio, h5py, pysph, lammps, paraview; exit code 77 where it is missing
+check_readers.py READER FPPG    READER: vtk, meshio, h5py, pysph, lammps, paraview, sphinxsys; exit code 77 where it is missing
 """
 
 import os
@@ -49,10 +49,10 @@ def module(name):
         raise Skip(f"no Python module {name}: {error}") from error
 
 
-def make_case(folder, fppg, formats):
-    """A plate with fitted walls and some water, in these formats."""
+def make_case(folder, fppg, formats, definition=DEFINITION):
+    """A plate with fitted walls and some water, or another case, in these formats."""
     with open(os.path.join(folder, "Case_Def.xml"), "w", encoding="utf-8") as file:
-        file.write(DEFINITION)
+        file.write(definition)
     subprocess.run([fppg, "Case_Def", "Case", "-save:bi", f"-to:{formats}", "-quiet"], cwd=folder, check=True)
     return os.path.join(folder, "Case")
 
@@ -245,6 +245,36 @@ def check_lammps(folder, fppg):
     with open(os.path.join(folder, "count.txt"), encoding="utf-8") as file:
         if float(file.read()) != count:
             raise AssertionError("LAMMPS reads another number of spheres")
+
+
+BALL = """<drawsphere objname="ball" radius="1"> <point x="0" y="0" z="0" /> </drawsphere>"""
+
+
+def check_sphinxsys(folder, fppg):
+    """Its relaxation leaves the surface of a reloaded ball where it is."""
+    module("numpy")
+    import numpy
+    program = os.environ.get("FPPG_SPHINXSYS_RELOAD") or shutil.which("sphinxsys_reload")
+    if program is None:
+        raise Skip("no program sphinxsys_reload; tests/convert/readers/sphinxsys_reload.cpp says how to build it")
+    dp = 0.1
+    text = DEFINITION[:DEFINITION.index("<drawbox")] + BALL + DEFINITION[DEFINITION.index("</mainlist>"):]
+    for old, new in (('dp="0.05"', f'dp="{dp}"'), ('x="-0.5" y="-0.5" z="-0.5"', 'x="-1.5" y="-1.5" z="-1.5"'),
+                     ('x="1.5" y="1.5" z="1"', 'x="1.5" y="1.5" z="1.5"'), ('mkbound="0" />', 'mkbound="0" place="inside" />')):
+        text = text.replace(old, new, 1)
+    case = make_case(folder, fppg, "sphinxsys", text)
+    os.mkdir(os.path.join(folder, "reload"))
+    shutil.copy(case + "_Reload.xml", os.path.join(folder, "reload", "Reload.xml"))
+    done = subprocess.run([program, str(dp), "10"], cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"SPHinXsys ends with {done.returncode}: {done.stdout[-800:]}{done.stderr[-800:]}")
+    moved = numpy.loadtxt(os.path.join(folder, "moved.txt"))
+    before, after = moved[:, :3], moved[:, 3:]
+    expect_equal(numpy, before, reference(case)["Posd"], "the positions that SPHinXsys reloads")
+    is_outer = numpy.linalg.norm(before, axis=1) > 1 - 0.75 * dp
+    step = numpy.linalg.norm(after - before, axis=1)[is_outer].max() / dp
+    if is_outer.sum() < 1000 or not step < 0.1:
+        raise AssertionError(f"the surface of {is_outer.sum()} particles moves by up to {step:.3f} dp")
 
 
 PARAVIEW = """
