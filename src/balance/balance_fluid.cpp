@@ -6,6 +6,7 @@
 #include "balance/take_places.h"
 #include "balance/wall_pressure.h"
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "particles/initials.h"
 #include "relax/all_walls.h"
 #include "relax/wall_planes.h"
@@ -432,9 +433,9 @@ private:
     RawArray<Vec3> pushes_; ///< besides, only while particles move
     PressureField field_;
     RawArray<Vec3> start_;
-    RawArray<Vec3> looked_at_; ///< places when walls were looked for
-    std::vector<WallPlanes> walls_;
-    RawArray<double> allowed_; ///< metres to a wall
+    RawArray<Vec3> looked_at_;   ///< places when walls were looked for
+    RawArray<WallPlanes> walls_; ///< of those that move
+    RawArray<double> allowed_;   ///< metres to a wall
 };
 
 std::vector<double> bands(const CaseDef& def)
@@ -449,7 +450,7 @@ std::vector<double> bands(const CaseDef& def)
 }
 
 /// Gives the particles of a case what balancing found.
-void take_over(const CaseDef& def, const FluidAtRest& rest, CaseParticles& particles)
+void take_over(const CaseDef& def, const FluidAtRest& rest, int threads, CaseParticles& particles)
 {
     std::vector<NewPlace> places;
     particles.bound_rhop.assign(particles.np - particles.n_fluid, static_cast<float>(rest.rhop0));
@@ -465,8 +466,8 @@ void take_over(const CaseDef& def, const FluidAtRest& rest, CaseParticles& parti
                           rest.positions[i][axis] < particles.pos_min[axis] + 1.5 * rest.dp ||
                           rest.positions[i][axis] > particles.pos_max[axis] - 1.5 * rest.dp;
     }
-    std::sort(places.begin(), places.end(),
-              [](const NewPlace& a, const NewPlace& b) { return a.id < b.id; });
+    parallel_sort(places, threads,
+                  [](const NewPlace& a, const NewPlace& b) { return a.id < b.id; });
     take_places(particles, places);
     const bool is_periodic = std::any_of(def.grid.is_periodic.begin(), def.grid.is_periodic.end(),
                                          [](bool is) { return is; });
@@ -493,7 +494,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
         std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
     if (report.particles == 0) return report;
     Balancer(rest, reach.closest, boundary_of(def), threads).run(report, on_iteration);
-    take_over(def, rest, particles);
+    take_over(def, rest, threads, particles);
     return report;
 }
 

@@ -1,6 +1,7 @@
 #include "fppg/relax_volume.h"
 
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "fppg/error.h"
 #include "meshes/crowded_points.h"
 #include "relax/fit_count.h"
@@ -268,27 +269,33 @@ void put_back(Band& band, const VolumeSurroundings& surroundings, bool is_2d, in
 
 /// Gives the positions back in the caller's order, inserted ones last.
 void give_back(const Band& band, const VolumeSurroundings& surroundings,
-               const RelaxVolumeOptions& options, std::vector<Vec3>& positions,
+               const RelaxVolumeOptions& options, int threads, std::vector<Vec3>& positions,
                RelaxVolumeReport& report)
 {
     std::vector<std::uint32_t> order(band.moving);
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i)
     { return std::tuple(band.is_inserted[i], band.sources[i], i); };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    parallel_sort(order, threads,
+                  [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     std::vector<Vec3> result(band.moving);
-    for (std::size_t k = 0; k < order.size(); ++k)
-    {
-        const std::uint32_t i = order[k];
-        const Vec3& start = positions[band.sources[i]];
-        result[k] = band.is_held[i] != 0 ? start : band.place(i);
-        if (slides(band.slides[i]) && band.is_held[i] == 0)
-            result[k] = surroundings.put_back(band.sources[i], result[k]);
-        if (options.is_2d) result[k].y = start.y;
-        if (band.is_inserted[i] == 0) ++report.kept;
-        if (options.fit_count) report.sources.push_back(band.sources[i]);
-    }
+    if (options.fit_count) report.sources.resize(band.moving);
+    parallel_for(
+        order.size(), threads,
+        [&](std::size_t k)
+        {
+            const std::uint32_t i = order[k];
+            const Vec3& start = positions[band.sources[i]];
+            result[k] = band.is_held[i] != 0 ? start : band.place(i);
+            if (slides(band.slides[i]) && band.is_held[i] == 0)
+                result[k] = surroundings.put_back(band.sources[i], result[k]);
+            if (options.is_2d) result[k].y = start.y;
+            if (options.fit_count) report.sources[k] = band.sources[i];
+        },
+        1024);
+    report.kept = static_cast<std::size_t>(
+        std::count(band.is_inserted.begin(),
+                   band.is_inserted.begin() + static_cast<std::ptrdiff_t>(band.moving), 0));
     positions = std::move(result);
 }
 
@@ -405,7 +412,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
         if (options.iterations == 0 && has_settled(variations)) break;
     }
     list = NeighbourList(0, 0); // its memory is needed for the result
-    give_back(band, surroundings, options, positions, report);
+    give_back(band, surroundings, options, threads, positions, report);
     if (options.fit_count && options.least_pair_dp > 0)
         drop_crowded(surroundings, options.least_pair_dp * options.dp, threads, positions, report);
     return report;
