@@ -18,6 +18,8 @@ constexpr double off_surface_dp = 1.2;
 /// A side can be dry when the way to it is so much longer, or rises so much higher, dp.
 constexpr double longer_way_dp = 10;
 constexpr double higher_way_dp = 10;
+/// A piece beside dry ones is not where fluid is when the way to it is longer, dp.
+constexpr double off_fluid_dp = 2;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
 /// Those that another wall covers in part are cut down to this length, dp.
@@ -293,7 +295,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
         for (Piece& piece : pieces_)
             if (!std::isfinite(piece.way.length)) piece.state = is_dry;
     dry_to_the_rims();
-    dry_along_edges(threads);
+    dry_beside_dry(threads);
 }
 
 /// Whether another wall begins right before a place of a piece: a closed one, or the layers of a
@@ -333,6 +335,10 @@ void WetSurface::compare_sides(Piece& piece, const FluidWay& way) const
         norm(middle - piece.thickness * piece.normal - other.nearest) < piece.thickness;
     // Particles nearer to one side are within reach of the other.
     if (!(piece.thickness < 2 * reach_)) return;
+    Piece opposite = piece;
+    opposite.normal = other_normal;
+    piece.is_other_covered = is_covered(opposite, other.nearest);
+    if (piece.is_other_covered) return;
     const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp_) * other_normal);
     piece.other_way = there.length;
     if (!std::isfinite(piece.way.length) && !std::isfinite(there.length)) return;
@@ -343,9 +349,15 @@ void WetSurface::compare_sides(Piece& piece, const FluidWay& way) const
 }
 
 /// Towards the rim of a tank the way to the outside is shorter. Its walls would look aslant to the
-/// strip there instead of through themselves.
+/// strip there instead of through themselves, or to single pieces at its corners.
 void WetSurface::dry_to_the_rims()
 {
+    const auto may_be_dry = [](const Piece& piece)
+    {
+        if (piece.state == is_thin) return piece.way.length > piece.other_way + 1;
+        return piece.state == is_wet && piece.thickness == 0 && piece.way.runs_out &&
+               !piece.is_moving && piece.way.length > off_fluid_dp;
+    };
     std::vector<std::size_t> front;
     std::vector<std::size_t> candidates;
     PointGrid near(reach_, pieces_.size() / 4);
@@ -353,7 +365,7 @@ void WetSurface::dry_to_the_rims()
     {
         const Piece& piece = pieces_[i];
         if (piece.state == is_dry) front.push_back(i);
-        if (piece.state != is_thin || !(piece.way.length > piece.other_way + 1)) continue;
+        if (!is_closed(piece) || !may_be_dry(piece)) continue;
         candidates.push_back(i);
         near.add(piece.middle());
     }
@@ -374,9 +386,10 @@ void WetSurface::dry_to_the_rims()
     }
 }
 
-/// Along the edges of a dry side no place lies right behind another: what is far from the fluid and
-/// near to a dry piece is dry too.
-void WetSurface::dry_along_edges(int threads)
+/// Along the edges of a dry side no place lies right behind another, and behind another wall, as
+/// one that parts a tank, none that fluid comes to: what is far from the fluid and near to a dry
+/// piece is dry too.
+void WetSurface::dry_beside_dry(int threads)
 {
     const auto is_far_from_fluid = [](const Piece& piece)
     {
@@ -392,8 +405,9 @@ void WetSurface::dry_along_edges(int threads)
         [&](std::size_t i)
         {
             Piece& piece = pieces_[i];
-            if (is_closed(piece) && piece.state == is_wet && piece.thickness == 0 &&
-                is_far_from_fluid(piece) && dry.has_nearer(piece.middle(), 2 * reach_))
+            if (is_closed(piece) && piece.state != is_dry &&
+                (piece.thickness == 0 || piece.is_other_covered) && is_far_from_fluid(piece) &&
+                dry.has_nearer(piece.middle(), 2 * reach_))
                 piece.state = is_dry;
         },
         256);

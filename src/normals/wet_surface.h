@@ -22,8 +22,9 @@ namespace fppg
 /// - it has to rise 10 dp more, above where it stands (the inside of a boat).
 /// The parts that move come to where fluid is: of these a side is dry only where fluid would run
 /// out of the domain and from the other side would not (a tank that moves; not the teeth of a
-/// gear). A dry side goes on up to its rim, where the way is not so much longer. What another body,
-/// or the layers of a sheet, cover is dry too. Everything else is wet.
+/// gear). A dry side goes on up to its rim, where the way is not so much longer, and behind what
+/// covers the wet side. What another body, or the layers of a sheet, cover is dry too. Everything
+/// else is wet.
 class WetSurface
 {
 public:
@@ -62,10 +63,11 @@ private:
         std::uint16_t mk = 0;
         bool is_moving = false;
         char state = 0;
-        double thickness = 0;     ///< metres; 0: no other side was found
-        bool is_straight = false; ///< the other side is behind it, not aside beyond an edge
-        FluidWay::Way way;        ///< of fluid to it
-        double other_way = 0;     ///< the length of that to the other side, dp
+        double thickness = 0;          ///< metres; 0: no other side was found
+        bool is_straight = false;      ///< the other side is behind it, not aside beyond an edge
+        bool is_other_covered = false; ///< another wall stands on the other side
+        FluidWay::Way way;             ///< of fluid to it
+        double other_way = 0;          ///< the length of that to the other side, dp
 
         Vec3 middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
         double length() const; ///< of the longest side
@@ -100,7 +102,7 @@ private:
     void judge(const RunField& field, const FluidWay& way, int threads);
     void compare_sides(Piece& piece, const FluidWay& way) const;
     void dry_to_the_rims();
-    void dry_along_edges(int threads);
+    void dry_beside_dry(int threads);
     void note_thin_walls(const RunField& field);
     void make_query(int threads);
 

@@ -132,6 +132,31 @@ TEST_P(PlateOverWater, LooksUpAndDown)
     EXPECT_GT(up, 20u);
 }
 
+/// What a wall that parts a tank stands on has the outside of the tank behind it, and fluid beside
+/// the wall within reach.
+TEST(FloorUnderAWallInATank, LooksToTheWater)
+{
+    const ParticleCloud cloud =
+        make(body_in_tank(solid({0.3, -0.7, -0.1}, {0.5, 0.7, 0.8}), false));
+    const auto is_near_fluid = [&](const Vec3& p)
+    {
+        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+            if (cloud.mk[i] < body_mk && norm(cloud.positions[i] - p) < 3.5 * dp) return true;
+        return false;
+    };
+    std::size_t count = 0;
+    for_each_in_layers(cloud, tank_mk,
+                       [&](const Vec3& p, int, const Vec3& n)
+                       {
+                           if (std::abs(p.x) > 0.6 || !is_near_fluid(p)) return;
+                           const Vec3 to = p + dp * n;
+                           EXPECT_GT(to.z, -0.19) << p.x << ' ' << p.y << ' ' << p.z;
+                           EXPECT_LT(std::abs(to.y), 0.79) << p.x << ' ' << p.y << ' ' << p.z;
+                           ++count;
+                       });
+    EXPECT_GT(count, 500u);
+}
+
 /// Water that came to the outside of a tank would run away.
 TEST_P(PlateOverWater, IsInATankWhoseWallsLookInside)
 {
