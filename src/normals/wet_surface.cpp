@@ -18,8 +18,6 @@ constexpr double off_surface_dp = 1.2;
 /// A side can be dry when the way to it is so much longer, or rises so much higher, dp.
 constexpr double longer_way_dp = 10;
 constexpr double higher_way_dp = 10;
-/// A piece beside dry ones is not where fluid is when the way to it is longer, dp.
-constexpr double off_fluid_dp = 2;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
 /// Those that another wall covers in part are cut down to this length, dp.
@@ -349,15 +347,9 @@ void WetSurface::compare_sides(Piece& piece, const FluidWay& way) const
 }
 
 /// Towards the rim of a tank the way to the outside is shorter. Its walls would look aslant to the
-/// strip there instead of through themselves, or to single pieces at its corners.
+/// strip there instead of through themselves.
 void WetSurface::dry_to_the_rims()
 {
-    const auto may_be_dry = [](const Piece& piece)
-    {
-        if (piece.state == is_thin) return piece.way.length > piece.other_way + 1;
-        return piece.state == is_wet && piece.thickness == 0 && piece.way.runs_out &&
-               !piece.is_moving && piece.way.length > off_fluid_dp;
-    };
     std::vector<std::size_t> front;
     std::vector<std::size_t> candidates;
     PointGrid near(reach_, pieces_.size() / 4);
@@ -365,7 +357,7 @@ void WetSurface::dry_to_the_rims()
     {
         const Piece& piece = pieces_[i];
         if (piece.state == is_dry) front.push_back(i);
-        if (!is_closed(piece) || !may_be_dry(piece)) continue;
+        if (piece.state != is_thin || !(piece.way.length > piece.other_way + 1)) continue;
         candidates.push_back(i);
         near.add(piece.middle());
     }
