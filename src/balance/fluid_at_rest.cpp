@@ -3,6 +3,7 @@
 #include "balance/pressure_sums.h"
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "particles/particle_stream.h"
 #include "particles/run_positions.h"
 #include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
@@ -24,110 +25,55 @@ struct NearParticle
     float rhop = 0;
 };
 
-/// Consecutive particles of a block that one thread works through.
-struct BlockPart
-{
-    const ParticleBlock* block = nullptr;
-    std::size_t run = 0;     ///< the first
-    std::uint32_t begin = 0; ///< of its particles, the first
-    std::uint32_t end = 0;   ///< one past the last, where this is one run off the lattice
-    std::uint64_t id = 0;    ///< of the first
-    std::size_t runs = 0;
-};
-
-/// The blocks in parts of about `most` particles; runs of nodes stay whole.
-template <typename Wanted>
-std::vector<BlockPart> parts_of(const CaseParticles& particles, const Wanted& wanted)
-{
-    constexpr std::uint32_t most = 16384;
-    std::vector<BlockPart> out;
-    for (const ParticleBlock& block : particles.blocks)
-    {
-        if (!wanted(block)) continue;
-        std::uint64_t id = block.begin;
-        std::uint64_t begin = id;
-        for (std::size_t r = 0; r < block.runs.size(); ++r)
-        {
-            const ParticleRun& run = block.runs[r];
-            for (std::uint32_t k = 0; run.is_off_lattice && k < run.count; k += most)
-                out.push_back({&block, r, k, std::min(k + most, run.count), id + k, 1});
-            const bool goes_on = !out.empty() && out.back().block == &block &&
-                                 !run.is_off_lattice && out.back().run + out.back().runs == r &&
-                                 out.back().end == 0 && id - begin < most;
-            if (!run.is_off_lattice && goes_on)
-                ++out.back().runs;
-            else if (!run.is_off_lattice)
-            {
-                out.push_back({&block, r, 0, 0, id, 1});
-                begin = id;
-            }
-            id += run.count;
-        }
-    }
-    return out;
-}
-
-/// Calls take(run, k, id) for the particles of a part that lie in the blocks of nodes around fitted
-/// walls.
-template <typename Take>
-void for_each_near(const BlockPart& part, const NearBlocks& blocks, const Take& take)
-{
-    const ParticleBlock& block = *part.block;
-    std::uint64_t id = part.id - part.begin;
-    for (std::size_t r = part.run; r < part.run + part.runs; ++r)
-    {
-        const ParticleRun& run = block.runs[r];
-        if (run.is_off_lattice)
-            for (std::uint32_t k = part.begin; k < part.end; ++k) take(run, k, id + k);
-        else
-        {
-            Run nodes;
-            nodes.y = run.y;
-            nodes.z_begin = block.run_descending ? run.z + 1 - run.count : run.z;
-            nodes.z_end = nodes.z_begin + run.count;
-            blocks.for_each_stretch(run.x, nodes,
-                                    [&](std::uint32_t begin, std::uint32_t end)
-                                    {
-                                        for (std::uint32_t z = begin; z < end; ++z)
-                                        {
-                                            const std::uint32_t k =
-                                                block.run_descending ? run.z - z : z - run.z;
-                                            take(run, k, id + k);
-                                        }
-                                    });
-        }
-        id += run.count;
-    }
-}
-
-/// Particles in the blocks of nodes around fitted walls, run after run.
-template <typename Wanted>
+/// Those of particles [first, last) that lie in the blocks of nodes around fitted walls, run after
+/// run.
 RawArray<NearParticle> near_particles(const CaseParticles& particles, const NearBlocks& blocks,
-                                      float rhop0, int threads, const Wanted& wanted)
+                                      float rhop0, std::uint64_t first, std::uint64_t last,
+                                      int threads)
 {
-    const std::vector<BlockPart> parts = parts_of(particles, wanted);
-    std::vector<std::vector<NearParticle>> of_part(parts.size());
-    parallel_for(parts.size(), threads,
-                 [&](std::size_t i)
-                 {
-                     const ParticleBlock& block = *parts[i].block;
-                     for_each_near(parts[i], blocks,
-                                   [&](const ParticleRun& run, std::uint32_t k, std::uint64_t id)
-                                   {
-                                       of_part[i].push_back(
-                                           {id, &block, place_in_run(particles, block, run, k),
-                                            density_in_run(particles, block, run, k, id, rhop0)});
-                                   });
+    const ParticleStream stream(particles, first, last, particles_per_piece);
+    std::vector<std::vector<NearParticle>> of_piece(stream.pieces());
+    const auto gather = [&](const ParticleSegment& part, std::vector<NearParticle>& out)
+    {
+        const ParticleRun& run = *part.run;
+        const ParticleBlock& block = *part.block;
+        const std::uint32_t end = part.offset + part.count;
+        const auto take = [&](std::uint32_t k)
+        {
+            const std::uint64_t id = part.id + (k - part.offset);
+            out.push_back({id, &block, place_in_run(particles, block, run, k),
+                           density_in_run(particles, block, run, k, id, rhop0)});
+        };
+        if (run.is_off_lattice)
+        {
+            for (std::uint32_t k = part.offset; k < end; ++k) take(k);
+            return;
+        }
+        Run nodes;
+        nodes.y = run.y;
+        nodes.z_begin = block.run_descending ? run.z + 1 - end : run.z + part.offset;
+        nodes.z_end = nodes.z_begin + part.count;
+        blocks.for_each_stretch(run.x, nodes,
+                                [&](std::uint32_t z, std::uint32_t z_end)
+                                {
+                                    for (; z < z_end; ++z)
+                                        take(block.run_descending ? run.z - z : z - run.z);
+                                });
+    };
+    parallel_for(stream.pieces(), threads,
+                 [&](std::size_t p) {
+                     stream.for_each_segment(
+                         p, [&](const ParticleSegment& part) { gather(part, of_piece[p]); });
                  });
-    std::vector<std::size_t> first(parts.size() + 1, 0);
-    for (std::size_t i = 0; i < parts.size(); ++i) first[i + 1] = first[i] + of_part[i].size();
-    RawArray<NearParticle> out(first.back());
-    parallel_for(parts.size(), threads,
-                 [&](std::size_t i)
+    std::vector<std::size_t> begin(stream.pieces() + 1, 0);
+    for (std::size_t p = 0; p < stream.pieces(); ++p) begin[p + 1] = begin[p] + of_piece[p].size();
+    RawArray<NearParticle> out(begin.back());
+    parallel_for(stream.pieces(), threads,
+                 [&](std::size_t p)
                  {
-                     std::copy(of_part[i].begin(), of_part[i].end(),
-                               out.begin() + static_cast<std::ptrdiff_t>(first[i]));
-                     of_part[i] = {};
+                     std::copy(of_piece[p].begin(), of_piece[p].end(),
+                               out.begin() + static_cast<std::ptrdiff_t>(begin[p]));
+                     of_piece[p] = {};
                  });
     return out;
 }
@@ -205,9 +151,9 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const auto rhop0 = static_cast<float>(constants.rhop0);
     const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2);
 
-    const RawArray<NearParticle> fluid = near_particles(
-        particles, blocks, rhop0, reach.threads,
-        [](const ParticleBlock& block) { return block.type == ParticleType::Fluid; });
+    const std::uint64_t first_fluid = particles.np - particles.n_fluid;
+    const RawArray<NearParticle> fluid =
+        near_particles(particles, blocks, rhop0, first_fluid, particles.np, reach.threads);
     const LatticeStrips strips(def, field);
     std::vector<char> moves(fluid.size(), 0);
     parallel_for(
@@ -238,9 +184,8 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     };
     const std::vector<char> near_fluid =
         near_of(fluid, [&](std::size_t i) { return moves[i] != 0; });
-    const RawArray<NearParticle> bound = near_particles(
-        particles, blocks, rhop0, reach.threads,
-        [](const ParticleBlock& block) { return block.type != ParticleType::Fluid; });
+    const RawArray<NearParticle> bound =
+        near_particles(particles, blocks, rhop0, 0, first_fluid, reach.threads);
     const std::vector<char> near_bound = near_of(bound, [](std::size_t) { return false; });
     RawArray<Taken> taken;
     taken.reserve(static_cast<std::size_t>(std::count(near_fluid.begin(), near_fluid.end(), 1) +

@@ -1,5 +1,5 @@
 #include "convert/body_names.h"
-#include "files/particle_stream.h"
+#include "particles/particle_stream.h"
 #include "particles/initials.h"
 
 #include <algorithm>

@@ -20,7 +20,7 @@
 
 #include "core/most_particles.h"
 #include "core/parallel.h"
-#include "files/particle_stream.h"
+#include "particles/particle_stream.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "particles/initials.h"

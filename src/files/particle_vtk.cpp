@@ -3,7 +3,7 @@
 // as zeros: only pieces with such particles are written.
 
 #include "core/parallel.h"
-#include "files/particle_stream.h"
+#include "particles/particle_stream.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"

@@ -378,9 +378,9 @@ void WetSurface::dry_to_the_rims()
     }
 }
 
-/// Along the edges of a dry side no place lies right behind another, and behind another wall, as
-/// one that parts a tank, none that fluid comes to: what is far from the fluid and near to a dry
-/// piece is dry too.
+/// Some pieces have no other side to be compared with: along the edges of a dry side, where no
+/// place lies right behind them, and behind another wall, as one that parts a tank. They are dry
+/// where they are far from the fluid and near to a dry piece.
 void WetSurface::dry_beside_dry(int threads)
 {
     const auto is_far_from_fluid = [](const Piece& piece)

@@ -1,4 +1,4 @@
-#include "files/particle_stream.h"
+#include "particles/particle_stream.h"
 
 #include <cassert>
 #include <memory>
