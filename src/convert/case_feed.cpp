@@ -1,6 +1,6 @@
 #include "convert/body_names.h"
-#include "particles/particle_stream.h"
 #include "particles/initials.h"
+#include "particles/particle_stream.h"
 
 #include <algorithm>
 #include <cmath>

@@ -20,10 +20,10 @@
 
 #include "core/most_particles.h"
 #include "core/parallel.h"
-#include "particles/particle_stream.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "particles/initials.h"
+#include "particles/particle_stream.h"
 
 #include <fmt/format.h>
 #include <algorithm>

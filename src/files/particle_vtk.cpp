@@ -3,11 +3,11 @@
 // as zeros: only pieces with such particles are written.
 
 #include "core/parallel.h"
-#include "particles/particle_stream.h"
 #include "files/vtk.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "particles/initials.h"
+#include "particles/particle_stream.h"
 
 #include <fmt/format.h>
 
