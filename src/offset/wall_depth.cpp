@@ -9,6 +9,44 @@
 
 namespace fppg
 {
+namespace
+{
+
+/// Facets whose normals' cosine is so near to 1 lie in a plane; to -1, at an edge that they share,
+/// on one another.
+constexpr double near_one = 1 - 1e-6;
+
+/// The facets that may lie on others, face to face: those at the edge of a fold, and what lies in
+/// a plane with them.
+std::vector<char> find_folded(const SurfaceMesh& mesh)
+{
+    std::vector<char> is_folded(mesh.facets.size(), 0);
+    std::vector<std::uint32_t> next;
+    const auto add = [&](std::uint32_t f)
+    {
+        if (std::exchange(is_folded[f], 1) == 0) next.push_back(f);
+    };
+    const auto cosine = [&](std::uint32_t e)
+    {
+        const auto& facets = mesh.edge_facets[e];
+        return facets[1] == no_index ? 0 : dot(mesh.normals[facets[0]], mesh.normals[facets[1]]);
+    };
+    for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
+        if (cosine(e) < -near_one)
+            for (const std::uint32_t f : mesh.edge_facets[e]) add(f);
+    while (!next.empty())
+    {
+        const std::uint32_t f = next.back();
+        next.pop_back();
+        for (const std::uint32_t e : mesh.facet_edges[f])
+            if (std::fabs(cosine(e)) > near_one)
+                for (const std::uint32_t g : mesh.edge_facets[e]) add(g);
+    }
+    return is_folded;
+}
+
+} // namespace
+
 WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_solid,
                      WallSide side, double sharp_angle_deg, int threads)
     : mesh_(mesh),
@@ -17,6 +55,7 @@ WallDepth::WallDepth(const SurfaceMesh& mesh, const MeshReport& report, bool is_
       is_solid_(is_solid),
       asks_inside_(is_solid && !report.is_watertight),
       sign_(side == WallSide::Behind ? 1 : -1),
+      is_folded_(is_solid ? find_folded(mesh_) : std::vector<char>(mesh_.facets.size(), 0)),
       turn_(std::cos(sharp_angle_deg * std::numbers::pi / 180))
 {
     query().prepare_nearest();
@@ -110,7 +149,8 @@ bool WallDepth::is_behind(const Vec3& p, const ClosestPoint& foot, FacetPlace& p
 {
     const double side = normals_.side_of(p, foot.facet, foot.point, 1e-12 * size_, place);
     const bool is_beside = place.side >= 0 || place.corner >= 0;
-    return asks_inside_ && is_beside ? test_.is_inside(p) : side < 0;
+    const bool is_doubtful = (asks_inside_ && is_beside) || is_folded_[foot.facet] != 0;
+    return is_doubtful ? test_.is_inside(p) : side < 0;
 }
 
 DepthPlace WallDepth::at(const Vec3& p, double within) const

@@ -46,8 +46,8 @@ struct DepthPlace
 /// distance.
 ///
 /// The side is that of the angle-weighted pseudonormal at the foot (Baerentzen and Aanaes, 2005),
-/// which is exact for surfaces without clashing edges; for closed bodies with faults the inside
-/// test (meshes/inside_test.h) is asked.
+/// which is exact for surfaces without clashing edges; for closed bodies with faults, and at facets
+/// that are folded onto others, the inside test (meshes/inside_test.h) is asked.
 class WallDepth
 {
 public:
@@ -104,6 +104,7 @@ private:
     bool asks_inside_ = false;
     double sign_ = 1;
     std::vector<char> is_sharp_;        ///< per edge
+    std::vector<char> is_folded_;       ///< per facet of a solid: another may lie on it
     double turn_ = 0;                   ///< cosine of the angle from which edges are sharp
     std::unique_ptr<MeshQuery> mitres_; ///< the sharp edges that run into the wall; or null
     std::unique_ptr<RoundWall> round_;

@@ -116,6 +116,42 @@ TEST(OffsetSurface, OfTurnedBoxesHasTheirEdgesAndCorners)
     }
 }
 
+/// Facets folded back onto their neighbours, as slivers of CAD programs are, look the other way.
+TEST(OffsetSurface, OfABoxWithAFoldInItsFloorIsThatOfABox)
+{
+    const std::array<Vec3, 6> outline{
+        {{0.6, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {1, 0, 0.9}, {0, 0, 0.9}, {0, 0, 0}}};
+    const Vec3 width{0, 1, 0};
+    TriangleSoup soup;
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+        soup.vertices.insert(soup.vertices.end(), {a, b, c});
+    };
+    for (std::size_t i = 0; i < outline.size(); ++i)
+    {
+        const Vec3& a = outline[i];
+        const Vec3& b = outline[(i + 1) % outline.size()];
+        add(a, a + width, b);
+        add(b, a + width, b + width);
+        if (i == 3 || i == 4) continue;
+        add(outline[4], a, b);
+        add(outline[4] + width, b + width, a + width);
+    }
+    const Wall wall(soup);
+    ASSERT_TRUE(wall.report.is_watertight);
+    const WallDepth depth = wall.depth(true);
+    for (double x = 0.41; x < 0.7; x += 0.02)
+        for (const double z : {-0.1, -0.05, 0.05, 0.1})
+            EXPECT_DOUBLE_EQ(depth.at({x, 0.53, z}).depth, z);
+    for (const double d : {0.05, 0.15, 0.25, 0.35})
+    {
+        const OffsetSurface surface = at_depth(depth, d);
+        EXPECT_EQ(surface.report.open_edges, 0) << d;
+        EXPECT_NEAR(surface.report.volume, (1 - 2 * d) * (1 - 2 * d) * (0.9 - 2 * d), 1e-3) << d;
+        for (const Vec3& v : surface.mesh.vertices)
+            EXPECT_GT(std::min({v.x, 1 - v.x, v.y, 1 - v.y, v.z, 0.9 - v.z}), d - 0.01) << d;
+    }
+}
+
 TEST(OffsetSurface, OfASphereIsASmoothSphere)
 {
     const Wall wall(test::sphere(5));
