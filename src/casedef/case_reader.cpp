@@ -105,6 +105,7 @@ public:
             def_.motion = evaluated_motion(*e, read_);
         if (const Element* e = casedef.find_child("normals"))
             def_.normals = read_normals(*e, def_, read_, def_.warnings);
+        warn_of_refused_normals(def_, read_, def_.warnings);
         for (const char* section : {"floatings", "properties", "motion"})
             if (const Element* e = casedef.find_child(section)) warn_of_conditions(*e, section);
         note_data_files(casedef);

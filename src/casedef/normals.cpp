@@ -247,4 +247,21 @@ NormalsDef read_normals(const Element& list, const CaseDef& def, const Attribute
     return NormalsReader(def, read, warnings).run(list);
 }
 
+void warn_of_refused_normals(const CaseDef& def, const AttributeReader& read,
+                             std::vector<std::string>& warnings)
+{
+    for (const Element& special : def.execution)
+    {
+        if (special.kind != Element::Kind::Tag || special.name != "special") continue;
+        const Element* initialize = special.find_child("initialize");
+        if (initialize == nullptr) continue;
+        for (const Element* e : active_children(*initialize, read))
+            if (e->name.starts_with("boundnormal_") && e->name != "boundnormal_set")
+                warnings.push_back(fmt::format(
+                    "{}:{}: <{}>: the solver of v5.4 stops at it; \"fppg upgrade\" turns it into "
+                    "its form in <casedef><normals>.",
+                    def.file, e->line, e->name));
+    }
+}
+
 } // namespace fppg

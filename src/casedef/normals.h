@@ -16,4 +16,10 @@ namespace fppg
 NormalsDef read_normals(const Element& list, const CaseDef& def, const AttributeReader& read,
                         std::vector<std::string>& warnings);
 
+/// Warns of normals in `<special><initialize>`, which the solvers of v5.0 and v5.2 compute and
+/// that of v5.4 refuses: `<boundnormal_plane>`, `_sphere`, `_cylinder` and `_parts` (its source,
+/// JDsInitialize.cpp).
+void warn_of_refused_normals(const CaseDef& def, const AttributeReader& read,
+                             std::vector<std::string>& warnings);
+
 } // namespace fppg

@@ -367,6 +367,21 @@ TEST(ReadCase, RefusesACaseForANewerGenCase)
     EXPECT_NO_THROW(read(text));
 }
 
+TEST(ReadCase, WarnsOfNormalsThatTheSolverOfTodayRefuses)
+{
+    CaseText text;
+    text.execution +=
+        R"(<special><initialize><boundnormal_set mkbound="1" /><_boundnormal_parts />)"
+        "\n"
+        R"(<boundnormal_plane mkbound="10"><point auto="true" /></boundnormal_plane>)"
+        R"(</initialize></special>)";
+    const std::vector<std::string> warnings = read(text).warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find(":12: <boundnormal_plane>: the solver of v5.4 stops at it"),
+              std::string::npos)
+        << warnings[0];
+}
+
 // -- what is ignored
 // --------------------------------------------------------------------------------------
 
