@@ -108,6 +108,7 @@ struct LatticeReport
     std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
     std::vector<std::string> log;        ///< lines about files of points
     std::vector<CavityFilled> fills;     ///< in the order of the commands
+    std::vector<SpanSet> flooded;        ///< by the floods of fills, in the order of the commands
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<MeshFileUse> mesh_files; ///< in order of use, each once

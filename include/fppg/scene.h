@@ -54,6 +54,9 @@ struct Scene
     std::vector<SceneStep> steps;
     std::size_t first_remaining = 0; ///< step behind the last `<resetdraw>`
     std::shared_ptr<MeshLibrary> meshes;
+    /// The nodes that the floods of fills may reach, one set each in the order of the commands,
+    /// slabs from 0 on; a set without slabs, or none, is no limit.
+    std::vector<SpanSet> fill_limits;
 
     /// What nothing forgets: the steps behind the last `<resetdraw>`.
     std::span<const SceneStep> remaining() const

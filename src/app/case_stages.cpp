@@ -191,9 +191,11 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
                                        run.limit);
                   expect_metres(made.scene, run.threads);
-                  if (const Vec3 shift = lattice_shift(made.scene, run.threads); shift != Vec3{})
+                  if (LatticeMove move = lattice_move(made.scene, run.threads);
+                      move.shift != Vec3{})
                   {
-                      move_lattice(shift, made.def);
+                      const Vec3 shift = move.shift;
+                      move_lattice(std::move(move), run.threads, made.def, made.scene);
                       run.log.line(fmt::format(
                           "Lattice moved by ({:g}, {:g}, {:g}) m: fluid half a dp off flat walls",
                           shift.x, shift.y, shift.z));

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace fppg
@@ -100,6 +101,12 @@ void Canvas::paint_slab(const Brush& brush, std::size_t x, const Spans& spans, c
                 "<{}>: the drawn regions need more memory than this machine has left: {} runs "
                 "of nodes so far; a larger dp or a smaller domain needs less",
                 brush.source->command, runs));
+}
+
+bool Canvas::is_empty() const
+{
+    return std::all_of(field_.slabs.begin(), field_.slabs.end(),
+                       [](const std::vector<Run>& slab) { return slab.empty(); });
 }
 
 void Canvas::reset()

@@ -60,6 +60,8 @@ public:
         return walls_.has_walls() && walls_.cut_by_shape(draw, std::move(openings));
     }
 
+    /// Whether no node carries an mk.
+    bool is_empty() const;
     /// Forgets all that was drawn.
     void reset();
     /// The finished nodes and particles.

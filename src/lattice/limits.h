@@ -18,6 +18,8 @@ struct Limits
 
     const SpanSet* mask_used() const { return mask ? &*mask : nullptr; }
     std::vector<Spans> kept(std::vector<Spans> nodes) const;
+    /// nodes  as `mask`; without slabs nothing changes
+    void keep_within(const SpanSet& nodes);
 };
 
 /// Nodes strictly inside a snapped box.

@@ -84,6 +84,15 @@ std::vector<Spans> Limits::kept(std::vector<Spans> nodes) const
     return nodes;
 }
 
+void Limits::keep_within(const SpanSet& nodes)
+{
+    if (nodes.slabs.empty()) return;
+    if (!mask)
+        mask = nodes;
+    else
+        mask->slabs = kept(nodes.slabs);
+}
+
 NodeBox node_box(const BoxRegion& region, const LatticeGrid& grid)
 {
     const Node a = snap(region.corner0, grid);
@@ -122,7 +131,10 @@ Limits limits_of(const Painting& painting, const Brush& brush,
 
 void paint(Painting& painting, const Brush& brush, const FillOp& op)
 {
-    const Limits limits = limits_of(painting, brush, op.region);
+    Limits limits = limits_of(painting, brush, op.region);
+    const std::size_t number = painting.report.flooded.size();
+    if (number < painting.scene.fill_limits.size())
+        limits.keep_within(painting.scene.fill_limits[number]);
     check_columns(painting, brush, limits.box);
     const Canvas& canvas = painting.canvas;
     const Node seed = snap(op.seed, painting.grid());
@@ -136,6 +148,7 @@ void paint(Painting& painting, const Brush& brush, const FillOp& op)
                         why_nothing_is_filled(painting, seed, limits)));
     painting.checks.check_fill(*brush.source, *brush.state, nodes);
     painting.canvas.paint(brush, nodes);
+    painting.report.flooded.push_back({0, nodes});
 }
 
 void paint(Painting& painting, const Brush& brush, const CavityFillOp& op)
@@ -169,6 +182,8 @@ void paint(Painting& painting, const Brush& brush, const RedrawOp& op)
         redraw_brush(brush),
         limits.kept(redraw_nodes(painting.canvas.field(), op, limits.box,
                                  painting.def.mk_bound_first, painting.canvas.threads())));
+    // With <setmkvoid/> cases take away what they drew for a shape file.
+    if (brush.mk.kind == MkKind::Void && painting.canvas.is_empty()) painting.canvas.reset();
 }
 
 void paint(Painting& painting, const Brush& brush, const RedrawNearOp& op)

@@ -359,7 +359,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const Lattice
             warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,
                                 out[i]);
     }
-    if (layered) warn_of_stacked_shells(scene, out);
+    if (layered) leave_out_stacked_shells(scene, out);
     return out;
 }
 

@@ -3,7 +3,9 @@
 #include "fppg/error.h"
 #include "fppg/lattice.h"
 
+#include "core/parallel.h"
 #include "nodes/run_at.h"
+#include "nodes/spans.h"
 #include "walls/fluid_ends.h"
 #include "walls/step_surfaces.h"
 
@@ -174,17 +176,61 @@ private:
     std::array<WallPlaces, 3> places_;
 };
 
+/// The nodes of the moved lattice that are dp or less from nodes of the other along each axis; no
+/// slabs where there are none.
+SpanSet nodes_beside(const SpanSet& nodes, const LatticeGrid& grid, const Vec3& shift, int threads)
+{
+    // Node k is beside those from k + first to k + 1 of the moved lattice, which has a node more
+    // before it along the axes that it is moved along.
+    std::array<std::int64_t, 3> first{};
+    NodeBox all = whole_lattice(grid);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const bool is_moved = shift[axis] != 0;
+        first[static_cast<std::size_t>(axis)] = is_moved ? 0 : -1;
+        all.end[static_cast<std::size_t>(axis)] += is_moved ? 1 : 0;
+    }
+    SpanSet out;
+    if (std::all_of(nodes.slabs.begin(), nodes.slabs.end(),
+                    [](const Spans& s) { return s.empty(); }))
+        return out;
+    out.slabs.resize(static_cast<std::size_t>(all.end[0]));
+    const auto slabs = static_cast<std::int64_t>(nodes.slabs.size());
+    parallel_for(
+        out.slabs.size(), threads,
+        [&](std::size_t slab)
+        {
+            const auto x = static_cast<std::int64_t>(slab);
+            Spans& found = out.slabs[slab];
+            for (std::int64_t k = std::max(x - 1, std::int64_t{0}); k <= x - first[0] && k < slabs;
+                 ++k)
+                for (const Span& s : nodes.slabs[static_cast<std::size_t>(k)])
+                    for (std::int64_t y = s.y + first[1]; y <= s.y + std::int64_t{1}; ++y)
+                    {
+                        if (y < 0 || y >= all.end[1]) continue;
+                        const std::int64_t begin = std::max(s.z_begin + first[2], std::int64_t{0});
+                        const std::int64_t end = std::min(s.z_end + std::int64_t{1}, all.end[2]);
+                        found.push_back({static_cast<std::uint32_t>(y),
+                                         static_cast<std::uint32_t>(begin),
+                                         static_cast<std::uint32_t>(end)});
+                    }
+            sort_and_join(found);
+        });
+    return out;
+}
+
 } // namespace
 
-Vec3 lattice_shift(const Scene& scene, int threads)
+LatticeMove lattice_move(const Scene& scene, int threads)
 {
     const CaseDef& def = *scene.def;
     if (!may_move(scene)) return {};
-    Vec3 shift;
+    LatticeMove move;
     try
     {
-        LatticeReport unused;
-        const RunField field = draw_on_lattice(scene, threads, {}, unused);
+        LatticeReport report;
+        const RunField field = draw_on_lattice(scene, threads, {}, report);
+        move.flooded = std::move(report.flooded);
         WetPlanes walls(field, def.mk_bound_first);
         for (const SceneStep& step : scene.remaining())
         {
@@ -201,24 +247,26 @@ Vec3 lattice_shift(const Scene& scene, int threads)
             const std::optional<double> place = walls.of(axis).most();
             if (!place) continue;
             const double moved = *place + 0.5 - std::floor(*place + 0.5);
-            if (moved > rounding && moved < 1 - rounding) shift[axis] = moved * def.grid.dp;
+            if (moved > rounding && moved < 1 - rounding) move.shift[axis] = moved * def.grid.dp;
         }
     }
     catch (const Error&)
     {
         return {}; // drawing the walls says what is wrong
     }
-    return shift;
+    return move;
 }
 
-void move_lattice(const Vec3& shift, CaseDef& def)
+void move_lattice(LatticeMove move, int threads, CaseDef& def, Scene& scene)
 {
     LatticeGrid& grid = def.grid;
+    for (SpanSet& nodes : move.flooded)
+        scene.fill_limits.push_back(nodes_beside(nodes, grid, move.shift, threads));
     for (int axis = 0; axis < 3; ++axis)
     {
-        if (shift[axis] == 0) continue;
+        if (move.shift[axis] == 0) continue;
         // A node more: walls at the ends of the domain keep all of their layers.
-        grid.origin[axis] += shift[axis] - grid.dp;
+        grid.origin[axis] += move.shift[axis] - grid.dp;
         ++grid.n[static_cast<std::size_t>(axis)];
         end_fluid_between_nodes(axis, def);
     }

@@ -286,31 +286,64 @@ INSTANTIATE_TEST_SUITE_P(
         R"(<drawcylinder radius="0.43"><point x="0.51" y="0.5" z="0.05" /><point x="0.51" y="0.5" z="0.85" />{}</drawcylinder>)",
         R"(<drawextrude closed="true"><extrude x="0" y="0.8" z="0" /><point x="0.1" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.05" /><point x="0.9" y="0.1" z="0.8" /><point x="0.1" y="0.1" z="0.8" />{}</drawextrude>)"));
 
-/// A tank whose walls are thickened shell by shell, or that is divided by a sheet.
-TEST(ShellsOfACase, ThatStandAmongTheLayersOfAnotherAreSaid)
+/// Walls of a tank so far outside it, metres.
+std::string open_box(double off)
 {
-    const auto open_box = [](double off)
-    {
-        return fmt::format(
-            R"(<drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="{0}" y="{0}" z="{0}" /><size x="{1}" y="{1}" z="0.8" /></drawbox>)",
-            0.02 - off, 0.9 + 2 * off);
-    };
+    return fmt::format(
+        R"(<drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="{0}" y="{0}" z="{0}" /><size x="{1}" y="{1}" z="0.8" /></drawbox>)",
+        0.02 - off, 0.9 + 2 * off);
+}
+
+const std::string mdbc = R"(<bodyfitted boundary="mdbc" />)";
+
+/// A tank whose walls are thickened shell by shell, or that is divided by a sheet.
+TEST(ShellsOfACase, ThatStandAmongTheLayersOfAnotherAreLeftOut)
+{
     const std::string sheet =
         R"(<drawbox><boxfill>left</boxfill><point x="0.4" y="0.02" z="0.02" /><size x="0.1" y="0.9" z="0.2" /></drawbox>)";
-    const std::string mdbc = R"(<bodyfitted boundary="mdbc" />)";
     const std::string said = "stands among the layers of <drawbox>";
+    const Made bare = make(shell_with_fluid(open_box(0), "", mdbc));
     for (const double off : {dp, 2 * dp})
         for (const bool is_inner_first : {false, true})
         {
             const std::string both =
                 is_inner_first ? open_box(0) + open_box(off) : open_box(off) + open_box(0);
-            EXPECT_TRUE(contains(make(shell_with_fluid(both, "", mdbc)).output, said)) << off;
+            const Made made = make(shell_with_fluid(both, "", mdbc));
+            EXPECT_TRUE(contains(made.output, said)) << off;
+            EXPECT_EQ(made.cloud.positions, bare.cloud.positions) << off;
         }
     EXPECT_FALSE(contains(make(shell_with_fluid(open_box(0) + sheet, "", mdbc)).output, said));
     EXPECT_FALSE(
         contains(make(shell_with_fluid(open_box(0) + open_box(5 * dp), "", mdbc)).output, said));
     EXPECT_FALSE(contains(
         make(shell_with_fluid(open_box(0) + open_box(dp), "", "<bodyfitted />")).output, said));
+}
+
+/// As cases draw the surface for their normals, to take it away again.
+TEST(WallsThatAVoidTakesAway, LeaveNothingThatFluidMinds)
+{
+    const std::string drawn =
+        open_box(-0.5 * dp) + R"(<setmkvoid /><redraw /><setmkbound mk="0" />)";
+    const Made bare = make(shell_with_fluid(open_box(0), "", mdbc));
+    const Made made = make(shell_with_fluid(drawn + open_box(0), "", mdbc));
+    EXPECT_EQ(made.cloud.positions, bare.cloud.positions);
+}
+
+/// A step beside the walls there is no node, but in the lattice that moves by half a step there is.
+TEST(FluidBeforeAPiston, DoesNotComeBehindItThroughAGapOfAStep)
+{
+    const std::string piston =
+        R"(<setdrawmode mode="full" /><setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.2" y="0.05" z="0.05" /><size x="0.15" y="0.8" z="0.9" /></drawbox>)";
+    const std::string walls =
+        R"(<drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="0.9" y="0.9" z="0.9" /></drawbox>)";
+    const Made made = make(shell_with_fluid(walls + piston, "", mdbc));
+    EXPECT_TRUE(contains(made.output, "Lattice moved by")) << made.output;
+    std::size_t behind = 0;
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+        if (is_fluid(made.cloud, i)) ++(made.cloud.positions[i].x < 0.2 ? behind : before);
+    EXPECT_EQ(behind, 0u);
+    EXPECT_GT(before, 1500u);
 }
 
 } // namespace
