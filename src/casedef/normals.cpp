@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace fppg
 {
@@ -250,13 +252,15 @@ NormalsDef read_normals(const Element& list, const CaseDef& def, const Attribute
 void warn_of_refused_normals(const CaseDef& def, const AttributeReader& read,
                              std::vector<std::string>& warnings)
 {
+    constexpr std::array<std::string_view, 4> refused{"boundnormal_plane", "boundnormal_sphere",
+                                                      "boundnormal_cylinder", "boundnormal_parts"};
     for (const Element& special : def.execution)
     {
         if (special.kind != Element::Kind::Tag || special.name != "special") continue;
         const Element* initialize = special.find_child("initialize");
         if (initialize == nullptr) continue;
         for (const Element* e : active_children(*initialize, read))
-            if (e->name.starts_with("boundnormal_") && e->name != "boundnormal_set")
+            if (std::find(refused.begin(), refused.end(), e->name) != refused.end())
                 warnings.push_back(fmt::format(
                     "{}:{}: <{}>: the solver of v5.4 stops at it; \"fppg upgrade\" turns it into "
                     "its form in <casedef><normals>.",

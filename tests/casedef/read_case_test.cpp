@@ -371,7 +371,7 @@ TEST(ReadCase, WarnsOfNormalsThatTheSolverOfTodayRefuses)
 {
     CaseText text;
     text.execution +=
-        R"(<special><initialize><boundnormal_set mkbound="1" /><_boundnormal_parts />)"
+        R"(<special><initialize><boundnormal_set mkbound="1" /><boundnormal_curved /><_boundnormal_parts />)"
         "\n"
         R"(<boundnormal_plane mkbound="10"><point auto="true" /></boundnormal_plane>)"
         R"(</initialize></special>)";
