@@ -105,10 +105,13 @@ struct CavityFilled
 /// What the lattice stage says besides the nodes.
 struct LatticeReport
 {
-    std::vector<std::string> warnings;   ///< whole sentences that name file, line and element
-    std::vector<std::string> log;        ///< lines about files of points
-    std::vector<CavityFilled> fills;     ///< in the order of the commands
-    std::vector<SpanSet> flooded;        ///< by the floods of fills, in the order of the commands
+    std::vector<std::string> warnings; ///< whole sentences that name file, line and element
+    std::vector<std::string> log;      ///< lines about files of points
+    std::vector<CavityFilled> fills;   ///< in the order of the commands
+    bool keeps_floods = false;         ///< `flooded` is wanted
+    /// What fills would reach in boxes a node larger on each side, in the order of the commands;
+    /// nothing of those in polyhedra.
+    std::vector<SpanSet> flooded;
     std::uint64_t triangles = 0;         ///< drawn
     std::uint64_t triangles_ignored = 0; ///< of them, no bigger than one node
     std::vector<MeshFileUse> mesh_files; ///< in order of use, each once

@@ -66,6 +66,17 @@ std::string why_nothing_is_filled(const Painting& painting, const Node& seed, co
         mk - (is_bound ? def.mk_bound_first : def.mk_fluid_first));
 }
 
+/// A node larger on each side, within the lattice.
+NodeBox grown(NodeBox box, const LatticeGrid& grid)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        --box.begin[axis];
+        ++box.end[axis];
+    }
+    return intersect(box, whole_lattice(grid));
+}
+
 /// With a boundary mk walls keep their place and take the new mk.
 Brush redraw_brush(const Brush& brush)
 {
@@ -132,15 +143,22 @@ Limits limits_of(const Painting& painting, const Brush& brush,
 void paint(Painting& painting, const Brush& brush, const FillOp& op)
 {
     Limits limits = limits_of(painting, brush, op.region);
-    const std::size_t number = painting.report.flooded.size();
+    const std::size_t number = painting.floods++;
     if (number < painting.scene.fill_limits.size())
         limits.keep_within(painting.scene.fill_limits[number]);
     check_columns(painting, brush, limits.box);
     const Canvas& canvas = painting.canvas;
     const Node seed = snap(op.seed, painting.grid());
+    const std::vector<char> fillable = fillable_mks(op.filter, painting.def.mk_bound_first);
     const std::vector<Spans> nodes =
-        flood(canvas.field(), seed, fillable_mks(op.filter, painting.def.mk_bound_first),
-              limits.box, limits.mask_used(), canvas.threads());
+        flood(canvas.field(), seed, fillable, limits.box, limits.mask_used(), canvas.threads());
+    if (painting.report.keeps_floods)
+    {
+        SpanSet& reached = painting.report.flooded.emplace_back();
+        if (!limits.mask)
+            reached.slabs = flood(canvas.field(), seed, fillable,
+                                  grown(limits.box, painting.grid()), nullptr, canvas.threads());
+    }
     if (brush.state->draw_points && node_count(nodes) == 0)
         painting.report.warnings.push_back(
             fmt::format("{}: the fill added no node: its seed ({:g}, {:g}, {:g}) {}",
@@ -148,7 +166,6 @@ void paint(Painting& painting, const Brush& brush, const FillOp& op)
                         why_nothing_is_filled(painting, seed, limits)));
     painting.checks.check_fill(*brush.source, *brush.state, nodes);
     painting.canvas.paint(brush, nodes);
-    painting.report.flooded.push_back({0, nodes});
 }
 
 void paint(Painting& painting, const Brush& brush, const CavityFillOp& op)

@@ -33,6 +33,7 @@ struct Painting
     DrawChecks checks;
     Canvas canvas;
     std::set<const MeshFile*> used; ///< mesh files that the report tells of
+    std::size_t floods = 0;         ///< fills that were painted
 };
 
 // A file a kind of draw. Each paints one draw over what is there; clips, pattern and mk are the

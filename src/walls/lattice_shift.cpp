@@ -229,6 +229,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
     try
     {
         LatticeReport report;
+        report.keeps_floods = true;
         const RunField field = draw_on_lattice(scene, threads, {}, report);
         move.flooded = std::move(report.flooded);
         WetPlanes walls(field, def.mk_bound_first);
