@@ -191,14 +191,13 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
                                        run.limit);
                   expect_metres(made.scene, run.threads);
-                  if (LatticeMove move = lattice_move(made.scene, run.threads);
+                  if (const LatticeMove move = lattice_move(made.scene, run.threads);
                       move.shift != Vec3{})
                   {
-                      const Vec3 shift = move.shift;
-                      move_lattice(std::move(move), run.threads, made.def, made.scene);
+                      move_lattice(move, run.threads, made.def, made.scene);
                       run.log.line(fmt::format(
                           "Lattice moved by ({:g}, {:g}, {:g}) m: fluid half a dp off flat walls",
-                          shift.x, shift.y, shift.z));
+                          move.shift.x, move.shift.y, move.shift.z));
                   }
                   end_fluid_at_walls(made.scene, run.threads, made.def);
                   LatticeReport report;

@@ -258,10 +258,10 @@ LatticeMove lattice_move(const Scene& scene, int threads)
     return move;
 }
 
-void move_lattice(LatticeMove move, int threads, CaseDef& def, Scene& scene)
+void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& scene)
 {
     LatticeGrid& grid = def.grid;
-    for (SpanSet& nodes : move.flooded)
+    for (const SpanSet& nodes : move.flooded)
         scene.fill_limits.push_back(nodes_beside(nodes, grid, move.shift, threads));
     for (int axis = 0; axis < 3; ++axis)
     {
