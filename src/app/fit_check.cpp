@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 
 namespace fppg
 {
@@ -58,6 +59,7 @@ public:
     {
         const FittedBody& body = walls_.bodies[b];
         std::string line = fmt::format("  {} (xml row:{}, mk:{}):", body.name, body.line, body.mk);
+        note_if_gone(b);
         const std::string layers =
             layers_text(walls_, b, [&](std::size_t l) { return count_of_layer(l); });
         if (!layers.empty()) line += fmt::format(" layers of {} particles;", layers);
@@ -66,7 +68,7 @@ public:
 
     std::vector<std::string> warnings() const
     {
-        std::vector<std::string> out;
+        std::vector<std::string> out = gone_;
         for (const auto& [why, group] : counts_)
             out.push_back(fmt::format(
                 "particles on fitted surfaces are more or fewer than one per dp^2, {}: {}.", why,
@@ -80,6 +82,25 @@ public:
     }
 
 private:
+    /// A body whose last particles gave way to those of others.
+    void note_if_gone(std::size_t b)
+    {
+        const FittedBody& body = walls_.bodies[b];
+        std::uint64_t left = 0;
+        for (std::size_t l = b; l < walls_.bodies.size() && (l == b || walls_.bodies[l].owner == b);
+             ++l)
+            for (const std::uint64_t n : of_kind_[l]) left += n;
+        const std::size_t crowded =
+            std::accumulate(body.left_out.begin(), body.left_out.end(), std::size_t{0});
+        if (left > 0 || crowded == 0) return;
+        gone_.push_back(fmt::format(
+            "no particle is left on the surface of <{}> of line {} (mk {}): what other draws do "
+            "not "
+            "cover is nearer than {:g} dp to their particles. Draw it that far from them, or "
+            "thicker.",
+            body.name, body.line, body.mk, least_pair_dp));
+    }
+
     std::string count_of(std::size_t b)
     {
         const FittedBody& body = walls_.bodies[b];
@@ -193,6 +214,7 @@ private:
     const char* size_unit_;
     const char* area_unit_;
     std::vector<std::array<std::uint64_t, 4>> of_kind_;
+    std::vector<std::string> gone_; ///< a warning for each
     std::map<std::string, DeviationGroup> counts_;
     std::map<std::string, DeviationGroup> volumes_;
 };

@@ -115,12 +115,25 @@ void refuse_unfittable(const DrawOp& draw)
             "follow; they end at the domain without it");
 }
 
+/// Depths of a file's inside from here on leave its surface out, dp: its nodes are within half a
+/// step of it.
+constexpr double below_surface_dp = 0.5;
+
 FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& settings,
                     int threads)
 {
     const DrawState& state = *draw.state;
     const LatticeGrid& grid = scene.def->grid;
     FittedStep out;
+    const auto* file = shape_as<MeshFileOp>(draw);
+    if (file != nullptr && file->advanced && file->depth_min > below_surface_dp * grid.dp)
+    {
+        out.warnings.push_back(fmt::format(
+            "{}: <depth depthmin> = {:g} m leaves the surface out, on which body-fitted particles "
+            "stand; it is drawn on the lattice, not body-fitted",
+            place_of(*scene.def, draw.source), file->depth_min));
+        return out;
+    }
     const std::optional<DrawOp> shorter = made_near_domain(draw, *scene.def);
     const std::vector<ShapeMesh> shapes =
         surfaces_of(scene, shorter ? *shorter : draw, PartsAs::Drawn, threads);

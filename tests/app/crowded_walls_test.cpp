@@ -221,4 +221,28 @@ TEST(CrowdedWalls, AreTheSameForAnyNumberOfThreads)
     }
 }
 
+/// The public AdvTetrapod: a depth that leaves the surface out.
+TEST(DeepInside, StaysOnTheLattice)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "shape.stl", stl_of(box({-1, -1, -1}, {1, 1, 1})));
+    CaseText text;
+    text.dp = "0.1";
+    text.pointmin = R"(<pointmin x="-2.03" y="-2.01" z="-2.02" />)";
+    text.pointmax = R"(<pointmax x="2" y="2" z="2" />)";
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />
+<drawfilestl file="shape.stl" advanced="true"><depth depthmin="0.2" depthmax="0.3" /></drawfilestl>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    ASSERT_EQ(run(folder, {"Case_Def", "Lattice"}).code, 0);
+    const RunResult fitted = run(folder, {"Case_Def", "Fitted", "-fit"});
+    ASSERT_EQ(fitted.code, 0) << fitted.output;
+    EXPECT_TRUE(contains(fitted.output,
+                         "<depth depthmin> = 0.2 m leaves the surface out, on which body-fitted "
+                         "particles stand; it is drawn on the lattice, not body-fitted"))
+        << fitted.output;
+    const ParticleCloud lattice = read_particles(folder / "Lattice", true, 1);
+    EXPECT_GT(lattice.positions.size(), 0U);
+    EXPECT_EQ(read_particles(folder / "Fitted", true, 1).positions, lattice.positions);
+}
+
 } // namespace

@@ -439,6 +439,26 @@ TEST(FitCheck, IsContentWithABoxOfManyParticles)
     }
 }
 
+/// The public Dynamic_Crack_Branching: a plate one dp thick that a block drawn later takes half of.
+TEST(FitCheck, NamesABodyThatGaveWayToAnother)
+{
+    const TemporaryFolder folder;
+    CaseText text = floating("");
+    text.after_geometry = {};
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+                    box_command(R"(x="0" y="0" z="0")", R"(x="0.4" y="0.4" z="0.02")") +
+                    R"(<setmkbound mk="1" />)" +
+                    box_command(R"(x="0" y="0" z="-0.3")", R"(x="0.4" y="0.4" z="0.3098")");
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_TRUE(contains(result.output,
+                         "no particle is left on the surface of <drawbox> of line 7 "
+                         "(mk 10): what other draws do not cover is nearer than 0.6 "
+                         "dp to their particles"))
+        << result.output;
+    EXPECT_FALSE(contains(result.output, "(mk 11)")) << result.output;
+}
+
 TEST(FitCheck, WritesTheFiguresOfEveryBodyToTheLog)
 {
     const TemporaryFolder folder;
