@@ -20,6 +20,11 @@ struct BooleanPart
     /// in an intersection where it is inside them, and nothing is cut from what it is taken from.
     /// Without the flag such a part is an error.
     bool may_be_sheet = false;
+    bool is_surface = false; ///< without an inside, though the mesh may be closed
+    /// Above 0, what has no inside of the other parts counts as inside this one where it gets
+    /// deeper than this below the surface, metres, and as outside where it runs along that. Else it
+    /// is cut wherever it is inside or on the surface.
+    double least_depth = 0;
 };
 
 struct BooleanOptions

@@ -215,8 +215,10 @@ struct BooleanDef
     /// A draw that is one of the parts.
     struct Part
     {
-        std::size_t op = 0;    ///< index into CaseDef::ops
-        bool is_sheet = false; ///< it may be a surface without an inside
+        std::size_t op = 0;      ///< index into CaseDef::ops
+        bool is_sheet = false;   ///< it may be a surface without an inside
+        bool is_surface = false; ///< it has none, though it may be closed
+        double least_depth = 0;  ///< metres; as BooleanPart::least_depth
     };
     int line = 0;
     std::string name; ///< empty without

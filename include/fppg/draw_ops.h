@@ -404,6 +404,7 @@ struct DrawOp
     /// Of shells drawn by `layers vdp`: the shape itself, which those of a command share; else
     /// null.
     std::shared_ptr<const Shape> surface{};
+    std::size_t shells = 0; ///< of `layers vdp`, instead of which the shape itself is drawn
 };
 
 /// The shape that a command draws if it is of this kind, else null.

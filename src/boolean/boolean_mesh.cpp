@@ -48,10 +48,10 @@ class Solid
 public:
     Solid(const BooleanPart& part, int threads) : closed_(find_closed_part(*part.mesh))
     {
-        has_inside_ = closed_.volume > 0 && closed_.soup.size() > 0;
+        has_inside_ = !part.is_surface && closed_.volume > 0 && closed_.soup.size() > 0;
         if (!has_inside_)
         {
-            if (!part.may_be_sheet)
+            if (!part.may_be_sheet && !part.is_surface)
                 throw GeometryError(fmt::format(
                     "the part '{}' bounds no volume, so that nothing is inside or outside it; "
                     "close its mesh, or say that it is a sheet",
@@ -84,6 +84,12 @@ public:
             if (std::abs(across) > 0.999) return across > 0 ? Where::OnSame : Where::OnOpposite;
         }
         return inside_->is_inside(p) ? Where::Inside : Where::Outside;
+    }
+
+    bool is_deeper(const Vec3& p, double depth) const
+    {
+        return bounds_.has(p, 0) && inside_->query().closest_point(p).distance > depth &&
+               inside_->is_inside(p);
     }
 
 private:
@@ -282,14 +288,42 @@ private:
         {
             const std::uint32_t g = it->second;
             const std::uint32_t part = all_.facets[g].part;
-            if (is_known[part] != 0 || is_sheet(g)) continue;
+            if (is_known[part] != 0 || is_sheet(g) || asks_depth(f, part)) continue;
             is_known[part] = 1;
             out[part] = same_way(f, g) ? Where::OnSame : Where::OnOpposite;
         }
         const Vec3 p = middle(f);
         for (std::size_t part = 0; part < parts_.size(); ++part)
             if (is_known[part] == 0 && solids_[part].has_inside())
-                out[part] = solids_[part].where(p, normal(f), merge_);
+            {
+                if (!asks_depth(f, static_cast<std::uint32_t>(part)))
+                    out[part] = solids_[part].where(p, normal(f), merge_);
+                else if (solids_[part].is_deeper(p, parts_[part].least_depth))
+                    out[part] = Where::Inside;
+            }
+        return out;
+    }
+
+    bool asks_depth(std::uint32_t f, std::uint32_t part) const
+    {
+        return is_sheet(f) && parts_[part].least_depth > 0;
+    }
+
+    /// Where the facets asked of a patch lie. A patch of a sheet is on one side of every part as a
+    /// whole, and as deep in it as its deepest place.
+    std::vector<std::vector<Where>> places_in_patch(const std::vector<std::uint32_t>& asked) const
+    {
+        std::vector<std::vector<Where>> out;
+        for (const std::uint32_t f : asked) out.push_back(places(f));
+        for (std::uint32_t part = 0; part < parts_.size(); ++part)
+        {
+            if (!asks_depth(asked[0], part)) continue;
+            const bool is_deep = std::any_of(out.begin(), out.end(),
+                                             [&](const std::vector<Where>& where)
+                                             { return where[part] == Where::Inside; });
+            for (std::vector<Where>& where : out)
+                where[part] = is_deep ? Where::Inside : Where::Outside;
+        }
         return out;
     }
 
@@ -375,10 +409,11 @@ private:
             {
                 const std::vector<std::uint32_t>& patch = patches_[i];
                 const std::vector<std::uint32_t> asked = largest_of(patch);
-                const std::vector<Where> where = places(asked[0]);
+                const std::vector<std::vector<Where>> found = places_in_patch(asked);
+                const std::vector<Where>& where = found[0];
                 const bool is_whole =
-                    std::all_of(asked.begin() + 1, asked.end(),
-                                [&](std::uint32_t f) { return places(f) == where; });
+                    std::all_of(found.begin() + 1, found.end(),
+                                [&](const std::vector<Where>& other) { return other == where; });
                 for (const std::uint32_t f : patch)
                     verdicts_[f] = judge_facet(f, is_whole ? where : places(f), owners_[f]);
             },

@@ -80,12 +80,19 @@ void hint_at_parameters(CaseDef& def)
         def.file, wrong));
 }
 
+std::size_t shells_of(const DrawOp& op)
+{
+    if (const auto* sphere = shape_as<SphereOp>(op)) return sphere->layers_dp.size();
+    if (const auto* cylinder = shape_as<CylinderOp>(op)) return cylinder->layers.size();
+    return 1;
+}
+
 /// Shells of `layers vdp` that thicken a wall on the lattice: where walls stand in layers of their
 /// own, the shape itself is drawn once in their place.
 void draw_shells_once(CaseDef& def)
 {
     std::vector<int> lines;
-    const Shape* drawn = nullptr;
+    DrawOp* drawn = nullptr;
     for (DrawOp& op : def.ops)
     {
         const FitSettings* settings = op.state->mk.kind == MkKind::Bound && op.surface != nullptr
@@ -94,14 +101,17 @@ void draw_shells_once(CaseDef& def)
         if (settings == nullptr || settings->depths_dp.empty() ||
             settings->place == Placement::Inside || !op.state->draw_points)
             continue;
-        if (op.surface.get() == drawn)
+        const std::size_t shells = shells_of(op);
+        if (drawn != nullptr && op.surface == drawn->surface)
         {
+            drawn->shells += shells;
             DrawState state = *op.state;
             state.draw_points = false;
             op.state = std::make_shared<const DrawState>(std::move(state));
             continue;
         }
-        drawn = op.surface.get();
+        drawn = &op;
+        op.shells = shells;
         op.what = *op.surface;
         if (lines.empty() || lines.back() != op.source.line) lines.push_back(op.source.line);
     }

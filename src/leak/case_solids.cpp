@@ -32,7 +32,7 @@ public:
     {
         for (const SceneStep& step : scene_.remaining())
         {
-            if (step.combination)
+            if (step.combination && !step.combination->boolean->parts[0].is_surface)
                 take_in(*step.combination);
             else if (step.draw->state->draw_points)
                 take_in(step);

@@ -3,10 +3,13 @@
 #include "fppg/combination.h"
 #include "fppg/error.h"
 
+#include "meshes/inside_test.h"
 #include "meshes/open_edges.h"
 #include "scene/surfaces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 namespace fppg
@@ -18,33 +21,48 @@ namespace
 constexpr double void_reach_dp = 1e-3;
 constexpr double fluid_reach_dp = 0.5 + 1e-6;
 
-/// A step that draws a filled body, and those that are drawn into it.
-struct Solid
+/// The same of a sheet: on the lattice fluid leaves no wall where it covers all its shells.
+double sheet_reach(const Scene& scene, std::size_t step)
+{
+    const std::size_t shells = scene.steps[step].draw->shells;
+    return (fluid_reach_dp + static_cast<double>(shells > 0 ? shells - 1 : 0)) * scene.def->grid.dp;
+}
+
+/// A step that draws a body or a sheet, and those that are drawn into it.
+struct Body
 {
     std::size_t step = 0;
-    Box3 box;
-    bool is_closed = false;
+    Box3 box; ///< empty: nothing
+    bool is_closed = true;
+    TriangleSoup sheet{}; ///< the surface of a draw that fills nothing; else empty
     std::vector<std::size_t> drawn_into{};
+
+    bool is_sheet() const { return sheet.size() > 0; }
 };
 
-/// What a step fills, by its true shape; an empty box: nothing. Surfaces with open edges, whose
-/// inside is a guess, cannot be cut exactly.
-Solid solid_of(const Scene& scene, std::size_t index)
+/// What a step draws, by its true shape. Surfaces with open edges, whose inside is a guess, cannot
+/// be cut exactly, and nor can the sheets of `<layers>`, which are bodies of their own.
+Body body_of(const Scene& scene, std::size_t index)
 {
     const SceneStep& step = scene.steps[index];
     const DrawState& state = *step.draw->state;
     const auto* file = shape_as<MeshFileOp>(*step.draw);
-    Solid out{index, {}, true};
+    Body out{index, {}};
     if (!state.draw_points || state.pattern || state.mk_next_auto || state.off_lattice ||
         state.mode == DrawMode::Wire || (file != nullptr && file->advanced))
         return out;
     try
     {
-        for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::Drawn, 1))
+        std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, 1);
+        const bool is_sheet = shapes.size() == 1 && !shapes[0].is_solid && !scene.def->grid.is_2d;
+        for (ShapeMesh& shape : shapes)
         {
-            if (!shape.is_solid) continue;
+            if (!shape.is_solid && !is_sheet) continue;
             for (const Vec3& v : shape.soup.vertices) out.box.add(v);
-            out.is_closed = out.is_closed && open_edge_count(shape.soup) == 0;
+            if (is_sheet)
+                out.sheet = std::move(shape.soup);
+            else
+                out.is_closed = out.is_closed && open_edge_count(shape.soup) == 0;
         }
     }
     catch (const Error&)
@@ -53,6 +71,70 @@ Solid solid_of(const Scene& scene, std::size_t index)
     }
     return out;
 }
+
+/// A fluid that may pass through sheets.
+class FluidInSheets
+{
+public:
+    FluidInSheets(const Scene& scene, const Body& fluid) : scene_(scene), fluid_(fluid) {}
+
+    /// Whether a place of a sheet is deeper in the fluid than sheet_reach().
+    bool passes(const Body& body)
+    {
+        depth_ = sheet_reach(scene_, body.step);
+        const double dp = scene_.def->grid.dp;
+        for (std::size_t f = 0; f < body.sheet.size(); ++f)
+        {
+            const Vec3* c = &body.sheet.vertices[3 * f];
+            Box3 box;
+            for (std::size_t k = 0; k < 3; ++k) box.add(c[k]);
+            if (!overlap_by(box, depth_)) continue;
+            const double longest =
+                std::max({norm(c[1] - c[0]), norm(c[2] - c[1]), norm(c[0] - c[2])});
+            const auto n = static_cast<int>(std::clamp(std::ceil(longest / dp), 1.0, most_samples));
+            for (int i = 0; i <= n; ++i)
+                for (int j = 0; i + j <= n; ++j)
+                    if (is_deep(c[0] + (static_cast<double>(i) / n) * (c[1] - c[0]) +
+                                (static_cast<double>(j) / n) * (c[2] - c[0])))
+                        return true;
+        }
+        return false;
+    }
+
+private:
+    static constexpr double most_samples = 1000; ///< along a side of a facet
+
+    bool overlap_by(const Box3& box, double depth) const
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            if (box.max[axis] <= fluid_.box.min[axis] + depth ||
+                box.min[axis] >= fluid_.box.max[axis] - depth)
+                return false;
+        return true;
+    }
+
+    bool is_deep(const Vec3& p)
+    {
+        if (!fluid_.box.has(p, -depth_)) return false;
+        if (test_ == nullptr)
+        {
+            TriangleSoup soup;
+            for (ShapeMesh& shape :
+                 surfaces_of(scene_, *scene_.steps[fluid_.step].draw, PartsAs::Drawn, 1))
+                if (shape.is_solid)
+                    soup.vertices.insert(soup.vertices.end(), shape.soup.vertices.begin(),
+                                         shape.soup.vertices.end());
+            test_ = std::make_unique<InsideTest>(std::move(soup));
+            test_->query().prepare_nearest();
+        }
+        return test_->query().closest_point(p).distance > depth_ && test_->is_inside(p);
+    }
+
+    const Scene& scene_;
+    const Body& fluid_;
+    double depth_ = 0; ///< metres
+    std::unique_ptr<InsideTest> test_;
+};
 
 bool overlap(const Box3& a, const Box3& b, double reach_dp, const LatticeGrid& grid)
 {
@@ -65,13 +147,12 @@ bool overlap(const Box3& a, const Box3& b, double reach_dp, const LatticeGrid& g
     return true;
 }
 
-std::shared_ptr<const Combination> difference(const Scene& scene, std::size_t solid,
-                                              const std::vector<std::size_t>& by)
+std::shared_ptr<const Combination> difference(const Scene& scene, const Body& body)
 {
     auto hollowed = std::make_shared<HollowedSolid>();
     auto out = std::make_shared<Combination>();
-    hollowed->parts.push_back(*scene.steps[solid].draw);
-    for (const std::size_t step : by)
+    hollowed->parts.push_back(*scene.steps[body.step].draw);
+    for (const std::size_t step : body.drawn_into)
     {
         hollowed->parts.push_back(*scene.steps[step].draw);
         hollowed->by.push_back(&scene.steps[step].draw->source);
@@ -85,7 +166,9 @@ std::shared_ptr<const Combination> difference(const Scene& scene, std::size_t so
     {
         const auto index = static_cast<std::uint32_t>(out->parts.size());
         hollowed->boolean.tree.operands.push_back({BooleanOp::Part, index, {}});
-        hollowed->boolean.parts.emplace_back();
+        BooleanDef::Part& kind = hollowed->boolean.parts.emplace_back();
+        if (body.is_sheet()) kind.is_surface = index == 0;
+        if (body.is_sheet() && index > 0) kind.least_depth = sheet_reach(scene, body.step);
         out->parts.push_back(&part);
         out->mks.push_back(first.state->mk); // the cavity moves with the solid
         out->stays.push_back(index == 0 ? 1 : 0);
@@ -116,30 +199,32 @@ void hollow_solids(Scene& scene)
     // Meshes are not looked at where nothing is drawn behind them.
     std::size_t end = scene.steps.size();
     while (end > scene.first_remaining && !may_hollow(scene.steps[end - 1])) --end;
-    std::vector<Solid> solids;
+    std::vector<Body> bodies;
     for (std::size_t i = scene.first_remaining; i < end; ++i)
     {
         const bool is_bound = is_fitted(scene.steps[i]);
-        if (!is_bound && (solids.empty() || !may_hollow(scene.steps[i]))) continue;
-        Solid here = solid_of(scene, i);
+        if (!is_bound && (bodies.empty() || !may_hollow(scene.steps[i]))) continue;
+        Body here = body_of(scene, i);
         if (here.box.is_empty() || !here.is_closed) continue;
         if (is_bound)
         {
-            solids.push_back(std::move(here));
+            bodies.push_back(std::move(here));
             continue;
         }
+        if (here.is_sheet()) continue;
         const bool is_void = scene.steps[i].draw->state->mk.kind == MkKind::Void;
-        for (Solid& solid : solids)
-            if (overlap(solid.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def.grid))
-                solid.drawn_into.push_back(i);
+        FluidInSheets fluid(scene, here);
+        for (Body& body : bodies)
+            if (overlap(body.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def.grid) &&
+                (!body.is_sheet() || (!is_void && fluid.passes(body))))
+                body.drawn_into.push_back(i);
     }
-    for (const Solid& solid : solids)
+    for (const Body& body : bodies)
     {
-        if (solid.drawn_into.empty()) continue;
-        std::shared_ptr<const Combination> combination =
-            difference(scene, solid.step, solid.drawn_into);
+        if (body.drawn_into.empty()) continue;
+        std::shared_ptr<const Combination> combination = difference(scene, body);
         const DrawOp* whole = &combination->whole;
-        scene.steps[solid.step] = {whole, std::move(combination), false};
+        scene.steps[body.step] = {whole, std::move(combination), false};
     }
 }
 

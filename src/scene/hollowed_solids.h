@@ -8,10 +8,14 @@ namespace fppg
 /// Makes Boolean differences of body-fitted solids that voids or fluids are drawn into later: the
 /// cavity then has a fitted surface, with layers and normals, as it has by
 /// `<boolean op="difference">`. These stay steps of their own, for all else that they draw over.
+/// Sheets lose what fluid is drawn through, deeper than half a dp (and the shells of `<layers
+/// vdp>`, which stand on the lattice), so that no wall counts there; a void only opens them
+/// (lattice/wall_openings.h).
 ///
 /// Left as they are: solids drawn part by part or as a depth of a file, surfaces with open edges,
 /// draws with a clip or a pattern, fluid of inlets, and fluid that reaches less than half a dp into
-/// a solid, as on the lattice. What is wrong with a file is left for the drawing to say.
+/// a solid, as on the lattice; sheets of 2D cases and of `<layers>`. What is wrong with a file is
+/// left for the drawing to say.
 void hollow_solids(Scene& scene);
 
 } // namespace fppg

@@ -89,9 +89,10 @@ std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination
     for (std::size_t p = 0; p < combination.parts.size(); ++p)
     {
         ShapeMesh surface = surface_of_part(scene, combination, p, as, threads);
+        const BooleanDef::Part& part = combination.boolean->parts[p];
         parts.push_back({name_of(combination.parts[p]->source), std::move(surface.soup),
-                         combination.mks[p].mk, surface.is_solid,
-                         combination.boolean->parts[p].is_sheet, std::move(surface.cad)});
+                         combination.mks[p].mk, surface.is_solid, part.is_sheet, part.is_surface,
+                         part.least_depth, std::move(surface.cad)});
     }
     return parts;
 }
@@ -106,8 +107,9 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
         MeshReport report;
         try
         {
-            out.meshes.push_back(repair_mesh(part.soup, {.dp = dp, .is_solid = !part.may_be_sheet},
-                                             threads, report));
+            out.meshes.push_back(repair_mesh(
+                part.soup, {.dp = dp, .is_solid = !part.may_be_sheet && !part.is_surface}, threads,
+                report));
         }
         catch (const GeometryError& e)
         {
@@ -116,7 +118,8 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
         out.facets_read += report.facets_read;
         for (const std::string& w : report.warnings)
             out.warnings.push_back(fmt::format("{}: {}", part.name, w));
-        operands.push_back({part.name, &out.meshes.back(), part.may_be_sheet});
+        operands.push_back(
+            {part.name, &out.meshes.back(), part.may_be_sheet, part.is_surface, part.least_depth});
     }
     out.result = boolean_mesh(operands, tree, {.dp = dp}, threads);
     out.warnings.insert(out.warnings.end(), out.result.warnings.begin(), out.result.warnings.end());
@@ -141,8 +144,9 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());
 
     std::vector<SpanSet> sets;
-    for (const SurfaceMesh& mesh : combined.meshes)
-        sets.push_back(solid_nodes(mesh, grid, threads));
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        sets.push_back(parts[p].is_surface ? SpanSet{}
+                                           : solid_nodes(combined.meshes[p], grid, threads));
     const SpanSet nodes = boolean_spans(sets, tree, threads);
     share_nodes(parts, share_out(nodes, sets, tree, threads), clips, grid, threads, out);
     return out;

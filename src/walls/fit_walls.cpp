@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace fppg
@@ -166,11 +167,29 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     return out;
 }
 
+/// The warning of a sheet that fluid was drawn through.
+///
+/// left  metres squared of it
+std::string fluid_through(const TriangleSoup& sheet, double left)
+{
+    double area = 0;
+    for (std::size_t f = 0; f < sheet.size(); ++f)
+    {
+        const Vec3* c = &sheet.vertices[3 * f];
+        area += norm(cross(c[1] - c[0], c[2] - c[0])) / 2;
+    }
+    return fmt::format(
+        "fluid that is drawn later passes through {:.1f} % of its surface, where it "
+        "has no particles, as on the lattice",
+        100 * (1 - left / area));
+}
+
 FittedStep fit_combination(const Scene& scene, const Combination& combination,
                            const FitSettings& settings, int threads)
 {
     const BooleanDef& boolean = *combination.boolean;
     const DrawState& state = *combination.whole.state;
+    const bool is_sheet = boolean.parts[0].is_surface;
     const std::vector<BooleanWallPart> parts =
         boolean_parts(scene, combination, PartsAs::Drawn, threads);
     FittedStep out;
@@ -184,14 +203,21 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
         draw.body.line = boolean.line;
         draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
         if (combination.hollowed != nullptr) draw.hollowed_by = combination.hollowed->by;
+        // A sheet is open where fluid was drawn through it.
+        const std::vector<double>& areas = draw.body.mesh.areas;
+        if (is_sheet)
+            draw.warnings = {
+                fluid_through(parts[0].soup, std::accumulate(areas.begin(), areas.end(), 0.0))};
         say_place(scene, combination.whole, draw);
         out.draws.push_back(std::move(draw));
     }
     catch (const GeometryError& e)
     {
-        if (is_hollowed_away(&combination, e)) return out;
-        throw GeometryError(
-            fmt::format("{}: {}", place_of(*scene.def, combination.whole.source), e.what()));
+        const std::string place = place_of(*scene.def, combination.whole.source);
+        if (!is_hollowed_away(&combination, e))
+            throw GeometryError(fmt::format("{}: {}", place, e.what()));
+        if (is_sheet)
+            out.warnings.push_back(fmt::format("{}: {}", place, fluid_through(parts[0].soup, 0)));
     }
     return out;
 }
@@ -335,7 +361,11 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
     const FitSettings* settings = &own;
     if (step.combination)
     {
-        for (const Box3& box : fluid) own.fluid_places.push_back(0.5 * (box.min + box.max));
+        const Combination& combination = *step.combination;
+        if (combination.boolean->parts[0].is_surface)
+            own.fluid_places = places_in_fluid(fluid, scene, *combination.parts[0], threads);
+        else
+            for (const Box3& box : fluid) own.fluid_places.push_back(0.5 * (box.min + box.max));
         return fit_combination(scene, *step.combination, *settings, threads);
     }
     if (step.shape() == nullptr || state.mode == DrawMode::Wire) return {};
