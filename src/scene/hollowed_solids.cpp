@@ -21,11 +21,11 @@ namespace
 constexpr double void_reach_dp = 1e-3;
 constexpr double fluid_reach_dp = 0.5 + 1e-6;
 
-/// The same of a sheet: on the lattice fluid leaves no wall where it covers all its shells.
+/// The same of a sheet, metres: on the lattice fluid leaves no wall where it covers all its shells.
 double sheet_reach(const Scene& scene, std::size_t step)
 {
-    const std::size_t shells = scene.steps[step].draw->shells;
-    return (fluid_reach_dp + static_cast<double>(shells > 0 ? shells - 1 : 0)) * scene.def->grid.dp;
+    const auto shells = static_cast<double>(scene.steps[step].draw->shells);
+    return std::max(fluid_reach_dp, shells - 1) * scene.def->grid.dp;
 }
 
 /// A step that draws a body or a sheet, and those that are drawn into it.

@@ -8,8 +8,8 @@ namespace fppg
 /// Makes Boolean differences of body-fitted solids that voids or fluids are drawn into later: the
 /// cavity then has a fitted surface, with layers and normals, as it has by
 /// `<boolean op="difference">`. These stay steps of their own, for all else that they draw over.
-/// Sheets lose what fluid is drawn through, deeper than half a dp (and the shells of `<layers
-/// vdp>`, which stand on the lattice), so that no wall counts there; a void only opens them
+/// Sheets lose what fluid is drawn through, as deep as the farthest shell of their `<layers vdp>`
+/// and by more than half a dp, so that no wall counts there; a void only opens them
 /// (lattice/wall_openings.h).
 ///
 /// Left as they are: solids drawn part by part or as a depth of a file, surfaces with open edges,
