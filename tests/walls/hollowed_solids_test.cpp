@@ -124,5 +124,33 @@ TEST(HollowedSolid, IsLeftWholeByFluidUpToItsFace)
     EXPECT_EQ(counts, (std::vector<std::size_t>{12, 12, 12}));
 }
 
+/// A tank of sheets with a lid, and water up to its walls and through its lid: on the lattice its
+/// nodes take those of the lid. Water up to the lid leaves all of it.
+TEST(HollowedSheet, LosesWhatFluidIsDrawnThroughAndNotWhatItTouches)
+{
+    const auto wall_areas = [](double over_the_lid)
+    {
+        Drawing drawing = layered();
+        drawing.draw(make_box(low, size, {true, true, true, true, true, true}, false, {}, dp)[0]);
+        drawing.fluid();
+        drawing.box(low, size + Vec3{0, 0, over_the_lid});
+        double lid = 0, others = 0;
+        const RunField field = drawing.run();
+        const SurfaceMesh& mesh = field.walls.bodies.front().mesh;
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+            (mesh.normals[f].z > 0.9 ? lid : others) += mesh.areas[f];
+        return std::pair(lid, others);
+    };
+    const double lid = size.x * size.y;
+    const double others = lid + 2 * size.z * (size.x + size.y);
+    for (const double over : {0.0, 0.4 * dp})
+    {
+        EXPECT_NEAR(wall_areas(over).first, lid, 1e-9) << over;
+        EXPECT_NEAR(wall_areas(over).second, others, 1e-9) << over;
+    }
+    EXPECT_EQ(wall_areas(2 * dp).first, 0);
+    EXPECT_NEAR(wall_areas(2 * dp).second, others, 1e-9);
+}
+
 } // namespace
 } // namespace fppg::test
