@@ -54,7 +54,7 @@ Body body_of(const Scene& scene, std::size_t index)
     try
     {
         std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, 1);
-        const bool is_sheet = shapes.size() == 1 && !shapes[0].is_solid && !scene.def->grid.is_2d;
+        const bool is_sheet = shapes.size() == 1 && !shapes[0].is_solid;
         for (ShapeMesh& shape : shapes)
         {
             if (!shape.is_solid && !is_sheet) continue;

@@ -126,6 +126,32 @@ TEST(HollowedSolid, IsLeftWholeByFluidUpToItsFace)
 
 /// A tank of sheets with a lid, and water up to its walls and through its lid: on the lattice its
 /// nodes take those of the lid. Water up to the lid leaves all of it.
+/// Of a 2D case the same; its lid is a line.
+TEST(HollowedSheet, LosesItsParticlesIn2D)
+{
+    for (const double half_depth : {0.3, 1.4})
+    {
+        std::vector<std::size_t> counts;
+        const Vec3 corner{low.x, -half_depth, low.z};
+        const Vec3 extent{size.x, 2 * half_depth, size.z};
+        for (const double over : {0.0, 0.4 * dp, 2 * dp})
+        {
+            Drawing drawing = layered(true);
+            drawing.draw(
+                make_box(corner, extent, {true, true, true, true, true, true}, false, {}, dp)[0]);
+            drawing.fluid();
+            drawing.box(corner, extent + Vec3{0, 0, over});
+            std::size_t count = 0;
+            for (const Vec3& p : drawing.run().walls.particles.positions)
+                count += p.z > low.z + size.z && std::abs(p.x) < size.x / 2 - dp ? 1 : 0;
+            counts.push_back(count);
+        }
+        EXPECT_GT(counts[0], 50u) << half_depth;
+        EXPECT_EQ(counts[1], counts[0]) << half_depth;
+        EXPECT_EQ(counts[2], 0u) << half_depth;
+    }
+}
+
 TEST(HollowedSheet, LosesWhatFluidIsDrawnThroughAndNotWhatItTouches)
 {
     const auto wall_areas = [](double over_the_lid)
