@@ -22,8 +22,8 @@ struct BooleanWallPart
     std::uint16_t mk = 0;  ///< absolute, that its particles get
     bool is_solid = false; ///< the draw fills its inside
     bool may_be_sheet = false;
-    bool is_surface = false; ///< as BooleanPart::is_surface
-    double least_depth = 0;  ///< metres; as BooleanPart::least_depth
+    bool is_surface = false;                ///< as BooleanPart::is_surface
+    double least_depth = 0;                 ///< metres; as BooleanPart::least_depth
     std::shared_ptr<const CadSource> cad{}; ///< of CAD files
 };
 
