@@ -95,8 +95,7 @@ private:
         if (left > 0 || crowded == 0) return;
         gone_.push_back(fmt::format(
             "no particle is left on the surface of <{}> of line {} (mk {}): what other draws do "
-            "not "
-            "cover is nearer than {:g} dp to their particles. Draw it that far from them, or "
+            "not cover is nearer than {:g} dp to their particles. Draw it that far from them, or "
             "thicker.",
             body.name, body.line, body.mk, least_pair_dp));
     }

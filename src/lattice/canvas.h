@@ -55,9 +55,10 @@ public:
     void add_wall(FittedDraw&& draw) { walls_.add(std::move(draw)); }
 
     /// Before a shape is painted: what it cuts of body-fitted walls by its true shape. False: none.
-    bool cut_walls(const SourceRef& draw, std::vector<WallOpening>&& openings)
+    bool cut_walls(const SourceRef& draw, FittedStep& step)
     {
-        return walls_.has_walls() && walls_.cut_by_shape(draw, std::move(openings));
+        return walls_.has_walls() &&
+               walls_.cut_by_shape(draw, std::move(step.openings), std::move(step.extent));
     }
 
     /// Whether no node carries an mk.

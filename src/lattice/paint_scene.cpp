@@ -102,7 +102,7 @@ void paint_shape(Painting& painting, const DrawOp& draw, FittedStep& fitted)
     else if (painting.def.zone == 0) // the limits of other zones are meant to cut shapes
         painting.checks.check_shape(draw, bounds_of(shape, painting.grid().dp));
     add_fitted(painting, fitted);
-    brush.spares_walls = painting.canvas.cut_walls(draw.source, std::move(fitted.openings));
+    brush.spares_walls = painting.canvas.cut_walls(draw.source, fitted);
     if (!fitted.is_fitted)
         std::visit([&](const auto& kind) { paint_kind(painting, brush, kind); }, shape);
     else if (file != nullptr && !file->advanced)

@@ -25,6 +25,8 @@ constexpr double cut_distance_dp = 0.5 - 1e-6;
 constexpr char touched = 2;
 /// Deeper in a later body than this a place is inside it, dp.
 constexpr double touching_dp = 1e-6;
+/// Rounding of places on a face, dp.
+constexpr double on_face_dp = 1e-3;
 /// A cut particle of a layer has another in its place so near, dp.
 constexpr double replaced_dp = 0.9;
 /// Particles this near to a cut one are held in place, dp.
@@ -180,8 +182,15 @@ void WallPainter::cut_by(const FittedDraw& draw)
         1024);
 }
 
-bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings)
+bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings,
+                               TriangleSoup&& extent)
 {
+    extent_.reset();
+    if (extent.size() > 0)
+    {
+        extent_ = std::make_unique<const InsideTest>(std::move(extent), threads_);
+        extent_->query().prepare_nearest();
+    }
     const std::vector<FittedBody>& bodies = field_->walls.bodies;
     is_spared_.assign(bodies.size(), 0);
     if (!openings.empty()) is_spared_ = sheets_among(bodies);
@@ -199,19 +208,36 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&&
         opening.bodies = static_cast<std::uint32_t>(bodies.size());
         openings_.push_back(std::move(opening));
     }
-    return std::find(is_spared_.begin(), is_spared_.end(), 1) != is_spared_.end();
+    return extent_ != nullptr ||
+           std::find(is_spared_.begin(), is_spared_.end(), 1) != is_spared_.end();
+}
+
+bool WallPainter::is_in_extent(const Vec3& p) const
+{
+    return extent_->is_inside(p) ||
+           extent_->query().closest_point(p).distance < on_face_dp * field_->grid.dp;
 }
 
 Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
 {
-    if (spared_mks_.empty()) return spans;
+    if (spared_mks_.empty() && extent_ == nullptr) return spans;
     Spans zone;
     for (const Run& r : field_->slabs[x])
-        if (r.is_covered &&
-            std::find(spared_mks_.begin(), spared_mks_.end(), r.mk) != spared_mks_.end())
+    {
+        if (!r.is_covered) continue;
+        if (std::find(spared_mks_.begin(), spared_mks_.end(), r.mk) != spared_mks_.end())
             zone.push_back({r.y, r.z_begin, r.z_end});
+    }
     sort_and_join(zone);
-    return subtract(spans, zone);
+    Spans left = subtract(spans, zone);
+    if (extent_ == nullptr) return left;
+    Spans beyond;
+    for (const Span& s : intersect(left, zone_of(field_->slabs[x])))
+        for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
+            if (!is_in_extent(position(Node{static_cast<std::int64_t>(x), s.y, z}, field_->grid)))
+                beyond.push_back({s.y, z, z + 1});
+    sort_and_join(beyond);
+    return subtract(left, beyond);
 }
 
 Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t mk, bool keeps_walls,
@@ -230,11 +256,18 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
             if (span->y != a.y || a.z < span->z_begin || is_cut_[a.particle]) continue;
             if (keeps_walls)
                 mks[a.particle] = mk;
-            else if (!spares || is_spared_[field_->walls.particles.bodies[a.particle]] == 0)
+            else if (!spares || !is_spared(a.particle))
                 is_cut_[a.particle] = 1;
         }
     }
     return keeps_walls ? intersect(spans, zone_of(field_->slabs[x])) : Spans{};
+}
+
+bool WallPainter::is_spared(std::uint32_t particle) const
+{
+    const WallParticles& all = field_->walls.particles;
+    return is_spared_[all.bodies[particle]] != 0 ||
+           (extent_ != nullptr && !is_in_extent(all.positions[particle]));
 }
 
 void WallPainter::cut_where(const std::function<bool(const Vec3&)>& is_cut)

@@ -2,9 +2,11 @@
 
 #include "lattice/fitted_draw.h"
 #include "lattice/wall_openings.h"
+#include "meshes/inside_test.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace fppg
@@ -37,11 +39,14 @@ public:
 
     /// Before a shape is painted: its holes in the sheets that were drawn so far, through all their
     /// layers. Sheets, where it makes such, and the bodies that it hollows are cut by its true
-    /// shape, not by its nodes.
+    /// shape, not by its nodes. Walls outside of an extent stay, as FittedStep::extent says:
+    /// GenCase rounds radii to nodes, so that a tube of 7.5 dp is drawn a step farther out than
+    /// fluid of 6.5 in it, where the true tube is within half a step of its nodes.
     ///
-    /// returns  whether there are any
-    bool cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings);
-    /// Of spans to be painted, those without the zones of the bodies that the draw hollows.
+    /// returns  whether anything may be left that its nodes would cut
+    bool cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings,
+                      TriangleSoup&& extent);
+    /// Of spans to be painted, those without the zones of what is left.
     Spans without_spared(std::size_t x, const Spans& spans) const;
 
     /// Cuts the particles at some places.
@@ -70,6 +75,8 @@ private:
         std::vector<Spans> nodes; ///< one entry per slab of the lattice
     };
 
+    bool is_in_extent(const Vec3& p) const;
+    bool is_spared(std::uint32_t particle) const;
     double filled_share(const Hollow& hollow) const;
     void hand_over_shares();
     /// Where walls of several draws are near one another, the shallower layer stays, then corners,
@@ -89,7 +96,8 @@ private:
     std::vector<WallOpening> openings_;
     std::vector<std::vector<const SourceRef*>> hollowed_by_; ///< per body
     std::vector<char> is_spared_;                            ///< per body
-    std::vector<std::uint16_t> spared_mks_; ///< absolute, of the bodies that the draw hollows
+    std::vector<std::uint16_t> spared_mks_;    ///< absolute, of the bodies that the draw hollows
+    std::unique_ptr<const InsideTest> extent_; ///< of the draw; null: unknown
 };
 
 } // namespace fppg

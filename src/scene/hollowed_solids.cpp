@@ -34,10 +34,9 @@ struct Body
     std::size_t step = 0;
     Box3 box; ///< empty: nothing
     bool is_closed = true;
-    TriangleSoup sheet{}; ///< the surface of a draw that fills nothing; else empty
+    bool is_sheet = false; ///< the draw fills nothing
+    TriangleSoup soup{};
     std::vector<std::size_t> drawn_into{};
-
-    bool is_sheet() const { return sheet.size() > 0; }
 };
 
 /// What a step draws, by its true shape. Surfaces with open edges, whose inside is a guess, cannot
@@ -53,16 +52,15 @@ Body body_of(const Scene& scene, std::size_t index)
         return out;
     try
     {
-        std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, 1);
-        const bool is_sheet = shapes.size() == 1 && !shapes[0].is_solid;
-        for (ShapeMesh& shape : shapes)
+        const std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, 1);
+        out.is_sheet = shapes.size() == 1 && !shapes[0].is_solid;
+        for (const ShapeMesh& shape : shapes)
         {
-            if (!shape.is_solid && !is_sheet) continue;
-            for (const Vec3& v : shape.soup.vertices) out.box.add(v);
-            if (is_sheet)
-                out.sheet = std::move(shape.soup);
-            else
-                out.is_closed = out.is_closed && open_edge_count(shape.soup) == 0;
+            if (!shape.is_solid && !out.is_sheet) continue;
+            const std::vector<Vec3>& vertices = shape.soup.vertices;
+            for (const Vec3& v : vertices) out.box.add(v);
+            out.soup.vertices.insert(out.soup.vertices.end(), vertices.begin(), vertices.end());
+            if (!out.is_sheet) out.is_closed = out.is_closed && open_edge_count(shape.soup) == 0;
         }
     }
     catch (const Error&)
@@ -83,9 +81,9 @@ public:
     {
         depth_ = sheet_reach(scene_, body.step);
         const double dp = scene_.def->grid.dp;
-        for (std::size_t f = 0; f < body.sheet.size(); ++f)
+        for (std::size_t f = 0; f < body.soup.size(); ++f)
         {
-            const Vec3* c = &body.sheet.vertices[3 * f];
+            const Vec3* c = &body.soup.vertices[3 * f];
             Box3 box;
             for (std::size_t k = 0; k < 3; ++k) box.add(c[k]);
             if (!overlap_by(box, depth_)) continue;
@@ -118,13 +116,7 @@ private:
         if (!fluid_.box.has(p, -depth_)) return false;
         if (test_ == nullptr)
         {
-            TriangleSoup soup;
-            for (ShapeMesh& shape :
-                 surfaces_of(scene_, *scene_.steps[fluid_.step].draw, PartsAs::Drawn, 1))
-                if (shape.is_solid)
-                    soup.vertices.insert(soup.vertices.end(), shape.soup.vertices.begin(),
-                                         shape.soup.vertices.end());
-            test_ = std::make_unique<InsideTest>(std::move(soup));
+            test_ = std::make_unique<InsideTest>(fluid_.soup);
             test_->query().prepare_nearest();
         }
         return test_->query().closest_point(p).distance > depth_ && test_->is_inside(p);
@@ -167,8 +159,8 @@ std::shared_ptr<const Combination> difference(const Scene& scene, const Body& bo
         const auto index = static_cast<std::uint32_t>(out->parts.size());
         hollowed->boolean.tree.operands.push_back({BooleanOp::Part, index, {}});
         BooleanDef::Part& kind = hollowed->boolean.parts.emplace_back();
-        if (body.is_sheet()) kind.is_surface = index == 0;
-        if (body.is_sheet() && index > 0) kind.least_depth = sheet_reach(scene, body.step);
+        if (body.is_sheet) kind.is_surface = index == 0;
+        if (body.is_sheet && index > 0) kind.least_depth = sheet_reach(scene, body.step);
         out->parts.push_back(&part);
         out->mks.push_back(first.state->mk); // the cavity moves with the solid
         out->stays.push_back(index == 0 ? 1 : 0);
@@ -208,15 +200,16 @@ void hollow_solids(Scene& scene)
         if (here.box.is_empty() || !here.is_closed) continue;
         if (is_bound)
         {
+            if (!here.is_sheet) here.soup = {}; // it is large, and its box does
             bodies.push_back(std::move(here));
             continue;
         }
-        if (here.is_sheet()) continue;
+        if (here.is_sheet) continue;
         const bool is_void = scene.steps[i].draw->state->mk.kind == MkKind::Void;
         FluidInSheets fluid(scene, here);
         for (Body& body : bodies)
             if (overlap(body.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def.grid) &&
-                (!body.is_sheet() || (!is_void && fluid.passes(body))))
+                (!body.is_sheet || (!is_void && fluid.passes(body))))
                 body.drawn_into.push_back(i);
     }
     for (const Body& body : bodies)

@@ -14,8 +14,8 @@ namespace fppg
 ///
 /// Left as they are: solids drawn part by part or as a depth of a file, surfaces with open edges,
 /// draws with a clip or a pattern, fluid of inlets, and fluid that reaches less than half a dp into
-/// a solid, as on the lattice; sheets of `<layers>`. What is wrong with a file is
-/// left for the drawing to say.
+/// a solid, as on the lattice; sheets of `<layers>`. What is wrong with a file is left for the
+/// drawing to say.
 void hollow_solids(Scene& scene);
 
 } // namespace fppg

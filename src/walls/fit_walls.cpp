@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_mesh.h"
+#include "meshes/open_edges.h"
 #include "scene/near_domain.h"
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
@@ -179,8 +180,8 @@ std::string fluid_through(const TriangleSoup& sheet, double left)
         area += norm(cross(c[1] - c[0], c[2] - c[0])) / 2;
     }
     return fmt::format(
-        "fluid that is drawn later passes through {:.1f} % of its surface, where it "
-        "has no particles, as on the lattice",
+        "fluid that is drawn later passes through {:.1f} % of its surface: no wall is left there, "
+        "as on the lattice",
         100 * (1 - left / area));
 }
 
@@ -202,7 +203,8 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
         const SourceRef& source = combination.whole.source;
         draw.body.line = boolean.line;
         draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
-        if (combination.hollowed != nullptr) draw.hollowed_by = combination.hollowed->by;
+        if (combination.hollowed != nullptr && !is_sheet)
+            draw.hollowed_by = combination.hollowed->by;
         // A sheet is open where fluid was drawn through it.
         const std::vector<double>& areas = draw.body.mesh.areas;
         if (is_sheet)
@@ -345,6 +347,30 @@ std::vector<WallOpening> openings_of(const Scene& scene, const SceneStep& step, 
     return out;
 }
 
+/// The true shape of a fluid that no inlet lets in; empty where it is not known, or not closed.
+TriangleSoup extent_of_fluid(const Scene& scene, const SceneStep& step, int threads)
+{
+    const DrawState& state = *step.draw->state;
+    if (step.shape() == nullptr || state.mk.kind != MkKind::Fluid || !state.draw_points ||
+        scene.def->solver.inout.fluids.contains(state.mk.mk))
+        return {};
+    TriangleSoup out;
+    try
+    {
+        for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::Drawn, threads))
+        {
+            if (!shape.is_solid || open_edge_count(shape.soup) > 0) return {};
+            const std::vector<Vec3>& vertices = shape.soup.vertices;
+            out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
+        }
+    }
+    catch (const GeometryError&) // its nodes cut what they cover
+    {
+        return {};
+    }
+    return out;
+}
+
 FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Box3>& fluid,
                     int threads)
 {
@@ -353,6 +379,7 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
     {
         FittedStep out;
         out.openings = openings_of(scene, step, threads);
+        out.extent = extent_of_fluid(scene, step, threads);
         return out;
     }
     const FitSettings* given = fit_settings(scene.def->fit, state.mk.mk);

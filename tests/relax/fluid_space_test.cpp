@@ -392,6 +392,27 @@ TEST(FluidSpace, ThatIsDrawnIntoWallsIsWarnedOf)
     }
 }
 
+/// GenCase rounds a radius of 6.5 dp to 7, and of 7.5 to 8: fluid a step inside a tube has nodes
+/// within half a step of the true tube. It took two of five particles of the tube's wall, and
+/// leaked.
+TEST(FluidSpace, ThatIsDrawnAStepOffAWallTakesNothingOfIt)
+{
+    const auto wall = [](const std::string& boundary, double radius)
+    {
+        const Result made = make(case_of(
+            fmt::format(
+                R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.375"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.75" /></drawcylinder>
+<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0.6" y="0.5" z="0.1" /><point x="0.6" y="0.5" z="0.6" /></drawcylinder>)",
+                radius),
+            R"(<bodyfitted boundary=")" + boundary + R"(" />)"));
+        EXPECT_EQ(made.code, 0) << made.output;
+        EXPECT_GT(made.fluid().size(), 10u);
+        return made.bound().size();
+    };
+    for (const char* boundary : {"dbc", "mdbc"})
+        EXPECT_EQ(wall(boundary, 0.325), wall(boundary, 0.1)) << boundary;
+}
+
 /// On the lattice fluid takes the nodes of walls that were drawn before it: where it covers them on
 /// both sides no wall is left.
 TEST(FluidSpace, ThatIsDrawnThroughASheetLeavesNoWallThere)

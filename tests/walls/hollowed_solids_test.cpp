@@ -124,9 +124,7 @@ TEST(HollowedSolid, IsLeftWholeByFluidUpToItsFace)
     EXPECT_EQ(counts, (std::vector<std::size_t>{12, 12, 12}));
 }
 
-/// A tank of sheets with a lid, and water up to its walls and through its lid: on the lattice its
-/// nodes take those of the lid. Water up to the lid leaves all of it.
-/// Of a 2D case the same; its lid is a line.
+/// The lid of a tank in 2D, through which water is drawn.
 TEST(HollowedSheet, LosesItsParticlesIn2D)
 {
     for (const double half_depth : {0.3, 1.4})
@@ -152,6 +150,8 @@ TEST(HollowedSheet, LosesItsParticlesIn2D)
     }
 }
 
+/// A tank of sheets with a lid, and water up to its walls and through its lid: on the lattice its
+/// nodes take those of the lid. Water up to the lid leaves all of it.
 TEST(HollowedSheet, LosesWhatFluidIsDrawnThroughAndNotWhatItTouches)
 {
     const auto wall_areas = [](double over_the_lid)
