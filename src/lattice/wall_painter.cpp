@@ -223,11 +223,9 @@ Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
     if (spared_mks_.empty() && extent_ == nullptr) return spans;
     Spans zone;
     for (const Run& r : field_->slabs[x])
-    {
-        if (!r.is_covered) continue;
-        if (std::find(spared_mks_.begin(), spared_mks_.end(), r.mk) != spared_mks_.end())
+        if (r.is_covered &&
+            std::find(spared_mks_.begin(), spared_mks_.end(), r.mk) != spared_mks_.end())
             zone.push_back({r.y, r.z_begin, r.z_end});
-    }
     sort_and_join(zone);
     Spans left = subtract(spans, zone);
     if (extent_ == nullptr) return left;
