@@ -126,13 +126,16 @@ struct FitSettings
     RelaxSettings relax;
     std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
     /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for
-    /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc none but the surface.
+    /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc as many for sheets
+    /// with fluid on one side, else none but the surface.
     std::optional<int> layers;
     /// Of sheets; empty: away from the fluid, and behind where there is none.
     std::optional<LayerSide> side;
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;
+    /// The same of sheets for Dbc that stand still with fluid on one side, where `layers` is empty.
+    std::vector<double> sheet_depths_dp;
     Placement place = Placement::Surface;
     /// Of bodies with Placement::Inside: how many sheets of particles through their thickness;
     /// empty: as many as it is dp, rounded.
@@ -158,9 +161,6 @@ struct FluidBand
     double width_dp = 3;   ///< fluid this near to a fitted wall moves, in dp; above 0, finite
     bool is_active = true; ///< false: it stays on the lattice
     bool balances = true;  ///< it is brought to rest (balance.h)
-    /// Particles come and go where they are too many or too few for the space between walls. Not
-    /// where the case has no `<fluidband>`: fills keep their litres.
-    bool fits_count = true;
     /// `mass="exact"`: all fluid particles together have the mass of the space between walls.
     bool has_exact_mass = false;
 };

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "fppg/element.h"
+#include "fppg/case_def.h"
 
+#include <cstdint>
 #include <set>
 
 namespace fppg
@@ -10,5 +11,8 @@ namespace fppg
 /// mkbound of all objreal of a `<motion>` with a `<begin>` of their own or of an object around
 /// them; others stay fixed.
 std::set<int> moving_mkbound(const Element& motion);
+
+/// Absolute mks of what moves or floats.
+std::set<std::uint16_t> mks_that_move(const CaseDef& def);
 
 } // namespace fppg

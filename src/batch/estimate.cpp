@@ -3,6 +3,7 @@
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/lattice.h"
+#include "fppg/moving_parts.h"
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
@@ -137,14 +138,18 @@ private:
         if (state.mk.kind != MkKind::Bound || !state.draw_points ||
             (!step.combination && state.mode == DrawMode::Wire))
             return;
-        const FitSettings* settings = fit_settings(def_.fit, state.mk.mk);
-        if (settings == nullptr) return;
+        const FitSettings* given = fit_settings(def_.fit, state.mk.mk);
+        if (given == nullptr) return;
+        FitSettings settings = *given;
+        if (fluid_.empty() || step.draw->surface != nullptr ||
+            mks_that_move(def_).contains(state.mk.mk))
+            settings.sheet_depths_dp.clear();
         const std::optional<DrawOp> shorter = made_near_domain(*step.draw, def_);
         SceneStep near = step;
         if (shorter) near.draw = &*shorter;
         for (const StepSurface& surface : step_surfaces(scene_, near, options_.threads))
         {
-            const WallCount count = count_shape(surface.shape, state.clips, *settings);
+            const WallCount count = count_shape(surface.shape, state.clips, settings);
             most_cut_ = std::max(most_cut_, count.cut_area);
             for (const auto& [mk, share] : mk_shares(surface, state.mk.mk))
             {
@@ -202,7 +207,10 @@ private:
         const bool is_on_surface = settings.depths_dp.empty() || settings.depths_dp[0] == 0;
         if (is_on_surface) count.on_surface = std::max(count.on_lines, on_area);
         const double volume = share * std::abs(report.volume) / (dp * dp * dp);
-        count.in_layers = on_area * layers_of(settings, report, dp);
+        const bool is_sheet = !shape.is_solid && settings.depths_dp.empty();
+        count.in_layers =
+            on_area *
+            layers_of(is_sheet ? settings.sheet_depths_dp : settings.depths_dp, report, dp);
         if (report.is_watertight) count.in_layers = std::min(count.in_layers, volume);
         if (count.in_layers > 0)
         {
@@ -227,12 +235,13 @@ private:
 
     /// The layers behind a surface, each counted by its area: it shrinks as that of a ball with
     /// the same volume for its surface.
-    static double layers_of(const FitSettings& settings, const MeshReport& report, double dp)
+    static double layers_of(const std::vector<double>& depths_dp, const MeshReport& report,
+                            double dp)
     {
         const double radius =
             report.is_watertight && report.area > 0 ? 3 * std::abs(report.volume) / report.area : 0;
         double out = 0;
-        for (const double depth_dp : settings.depths_dp)
+        for (const double depth_dp : depths_dp)
         {
             if (depth_dp == 0) continue;
             const double left = radius > 0 ? std::max(0.0, 1 - depth_dp * dp / radius) : 1;

@@ -570,8 +570,7 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     warn_of_undrawn_mks(def);
     settle_boundaries(def);
     // Fluid that touches fitted walls is relaxed with them unless the case says otherwise.
-    if (def.fluid_bands.empty() && !def.fit.is_empty())
-        def.fluid_bands.emplace_back().fits_count = false;
+    if (def.fluid_bands.empty() && !def.fit.is_empty()) def.fluid_bands.emplace_back();
     if (choice != FitChoice::Raw) return;
     if (def.fit.all) def.fit.all->relax.is_active = false;
     for (auto& of_mk : def.fit.of_mk) of_mk.second.relax.is_active = false;

@@ -47,8 +47,8 @@ struct FittedStep
     std::vector<FittedDraw> draws; ///< in order; none for a draw that paints nothing
     /// Of a void or the fluid of an inlet: the holes that it makes in sheets.
     std::vector<WallOpening> openings;
-    /// The true shape of fluid, closed; empty: unknown, or no fluid. Outside of it walls and their
-    /// zones stay, though the nodes of the lattice reach farther.
+    /// The true shape of fluid or a void, closed; empty: unknown. Outside of it walls and their
+    /// nodes stay, though the nodes of the lattice reach farther.
     TriangleSoup extent;
     /// Whole sentences that name the draw.
     std::vector<std::string> warnings;

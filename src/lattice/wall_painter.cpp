@@ -195,6 +195,12 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&&
     is_spared_.assign(bodies.size(), 0);
     if (!openings.empty()) is_spared_ = sheets_among(bodies);
     spared_mks_.clear();
+    is_of_wall_.assign(65536, 0);
+    for (const FittedBody& body : bodies)
+    {
+        is_of_wall_[body.mk] = 1;
+        for (const std::uint16_t mk : body.facet_mk) is_of_wall_[mk] = 1;
+    }
     for (std::size_t b = 0; b < bodies.size(); ++b)
     {
         const std::vector<const SourceRef*>& by =
@@ -229,8 +235,12 @@ Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
     sort_and_join(zone);
     Spans left = subtract(spans, zone);
     if (extent_ == nullptr) return left;
+    Spans walls;
+    for (const Run& r : field_->slabs[x])
+        if (r.is_covered || is_of_wall_[r.mk] != 0) walls.push_back({r.y, r.z_begin, r.z_end});
+    sort_and_join(walls);
     Spans beyond;
-    for (const Span& s : intersect(left, zone_of(field_->slabs[x])))
+    for (const Span& s : intersect(left, walls))
         for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
             if (!is_in_extent(position(Node{static_cast<std::int64_t>(x), s.y, z}, field_->grid)))
                 beyond.push_back({s.y, z, z + 1});

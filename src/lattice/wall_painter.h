@@ -46,7 +46,7 @@ public:
     /// returns  whether anything may be left that its nodes would cut
     bool cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings,
                       TriangleSoup&& extent);
-    /// Of spans to be painted, those without the zones of what is left.
+    /// Of spans to be painted, those without the nodes of what is left.
     Spans without_spared(std::size_t x, const Spans& spans) const;
 
     /// Cuts the particles at some places.
@@ -98,6 +98,7 @@ private:
     std::vector<char> is_spared_;                            ///< per body
     std::vector<std::uint16_t> spared_mks_;    ///< absolute, of the bodies that the draw hollows
     std::unique_ptr<const InsideTest> extent_; ///< of the draw; null: unknown
+    std::vector<char> is_of_wall_;             ///< per absolute mk
 };
 
 } // namespace fppg

@@ -121,13 +121,9 @@ public:
           all_(all),
           adds_nodes_(is_before_layers && !def.fills_litres()),
           threads_(threads),
-          near_(field, def.mk_bound_first)
+          near_(field, def.mk_bound_first),
+          moving_(mks_that_move(def))
     {
-        for (const int mkbound : moving_mkbound(def.motion))
-            moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
-        for (const FloatingDef& floating : def.floatings)
-            for (const int mkbound : floating.mkbound)
-                moving_.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
         const Vec3& gravity = def_.constants.gravity;
         if (norm(gravity) > 0) down_ = gravity / norm(gravity);
         has_several_bodies_ =

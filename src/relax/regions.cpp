@@ -40,15 +40,13 @@ std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>&
     return out;
 }
 
-Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_layers)
+Region fluid_region(const CaseDef& def, const FluidSpace& space)
 {
     Region region;
     region.what = "fluid";
     region.band.assign(65536, 0);
     region.beside.assign(65536, 0);
     region.left_empty = space.pocket_places;
-    const bool is_asked = std::any_of(def.fluid_bands.begin(), def.fluid_bands.end(),
-                                      [](const FluidBand& band) { return band.fits_count; });
     for (std::uint32_t number = 1; number < 65536; ++number)
     {
         const auto mk = static_cast<std::uint16_t>(number);
@@ -59,8 +57,7 @@ Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_
     // Several fluids would have to share what comes and goes, so each keeps what it has.
     const bool has_litres = def.fills_litres();
     if (has_litres && space.nodes.size() == 1) region.missing = region.left_empty.size();
-    region.fits_count = has_litres ? region.missing && (is_asked || *region.missing > 0)
-                                   : is_asked || is_before_layers;
+    region.fits_count = !has_litres || region.missing;
     return region;
 }
 

@@ -48,10 +48,9 @@ struct Region
     std::optional<int> iterations;
 };
 
-/// All fluid near walls. Where a fill gives it its litres, their number stays what it was before
-/// pockets were emptied, unless several fluids would have to share that; else it changes where a
-/// band asks for it and before layers, which leave it a volume that is known.
-Region fluid_region(const CaseDef& def, const FluidSpace& space, bool is_before_layers);
+/// All fluid near walls: as many as fit. Where a fill gives it its litres, their number stays what
+/// it was before pockets were emptied, unless several fluids would have to share that.
+Region fluid_region(const CaseDef& def, const FluidSpace& space);
 
 /// The mks of solid bodies, those of one body together; ascending by the first of each.
 std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies);

@@ -190,7 +190,7 @@ private:
         if (!def_.fluid_bands.empty() && !report_.is_stopped)
         {
             report_.space = measure_fluid_space(def_, field_, all, are_layered(), threads_);
-            const Region region = fluid_region(def_, report_.space, are_layered());
+            const Region region = fluid_region(def_, report_.space);
             std::vector<SlabRun> of_fluid;
             for_each_run(
                 [&](const SlabRun& r)

@@ -1,6 +1,7 @@
 #include "walls/fit_walls.h"
 
 #include "fppg/error.h"
+#include "fppg/moving_parts.h"
 
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
@@ -90,9 +91,18 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
             fmt::format("{}: no particle of the body-fitted wall lies inside the domain", place));
 }
 
-FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
-               const FitSettings& settings, int threads)
+/// Gives sheets the layers that FitSettings::sheet_depths_dp has for them.
+void layer_sheet(FitSettings& settings)
 {
+    if (!settings.fluid_places.empty() && settings.depths_dp.empty())
+        settings.depths_dp = settings.sheet_depths_dp;
+}
+
+FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
+               const FitSettings& given, int threads)
+{
+    FitSettings settings = given;
+    if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
     FittedDraw out =
@@ -224,12 +234,14 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     return out;
 }
 
-/// Whether any wall has layers behind its surface.
+/// Whether any wall has, or may have, layers behind its surface.
 bool has_layers(const FitDef& fit)
 {
-    return (fit.all && !fit.all->depths_dp.empty()) ||
+    const auto has = [](const FitSettings& s)
+    { return !s.depths_dp.empty() || !s.sheet_depths_dp.empty(); };
+    return (fit.all && has(*fit.all)) ||
            std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
-                       [](const auto& of_mk) { return !of_mk.second.depths_dp.empty(); });
+                       [&](const auto& of_mk) { return has(of_mk.second); });
 }
 
 Box3 box_of(const ShapeMesh& shape)
@@ -347,11 +359,12 @@ std::vector<WallOpening> openings_of(const Scene& scene, const SceneStep& step, 
     return out;
 }
 
-/// The true shape of a fluid that no inlet lets in; empty where it is not known, or not closed.
-TriangleSoup extent_of_fluid(const Scene& scene, const SceneStep& step, int threads)
+/// The true shape of a void, or of fluid that no inlet lets in; empty where it is not known, or not
+/// closed.
+TriangleSoup extent_of(const Scene& scene, const SceneStep& step, int threads)
 {
     const DrawState& state = *step.draw->state;
-    if (step.shape() == nullptr || state.mk.kind != MkKind::Fluid || !state.draw_points ||
+    if (step.shape() == nullptr || !state.draw_points ||
         scene.def->solver.inout.fluids.contains(state.mk.mk))
         return {};
     TriangleSoup out;
@@ -371,26 +384,39 @@ TriangleSoup extent_of_fluid(const Scene& scene, const SceneStep& step, int thre
     return out;
 }
 
-FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector<Box3>& fluid,
-                    int threads)
+/// Whether sheets of a step may have layers because of the fluid on one side. What moves keeps room
+/// for that: one sheet holds fluid as well. `<layers vdp>` are the user's own.
+bool may_layer_sheets(const SceneStep& step, const std::set<std::uint16_t>& moving)
+{
+    const DrawOp& draw = step.combination ? *step.combination->parts[0] : *step.draw;
+    return draw.surface == nullptr && !moving.contains(draw.state->mk.mk);
+}
+
+/// fluid  boxes_of_fluid()
+FittedStep fit_step(const Scene& scene, const SceneStep& step, bool layers_sheets,
+                    const std::vector<Box3>& fluid, int threads)
 {
     const DrawState& state = *step.draw->state;
     if (state.mk.kind != MkKind::Bound)
     {
         FittedStep out;
         out.openings = openings_of(scene, step, threads);
-        out.extent = extent_of_fluid(scene, step, threads);
+        out.extent = extent_of(scene, step, threads);
         return out;
     }
     const FitSettings* given = fit_settings(scene.def->fit, state.mk.mk);
     if (given == nullptr) return {};
     FitSettings own = *given;
+    if (!layers_sheets) own.sheet_depths_dp.clear();
     const FitSettings* settings = &own;
     if (step.combination)
     {
         const Combination& combination = *step.combination;
         if (combination.boolean->parts[0].is_surface)
+        {
             own.fluid_places = places_in_fluid(fluid, scene, *combination.parts[0], threads);
+            layer_sheet(own);
+        }
         else
             for (const Box3& box : fluid) own.fluid_places.push_back(0.5 * (box.min + box.max));
         return fit_combination(scene, *step.combination, *settings, threads);
@@ -414,16 +440,24 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, const std::vector
 
 } // namespace
 
-std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const LatticeProgress& progress)
+std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32_t>& wet,
+                                  int threads, const LatticeProgress& progress)
 {
     std::vector<FittedStep> out(scene.steps.size());
     if (scene.def->fit.is_empty()) return out;
     const bool layered = has_layers(scene.def->fit);
     const std::vector<Box3> fluid = layered ? boxes_of_fluid(scene, threads) : std::vector<Box3>{};
-    for (std::size_t i = 0; i < out.size(); ++i)
+    const std::set<std::uint16_t> moving = mks_that_move(*scene.def);
+    for (std::uint32_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
-        out[i] = fit_step(scene, scene.steps[i], fluid, threads);
+        const bool layers_sheets = may_layer_sheets(scene.steps[i], moving) && !wet.contains(i);
+        out[i] = fit_step(scene, scene.steps[i], layers_sheets, fluid, threads);
+        const FitSettings* settings =
+            fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);
+        if (settings != nullptr && settings->depths_dp.empty())
+            for (FittedDraw& draw : out[i].draws)
+                if (!draw.layers.empty()) draw.body.layered_step = i;
         // Zones of <vres> are meant to have parts of a case only.
         if (!scene.def->vres.is_active())
             warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,

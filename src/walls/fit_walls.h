@@ -4,6 +4,8 @@
 
 #include "lattice/fitted_draw.h"
 
+#include <cstdint>
+#include <set>
 #include <vector>
 
 namespace fppg
@@ -13,9 +15,11 @@ namespace fppg
 /// body-fitted. Points, lines, wires and other mks stay on the lattice, and in 2D what lies in the
 /// plane of the particles.
 ///
+/// wet       steps whose sheets get no layers by FitSettings::sheet_depths_dp
 /// progress  may be empty; called with the number of steps done and of all
 /// returns   one entry per step of the scene
 /// throws    IoError, GeometryError with the place of the draw
-std::vector<FittedStep> fit_walls(const Scene& scene, int threads, const LatticeProgress& progress);
+std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32_t>& wet,
+                                  int threads, const LatticeProgress& progress);
 
 } // namespace fppg

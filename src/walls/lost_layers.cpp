@@ -53,6 +53,9 @@ void warn_of_lost_layers(const std::string& place, const LatticeGrid& grid, Fitt
 {
     Beyond lost;
     for (const FittedDraw& draw : step.draws)
+    {
+        // One sheet of them holds fluid as well.
+        if (draw.body.layered_step != no_index) continue;
         for (std::size_t i = 0; i < draw.cut.size(); ++i)
         {
             const std::uint32_t body = draw.cut_bodies[i];
@@ -61,6 +64,7 @@ void warn_of_lost_layers(const std::string& place, const LatticeGrid& grid, Fitt
             if (wall != nullptr && is_in_domain(wall->at(draw.cut[i]).nearest, grid))
                 lost.add(draw.cut[i], grid);
         }
+    }
     if (lost.count == 0) return;
     step.warnings.push_back(fmt::format(
         "{}: {} particles of layers lie beyond the domain and are left out, though their wall is "

@@ -119,6 +119,7 @@ TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
     FitSettings plain;
     plain.line = settings(def, 0).line;
     plain.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
+    plain.sheet_depths_dp = {0, 1};
     EXPECT_EQ(settings(def, 0), plain);
 }
 
@@ -168,6 +169,9 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(dbc, 0).depths_dp, ElementsAre(0, 1, 2));
     EXPECT_FALSE(dbc.normals.is_active);
     EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
+    EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).sheet_depths_dp, ElementsAre(0, 1));
+    EXPECT_THAT(settings(dbc, 0).sheet_depths_dp, IsEmpty());
+    EXPECT_THAT(settings(mdbc, 0).sheet_depths_dp, IsEmpty());
 }
 
 TEST(FitBlock, RefusesAKernelFarWiderThanWallsOrWithoutWidth)
@@ -296,6 +300,7 @@ TEST(FitChoice, OnAddsTheDefaultsToWhatTheBlockNames)
     const CaseDef plain = read(test::tank(), FitChoice::On);
     FitSettings defaults;
     defaults.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
+    defaults.sheet_depths_dp = {0, 1};
     EXPECT_EQ(settings(plain, 5), defaults);
     const CaseDef named =
         read_block(R"(<bodyfitted mkbound="0" featureangle="20" />)", FitChoice::On);

@@ -1,101 +1,19 @@
 // What walls leave to fluid: pockets that stay empty, the volume that is missing, exact masses.
 
-#include "fppg/read_particles.h"
-
-#include "helpers/case_text.h"
-#include "helpers/run_fppg.h"
+#include "relax/fluid_case.h"
 
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 namespace
 {
 
-using namespace fppg::test;
-using fppg::ParticleCloud;
-using fppg::Vec3;
-using nlohmann::json;
-
-constexpr double dp = 0.05;
-constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
-
-struct Result
-{
-    int code = 0;
-    std::string output;
-    std::string log; ///< Case.out
-    ParticleCloud cloud;
-    std::vector<json> events;
-    double mass_fluid = 0;
-
-    std::vector<Vec3> of_type(bool is_fluid) const
-    {
-        std::vector<Vec3> out;
-        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
-            if ((cloud.mk[i] < first_bound) == is_fluid) out.push_back(cloud.positions[i]);
-        return out;
-    }
-    std::vector<Vec3> fluid() const { return of_type(true); }
-    std::vector<Vec3> bound() const { return of_type(false); }
-    /// Half a dp above the highest row, whose place walls in layers choose.
-    double level() const
-    {
-        std::vector<double> heights;
-        for (const Vec3& p : fluid()) heights.push_back(p.z);
-        std::sort(heights.begin(), heights.end());
-        return heights[heights.size() * 49 / 50] + dp / 2;
-    }
-    std::vector<json> all(const std::string& event) const
-    {
-        std::vector<json> out;
-        for (const json& e : events)
-            if (e.value("event", "") == event) out.push_back(e);
-        return out;
-    }
-    json one(const std::string& event) const
-    {
-        const std::vector<json> found = all(event);
-        EXPECT_EQ(found.size(), 1u) << event << ": " << output;
-        return found.empty() ? json{{"litres", 0}, {"cavity_litres", 0}, {"particles", 0}}
-                             : found[0];
-    }
-};
-
-CaseText case_of(const std::string& mainlist, const std::string& fppg)
-{
-    CaseText text;
-    text.dp = "0.05";
-    text.pointmin = R"(<pointmin x="-0.4" y="-0.4" z="-0.4" />)";
-    text.pointmax = R"(<pointmax x="1.7" y="1.5" z="1.5" />)";
-    text.mainlist = R"(<setdrawmode mode="full" />)" + mainlist;
-    text.after_geometry = "<fppg>" + fppg + "</fppg>";
-    return text;
-}
-
-Result make(const CaseText& text)
-{
-    const TemporaryFolder folder;
-    write_text(folder / "Case_Def.xml", text.text());
-    const RunResult done = run(folder, {"Case_Def", "out/Case", "-log-json"});
-    Result out{done.code, done.output, {}, {}, {}, 0};
-    if (done.code != 0) return out;
-    out.log = read_text(folder / "out/Case.out");
-    out.cloud = fppg::read_particles(folder / "out/Case", false, 1);
-    std::istringstream lines(done.output);
-    for (std::string line; std::getline(lines, line);)
-        if (line.starts_with("{")) out.events.push_back(json::parse(line));
-    const std::string xml = read_text(folder / "out/Case.xml");
-    const std::string name = "<massfluid value=\"";
-    out.mass_fluid = std::stod(xml.substr(xml.find(name) + name.size()));
-    return out;
-}
+using namespace fluid_case;
 
 /// A tank of sheets, 1.23 x 1.04 x 1 m, with two blocks of 0.4 x 0.4 x 0.1 m in its water, one over
 /// the other, so far apart; the nodes at z = 0.55 lie midway between them.
@@ -365,71 +283,6 @@ TEST(FluidSpace, WhereASolidRunsThroughTheWallsOfATankItHasNone)
     const double litres = 1000 * (1.1 * 0.9 * (r.level() + 0.017) - 0.19 * 0.9 * (0.24 + 0.017));
     const auto found = static_cast<double>(r.fluid().size()) * 1000 * dp * dp * dp;
     EXPECT_NEAR(found, litres, 0.004 * litres);
-}
-
-/// Fluid in a tube, both from below to above; `shells` of its wall are drawn.
-Result column(double radius, const std::string& shells = "")
-{
-    return make(case_of(
-        fmt::format(
-            R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.1375"><point x="0" y="0" z="0" /><point x="0" y="0" z="0.75" />{}</drawcylinder>
-<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0" y="0" z="0.1" /><point x="0" y="0" z="0.6" /></drawcylinder>)",
-            shells, radius),
-        R"(<bodyfitted boundary="mdbc" />)"));
-}
-
-TEST(FluidSpace, ThatIsDrawnIntoWallsIsWarnedOf)
-{
-    const std::string said = "more particles than fit between the walls";
-    const std::string through = "fluid that is drawn later passes through ";
-    for (const auto& [radius, shells] :
-         {std::pair{0.16, ""}, {0.19, R"(<layers vdp="0,1,2" />)"}, {0.07, ""}})
-    {
-        const Result made = column(radius, shells);
-        ASSERT_EQ(made.code, 0) << made.output;
-        EXPECT_EQ(contains(made.log, said), radius > 0.1) << made.log;
-        EXPECT_FALSE(contains(made.log, through)) << made.log;
-    }
-}
-
-/// GenCase rounds a radius of 6.5 dp to 7, and of 7.5 to 8: fluid a step inside a tube has nodes
-/// within half a step of the true tube. It took two of five particles of the tube's wall, and
-/// leaked.
-TEST(FluidSpace, ThatIsDrawnAStepOffAWallTakesNothingOfIt)
-{
-    const auto wall = [](const std::string& boundary, double radius)
-    {
-        const Result made = make(case_of(
-            fmt::format(
-                R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.375"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.75" /></drawcylinder>
-<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0.6" y="0.5" z="0.1" /><point x="0.6" y="0.5" z="0.6" /></drawcylinder>)",
-                radius),
-            R"(<bodyfitted boundary=")" + boundary + R"(" />)"));
-        EXPECT_EQ(made.code, 0) << made.output;
-        EXPECT_GT(made.fluid().size(), 10u);
-        return made.bound().size();
-    };
-    for (const char* boundary : {"dbc", "mdbc"})
-        EXPECT_EQ(wall(boundary, 0.325), wall(boundary, 0.1)) << boundary;
-}
-
-/// On the lattice fluid takes the nodes of walls that were drawn before it: where it covers them on
-/// both sides no wall is left.
-TEST(FluidSpace, ThatIsDrawnThroughASheetLeavesNoWallThere)
-{
-    const Result made = column(0.18);
-    ASSERT_EQ(made.code, 0) << made.output;
-    // 0.5 of 0.75 m of a tube with two covers: 56.3 % of a round one.
-    EXPECT_TRUE(contains(made.log, "passes through 56.")) << made.log;
-    int above = 0, below = 0;
-    for (const Vec3& p : made.bound())
-    {
-        above += p.z > 0.6 - 0.01 * dp ? 1 : 0;
-        below += p.z < 0.1 + 0.01 * dp ? 1 : 0;
-    }
-    EXPECT_GT(above, 100);
-    EXPECT_GT(below, 100);
-    EXPECT_EQ(above + below, static_cast<int>(made.bound().size()));
 }
 
 TEST(FluidSpace, LitresStayThroughRelaxationAndPockets)

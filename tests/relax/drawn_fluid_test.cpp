@@ -1,0 +1,188 @@
+// Fluid that is drawn into, beside and through fitted walls, and the layers that sheets get by it.
+
+#include "relax/fluid_case.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace
+{
+
+using namespace fluid_case;
+
+/// Fluid in a tube, both from below to above; `shells` of its wall are drawn.
+Result column(double radius, const std::string& shells = "")
+{
+    return make(case_of(
+        fmt::format(
+            R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.1375"><point x="0" y="0" z="0" /><point x="0" y="0" z="0.75" />{}</drawcylinder>
+<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0" y="0" z="0.1" /><point x="0" y="0" z="0.6" /></drawcylinder>)",
+            shells, radius),
+        R"(<bodyfitted boundary="mdbc" />)"));
+}
+
+TEST(DrawnFluid, ThatIsDrawnIntoWallsIsWarnedOf)
+{
+    const std::string said = "more particles than fit between the walls";
+    const std::string through = "fluid that is drawn later passes through ";
+    for (const auto& [radius, shells] :
+         {std::pair{0.16, ""}, {0.19, R"(<layers vdp="0,1,2" />)"}, {0.07, ""}})
+    {
+        const Result made = column(radius, shells);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_EQ(contains(made.log, said), radius > 0.1) << made.log;
+        EXPECT_FALSE(contains(made.log, through)) << made.log;
+    }
+}
+
+/// GenCase rounds a radius of 6.5 dp to 7, and of 7.5 to 8: fluid a step inside a tube has nodes
+/// within half a step of the true tube. It took two of five particles of the tube's wall, and
+/// leaked.
+TEST(DrawnFluid, ThatIsDrawnAStepOffAWallTakesNothingOfIt)
+{
+    const auto wall = [](const std::string& boundary, double radius)
+    {
+        const Result made = make(case_of(
+            fmt::format(
+                R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.375"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.75" /></drawcylinder>
+<setdrawmode mode="full" /><setmkfluid mk="0" /><drawcylinder radius="{}"><point x="0.6" y="0.5" z="0.1" /><point x="0.6" y="0.5" z="0.6" /></drawcylinder>)",
+                radius),
+            R"(<bodyfitted boundary=")" + boundary + R"(" />)"));
+        EXPECT_EQ(made.code, 0) << made.output;
+        EXPECT_GT(made.fluid().size(), 10u);
+        return made.bound().size();
+    };
+    for (const char* boundary : {"dbc", "mdbc"})
+        EXPECT_EQ(wall(boundary, 0.325), wall(boundary, 0.1)) << boundary;
+}
+
+/// As users draw pipes: a rod, its bore as a void, and the fluid of the same radius. The nodes of
+/// bore and fluid reach half a step into the wall: fluid stood there, and nodes of the wall lacked.
+TEST(DrawnFluid, ThatFillsABoreTakesNothingOfItsWall)
+{
+    const auto pipe = [](const std::string& fluid)
+    {
+        return make(case_of(
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawcylinder radius="0.5"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.75" /></drawcylinder>)" +
+                fluid,
+            R"(<bodyfitted boundary="dbc" />)"));
+    };
+    const auto bore = [](const std::string& mk)
+    {
+        return mk +
+               R"(<drawcylinder radius="0.325"><point x="0.6" y="0.5" z="0.2" /><point x="0.6" y="0.5" z="0.6" /></drawcylinder>)";
+    };
+    const std::string empty = "<setmkvoid />", full = R"(<setmkfluid mk="0" />)";
+    const Result drawn = pipe(bore(full)), both = pipe(bore(empty) + bore(full));
+    const double turn = 2 * std::numbers::pi;
+    const double volume = turn / 2 * (0.5 * 0.5 * 0.75 - 0.325 * 0.325 * 0.4);
+    const double area = turn * (0.5 * 0.75 + 0.325 * 0.4 + 0.5 * 0.5 + 0.325 * 0.325);
+    // Particles of the surface stand for half.
+    const double wall = volume / (dp * dp * dp) + 0.5 * area / (dp * dp);
+    for (const Result& made : {drawn, both})
+    {
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_GT(made.fluid().size(), 300u);
+        for (const Vec3& p : made.fluid())
+            EXPECT_LT(std::hypot(p.x - 0.6, p.y - 0.5), 0.325 - 0.5 * dp + 1e-6);
+        EXPECT_NEAR(static_cast<double>(made.bound().size()), wall, 0.03 * wall);
+    }
+}
+
+/// On the lattice fluid takes the nodes of walls that were drawn before it: where it covers them on
+/// both sides no wall is left.
+TEST(DrawnFluid, ThatIsDrawnThroughASheetLeavesNoWallThere)
+{
+    const Result made = column(0.18);
+    ASSERT_EQ(made.code, 0) << made.output;
+    // 0.5 of 0.75 m of a tube with two covers: 56.3 % of a round one.
+    EXPECT_TRUE(contains(made.log, "passes through 56.")) << made.log;
+    int above = 0, below = 0;
+    for (const Vec3& p : made.bound())
+    {
+        above += p.z > 0.6 - 0.01 * dp ? 1 : 0;
+        below += p.z < 0.1 + 0.01 * dp ? 1 : 0;
+    }
+    EXPECT_GT(above, 100);
+    EXPECT_GT(below, 100);
+    EXPECT_EQ(above + below, static_cast<int>(made.bound().size()));
+}
+
+/// Particles of the walls behind the planes of a tank of 0.8 x 0.6 m, 0.6 m high, by the layers
+/// that they stand in, up to the level of its water.
+std::array<int, 4> layers_of_tank(const Result& made)
+{
+    std::array<int, 4> out{};
+    for (const Vec3& p : made.bound())
+    {
+        const double beyond = std::max({-p.x, p.x - 0.8, -p.y, p.y - 0.6, -p.z, 0.0}) / dp;
+        if (p.z < 0.45 && std::abs(beyond - std::round(beyond)) < 0.1)
+            ++out[static_cast<std::size_t>(std::min(3.0, std::round(beyond)))];
+    }
+    return out;
+}
+
+const std::string tank =
+    R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawbox><boxfill>all^top</boxfill><point x="0" y="0" z="0" /><size x="0.8" y="0.6" z="0.6" /></drawbox>)";
+const std::string water =
+    R"(<setmkfluid mk="0" /><fillbox x="0.1" y="0.3" z="0.3"><modefill>void</modefill><point x="0" y="0" z="0" /><size x="0.8" y="0.6" z="0.42" /></fillbox>)";
+
+/// One sheet of dynamic boundaries does not hold fluid at rest; two do, in the solver.
+TEST(SheetLayers, StandOnTheDrySideOfTanks)
+{
+    const Result wet = make(case_of(tank + water, "<bodyfitted />"));
+    ASSERT_EQ(wet.code, 0) << wet.output;
+    const std::array<int, 4> layers = layers_of_tank(wet);
+    EXPECT_GT(layers[0], 300);
+    EXPECT_GT(layers[1], layers[0]);
+    EXPECT_EQ(layers[2] + layers[3], 0);
+    EXPECT_TRUE(contains(wet.log, "Balanced fluid")) << wet.log;
+    for (const auto& [mainlist, fitted] :
+         {std::pair{tank, "<bodyfitted />"}, {tank + water, R"(<bodyfitted layers="1" />)"}})
+    {
+        const Result one = make(case_of(mainlist, fitted));
+        ASSERT_EQ(one.code, 0) << one.output;
+        EXPECT_EQ(layers_of_tank(one)[1] + layers_of_tank(one)[2], 0) << fitted;
+    }
+}
+
+TEST(SheetLayers, AreLeftOutWhereFluidIsOnBothSides)
+{
+    // A partition that the fill goes round, lower than the water.
+    const std::string partition =
+        R"(<setdrawmode mode="face" /><setmkbound mk="1" /><drawbox><boxfill>left</boxfill><point x="0.425" y="0" z="0" /><size x="0.1" y="0.6" z="0.25" /></drawbox>)";
+    const auto is_of_partition = [](const Vec3& p)
+    { return p.x > 0.2 && p.x < 0.6 && p.y > 0.1 && p.y < 0.5 && p.z > 0.1; };
+    const Result made = make(case_of(tank + partition + water, "<bodyfitted />"));
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_GT(layers_of_tank(made)[1], 300);
+    int count = 0;
+    for (const Vec3& p : made.bound())
+    {
+        if (!is_of_partition(p)) continue;
+        ++count;
+        EXPECT_NEAR(p.x, 0.425, 1e-9);
+    }
+    EXPECT_GT(count, 10);
+}
+
+TEST(SheetLayers, AreNotForWhatMoves)
+{
+    CaseText text = case_of(tank + water, "<bodyfitted />");
+    text.after_geometry +=
+        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="1"><vel x="0.1" y="0" z="0" /></mvrect></objreal></motion>)";
+    const Result made = make(text);
+    ASSERT_EQ(made.code, 0) << made.output;
+    const std::array<int, 4> layers = layers_of_tank(made);
+    EXPECT_GT(layers[0], 300);
+    EXPECT_EQ(layers[1] + layers[2], 0);
+}
+
+} // namespace
