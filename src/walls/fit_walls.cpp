@@ -463,7 +463,9 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
             warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,
                                 out[i]);
     }
-    if (layered) leave_out_stacked_shells(scene, out);
+    if (!layered) return out;
+    for (const std::uint32_t i : leave_out_stacked_shells(scene, out))
+        if (i != no_index) out[i] = fit_step(scene, scene.steps[i], false, fluid, threads);
     return out;
 }
 

@@ -96,8 +96,9 @@ std::vector<Shell> shells_of(const Scene& scene, std::vector<FittedStep>& steps)
 
 } // namespace
 
-void leave_out_stacked_shells(const Scene& scene, std::vector<FittedStep>& steps)
+std::set<std::uint32_t> leave_out_stacked_shells(const Scene& scene, std::vector<FittedStep>& steps)
 {
+    std::set<std::uint32_t> thickened;
     const std::vector<Shell> shells = shells_of(scene, steps);
     std::set<std::pair<int, bool>> said; // line, whether it is left out
     std::set<const FittedDraw*> left_out;
@@ -117,6 +118,12 @@ void leave_out_stacked_shells(const Scene& scene, std::vector<FittedStep>& steps
             in = &of;
         }
         if (share <= most) continue;
+        if (shell.draw->body.layered_step != no_index)
+        {
+            for (const FittedDraw* draw : {shell.draw, in->draw})
+                thickened.insert(draw->body.layered_step);
+            continue;
+        }
         const bool is_left_out = share > nearly_all;
         if (is_left_out) left_out.insert(shell.draw);
         if (!said.emplace(shell.draw->body.line, is_left_out).second) continue;
@@ -130,6 +137,7 @@ void leave_out_stacked_shells(const Scene& scene, std::vector<FittedStep>& steps
     }
     for (FittedStep& step : steps)
         std::erase_if(step.draws, [&](const FittedDraw& draw) { return left_out.contains(&draw); });
+    return thickened;
 }
 
 } // namespace fppg

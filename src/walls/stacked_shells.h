@@ -4,6 +4,8 @@
 
 #include "lattice/fitted_draw.h"
 
+#include <cstdint>
+#include <set>
 #include <vector>
 
 namespace fppg
@@ -15,7 +17,10 @@ namespace fppg
 /// water between its shells). Where a part of such a surface stands elsewhere it stays, and is
 /// warned of.
 ///
-/// steps  one entry per step of the scene
-void leave_out_stacked_shells(const Scene& scene, std::vector<FittedStep>& steps);
+/// steps    one entry per step of the scene
+/// returns  steps that the case thickened so whose layers are FitSettings::sheet_depths_dp, which
+///          nothing asks for: they stay, and want none
+std::set<std::uint32_t> leave_out_stacked_shells(const Scene& scene,
+                                                 std::vector<FittedStep>& steps);
 
 } // namespace fppg
