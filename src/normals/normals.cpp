@@ -28,6 +28,9 @@ namespace fppg
 namespace
 {
 
+/// Walls of so many dp have two layers of mDBC with room between them.
+constexpr double two_layers_dp = 2;
+
 using Float3 = std::array<float, 3>;
 
 /// Length of the normal of a particle on a fitted surface, which has no distance to it, in dp: the
@@ -338,6 +341,14 @@ private:
                 "they need a dp of {:.3g} m at most.",
                 def_.file, wall.mk - def_.mk_bound_first, wall.thickness, wall.area,
                 wall.thickness / (reach / def_.grid.dp - 0.5)));
+        for (const WetSurface::ThinWall& wall : wet.one_layer_walls())
+            report_.warnings.push_back(fmt::format(
+                "{}: mkbound {} has walls of {:.3g} m beside fluid, over {:.3g} m^2: they have "
+                "room "
+                "for one layer of mDBC, and fluid goes through one; they need a dp of {:.3g} m at "
+                "most, or the boundary condition DBC (Boundary=1).",
+                def_.file, wall.mk - def_.mk_bound_first, wall.thickness, wall.area,
+                wall.thickness / two_layers_dp));
     }
 
     /// How deep a particle of a layer stands behind the true surface, metres; zero for all others.

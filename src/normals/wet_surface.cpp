@@ -106,6 +106,7 @@ void WetSurface::find_walls(const std::vector<FittedBody>& bodies)
             wall.body = bodies[b].owner;
             wall.depth = bodies[b].wall.get();
             wall.is_closed = bodies[wall.body].measures.volume > 0;
+            wall.first = bodies[b].depth;
             wall.is_moving = setup_.is_moving[bodies[b].mk] != 0;
             wall.floats = setup_.floats[bodies[b].mk] != 0;
             for (const Vec3& v : wall.depth->mesh().vertices) wall.box.add(v);
@@ -408,16 +409,24 @@ void WetSurface::dry_beside_dry(int threads)
 void WetSurface::note_thin_walls(const RunField& field)
 {
     const double enough = reach_ - 0.5 * field.grid.dp;
-    for (const Piece& piece : pieces_)
+    const auto note = [&](const Piece& piece, std::vector<ThinWall>& walls)
     {
-        if (piece.state != is_thin || !piece.is_straight || !(piece.thickness < enough)) continue;
         const std::uint16_t mk = field.walls.bodies[walls_[piece.wall].body].mk;
-        auto found = std::find_if(thin_walls_.begin(), thin_walls_.end(),
+        auto found = std::find_if(walls.begin(), walls.end(),
                                   [&](const ThinWall& wall) { return wall.mk == mk; });
-        if (found == thin_walls_.end()) found = thin_walls_.insert(found, {mk, piece.thickness, 0});
+        if (found == walls.end()) found = walls.insert(found, {mk, piece.thickness, 0});
         found->thickness = std::min(found->thickness, piece.thickness);
         found->area += 0.5 * norm(cross(piece.corners[1] - piece.corners[0],
                                         piece.corners[2] - piece.corners[0]));
+    };
+    for (const Piece& piece : pieces_)
+    {
+        if (!piece.is_straight || !(piece.thickness > 0)) continue;
+        if (piece.state == is_thin && piece.thickness < enough) note(piece, thin_walls_);
+        const double first = walls_[piece.wall].first;
+        if (piece.state != is_dry && std::isfinite(piece.way.length) && first < 0.75 * dp_ &&
+            piece.thickness < (1 - 1e-9) * (2 * first + least_pair_dp * dp_))
+            note(piece, one_layer_walls_);
     }
 }
 

@@ -44,15 +44,17 @@ public:
     /// Some sides are dry, so that the nearest surface is not always the right one.
     bool has_dry_sides() const { return has_dry_sides_; }
 
-    /// Of walls that are wet on both sides and too thin to serve both: the mks with the least
-    /// thickness, metres.
+    /// Walls beside fluid that are too thin: the mks with the least thickness, metres.
     struct ThinWall
     {
         std::uint16_t mk = 0;
         double thickness = 0;
-        double area = 0; ///< metres squared, of both sides
+        double area = 0; ///< metres squared, of the wet sides
     };
+    /// Wet on both sides, which they cannot serve both.
     const std::vector<ThinWall>& thin_walls() const { return thin_walls_; }
+    /// With room for one layer of those for mDBC, which is half a step deep.
+    const std::vector<ThinWall>& one_layer_walls() const { return one_layer_walls_; }
 
 private:
     struct Piece
@@ -84,6 +86,7 @@ private:
         std::uint32_t body = 0;
         const WallDepth* depth = nullptr;
         double deepest = 0; ///< metres, to where its layers end
+        double first = 0;   ///< metres, how deep the first of them is
         bool is_closed = false;
         bool is_moving = false;
         bool floats = false;
@@ -113,6 +116,7 @@ private:
     std::vector<Facet> facets_;
     std::vector<Piece> pieces_; ///< of one facet after the other
     std::vector<ThinWall> thin_walls_;
+    std::vector<ThinWall> one_layer_walls_;
     std::unique_ptr<MeshQuery> query_;
     std::vector<const WallDepth*>
         exact_walls_; ///< per facet of the query: null, or of walls whose surface is exact

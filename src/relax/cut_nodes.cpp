@@ -73,8 +73,12 @@ PointGrid places_of_cuts(const RunField& field, const Region& region, const AllW
     const FittedWalls& walls = field.walls;
     PointGrid cut(reach_of_cuts_dp * field.grid.dp, walls.cut.size() + walls.second_sheets.size());
     for (const Vec3& p : walls.cut) cut.add(p);
+    // Before layers fluid sees the surface, however many of them a thin part has.
+    const WallParticles& second = walls.second_sheets;
     if (!region.is_solid || !is_inside(walls, region))
-        for (const Vec3& p : walls.second_sheets.positions) cut.add(p);
+        for (std::size_t i = 0; i < second.size(); ++i)
+            if (region.is_solid || !walls.bodies[second.bodies[i]].is_layer())
+                cut.add(second.positions[i]);
     if (region.is_solid) add_cut_nodes(field, region, all, threads, cut);
     return cut;
 }

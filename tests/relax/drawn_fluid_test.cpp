@@ -185,4 +185,39 @@ TEST(SheetLayers, AreNotForWhatMoves)
     EXPECT_EQ(layers[1] + layers[2], 0);
 }
 
+/// A pipe on a floor, its wall so many dp thick, with water.
+Result pipe_on_floor(double thickness)
+{
+    const auto rod = [](double radius)
+    {
+        return fmt::format(
+            R"(<drawcylinder radius="{}"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.9" /></drawcylinder>)",
+            radius);
+    };
+    return make(case_of(
+        R"(<setmkbound mk="0" />)" + rod(0.36 + thickness * dp) + "<setmkvoid />" + rod(0.36) +
+            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0" y="-0.1" z="-0.3" /><size x="1.2" y="1.2" z="0.3" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.6" y="0.5" z="0.3"><modefill>void</modefill><point x="0.2" y="0.1" z="-0.1" /><size x="0.8" y="0.8" z="0.6" /></fillbox>)",
+        R"(<bodyfitted boundary="mdbc" />)"));
+}
+
+/// Layers of both sides merge in thin walls; the places of those that gave way held the fluid
+/// beside them on the lattice, and all that the cavity lacked came to the middle of the pipe.
+TEST(ThinWalls, OfMdbcLetFluidBesideThemBeEvenedOut)
+{
+    const std::string said = "room for one layer of mDBC";
+    std::array<int, 2> middle{};
+    for (const bool is_thick : {false, true})
+    {
+        const Result made = pipe_on_floor(is_thick ? 4 : 1.5);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_EQ(contains(made.output, said), !is_thick) << made.output;
+        for (const Vec3& p : made.fluid())
+            middle[is_thick ? 1 : 0] +=
+                p.z < 0.3 && std::hypot(p.x - 0.6, p.y - 0.5) < 0.18 ? 1 : 0;
+    }
+    EXPECT_GT(middle[1], 200);
+    EXPECT_NEAR(middle[0], middle[1], 0.03 * middle[1]);
+}
+
 } // namespace
