@@ -40,6 +40,9 @@ public:
                  features.edges.empty() ? 1 : 1024)
     {
         const SurfaceMesh& mesh = wall.mesh();
+        has_rims_ = !options.plane_y &&
+                    std::any_of(mesh.edge_facets.begin(), mesh.edge_facets.end(),
+                                [](const auto& facets) { return facets[1] == no_index; });
         for (const std::uint32_t e : features.edges)
         {
             // Far rims of what is drawn out along y.
@@ -59,7 +62,7 @@ public:
                                      std::uint32_t facet) const
     {
         const auto ball = inner_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
-        if (!ball) return std::nullopt;
+        if (!ball || (has_rims_ && is_at_rim(ball->centre, ball->radius))) return std::nullopt;
         if (options_.off_edges_dp > 0 &&
             edges_.has_nearer(ball->centre, options_.off_edges_dp * options_.dp))
             return std::nullopt;
@@ -74,6 +77,13 @@ public:
     }
 
 private:
+    /// Whether a ball touches an open edge instead of another side.
+    bool is_at_rim(const Vec3& centre, double radius) const
+    {
+        const DepthPlace place = wall_.at(centre);
+        return place.is_beyond_rim || place.depth < 0.5 * radius;
+    }
+
     double spacing_at(double thickness) const
     {
         if (options_.parts == 0) return 1;
@@ -85,6 +95,7 @@ private:
     const WallDepth& wall_;
     const MergedSheetOptions& options_;
     PointGrid edges_;
+    bool has_rims_ = false;
 };
 
 /// Visits points of a facet that are `apart` from one another.

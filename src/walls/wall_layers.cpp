@@ -193,7 +193,9 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
                                ? LayerSide::Behind
                                : settings.side.value_or(builder.side_without_fluid());
     const bool is_closed = has_volume && side == LayerSide::Behind;
-    if (is_closed && plan.depths_dp[0] > 0) plan.middle_dp = plan.depths_dp[0] + 0.5 * merge_dp;
+    // Middles are looked for behind facets.
+    if (side == LayerSide::Behind && plan.depths_dp[0] > 0)
+        plan.middle_dp = plan.depths_dp[0] + 0.5 * merge_dp;
     if (side != LayerSide::Front) builder.build(WallSide::Behind, is_closed, plan);
     if (side != LayerSide::Behind) builder.build(WallSide::Front, is_closed, plan);
     if (is_closed)

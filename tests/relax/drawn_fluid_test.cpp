@@ -220,4 +220,22 @@ TEST(ThinWalls, OfMdbcLetFluidBesideThemBeEvenedOut)
     EXPECT_NEAR(middle[0], middle[1], 0.03 * middle[1]);
 }
 
+/// A ramp whose sides alone are drawn, open at its ends: at its toe of 34 degrees layers of both
+/// faces come together. They left it out as far as their first one was from its edge, 1.7 dp, and
+/// water came in there.
+TEST(SheetLayers, OfMdbcReachASharpEdge)
+{
+    const Result made = make(case_of(
+        R"(<setmkbound mk="0" /><drawextrude closed="true"><extrude x="0" y="0.75" z="0" /><point x="0.2" y="0.1" z="0" /><point x="0.95" y="0.1" z="0" /><point x="0.95" y="0.1" z="0.5" /></drawextrude>)",
+        R"(<bodyfitted boundary="mdbc" side="behind" />)"));
+    ASSERT_EQ(made.code, 0) << made.output;
+    for (double y = 0.2; y < 0.76; y += dp)
+    {
+        double nearest = 1;
+        for (const Vec3& p : made.bound())
+            nearest = std::min(nearest, fppg::norm(p - Vec3{0.2, y, 0}));
+        EXPECT_LT(nearest, dp) << y;
+    }
+}
+
 } // namespace
