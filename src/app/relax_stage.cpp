@@ -81,10 +81,9 @@ void warn_of_fluid_count(const RelaxedPart& part, const RelaxReport& report, Cas
     const double share = more / (static_cast<double>(part.particles) - more);
     if (std::abs(share) < 0.001) return;
     run.warn(fmt::format(
-        "{}: <fluidband>: {:+g} particles of fluid near walls ({:+.2f} % of them), so many as fit "
-        "between the walls, none in pockets; litres of fills keep "
-        "their "
-        "number.",
+        "{}: {:+g} particles of fluid near walls ({:+.2f} % of them): as many as fit between the "
+        "walls, none in pockets. <fluidband active=\"false\"> leaves fluid as it is drawn; litres "
+        "of fills keep their number.",
         file, more, 100 * share));
 }
 

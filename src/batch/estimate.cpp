@@ -25,6 +25,7 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace fppg
 {
@@ -61,6 +62,7 @@ public:
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
         scene_ = make_scene(def_);
+        moving_ = mks_that_move(def_);
         CaseOptions coarse = options_.case_options;
         coarse.meshes = scene_.meshes;
         expect_particles_fit(path, coarse, def_, options_.threads);
@@ -141,9 +143,7 @@ private:
         const FitSettings* given = fit_settings(def_.fit, state.mk.mk);
         if (given == nullptr) return;
         FitSettings settings = *given;
-        if (fluid_.empty() || step.draw->surface != nullptr ||
-            mks_that_move(def_).contains(state.mk.mk))
-            settings.sheet_depths_dp.clear();
+        if (fluid_.empty() || !may_layer_sheets(step, moving_)) settings.sheet_depths_dp.clear();
         const std::optional<DrawOp> shorter = made_near_domain(*step.draw, def_);
         SceneStep near = step;
         if (shorter) near.draw = &*shorter;
@@ -417,7 +417,8 @@ private:
 
     EstimateOptions options_;
     CaseDef def_;
-    Scene scene_; ///< of def_
+    Scene scene_;                    ///< of def_
+    std::set<std::uint16_t> moving_; ///< mks
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
     std::uint64_t runs_ = 0;

@@ -5,6 +5,8 @@
 #include "nodes/snap.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
@@ -23,6 +25,19 @@ inline const Run* run_at(const RunField& field, const Node& n)
     if (after == slab.begin()) return nullptr;
     const Run& r = *std::prev(after);
     return r.y == n.y && n.z < r.z_end ? &r : nullptr;
+}
+
+/// Whether fluid stands on the node nearest to a place.
+///
+/// first_bound  absolute mk of the first boundary
+inline bool has_fluid_near(const RunField& field, const Vec3& p, std::uint16_t first_bound)
+{
+    const Vec3 at = (p - field.grid.origin) / field.grid.dp;
+    const auto nearest = [](double c)
+    { return static_cast<std::int64_t>(std::clamp(std::round(c), -1.0, 1e10)); };
+    const Run* run =
+        run_at(field, {nearest(at.x), field.grid.is_2d ? 0 : nearest(at.y), nearest(at.z)});
+    return run != nullptr && !run->is_covered && run->mk < first_bound;
 }
 
 } // namespace fppg

@@ -13,6 +13,7 @@
 #include "walls/fit_shape.h"
 #include "walls/lost_layers.h"
 #include "walls/stacked_shells.h"
+#include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -384,14 +385,6 @@ TriangleSoup extent_of(const Scene& scene, const SceneStep& step, int threads)
     return out;
 }
 
-/// Whether sheets of a step may have layers because of the fluid on one side. What moves keeps room
-/// for that: one sheet holds fluid as well. `<layers vdp>` are the user's own.
-bool may_layer_sheets(const SceneStep& step, const std::set<std::uint16_t>& moving)
-{
-    const DrawOp& draw = step.combination ? *step.combination->parts[0] : *step.draw;
-    return draw.surface == nullptr && !moving.contains(draw.state->mk.mk);
-}
-
 /// fluid  boxes_of_fluid()
 FittedStep fit_step(const Scene& scene, const SceneStep& step, bool layers_sheets,
                     const std::vector<Box3>& fluid, int threads)
@@ -465,7 +458,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
     }
     if (!layered) return out;
     for (const std::uint32_t i : leave_out_stacked_shells(scene, out))
-        if (i != no_index) out[i] = fit_step(scene, scene.steps[i], false, fluid, threads);
+        out[i] = fit_step(scene, scene.steps[i], false, fluid, threads);
     return out;
 }
 

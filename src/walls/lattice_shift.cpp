@@ -126,21 +126,7 @@ public:
     const WallPlaces& of(int axis) const { return places_[static_cast<std::size_t>(axis)]; }
 
 private:
-    bool is_fluid(const Vec3& p) const
-    {
-        Node n;
-        const Vec3 at = (p - field_.grid.origin) / field_.grid.dp;
-        n.x = index_near(at.x);
-        n.y = field_.grid.is_2d ? 0 : index_near(at.y);
-        n.z = index_near(at.z);
-        const Run* run = run_at(field_, n);
-        return run != nullptr && run->mk < first_bound_;
-    }
-
-    static std::int64_t index_near(double at)
-    {
-        return static_cast<std::int64_t>(std::clamp(std::round(at), -1.0, 1e10));
-    }
+    bool is_fluid(const Vec3& p) const { return has_fluid_near(field_, p, first_bound_); }
 
     /// How much of a facet has fluid before it, or behind it where it is a sheet.
     double wet_share(const std::array<Vec3, 3>& corners, const Vec3& normal, bool is_sheet) const

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace fppg
@@ -31,6 +32,17 @@ inline bool draws_bound(const SceneStep& step)
     const DrawState& state = *step.draw->state;
     return (step.combination || step.shape() != nullptr) && state.mk.kind == MkKind::Bound &&
            state.draw_points;
+}
+
+/// Whether sheets of a step get layers by FitSettings::sheet_depths_dp where fluid is on one side.
+/// Shells of `<layers vdp>` are all that such a wall has, and between layers of DBC that move fast
+/// fluid comes in (jerked vessel of tools/solver-trials).
+///
+/// moving  mks_that_move()
+inline bool may_layer_sheets(const SceneStep& step, const std::set<std::uint16_t>& moving)
+{
+    const DrawOp& draw = step.combination ? *step.combination->parts[0] : *step.draw;
+    return draw.surface == nullptr && !moving.contains(draw.state->mk.mk);
 }
 
 /// Whether a facet lies across an axis.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace fppg
@@ -18,14 +17,6 @@ namespace
 constexpr std::array<double, 2> beyond_dp{1, 1.5};
 /// Of the particles of the deepest layer, with fluid beyond them.
 constexpr double few = 0.05;
-
-bool has_fluid(const RunField& field, const Vec3& p, std::uint16_t first)
-{
-    const Vec3 at = (p - field.grid.origin) / field.grid.dp;
-    const Run* run = run_at(
-        field, {std::llround(at.x), field.grid.is_2d ? 0 : std::llround(at.y), std::llround(at.z)});
-    return run != nullptr && !run->is_covered && run->mk < first;
-}
 
 } // namespace
 
@@ -55,7 +46,8 @@ std::set<std::uint32_t> wet_sheets(const RunField& field, std::uint16_t first, i
             const Vec3 way = bodies[all.bodies[found[k]]].wall->at(p).direction;
             is_wet[k] = std::any_of(
                 beyond_dp.begin(), beyond_dp.end(),
-                [&](double dp) { return has_fluid(field, p + (dp * field.grid.dp) * way, first); });
+                [&](double dp)
+                { return has_fluid_near(field, p + (dp * field.grid.dp) * way, first); });
         },
         1024);
     std::vector<std::array<double, 2>> counts(bodies.size());

@@ -315,8 +315,9 @@ TEST(FluidSpace, WaterBetweenLayersHasTheVolumeThatIsDrawn)
             const std::string fill = fmt::format(
                 R"(<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.2"><modefill>void</modefill>{}</fillbox>)",
                 box);
-            for (const std::string& drawn : {water + walls, walls + water, walls + fill,
-                                             walls + R"(<setboxlimitmode mode="full" />)" + fill})
+            const std::string limited = R"(<setboxlimitmode mode="full" />)" + fill;
+            for (const std::string& drawn :
+                 {water + walls, walls + water, walls + fill, walls + limited})
             {
                 const Result r = make(case_of(drawn, R"(<bodyfitted boundary="mdbc" />)"));
                 ASSERT_EQ(r.code, 0) << r.output;
@@ -335,9 +336,10 @@ TEST(FluidSpace, WaterThatIsDrawnUpToWallsStaysBetweenThem)
     for (const char* boundary : {"dbc", "mdbc"})
     {
         const Result r = make(case_of(
-            R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>)" + place +
-                R"(<size x="0.9" y="0.73" z="0.4" /></drawbox><setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill>)" +
-                place + R"(<size x="0.9" y="0.73" z="0.8" /></drawbox>)",
+            fmt::format(
+                R"(<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill>{0}<size x="0.9" y="0.73" z="0.4" /></drawbox>
+<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill>{0}<size x="0.9" y="0.73" z="0.8" /></drawbox>)",
+                place),
             fmt::format(R"(<bodyfitted boundary="{}" />)", boundary)));
         ASSERT_EQ(r.code, 0) << r.output;
         ASSERT_GT(r.fluid().size(), 1000u);
