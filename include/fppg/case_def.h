@@ -131,6 +131,7 @@ struct FitSettings
     std::optional<int> layers;
     /// Of sheets; empty: away from the fluid, and behind where there is none.
     std::optional<LayerSide> side;
+    bool thickens = false; ///< plates with room for one layer of mDBC; set where walls are fitted
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;

@@ -10,6 +10,7 @@
 #include "app/block_check.h"
 #include "app/body_table.h"
 #include "app/fit_check.h"
+#include "app/lattice_fluid.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
@@ -270,6 +271,7 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                   for (const std::string& w : floatings.warnings) run.warn(w);
                   for (std::string& w : warnings) run.warn(std::move(w));
                   for (const std::string& w : floatings.light_or_heavy) run.diagnose(w);
+                  for (std::string& w : check_lattice_fluid(run, made)) run.warn(std::move(w));
                   check_blocks(run, made);
               });
     if (run.options.strict && !run.diagnostics.empty())

@@ -16,6 +16,7 @@
 #include "scene/near_domain.h"
 #include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
+#include "walls/thickened.h"
 
 #include <fmt/format.h>
 
@@ -147,7 +148,7 @@ private:
         const std::optional<DrawOp> shorter = made_near_domain(*step.draw, def_);
         SceneStep near = step;
         if (shorter) near.draw = &*shorter;
-        for (const StepSurface& surface : step_surfaces(scene_, near, options_.threads))
+        for (const StepSurface& surface : fitted_surfaces(scene_, near, options_.threads))
         {
             const WallCount count = count_shape(surface.shape, state.clips, settings);
             most_cut_ = std::max(most_cut_, count.cut_area);

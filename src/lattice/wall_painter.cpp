@@ -466,25 +466,34 @@ void WallPainter::finish()
         all.erase(is_cut_);
     is_cut_.clear();
     hold_beside_second_sheets();
-    if (walls.cut.empty()) return;
+    hold_beside(walls.cut, walls.cut_bodies);
+    hold_beside(walls.replaced, walls.replaced_bodies);
+}
+
+/// Holds the particles of a body that are near to places where it has none.
+void WallPainter::hold_beside(const std::vector<Vec3>& places,
+                              const std::vector<std::uint32_t>& bodies)
+{
+    if (places.empty()) return;
+    WallParticles& all = field_->walls.particles;
     const double reach = held_distance_dp * field_->grid.dp;
-    PointGrid cut(reach, walls.cut.size());
-    Box3 cut_box;
-    for (const Vec3& p : walls.cut)
+    PointGrid near(reach, places.size());
+    Box3 box;
+    for (const Vec3& p : places)
     {
-        cut.add(p);
-        cut_box.add(p);
+        near.add(p);
+        box.add(p);
     }
     parallel_for(
         all.size(), threads_,
         [&](std::size_t i)
         {
-            if (!cut_box.has(all.positions[i], reach)) return;
-            cut.for_each_near(all.positions[i], reach,
-                              [&](std::uint32_t c, double)
-                              {
-                                  if (walls.cut_bodies[c] == all.bodies[i]) all.held[i] = 1;
-                              });
+            if (!box.has(all.positions[i], reach)) return;
+            near.for_each_near(all.positions[i], reach,
+                               [&](std::uint32_t c, double)
+                               {
+                                   if (bodies[c] == all.bodies[i]) all.held[i] = 1;
+                               });
         },
         1024);
 }

@@ -6,6 +6,7 @@
 #include "meshes/cad_surface.h"
 #include "nodes/cell_nodes.h"
 #include "walls/fit_shape.h"
+#include "walls/thickened.h"
 
 #include <fmt/format.h>
 
@@ -139,6 +140,9 @@ FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanN
                        const std::vector<ClipPlane>& clips, int threads)
 {
     CombinedParts combined = combine_parts(parts, tree, grid.dp, threads);
+    if (settings.thickens && !parts[0].is_surface)
+        if (const double thickness = thicken(grid, threads, combined.result.mesh); thickness > 0)
+            combined.warnings.push_back(thickened_from(thickness, grid.dp));
     FittedDraw out = fit_body(body_of(parts, tree, combined, settings, grid, threads), settings,
                               grid, clips, threads);
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());

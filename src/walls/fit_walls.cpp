@@ -14,6 +14,7 @@
 #include "walls/lost_layers.h"
 #include "walls/stacked_shells.h"
 #include "walls/step_surfaces.h"
+#include "walls/thickened.h"
 
 #include <fmt/format.h>
 
@@ -99,15 +100,17 @@ void layer_sheet(FitSettings& settings)
         settings.depths_dp = settings.sheet_depths_dp;
 }
 
-FittedDraw fit(const Scene& scene, const DrawOp& draw, const ShapeMesh& shape,
-               const FitSettings& given, int threads)
+FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const FitSettings& given,
+               int threads)
 {
     FitSettings settings = given;
+    const LatticeGrid& grid = scene.def->grid;
+    const double thickness = settings.thickens ? thicken(grid, threads, shape) : 0;
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
-    FittedDraw out =
-        fit_shape(shape, settings, scene.def->grid, draw.state->clips, extent, threads);
+    FittedDraw out = fit_shape(shape, settings, grid, draw.state->clips, extent, threads);
+    if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
@@ -401,6 +404,7 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, bool layers_sheet
     if (given == nullptr) return {};
     FitSettings own = *given;
     if (!layers_sheets) own.sheet_depths_dp.clear();
+    own.thickens = may_thicken(*scene.def, state.mk.mk);
     const FitSettings* settings = &own;
     if (step.combination)
     {

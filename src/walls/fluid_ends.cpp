@@ -4,6 +4,7 @@
 #include "fppg/error.h"
 
 #include "walls/step_surfaces.h"
+#include "walls/thickened.h"
 
 #include <algorithm>
 #include <array>
@@ -100,7 +101,7 @@ Planes planes_of_walls(const Scene& scene, int threads)
     {
         if (!draws_bound(step) || fit_settings(scene.def->fit, step.draw->state->mk.mk) == nullptr)
             continue;
-        for (const StepSurface& surface : step_surfaces(scene, step, threads))
+        for (const StepSurface& surface : fitted_surfaces(scene, step, threads))
             add_planes(surface.shape.soup, out);
     }
     for (std::vector<double>& places : out)

@@ -8,6 +8,7 @@
 #include "nodes/spans.h"
 #include "walls/fluid_ends.h"
 #include "walls/step_surfaces.h"
+#include "walls/thickened.h"
 
 #include <algorithm>
 #include <array>
@@ -222,7 +223,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
         for (const SceneStep& step : scene.remaining())
         {
             if (!draws_bound(step)) continue;
-            const std::vector<StepSurface> surfaces = step_surfaces(scene, step, threads);
+            const std::vector<StepSurface> surfaces = fitted_surfaces(scene, step, threads);
             if (surfaces.empty()) return {}; // points and lines stand on the lattice
             if (has_layers(step, def.fit))
                 for (const StepSurface& surface : surfaces) walls.add(surface.shape);

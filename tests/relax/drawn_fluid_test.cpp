@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 namespace
@@ -201,23 +202,55 @@ Result pipe_on_floor(double thickness)
         R"(<bodyfitted boundary="mdbc" />)"));
 }
 
-/// Layers of both sides merge in thin walls; the places of those that gave way held the fluid
-/// beside them on the lattice, and all that the cavity lacked came to the middle of the pipe.
-TEST(ThinWalls, OfMdbcLetFluidBesideThemBeEvenedOut)
+/// The wall is thickened, as fluid goes through one layer; evened out, there is as much fluid in
+/// the middle of the pipe as its volume holds.
+TEST(ThinWalls, OfMdbcAreThickenedToTwoLayers)
 {
     const std::string said = "room for one layer of mDBC";
-    std::array<int, 2> middle{};
     for (const bool is_thick : {false, true})
     {
         const Result made = pipe_on_floor(is_thick ? 4 : 1.5);
         ASSERT_EQ(made.code, 0) << made.output;
         EXPECT_EQ(contains(made.output, said), !is_thick) << made.output;
+        double nearest = 1e9;
+        double middle = 0;
+        for (const Vec3& p : made.bound())
+            if (p.z > 0.1) nearest = std::min(nearest, std::hypot(p.x - 0.6, p.y - 0.5));
         for (const Vec3& p : made.fluid())
-            middle[is_thick ? 1 : 0] +=
-                p.z < 0.3 && std::hypot(p.x - 0.6, p.y - 0.5) < 0.18 ? 1 : 0;
+            middle += p.z > 0.05 && p.z < 0.3 && std::hypot(p.x - 0.6, p.y - 0.5) < 0.18 ? 1 : 0;
+        EXPECT_NEAR(nearest, 0.36 + (is_thick ? 0.5 : 0.25) * dp, 0.01 * dp);
+        EXPECT_NEAR(middle * std::pow(dp, 3) / (std::numbers::pi * 0.18 * 0.18 * 0.25), 1, 0.12);
     }
-    EXPECT_GT(middle[1], 200);
-    EXPECT_NEAR(middle[0], middle[1], 0.03 * middle[1]);
+}
+
+/// Water behind a gate of one dp in a tank of faces. What floats keeps its volume.
+TEST(ThinWalls, OfMdbcKeepFluidAStepOffTheirParticles)
+{
+    const std::string gate =
+        R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawbox><boxfill>all^top</boxfill><point x="0" y="0" z="0" /><size x="1.2" y="0.8" z="0.8" /></drawbox>
+<setdrawmode mode="full" /><setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0.05" y="0.05" z="0.05" /><size x="0.5" y="0.7" z="0.5" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.6" y="0" z="0" /><size x="0.05" y="0.8" z="0.7" /></drawbox>)";
+    for (const bool floats : {false, true})
+    {
+        CaseText text = case_of(gate, R"(<bodyfitted boundary="mdbc" />)");
+        if (floats)
+            text.after_geometry +=
+                R"(<floatings><floating mkbound="1"><massbody value="1" /></floating></floatings>)";
+        const Result made = make(text);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_EQ(contains(made.output, "it is thickened to 2 dp, 0.1 m"), !floats) << made.output;
+        std::set<long> sheets;
+        double end = 0;
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+        {
+            const double x = made.cloud.positions[i].x;
+            if (made.cloud.mk[i] == first_bound + 1)
+                sheets.insert(std::lround((x - 0.625) / dp * 10));
+            if (made.cloud.mk[i] < first_bound) end = std::max(end, x);
+        }
+        EXPECT_EQ(sheets, floats ? (std::set<long>{0}) : (std::set<long>{-5, 5}));
+        EXPECT_NEAR(end, 0.625 - (floats ? 1 : 1.5) * dp, 0.1 * dp);
+    }
 }
 
 /// A ramp whose sides alone are drawn, open at its ends: at its toe of 34 degrees layers of both

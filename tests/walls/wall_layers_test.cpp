@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -90,25 +91,60 @@ TEST(WallLayers, LookFromEachParticleToTheNearestPlaceOfTheSurface)
     }
 }
 
-/// A plate of one dp has one layer, in its middle.
-TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShare)
+/// A plate of one dp has one layer, in its middle, where the number of layers is given; fluid goes
+/// through one, so else the plate is thickened to two dp, which have one layer a side.
+TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShareOrTheTwoOfAThickerOne)
 {
-    Drawing drawing = layered();
     const Vec3 low{-0.93, -0.77, -0.03};
     const Vec3 size{1.8, 1.5, dp};
-    drawing.box(low, size);
-    const RunField field = relaxed(drawing);
-    const WallParticles& particles = field.walls.particles;
-    EXPECT_NEAR(static_cast<double>(particles.size()) / (18 * 15), 1, 0.1);
-    for (const Vec3& p : particles.positions) EXPECT_NEAR(p.z, -0.03 + dp / 2, 1e-9);
-    drawing.fill({0, 0, 1.5});
-    const Normals all = normals_of(drawing, relaxed(drawing));
-    EXPECT_NE(std::find_if(all.report.warnings.begin(), all.report.warnings.end(),
-                           [](const std::string& w) {
-                               return w.find("walls of 0.1 m with fluid on both sides") !=
-                                      std::string::npos;
-                           }),
-              all.report.warnings.end());
+    for (const bool is_given : {true, false})
+    {
+        Drawing drawing = layered();
+        if (is_given) drawing.def.fit.all->layers = 3;
+        drawing.box(low, size);
+        const RunField field = relaxed(drawing);
+        const WallParticles& particles = field.walls.particles;
+        const double sheets = is_given ? 1 : 2;
+        EXPECT_NEAR(static_cast<double>(particles.size()) / (sheets * 18 * 15), 1, 0.1);
+        double of_upper = 0;
+        for (const Vec3& p : particles.positions)
+        {
+            EXPECT_NEAR(std::abs(p.z - (low.z + dp / 2)), is_given ? 0 : dp / 2, 1e-9);
+            EXPECT_NEAR(p.x, low.x + size.x / 2, size.x / 2 - 0.45 * dp);
+            EXPECT_NEAR(p.y, low.y + size.y / 2, size.y / 2 - 0.45 * dp);
+            of_upper += p.z > low.z + dp / 2 ? 1 : 0;
+        }
+        if (is_given) continue;
+        EXPECT_NEAR(of_upper / static_cast<double>(particles.size()), 0.5, 0.02);
+    }
+}
+
+/// However thin they are, and rods, of which nothing was left. Plates with room for two layers stay
+/// as they are.
+TEST(WallLayers, OfPlatesAndRodsWithRoomForOneAreThickened)
+{
+    struct Shape
+    {
+        Vec3 size;
+        std::array<double, 2> heights; ///< least and largest of the particles, dp from the middle
+    };
+    for (const Shape& shape :
+         {Shape{{1.8, 1.5, 0.3 * dp}, {-0.5, 0.5}}, Shape{{1.8, 1.5, 1.59 * dp}, {-0.5, 0.5}},
+          Shape{{1.8, 1.5, 1.7 * dp}, {-0.35, 0.35}}, Shape{{1.8, dp, dp}, {-0.5, 0.5}}})
+    {
+        Drawing drawing = layered();
+        drawing.box({-0.93, -0.77, -0.03}, shape.size);
+        const double middle = -0.03 + shape.size.z / 2;
+        double least = 1e9;
+        double most = -1e9;
+        for (const Vec3& p : relaxed(drawing).walls.particles.positions)
+        {
+            least = std::min(least, (p.z - middle) / dp);
+            most = std::max(most, (p.z - middle) / dp);
+        }
+        EXPECT_NEAR(least, shape.heights[0], 1e-6) << shape.size.z;
+        EXPECT_NEAR(most, shape.heights[1], 1e-6) << shape.size.z;
+    }
 }
 
 /// Fluid in a tank of walls of 4 dp: particles nearer to the outside look to the inside too.

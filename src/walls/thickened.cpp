@@ -1,0 +1,187 @@
+#include "walls/thickened.h"
+#include "core/parallel.h"
+#include "meshes/facing_distance.h"
+#include "meshes/measure_facets.h"
+#include "meshes/mesh_query.h"
+#include "offset/quadric.h"
+#include "walls/layer_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Thinner, the layers half a step behind both sides are one, dp.
+constexpr double one_layer_dp = 1 + merge_dp;
+constexpr double two_layers_dp = 2;
+/// Of the surface, where the rest is the rim of a plate, or thicker parts that it is joined to.
+constexpr double least_share = 0.5;
+/// Bodies of more volume for their surface are no plates, dp: that of a plate is its thickness.
+constexpr double no_plate_dp = 4;
+/// Corners of a thin facet go at most so much farther than its plane.
+constexpr double most_mitre = 2;
+/// Where the thickness is looked for: from the middle of a facet towards its corners.
+constexpr double off_middle = 0.6;
+
+double mean_thickness(const SurfaceMesh& mesh)
+{
+    double volume = 0;
+    double area = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        volume += dot(mesh.vertices[mesh.facets[f][0]], mesh.normals[f]) * mesh.areas[f] / 3;
+        area += mesh.areas[f];
+    }
+    return area > 0 ? 2 * std::abs(volume) / area : 0;
+}
+
+/// Per facet how thick the body is behind it, metres; infinite where it is not thin, and in 2D
+/// of facets across the plane of the particles.
+std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+{
+    const MeshQuery query(soup_of(mesh), threads);
+    query.prepare_nearest();
+    const double reach = (1 - 1e-9) * one_layer_dp * grid.dp;
+    std::vector<double> out(mesh.facets.size(), infinity);
+    parallel_for(
+        out.size(), threads,
+        [&](std::size_t f)
+        {
+            if (grid.is_2d && lies_across(mesh.normals[f], 1)) return;
+            const auto& corners = mesh.facets[f];
+            Vec3 middle;
+            for (const std::uint32_t v : corners) middle = middle + mesh.vertices[v] / 3;
+            std::array<double, 4> found{};
+            for (std::size_t c = 0; c < found.size(); ++c)
+            {
+                const Vec3 at =
+                    c == 3 ? middle
+                           : off_middle * mesh.vertices[corners[c]] + (1 - off_middle) * middle;
+                const double through =
+                    facing_distance(mesh.normals, query, {static_cast<std::uint32_t>(f), at},
+                                    FacetSide::Behind, reach);
+                if (!std::isfinite(through))
+                {
+                    found[c] = through;
+                    continue;
+                }
+                // Through round shells the way along an axis is longer.
+                const Vec3& n = mesh.normals[f];
+                const ClosestPoint other = query.closest_point(at - through * n, reach);
+                found[c] = dot(at - other.point, n);
+            }
+            std::sort(found.begin(), found.end());
+            out[f] = found[1];
+        },
+        256);
+    return out;
+}
+
+/// How far the corners of facets go, so that each facet goes as far as it should.
+std::vector<Vec3> moves_of_vertices(const SurfaceMesh& mesh, const std::vector<double>& outwards)
+{
+    std::vector<Quadric> planes(mesh.vertices.size());
+    std::vector<double> most(mesh.vertices.size(), 0);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        for (const std::uint32_t v : mesh.facets[f])
+        {
+            planes[v].add_plane(mesh.normals[f], outwards[f]);
+            most[v] = std::max(most[v], outwards[f]);
+        }
+    std::vector<Vec3> out(mesh.vertices.size());
+    for (std::size_t v = 0; v < out.size(); ++v)
+    {
+        if (!(most[v] > 0)) continue;
+        out[v] = planes[v].least_point();
+        const double length = norm(out[v]);
+        if (length > most_mitre * most[v]) out[v] = (most_mitre * most[v] / length) * out[v];
+    }
+    return out;
+}
+
+} // namespace
+
+bool may_thicken(const CaseDef& def, std::uint16_t mk)
+{
+    const FitSettings* settings = fit_settings(def.fit, mk);
+    const auto floats = [&](const FloatingDef& floating)
+    {
+        return std::any_of(floating.mkbound.begin(), floating.mkbound.end(),
+                           [&](int mkbound) { return mkbound + def.mk_bound_first == mk; });
+    };
+    return settings != nullptr && settings->boundary == WallBoundary::Mdbc && !settings->layers &&
+           settings->place == Placement::Surface && !settings->depths_dp.empty() &&
+           std::none_of(def.floatings.begin(), def.floatings.end(), floats);
+}
+
+double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
+{
+    const double mean = mean_thickness(mesh);
+    if (!(mean > 0 && mean < no_plate_dp * grid.dp)) return 0;
+    const std::vector<double> thickness = thicknesses(mesh, grid, threads);
+    std::vector<double> outwards(mesh.facets.size(), 0);
+    double thin = 0;
+    double all = 0;
+    double least = infinity;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        if (grid.is_2d && lies_across(mesh.normals[f], 1)) continue;
+        all += mesh.areas[f];
+        if (!std::isfinite(thickness[f])) continue;
+        thin += mesh.areas[f];
+        least = std::min(least, thickness[f]);
+        outwards[f] = (two_layers_dp * grid.dp - thickness[f]) / 2;
+    }
+    if (!(thin >= least_share * all && thin > 0)) return 0;
+    const std::vector<Vec3> moves = moves_of_vertices(mesh, outwards);
+    for (std::size_t v = 0; v < moves.size(); ++v) mesh.vertices[v] = mesh.vertices[v] + moves[v];
+    measure_facets(mesh, threads, high_for_particles * grid.dp);
+    return least;
+}
+
+double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
+{
+    if (!shape.is_solid || shape.soup.vertices.empty()) return 0;
+    MeshReport report;
+    SurfaceMesh mesh = repair_mesh(shape.soup,
+                                   {.dp = grid.dp,
+                                    .is_exact = shape.round != nullptr || shape.cad != nullptr,
+                                    .is_solid = true},
+                                   threads, report);
+    const double thickness = thicken(grid, threads, mesh);
+    if (thickness > 0)
+    {
+        shape.soup = soup_of(mesh);
+        shape.round = nullptr;
+        shape.cad = nullptr;
+    }
+    return thickness;
+}
+
+std::string thickened_from(double thickness, double dp)
+{
+    return fmt::format(
+        "it is {:.3g} m thick, room for one layer of mDBC, through which fluid goes: it is "
+        "thickened to 2 dp, {:.3g} m, evenly to both sides. A dp of {:.3g} m has room for two "
+        "layers in it.",
+        thickness, two_layers_dp * dp, thickness / two_layers_dp);
+}
+
+std::vector<StepSurface> fitted_surfaces(const Scene& scene, const SceneStep& step, int threads)
+{
+    std::vector<StepSurface> out = step_surfaces(scene, step, threads);
+    if (step.draw->state->mk.kind == MkKind::Bound &&
+        may_thicken(*scene.def, step.draw->state->mk.mk))
+        for (StepSurface& surface : out) thicken(scene.def->grid, threads, surface.shape);
+    return out;
+}
+
+} // namespace fppg
