@@ -16,8 +16,8 @@ namespace fppg
 namespace
 {
 
-/// Smaller differences come of walls that stand half a step beside nodes.
-constexpr double least_share = 0.15;
+/// Smaller differences come of walls that stand half a step beside nodes, in tanks of 14 dp.
+constexpr double least_share = 0.25;
 constexpr std::int64_t least_particles = 20;
 
 /// Particles by mk as on the lattice; none where only fitted walls can be drawn.

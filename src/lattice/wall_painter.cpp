@@ -29,6 +29,8 @@ constexpr double touching_dp = 1e-6;
 constexpr double on_face_dp = 1e-3;
 /// A cut particle of a layer has another in its place so near, dp.
 constexpr double replaced_dp = 0.9;
+/// Fluid so near to the layer of a wall, on the wrong side of its surface, gives way to it, dp.
+constexpr double before_layer_dp = 0.75;
 /// Particles this near to a cut one are held in place, dp.
 constexpr double held_distance_dp = 2;
 
@@ -190,6 +192,7 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&&
     {
         extent_ = std::make_unique<const InsideTest>(std::move(extent), threads_);
         extent_->query().prepare_nearest();
+        find_layered_walls();
     }
     const std::vector<FittedBody>& bodies = field_->walls.bodies;
     is_spared_.assign(bodies.size(), 0);
@@ -224,6 +227,39 @@ bool WallPainter::is_in_extent(const Vec3& p) const
            extent_->query().closest_point(p).distance < on_face_dp * field_->grid.dp;
 }
 
+void WallPainter::find_layered_walls()
+{
+    layered_walls_.clear();
+    for (const FittedBody& layer : field_->walls.bodies)
+    {
+        if (!layer.is_layer() || layer.wall == nullptr) continue;
+        if (layered_walls_.empty() || layered_walls_.back().wall != layer.wall.get())
+        {
+            layered_walls_.push_back({{}, layer.wall.get(), {}});
+            for (const Vec3& v : layer.wall->mesh().vertices) layered_walls_.back().box.add(v);
+        }
+        layered_walls_.back().depths.push_back(layer.depth);
+    }
+}
+
+/// Whether a place is behind the surface of a wall and near to a layer of it that the draw does not
+/// reach.
+bool WallPainter::is_before_layer(const Vec3& p) const
+{
+    const double dp = field_->grid.dp;
+    return std::any_of(
+        layered_walls_.begin(), layered_walls_.end(),
+        [&](const LayeredWall& wall)
+        {
+            if (!wall.box.has(p, wall.depths.back())) return false;
+            const DepthPlace place = wall.wall->at(p);
+            if (place.is_beyond_rim || !(place.depth > touching_dp * dp)) return false;
+            const auto next = std::lower_bound(wall.depths.begin(), wall.depths.end(), place.depth);
+            return next != wall.depths.end() && *next - place.depth < before_layer_dp * dp &&
+                   !is_in_extent(place.foot + *next * place.direction);
+        });
+}
+
 Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
 {
     if (spared_mks_.empty() && extent_ == nullptr) return spans;
@@ -242,8 +278,10 @@ Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
     Spans beyond;
     for (const Span& s : intersect(left, walls))
         for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
-            if (!is_in_extent(position(Node{static_cast<std::int64_t>(x), s.y, z}, field_->grid)))
-                beyond.push_back({s.y, z, z + 1});
+        {
+            const Vec3 p = position(Node{static_cast<std::int64_t>(x), s.y, z}, field_->grid);
+            if (!is_in_extent(p) || is_before_layer(p)) beyond.push_back({s.y, z, z + 1});
+        }
     sort_and_join(beyond);
     return subtract(left, beyond);
 }

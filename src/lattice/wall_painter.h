@@ -75,7 +75,17 @@ private:
         std::vector<Spans> nodes; ///< one entry per slab of the lattice
     };
 
+    /// A wall in layers; nodes behind its surface and before a layer that stays are not painted.
+    struct LayeredWall
+    {
+        Box3 box;
+        const WallDepth* wall = nullptr;
+        std::vector<double> depths; ///< metres, ascending
+    };
+
     bool is_in_extent(const Vec3& p) const;
+    void find_layered_walls();
+    bool is_before_layer(const Vec3& p) const;
     bool is_spared(std::uint32_t particle) const;
     double filled_share(const Hollow& hollow) const;
     void hand_over_shares();
@@ -100,6 +110,7 @@ private:
     std::vector<std::uint16_t> spared_mks_;    ///< absolute, of the bodies that the draw hollows
     std::unique_ptr<const InsideTest> extent_; ///< of the draw; null: unknown
     std::vector<char> is_of_wall_;             ///< per absolute mk
+    std::vector<LayeredWall> layered_walls_;   ///< where the draw has an extent
 };
 
 } // namespace fppg

@@ -22,7 +22,7 @@ namespace
 
 /// Facets are judged in pieces of about this length, dp; a side in this many at most.
 constexpr double piece_dp = 4;
-constexpr int most_pieces = 24;
+constexpr int most_pieces = 200;
 /// Where fluid is looked for off a facet, dp.
 constexpr std::array<double, 2> looks_dp{1.0, 2.0};
 /// What is nearer than a bin of dp counts as one place.

@@ -29,7 +29,8 @@ Result column(double radius, const std::string& shells = "")
         R"(<bodyfitted boundary="mdbc" />)"));
 }
 
-TEST(DrawnFluid, ThatIsDrawnIntoWallsIsWarnedOf)
+/// What is drawn less than half a step into a wall gives way to its first layer.
+TEST(DrawnFluid, ThatIsDrawnIntoWallsStandsBeforeThemOrIsWarnedOf)
 {
     const std::string said = "more particles than fit between the walls";
     const std::string through = "fluid that is drawn later passes through ";
@@ -38,8 +39,12 @@ TEST(DrawnFluid, ThatIsDrawnIntoWallsIsWarnedOf)
     {
         const Result made = column(radius, shells);
         ASSERT_EQ(made.code, 0) << made.output;
-        EXPECT_EQ(contains(made.log, said), radius > 0.1) << made.log;
+        EXPECT_EQ(contains(made.log, said), radius > 0.18) << made.log;
         EXPECT_FALSE(contains(made.log, through)) << made.log;
+        if (radius > 0.18) continue;
+        EXPECT_GT(made.fluid().size(), 30u);
+        for (const Vec3& p : made.fluid())
+            EXPECT_LT(std::hypot(p.x, p.y), 0.1375 - 0.3 * dp) << radius;
     }
 }
 
@@ -250,6 +255,85 @@ TEST(ThinWalls, OfMdbcKeepFluidAStepOffTheirParticles)
         }
         EXPECT_EQ(sheets, floats ? (std::set<long>{0}) : (std::set<long>{-5, 5}));
         EXPECT_NEAR(end, 0.625 - (floats ? 1 : 1.5) * dp, 0.1 * dp);
+    }
+}
+
+/// Slabs that overlap by half a step: the layers of the floor end where those of its walls go on,
+/// and do not spread under them.
+TEST(WallLayers, EndWhereThoseOfAnotherBodyGoOn)
+{
+    const auto slab = [](const std::string& low, const std::string& size) {
+        return "<drawbox><boxfill>solid</boxfill><point " + low + " /><size " + size +
+               " /></drawbox>";
+    };
+    std::array<double, 2> count{};
+    for (const bool relaxes : {false, true})
+    {
+        const Result made = make(
+            case_of(R"(<setmkbound mk="0" />)" +
+                        slab(R"(x="0" y="0" z="-0.025")", R"(x="1.2" y="0.8" z="0.1")") +
+                        R"(<setmkbound mk="1" />)" +
+                        slab(R"(x="-0.025" y="0" z="0")", R"(x="0.1" y="0.8" z="0.6")") +
+                        slab(R"(x="0" y="-0.025" z="0")", R"(x="1.2" y="0.1" z="0.6")") +
+                        slab(R"(x="0" y="0.725" z="0")", R"(x="1.2" y="0.1" z="0.6")"),
+                    fmt::format(R"(<bodyfitted boundary="mdbc"><relax active="{}" /></bodyfitted>)",
+                                relaxes)));
+        ASSERT_EQ(made.code, 0) << made.output;
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+        {
+            if (made.cloud.mk[i] != first_bound) continue;
+            ++count[relaxes ? 1 : 0];
+            EXPECT_GT(made.cloud.positions[i].x, 0.075 - dp);
+            EXPECT_GT(made.cloud.positions[i].y, 0.075 - dp);
+        }
+    }
+    EXPECT_GT(count[0], 500);
+    EXPECT_NEAR(count[1] / count[0], 1, 0.2);
+}
+
+/// Shells that thicken a tube inwards are left out for layers behind it: there is more room for
+/// fluid than on the lattice, and a warning says how much more there is.
+TEST(LatticeFluid, IsComparedWithThatBesideFittedWalls)
+{
+    const auto tube = [](const std::string& shells)
+    {
+        return make(case_of(
+            R"(<setdrawmode mode="face" /><setmkbound mk="0" /><drawcylinder radius="0.4" mask="2"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.9" />)" +
+                shells +
+                R"(</drawcylinder><setmkfluid mk="0" /><fillbox x="0.6" y="0.5" z="0.4"><modefill>void</modefill><point x="0" y="-0.1" z="-0.1" /><size x="1.2" y="1.2" z="0.7" /></fillbox>)",
+            R"(<bodyfitted boundary="mdbc" />)"));
+    };
+    const std::string said = "on the lattice, as GenCase draws the case, it has ";
+    const Result made = tube(R"(<layers vdp="0,-1,-2" />)");
+    ASSERT_EQ(made.code, 0) << made.output;
+    const std::size_t at = made.log.find(said);
+    ASSERT_NE(at, std::string::npos) << made.log;
+    const double on_lattice = std::stod(made.log.substr(at + said.size()));
+    EXPECT_GT(on_lattice, 500);
+    EXPECT_GT(static_cast<double>(made.fluid().size()), 1.5 * on_lattice);
+    const Result box = make(case_of(tank + water, "<bodyfitted />"));
+    EXPECT_FALSE(contains(box.log, said)) << box.log;
+}
+
+/// Fluid drawn a little into the floor of a case whose lattice does not move, as a pile stands on
+/// it: its lowest row stayed between the surface and the first layer.
+TEST(DrawnFluid, StandsBeforeTheLayersOfAWallThatItIsDrawnInto)
+{
+    for (const double top : {0.01, 0.02, 0.024})
+    {
+        const Result made = make(case_of(
+            fmt::format(
+                R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="-0.2" y="-0.2" z="-0.3" /><size x="1.6" y="1.4" z="{}" /></drawbox>
+<setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="1" y="0.8" z="0.1" /><size x="0.1" y="0.1" z="0.4" /></drawbox>
+<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="0.8" y="0.6" z="0.4" /></drawbox>)",
+                0.3 + top),
+            R"(<bodyfitted mkbound="1" boundary="mdbc" />)"));
+        ASSERT_EQ(made.code, 0) << made.output;
+        ASSERT_FALSE(contains(made.output, "Lattice moved"));
+        double lowest = 1e9;
+        for (const Vec3& p : made.fluid()) lowest = std::min(lowest, p.z);
+        EXPECT_GT(lowest, top + 0.2 * dp) << top;
+        EXPECT_LT(lowest, top + 0.8 * dp) << top;
     }
 }
 
