@@ -404,6 +404,8 @@ struct DrawOp
     /// Of shells drawn by `layers vdp`: the shape itself, which those of a command share; else
     /// null.
     std::shared_ptr<const Shape> surface{};
+    /// The innermost of shells that thicken a box, a sphere or a cylinder inwards; else null.
+    std::shared_ptr<const Shape> inner_surface{};
     std::size_t shells = 0; ///< of `layers vdp`, instead of which the shape itself is drawn
 };
 

@@ -22,6 +22,7 @@
 #include "particles/off_lattice_particles.h"
 #include "particles/simulation_domain.h"
 #include "scene/part_colours.h"
+#include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
 #include "walls/lattice_shift.h"
 
@@ -192,6 +193,8 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
                                        run.limit);
                   expect_metres(made.scene, run.threads);
+                  for (std::string& w : draw_shells_around_fluid(made.scene, run.threads, made.def))
+                      made.def.hints.push_back(std::move(w));
                   if (const LatticeMove move = lattice_move(made.scene, run.threads);
                       move.shift != Vec3{})
                   {

@@ -120,9 +120,12 @@ void draw_box(Program& p, const Element& e)
         make_box(corner, size, sides, is_solid, layers_dp, p.def.grid.dp);
     if (!layers.empty())
         p.surface = p.surface_of(make_box(corner, size, sides, is_solid, {}, p.def.grid.dp)[0]);
+    if (!layers.empty() && layers.back().dp < 0)
+        p.inner_surface = p.surface_of(
+            make_box(corner, size, sides, is_solid, {layers.back().dp}, p.def.grid.dp)[0]);
     for (std::size_t i = 0; i < polyhedra.size(); ++i)
         p.add_layer(e, std::move(polyhedra[i]), layers.empty() || layers[i].is_shown);
-    p.surface = nullptr;
+    p.surface = p.inner_surface = nullptr;
     if (p.state.mk_next_auto && leaves_one_out) p.take_next_mk(e);
 }
 

@@ -185,7 +185,8 @@ void Program::add_whole(const Element& e, Command what)
                        shared_state,
                        std::move(what),
                        commands_run,
-                       state.mk_next_auto ? nullptr : surface});
+                       state.mk_next_auto ? nullptr : surface,
+                       state.mk_next_auto ? nullptr : inner_surface});
 }
 
 std::uint32_t Program::count_file_parts(const Element& e, const MeshFileOp& op) const

@@ -103,6 +103,7 @@ struct Program
     void add_layer(const Element& e, PolyhedronOp polyhedron, bool is_shown);
     /// The shape whose shells are added next, and no shape after the last.
     std::shared_ptr<const Shape> surface;
+    std::shared_ptr<const Shape> inner_surface; ///< DrawOp::inner_surface, likewise
     /// The same of a polyhedron, under the current matrix.
     std::shared_ptr<const Shape> surface_of(PolyhedronOp polyhedron) const;
     /// throws CaseError where it is not above 0

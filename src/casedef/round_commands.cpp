@@ -79,8 +79,14 @@ void draw_sphere(Program& p, const Element& e)
         else
             p.surface = std::make_shared<const Shape>(
                 SphereOp{op.center, radius, {0}, {0}, {p.moved_cube(center, radius)}});
+        if (!layers.empty() && layers.back().dp < 0)
+        {
+            const double inner = radius + layers.back().dp * p.def.grid.dp;
+            p.inner_surface = std::make_shared<const Shape>(
+                SphereOp{op.center, inner, {0}, {0}, {p.moved_cube(center, inner)}});
+        }
         p.add(e, std::move(op));
-        p.surface = nullptr;
+        p.surface = p.inner_surface = nullptr;
     }
 }
 
@@ -117,8 +123,15 @@ void draw_cylinder(Program& p, const Element& e)
         shape.layers = {{op.p0, op.p1, radius, true}};
         p.surface = std::make_shared<const Shape>(std::move(shape));
     }
+    if (!layers.empty() && layers.back().dp < 0)
+    {
+        CylinderOp inner = op;
+        inner.layers = {op.layers.back()};
+        inner.layers[0].is_shown = true;
+        p.inner_surface = std::make_shared<const Shape>(std::move(inner));
+    }
     p.add(e, std::move(op));
-    p.surface = nullptr;
+    p.surface = p.inner_surface = nullptr;
 }
 
 void draw_ellipsoid(Program& p, const Element& e)

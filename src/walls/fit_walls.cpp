@@ -11,6 +11,7 @@
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
 #include "walls/fit_shape.h"
+#include "walls/fluid_boxes.h"
 #include "walls/lost_layers.h"
 #include "walls/stacked_shells.h"
 #include "walls/step_surfaces.h"
@@ -246,82 +247,6 @@ bool has_layers(const FitDef& fit)
     return (fit.all && has(*fit.all)) ||
            std::any_of(fit.of_mk.begin(), fit.of_mk.end(),
                        [&](const auto& of_mk) { return has(of_mk.second); });
-}
-
-Box3 box_of(const ShapeMesh& shape)
-{
-    Box3 box;
-    for (const Vec3& v : shape.soup.vertices) box.add(v);
-    return box;
-}
-
-/// Fluid that comes in lies in the wall: it will be a step before it.
-Box3 moved_in(const Box3& box, const Vec3& way, const LatticeGrid& grid)
-{
-    const Vec3 step = (2 * grid.dp) * way;
-    return {box.min + step, box.max + step};
-}
-
-/// A box about a place in fluid: of a seed the place alone.
-Box3 box_about(const Vec3& seed)
-{
-    Box3 box;
-    box.add(seed);
-    return box;
-}
-
-/// The fluid of a case: the seeds of its fills, the boxes of its fluid shapes, and its inlets.
-std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
-{
-    const InOutZones& inout = scene.def->solver.inout;
-    std::vector<Box3> out;
-    for (const SceneStep& step : scene.steps)
-    {
-        if (step.combination || step.draw->state->mk.kind != MkKind::Fluid) continue;
-        if (const auto* edit = std::get_if<Edit>(&step.draw->what))
-        {
-            if (const auto* fill = std::get_if<FillOp>(edit)) out.push_back(box_about(fill->seed));
-            if (const auto* fill = std::get_if<CavityFillOp>(edit))
-                out.push_back(box_about(fill->seed));
-        }
-        if (step.shape() == nullptr) continue;
-        for (const ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
-            if (const Box3 box = box_of(shape); !box.is_empty())
-            {
-                const auto inlet = inout.fluids.find(step.draw->state->mk.mk);
-                out.push_back(inlet == inout.fluids.end()
-                                  ? box
-                                  : moved_in(box, inlet->second, scene.def->grid));
-            }
-    }
-    for (std::size_t z = 0; z < inout.boxes.size(); ++z)
-        if (inout.ways[z] != Vec3{})
-            out.push_back(moved_in(inout.boxes[z], inout.ways[z], scene.def->grid));
-    return out;
-}
-
-/// Middles of fluid by which the sides of a body's walls are chosen: not of fluid that surrounds
-/// the body, in whose middle it stands.
-std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& scene,
-                                  const DrawOp& draw, int threads)
-{
-    if (fluid.empty()) return {};
-    Box3 body;
-    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
-        if (const Box3 box = box_of(shape); !box.is_empty())
-            for (const Vec3& corner : {box.min, box.max}) body.add(corner);
-    const LatticeGrid& grid = scene.def->grid;
-    const auto surrounds = [&](const Box3& box, int axis) {
-        return box.min[axis] < body.min[axis] - grid.dp && box.max[axis] > body.max[axis] + grid.dp;
-    };
-    std::vector<Vec3> out;
-    for (const Box3& box : fluid)
-    {
-        const Vec3 middle = 0.5 * (box.min + box.max);
-        if (!body.has(middle, 0) || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
-            out.push_back(middle);
-    }
-    return out;
 }
 
 /// Warns of layers whose side no fluid decides. Closed bodies in the midst of fluid are dry inside.

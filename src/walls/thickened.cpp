@@ -89,20 +89,21 @@ std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid
 std::vector<Vec3> moves_of_vertices(const SurfaceMesh& mesh, const std::vector<double>& outwards)
 {
     std::vector<Quadric> planes(mesh.vertices.size());
-    std::vector<double> most(mesh.vertices.size(), 0);
+    std::vector<double> farthest(mesh.vertices.size(), 0);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         for (const std::uint32_t v : mesh.facets[f])
         {
             planes[v].add_plane(mesh.normals[f], outwards[f]);
-            most[v] = std::max(most[v], outwards[f]);
+            farthest[v] = std::max(farthest[v], outwards[f]);
         }
     std::vector<Vec3> out(mesh.vertices.size());
     for (std::size_t v = 0; v < out.size(); ++v)
     {
-        if (!(most[v] > 0)) continue;
+        if (!(farthest[v] > 0)) continue;
         out[v] = planes[v].least_point();
         const double length = norm(out[v]);
-        if (length > most_mitre * most[v]) out[v] = (most_mitre * most[v] / length) * out[v];
+        if (length > most_mitre * farthest[v])
+            out[v] = (most_mitre * farthest[v] / length) * out[v];
     }
     return out;
 }
