@@ -31,16 +31,19 @@ constexpr double most_mitre = 2;
 /// Where the thickness is looked for: from the middle of a facet towards its corners.
 constexpr double off_middle = 0.6;
 
-double mean_thickness(const SurfaceMesh& mesh)
+/// Whether a surface has so little volume for its area that half of it may be thin.
+bool may_be_plate(const TriangleSoup& soup, double dp)
 {
     double volume = 0;
     double area = 0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    for (std::size_t f = 0; f < soup.size(); ++f)
     {
-        volume += dot(mesh.vertices[mesh.facets[f][0]], mesh.normals[f]) * mesh.areas[f] / 3;
-        area += mesh.areas[f];
+        const Vec3* c = &soup.vertices[3 * f];
+        const Vec3 across = cross(c[1] - c[0], c[2] - c[0]);
+        volume += dot(c[0] - soup.vertices[0], across) / 6;
+        area += norm(across) / 2;
     }
-    return area > 0 ? 2 * std::abs(volume) / area : 0;
+    return 2 * std::abs(volume) < no_plate_dp * dp * area;
 }
 
 /// Per facet how thick the body is behind it, metres; infinite where it is not thin, and in 2D
@@ -125,8 +128,7 @@ bool may_thicken(const CaseDef& def, std::uint16_t mk)
 
 double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 {
-    const double mean = mean_thickness(mesh);
-    if (!(mean > 0 && mean < no_plate_dp * grid.dp)) return 0;
+    if (mesh.facets.empty() || !may_be_plate(soup_of(mesh), grid.dp)) return 0;
     const std::vector<double> thickness = thicknesses(mesh, grid, threads);
     std::vector<double> outwards(mesh.facets.size(), 0);
     double thin = 0;
@@ -150,7 +152,7 @@ double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 
 double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
 {
-    if (!shape.is_solid || shape.soup.vertices.empty()) return 0;
+    if (!shape.is_solid || shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp)) return 0;
     MeshReport report;
     SurfaceMesh mesh = repair_mesh(shape.soup,
                                    {.dp = grid.dp,
