@@ -14,6 +14,7 @@
 #include "lattice/mesh_units.h"
 #include "meshes/outline.h"
 #include "scene/near_domain.h"
+#include "walls/fluid_boxes.h"
 #include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
@@ -68,6 +69,8 @@ public:
         coarse.meshes = scene_.meshes;
         expect_particles_fit(path, coarse, def_, options_.threads);
         expect_metres(scene_, options_.threads);
+        for (std::string& w : draw_shells_around_fluid(scene_, options_.threads, def_))
+            def_.hints.push_back(std::move(w));
         out_.definition = path;
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;
