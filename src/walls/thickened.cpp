@@ -1,4 +1,7 @@
 #include "walls/thickened.h"
+
+#include "fppg/error.h"
+
 #include "core/parallel.h"
 #include "meshes/facing_distance.h"
 #include "meshes/measure_facets.h"
@@ -12,6 +15,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace fppg
 {
@@ -22,6 +27,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Thinner, the layers half a step behind both sides are one, dp.
 constexpr double one_layer_dp = 1 + merge_dp;
 constexpr double two_layers_dp = 2;
+constexpr double least_dp = 1e-6; ///< of sides that lie on each other
 /// Of the surface, where the rest is the rim of a plate, or thicker parts that it is joined to.
 constexpr double least_share = 0.5;
 /// Bodies of more volume for their surface are no plates, dp: that of a plate is its thickness.
@@ -79,7 +85,7 @@ std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid
                 // Through round shells the way along an axis is longer.
                 const Vec3& n = mesh.normals[f];
                 const ClosestPoint other = query.closest_point(at - through * n, reach);
-                found[c] = dot(at - other.point, n);
+                found[c] = std::max(least_dp * grid.dp, dot(at - other.point, n));
             }
             std::sort(found.begin(), found.end());
             out[f] = found[1];
@@ -107,6 +113,49 @@ std::vector<Vec3> moves_of_vertices(const SurfaceMesh& mesh, const std::vector<d
         const double length = norm(out[v]);
         if (length > most_mitre * farthest[v])
             out[v] = (most_mitre * farthest[v] / length) * out[v];
+    }
+    return out;
+}
+
+/// A slab 2 dp thick about a solid without thickness, as a box of size 0 along one axis; empty for
+/// every other surface.
+TriangleSoup slab_about(const TriangleSoup& soup, double dp)
+{
+    constexpr double flat = 1e-9;
+    const auto area_normal = [&](std::size_t f)
+    {
+        const Vec3* c = &soup.vertices[3 * f];
+        return cross(c[1] - c[0], c[2] - c[0]);
+    };
+    Vec3 normal;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+        if (const Vec3 n = area_normal(f); norm(n) > norm(normal)) normal = n;
+    if (!(norm(normal) > flat * dp * dp)) return {};
+    normal = normal / norm(normal);
+    TriangleSoup out;
+    std::map<std::array<double, 6>, int> edges; // of the facets of one side, as they run
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const Vec3* c = &soup.vertices[3 * f];
+        if (std::abs(dot(c[0] - soup.vertices[0], normal)) > flat * dp) return {};
+        if (!(dot(area_normal(f), normal) > flat * dp * dp)) continue;
+        for (const std::size_t k : {0, 1, 2}) out.vertices.push_back(c[k] + dp * normal);
+        for (const std::size_t k : {0, 2, 1}) out.vertices.push_back(c[k] - dp * normal);
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const Vec3& a = c[k];
+            const Vec3& b = c[(k + 1) % 3];
+            ++edges[{a.x, a.y, a.z, b.x, b.y, b.z}];
+        }
+    }
+    for (const auto& [e, count] : edges)
+    {
+        const Vec3 a{e[0], e[1], e[2]};
+        const Vec3 b{e[3], e[4], e[5]};
+        if (edges.contains({b.x, b.y, b.z, a.x, a.y, a.z})) continue;
+        const std::array<Vec3, 4> rim{a - dp * normal, b - dp * normal, b + dp * normal,
+                                      a + dp * normal};
+        for (const std::size_t k : {0, 1, 2, 0, 2, 3}) out.vertices.push_back(rim[k]);
     }
     return out;
 }
@@ -153,6 +202,13 @@ double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
 {
     if (!shape.is_solid || shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp)) return 0;
+    if (TriangleSoup slab = slab_about(shape.soup, grid.dp); slab.size() > 0)
+    {
+        shape = {};
+        shape.soup = std::move(slab);
+        shape.is_solid = true;
+        return least_dp * grid.dp;
+    }
     MeshReport report;
     SurfaceMesh mesh = repair_mesh(shape.soup,
                                    {.dp = grid.dp,
@@ -171,6 +227,11 @@ double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
 
 std::string thickened_from(double thickness, double dp)
 {
+    if (thickness <= least_dp * dp)
+        return fmt::format(
+            "it has no thickness, through which fluid goes under mDBC: it is "
+            "thickened to 2 dp, {:.3g} m, evenly to both sides",
+            two_layers_dp * dp);
     return fmt::format(
         "it is {:.3g} m thick, room for one layer of mDBC, through which fluid goes: it is "
         "thickened to 2 dp, {:.3g} m, evenly to both sides. A dp of {:.3g} m has room for two "
@@ -181,9 +242,16 @@ std::string thickened_from(double thickness, double dp)
 std::vector<StepSurface> fitted_surfaces(const Scene& scene, const SceneStep& step, int threads)
 {
     std::vector<StepSurface> out = step_surfaces(scene, step, threads);
-    if (step.draw->state->mk.kind == MkKind::Bound &&
-        may_thicken(*scene.def, step.draw->state->mk.mk))
-        for (StepSurface& surface : out) thicken(scene.def->grid, threads, surface.shape);
+    const MkValue& mk = step.draw->state->mk;
+    if (mk.kind != MkKind::Bound || !may_thicken(*scene.def, mk.mk)) return out;
+    for (StepSurface& surface : out) try
+        {
+            thicken(scene.def->grid, threads, surface.shape);
+        }
+        catch (const GeometryError&) // fitting a wall to it says what is wrong, with its place
+        {
+            return out;
+        }
     return out;
 }
 

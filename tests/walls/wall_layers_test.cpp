@@ -129,8 +129,9 @@ TEST(WallLayers, OfPlatesAndRodsWithRoomForOneAreThickened)
         std::array<double, 2> heights; ///< least and largest of the particles, dp from the middle
     };
     for (const Shape& shape :
-         {Shape{{1.8, 1.5, 0.3 * dp}, {-0.5, 0.5}}, Shape{{1.8, 1.5, 1.59 * dp}, {-0.5, 0.5}},
-          Shape{{1.8, 1.5, 1.7 * dp}, {-0.35, 0.35}}, Shape{{1.8, dp, dp}, {-0.5, 0.5}}})
+         {Shape{{1.8, 1.5, 0}, {-0.5, 0.5}}, Shape{{1.8, 1.5, 0.3 * dp}, {-0.5, 0.5}},
+          Shape{{1.8, 1.5, 1.59 * dp}, {-0.5, 0.5}}, Shape{{1.8, 1.5, 1.7 * dp}, {-0.35, 0.35}},
+          Shape{{1.8, dp, dp}, {-0.5, 0.5}}})
     {
         Drawing drawing = layered();
         drawing.box({-0.93, -0.77, -0.03}, shape.size);
