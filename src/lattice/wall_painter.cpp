@@ -91,6 +91,7 @@ void WallPainter::add(FittedDraw&& draw)
         layer.line = walls.bodies[body].line;
         layer.name += " of " + walls.bodies[body].name;
         layer.mk = mk;
+        note_layered_wall(layer);
         walls.bodies.push_back(std::move(layer));
     }
     const std::size_t first = walls.particles.size();
@@ -192,7 +193,6 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&&
     {
         extent_ = std::make_unique<const InsideTest>(std::move(extent), threads_);
         extent_->query().prepare_nearest();
-        find_layered_walls();
     }
     const std::vector<FittedBody>& bodies = field_->walls.bodies;
     is_spared_.assign(bodies.size(), 0);
@@ -227,19 +227,15 @@ bool WallPainter::is_in_extent(const Vec3& p) const
            extent_->query().closest_point(p).distance < on_face_dp * field_->grid.dp;
 }
 
-void WallPainter::find_layered_walls()
+void WallPainter::note_layered_wall(const FittedBody& layer)
 {
-    layered_walls_.clear();
-    for (const FittedBody& layer : field_->walls.bodies)
+    if (layer.wall == nullptr || layer.mesh.facets.empty()) return; // shared by two sides
+    if (layered_walls_.empty() || layered_walls_.back().wall != layer.wall.get())
     {
-        if (!layer.is_layer() || layer.wall == nullptr) continue;
-        if (layered_walls_.empty() || layered_walls_.back().wall != layer.wall.get())
-        {
-            layered_walls_.push_back({{}, layer.wall.get(), {}});
-            for (const Vec3& v : layer.wall->mesh().vertices) layered_walls_.back().box.add(v);
-        }
-        layered_walls_.back().depths.push_back(layer.depth);
+        layered_walls_.push_back({{}, layer.wall.get(), {}});
+        for (const Vec3& v : layer.wall->mesh().vertices) layered_walls_.back().box.add(v);
     }
+    layered_walls_.back().depths.push_back(layer.depth);
 }
 
 /// Whether a place is behind the surface of a wall and near to a layer of it that the draw does not
@@ -336,6 +332,7 @@ void WallPainter::reset()
     is_cut_.clear();
     openings_.clear();
     hollowed_by_.clear();
+    layered_walls_.clear();
 }
 
 /// How much of a hollow body fills gave the mk of its wall.

@@ -84,7 +84,7 @@ private:
     };
 
     bool is_in_extent(const Vec3& p) const;
-    void find_layered_walls();
+    void note_layered_wall(const FittedBody& layer);
     bool is_before_layer(const Vec3& p) const;
     bool is_spared(std::uint32_t particle) const;
     double filled_share(const Hollow& hollow) const;
@@ -110,7 +110,7 @@ private:
     std::vector<std::uint16_t> spared_mks_;    ///< absolute, of the bodies that the draw hollows
     std::unique_ptr<const InsideTest> extent_; ///< of the draw; null: unknown
     std::vector<char> is_of_wall_;             ///< per absolute mk
-    std::vector<LayeredWall> layered_walls_;   ///< where the draw has an extent
+    std::vector<LayeredWall> layered_walls_;
 };
 
 } // namespace fppg

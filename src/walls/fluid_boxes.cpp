@@ -27,6 +27,15 @@ Box3 moved_in(const Box3& box, const Vec3& way, const LatticeGrid& grid)
     return {box.min + step, box.max + step};
 }
 
+Box3 box_of(const Scene& scene, const DrawOp& draw, int threads)
+{
+    Box3 out;
+    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
+        if (const Box3 box = box_of(shape); !box.is_empty())
+            for (const Vec3& corner : {box.min, box.max}) out.add(corner);
+    return out;
+}
+
 /// A box about a place in fluid: of a seed the place alone.
 Box3 box_about(const Vec3& seed)
 {
@@ -70,10 +79,7 @@ std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& s
                                   const DrawOp& draw, int threads)
 {
     if (fluid.empty()) return {};
-    Box3 body;
-    for (const ShapeMesh& shape : surfaces_of(scene, draw, PartsAs::One, threads))
-        if (const Box3 box = box_of(shape); !box.is_empty())
-            for (const Vec3& corner : {box.min, box.max}) body.add(corner);
+    const Box3 body = box_of(scene, draw, threads);
     const LatticeGrid& grid = scene.def->grid;
     const auto surrounds = [&](const Box3& box, int axis) {
         return box.min[axis] < body.min[axis] - grid.dp && box.max[axis] > body.max[axis] + grid.dp;
@@ -98,10 +104,7 @@ std::vector<std::string> draw_shells_around_fluid(const Scene& scene, int thread
     for (DrawOp& op : def.ops)
     {
         if (!is_left_out(op)) continue;
-        Box3 body;
-        for (const ShapeMesh& shape : surfaces_of(scene, op, PartsAs::One, threads))
-            if (const Box3 box = box_of(shape); !box.is_empty())
-                for (const Vec3& corner : {box.min, box.max}) body.add(corner);
+        const Box3 body = box_of(scene, op, threads);
         const std::vector<Vec3> places = places_in_fluid(fluid, scene, op, threads);
         if (std::none_of(places.begin(), places.end(),
                          [&](const Vec3& p) { return body.has(p, 0); }))

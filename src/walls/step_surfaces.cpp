@@ -3,6 +3,7 @@
 #include "fppg/boolean.h"
 
 #include "walls/boolean_wall.h"
+#include "walls/thickened.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +12,8 @@
 namespace fppg
 {
 
-std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads)
+std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads,
+                                       bool thickens)
 {
     if (!step.combination && step.shape() == nullptr) return {};
     if (!step.combination) mesh_of(scene, *step.draw, threads); // says what is wrong with the file
@@ -23,11 +25,16 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
         {
             std::vector<StepSurface> out;
             for (ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
+            {
+                if (thickens) thicken(scene.def->grid, threads, shape);
                 out.push_back({std::move(shape), {}});
+            }
             return out;
         }
-        const CombinedParts combined =
+        CombinedParts combined =
             combine_parts(parts, step.combination->boolean->tree, scene.def->grid.dp, threads);
+        if (thickens && !parts[0].is_surface)
+            thicken(scene.def->grid, threads, combined.result.mesh);
         StepSurface out;
         out.shape.soup = soup_of(combined.result.mesh);
         for (const std::uint32_t owner : combined.result.owners)

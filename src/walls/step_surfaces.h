@@ -23,8 +23,10 @@ struct StepSurface
 /// The true surfaces that a step of a scene leaves: those of its shape, with all parts of
 /// setmknextauto as one body, or that of its combination. None for all other steps.
 ///
-/// throws  IoError, GeometryError with the place of the draw
-std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads);
+/// thickens  plates, as walls are fitted to them (fitted_surfaces())
+/// throws    IoError, GeometryError with the place of the draw
+std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step, int threads,
+                                       bool thickens = false);
 
 /// Whether a step draws boundary particles as a shape or a combination.
 inline bool draws_bound(const SceneStep& step)

@@ -1,7 +1,5 @@
 #include "walls/thickened.h"
 
-#include "fppg/error.h"
-
 #include "core/parallel.h"
 #include "meshes/facing_distance.h"
 #include "meshes/measure_facets.h"
@@ -15,7 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <set>
 #include <utility>
 
 namespace fppg
@@ -133,7 +131,7 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
     if (!(norm(normal) > flat * dp * dp)) return {};
     normal = normal / norm(normal);
     TriangleSoup out;
-    std::map<std::array<double, 6>, int> edges; // of the facets of one side, as they run
+    std::set<std::array<double, 6>> edges; // of the facets of one side, as they run
     for (std::size_t f = 0; f < soup.size(); ++f)
     {
         const Vec3* c = &soup.vertices[3 * f];
@@ -145,10 +143,10 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
         {
             const Vec3& a = c[k];
             const Vec3& b = c[(k + 1) % 3];
-            ++edges[{a.x, a.y, a.z, b.x, b.y, b.z}];
+            edges.insert({a.x, a.y, a.z, b.x, b.y, b.z});
         }
     }
-    for (const auto& [e, count] : edges)
+    for (const std::array<double, 6>& e : edges)
     {
         const Vec3 a{e[0], e[1], e[2]};
         const Vec3 b{e[3], e[4], e[5]};
@@ -229,8 +227,9 @@ std::string thickened_from(double thickness, double dp)
 {
     if (thickness <= least_dp * dp)
         return fmt::format(
-            "it has no thickness, through which fluid goes under mDBC: it is "
-            "thickened to 2 dp, {:.3g} m, evenly to both sides",
+            "it has no thickness and so room for one layer of mDBC, through which fluid goes: it "
+            "is "
+            "thickened to 2 dp, {:.3g} m, evenly to both sides.",
             two_layers_dp * dp);
     return fmt::format(
         "it is {:.3g} m thick, room for one layer of mDBC, through which fluid goes: it is "
@@ -241,18 +240,9 @@ std::string thickened_from(double thickness, double dp)
 
 std::vector<StepSurface> fitted_surfaces(const Scene& scene, const SceneStep& step, int threads)
 {
-    std::vector<StepSurface> out = step_surfaces(scene, step, threads);
     const MkValue& mk = step.draw->state->mk;
-    if (mk.kind != MkKind::Bound || !may_thicken(*scene.def, mk.mk)) return out;
-    for (StepSurface& surface : out) try
-        {
-            thicken(scene.def->grid, threads, surface.shape);
-        }
-        catch (const GeometryError&) // fitting a wall to it says what is wrong, with its place
-        {
-            return out;
-        }
-    return out;
+    return step_surfaces(scene, step, threads,
+                         mk.kind == MkKind::Bound && may_thicken(*scene.def, mk.mk));
 }
 
 } // namespace fppg

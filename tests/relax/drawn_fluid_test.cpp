@@ -332,7 +332,7 @@ TEST(LatticeFluid, IsComparedWithThatBesideFittedWalls)
     ASSERT_EQ(made.code, 0) << made.output;
     const std::size_t at = made.log.find(said);
     ASSERT_NE(at, std::string::npos) << made.log;
-    EXPECT_EQ(std::stoul(made.log.substr(at + said.size())), 407u);
+    EXPECT_EQ(std::stoul(made.log.substr(at + said.size())), 407u); // as GenCase v5.0 has
     EXPECT_NEAR(static_cast<double>(made.fluid().size()), 276, 10);
     const Result box = make(case_of(tank + water, "<bodyfitted />"));
     EXPECT_FALSE(contains(box.log, said)) << box.log;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -114,6 +116,14 @@ TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShareOrTheTwoOfAThickerOne)
             EXPECT_NEAR(p.y, low.y + size.y / 2, size.y / 2 - 0.45 * dp);
             of_upper += p.z > low.z + dp / 2 ? 1 : 0;
         }
+        const std::string said =
+            fmt::format("walls of {} m with fluid on both sides", is_given ? "0.1" : "0.2");
+        drawing.fill({0, 0, 1.5});
+        const Normals all = normals_of(drawing, relaxed(drawing));
+        EXPECT_NE(
+            std::find_if(all.report.warnings.begin(), all.report.warnings.end(),
+                         [&](const std::string& w) { return w.find(said) != std::string::npos; }),
+            all.report.warnings.end());
         if (is_given) continue;
         EXPECT_NEAR(of_upper / static_cast<double>(particles.size()), 0.5, 0.02);
     }
