@@ -10,7 +10,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -21,15 +23,30 @@ namespace
 /// Places nearer than this are one, dp.
 constexpr double same_place = 1e-6;
 
-/// The outermost nodes of the lattice within [low, high] along an axis, metres; empty: none.
-std::optional<std::array<double, 2>> nodes_within(double low, double high, int axis,
-                                                  const LatticeGrid& grid)
+/// A range along an axis, metres.
+using Range = std::array<double, 2>;
+
+/// From one node of an axis to another; nothing where the last comes before the first.
+std::optional<Range> range_of_nodes(double first, double last, int axis, const LatticeGrid& grid)
 {
-    const double first = std::ceil((low - grid.origin[axis]) / grid.dp - same_place);
-    const double last = std::floor((high - grid.origin[axis]) / grid.dp + same_place);
     if (last < first) return std::nullopt;
-    return std::array<double, 2>{grid.origin[axis] + first * grid.dp,
-                                 grid.origin[axis] + last * grid.dp};
+    return Range{grid.origin[axis] + first * grid.dp, grid.origin[axis] + last * grid.dp};
+}
+
+/// The outermost nodes of the lattice within [low, high] along an axis.
+std::optional<Range> nodes_within(double low, double high, int axis, const LatticeGrid& grid)
+{
+    return range_of_nodes(std::ceil((low - grid.origin[axis]) / grid.dp - same_place),
+                          std::floor((high - grid.origin[axis]) / grid.dp + same_place), axis,
+                          grid);
+}
+
+/// The outermost nodes between the nodes that the ends of a body are rounded to, as solid mode
+/// draws it.
+std::optional<Range> nodes_inside(double low, double high, int axis, const LatticeGrid& grid)
+{
+    return range_of_nodes(std::floor((low - grid.origin[axis]) / grid.dp + 0.5) + 1,
+                          std::floor((high - grid.origin[axis]) / grid.dp + 0.5) - 1, axis, grid);
 }
 
 /// The limits of a fill, which takes the nodes strictly inside its snapped box.
@@ -39,7 +56,7 @@ void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
 {
     double& low = box.corner0[axis] <= box.corner1[axis] ? box.corner0[axis] : box.corner1[axis];
     double& high = &low == &box.corner0[axis] ? box.corner1[axis] : box.corner0[axis];
-    const auto nodes = nodes_within(low + grown, high - grown, axis, grid);
+    const std::optional<Range> nodes = nodes_within(low + grown, high - grown, axis, grid);
     if (!nodes) return;
     low = (*nodes)[0] - grid.dp;
     high = (*nodes)[1] + grid.dp;
@@ -55,21 +72,24 @@ PolyhedronOp* body_of(MkKind kind, DrawOp& op)
     return body != nullptr && body->solid != SolidKind::None ? body : nullptr;
 }
 
-/// Moves the ends of a body along an axis to the outermost nodes in it.
+/// Where a body begins and ends along an axis.
+Range extent_of(const PolyhedronOp& body, int axis)
+{
+    Range out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Vec3& v : body.vertices)
+        out = {std::min(out[0], v[axis]), std::max(out[1], v[axis])};
+    return out;
+}
+
+/// Moves the ends of a body along an axis to these nodes of it; to none where there are none.
 ///
 /// may_move  bool(double): whether an end at this place moves
 template <typename MayMove>
-void fit_ends(PolyhedronOp& body, int axis, const LatticeGrid& grid, const MayMove& may_move)
+void fit_ends(PolyhedronOp& body, int axis, const std::optional<Range>& nodes,
+              const LatticeGrid& grid, const MayMove& may_move)
 {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const Vec3& v : body.vertices)
-    {
-        low = std::min(low, v[axis]);
-        high = std::max(high, v[axis]);
-    }
-    const auto nodes = nodes_within(low, high, axis, grid);
     if (!nodes) return;
+    const auto [low, high] = extent_of(body, axis);
     const bool moves_low = may_move(low);
     const bool moves_high = may_move(high);
     for (Vec3& v : body.vertices)
@@ -77,6 +97,28 @@ void fit_ends(PolyhedronOp& body, int axis, const LatticeGrid& grid, const MayMo
         if (moves_low && v[axis] < low + same_place * grid.dp) v[axis] = (*nodes)[0];
         if (moves_high && v[axis] > high - same_place * grid.dp) v[axis] = (*nodes)[1];
     }
+}
+
+/// Lets a body end at the outermost nodes in it along the axes whose nodes were moved. One that
+/// solid mode draws without its surface nodes is then drawn with them, as its ends lie between
+/// nodes and none of those in it are on its surface.
+void end_body(PolyhedronOp& body, const std::array<bool, 3>& is_moved, const LatticeGrid& grid,
+              DrawOp& op)
+{
+    const bool is_solid_mode = op.state->mode == DrawMode::Solid;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const bool moves = is_moved[static_cast<std::size_t>(axis)];
+        if (!moves && (!is_solid_mode || (axis == 1 && grid.is_2d))) continue;
+        const auto [low, high] = extent_of(body, axis);
+        fit_ends(body, axis,
+                 moves ? nodes_within(low, high, axis, grid) : nodes_inside(low, high, axis, grid),
+                 grid, [](double) { return true; });
+    }
+    if (!is_solid_mode) return;
+    auto state = std::make_shared<DrawState>(*op.state);
+    state->mode = DrawMode::Full;
+    op.state = std::move(state);
 }
 
 using Planes = std::array<std::vector<double>, 3>;
@@ -114,18 +156,19 @@ Planes planes_of_walls(const Scene& scene, int threads)
 
 } // namespace
 
-void end_fluid_between_nodes(int axis, CaseDef& def)
+void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, CaseDef& def)
 {
     for (DrawOp& op : def.ops)
     {
         for (const MkKind kind : {MkKind::Fluid, MkKind::Void})
-            if (PolyhedronOp* body = body_of(kind, op))
-                fit_ends(*body, axis, def.grid, [](double) { return true; });
+            if (PolyhedronOp* body = body_of(kind, op)) end_body(*body, is_moved, def.grid, op);
         auto* edit = std::get_if<Edit>(&op.what);
         auto* fill = edit != nullptr ? std::get_if<FillOp>(edit) : nullptr;
         if (fill == nullptr || !fill->region || op.state->mk.kind != MkKind::Fluid) continue;
-        if (auto* box = std::get_if<BoxRegion>(&*fill->region))
-            fit_limits(*box, op.state->box_limit_full ? def.grid.dp : 0, axis, def.grid);
+        auto* box = std::get_if<BoxRegion>(&*fill->region);
+        for (int axis = 0; axis < 3; ++axis)
+            if (box != nullptr && is_moved[static_cast<std::size_t>(axis)])
+                fit_limits(*box, op.state->box_limit_full ? def.grid.dp : 0, axis, def.grid);
     }
 }
 
@@ -156,7 +199,11 @@ void end_fluid_at_walls(const Scene& scene, int threads, CaseDef& def)
         };
         for (DrawOp& op : def.ops)
             if (PolyhedronOp* body = body_of(MkKind::Fluid, op))
-                fit_ends(*body, axis, def.grid, is_at_wall);
+            {
+                const auto [low, high] = extent_of(*body, axis);
+                fit_ends(*body, axis, nodes_within(low, high, axis, def.grid), def.grid,
+                         is_at_wall);
+            }
     }
 }
 

@@ -3,13 +3,15 @@
 #include "fppg/case_def.h"
 #include "fppg/scene.h"
 
+#include <array>
+
 namespace fppg
 {
 
-/// Along an axis whose nodes were moved, lets boxes and fills of fluid, and voids in it, end at the
-/// nodes that lie in them. A node stands for the cell around it: so many nodes fill the volume that
-/// is drawn, not those that ends halfway between nodes are rounded to.
-void end_fluid_between_nodes(int axis, CaseDef& def);
+/// Along the axes whose nodes were moved, lets boxes and fills of fluid, and voids in it, end at
+/// the nodes that lie in them, in solid mode too. A node stands for the cell around it: so many
+/// nodes fill the volume that is drawn, not those that ends halfway between nodes are rounded to.
+void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, CaseDef& def);
 
 /// Lets bodies of fluid that are drawn up to fitted walls end at the last nodes before these. As on
 /// the lattice they would end at the nearest nodes, which are those of a wall there; beside fitted

@@ -250,14 +250,16 @@ void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& sce
     LatticeGrid& grid = def.grid;
     for (const SpanSet& nodes : move.flooded)
         scene.fill_limits.push_back(nodes_beside(nodes, grid, move.shift, threads));
+    std::array<bool, 3> is_moved{};
     for (int axis = 0; axis < 3; ++axis)
     {
         if (move.shift[axis] == 0) continue;
+        is_moved[static_cast<std::size_t>(axis)] = true;
         // A node more: walls at the ends of the domain keep all of their layers.
         grid.origin[axis] += move.shift[axis] - grid.dp;
         ++grid.n[static_cast<std::size_t>(axis)];
-        end_fluid_between_nodes(axis, def);
     }
+    end_fluid_between_nodes(is_moved, def);
 }
 
 } // namespace fppg

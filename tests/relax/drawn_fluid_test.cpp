@@ -360,6 +360,24 @@ TEST(DrawnFluid, StandsBeforeTheLayersOfAWallThatItIsDrawnInto)
     }
 }
 
+/// Solid mode draws no surface nodes. Of a box that ends between nodes of the moved lattice it took
+/// away the outermost rows: three of five particles of water 3 dp deep.
+TEST(DrawnFluid, FillsItsBoxOnAMovedLatticeInSolidModeToo)
+{
+    for (const char* mode : {"solid", "full"})
+    {
+        const Result made = make(case_of(
+            fmt::format(
+                R"(<setdrawmode mode="{}" /><setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.6" z="0.15" /></drawbox>
+<setdrawmode mode="face" /><setmkbound mk="0" /><drawbox><boxfill>all^top</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.6" z="0.5" /></drawbox>)",
+                mode),
+            R"(<bodyfitted boundary="mdbc" />)"));
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_TRUE(contains(made.output, "Lattice moved"));
+        EXPECT_EQ(made.fluid().size(), 20u * 12 * 3) << mode;
+    }
+}
+
 /// A ramp whose sides alone are drawn, open at its ends: at its toe of 34 degrees layers of both
 /// faces come together. They left it out as far as their first one was from its edge, 1.7 dp, and
 /// water came in there.
