@@ -137,7 +137,13 @@ struct FitSettings
     std::vector<double> depths_dp;
     /// The same of sheets for Dbc that stand still with fluid on one side, where `layers` is empty.
     std::vector<double> sheet_depths_dp;
-    Placement place = Placement::Surface;
+    /// Empty: Inside for bodies that the solver moves by the water they displace or by what their
+    /// particles stand for (settle_boundaries()), else Surface.
+    std::optional<Placement> place;
+    /// Inside without being asked for: shapes without an inside have their particles at
+    /// depths_of_open_dp instead.
+    bool may_be_open = false;
+    std::vector<double> depths_of_open_dp;
     /// Of bodies with Placement::Inside: how many sheets of particles through their thickness;
     /// empty: as many as it is dp, rounded.
     std::optional<int> across;

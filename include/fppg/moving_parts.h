@@ -15,4 +15,7 @@ std::set<int> moving_mkbound(const Element& motion);
 /// Absolute mks of what moves or floats.
 std::set<std::uint16_t> mks_that_move(const CaseDef& def);
 
+/// Whether an absolute mk is a floating body.
+bool floats(const CaseDef& def, std::uint16_t mk);
+
 } // namespace fppg

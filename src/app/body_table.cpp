@@ -30,7 +30,9 @@ const FittedBody* solid_of(const FittedWalls& walls, const ParticleBlock& block)
         if (found != nullptr) return nullptr;
         found = &body;
     }
-    if (found == nullptr || found->measures.filled < filled_body || !found->facet_mk.empty() ||
+    if (found == nullptr || found->measures.filled < filled_body ||
+        std::any_of(found->facet_mk.begin(), found->facet_mk.end(),
+                    [&](std::uint16_t mk) { return mk != block.mk; }) ||
         !(found->measures.volume > 0))
         return nullptr;
     return found;
@@ -75,6 +77,19 @@ double density_of(const CaseDef& def, const ParticleBlock& block, double rhop0)
 }
 
 } // namespace
+
+std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& walls,
+                                        const ParticleBlock& block, std::string& why_not)
+{
+    std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
+    if (shape || scene.def->grid.is_2d) return shape;
+    const FittedBody* body = solid_of(walls, block);
+    if (body == nullptr) return std::nullopt;
+    shape = body_of_facets(soup_of(body->mesh));
+    shape->shape =
+        fmt::format("<{}> of line {} and what is combined with it", body->name, body->line);
+    return shape;
+}
 
 ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock& block,
                             bool are_cubes)
@@ -133,8 +148,7 @@ void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticle
         const FittedBody* body = solid_of(walls, block);
         if (body == nullptr || block.type == ParticleType::Fluid || block.count == 0) continue;
         std::string why_not;
-        std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
-        if (!shape) shape = body_of_facets(soup_of(body->mesh));
+        const std::optional<ExactBody> shape = shape_of_block(scene, walls, block, why_not);
         const ExactBody found = body_of_particles(particles, block, body->is_inside);
         const double density = density_of(def, block, constants.rhop0);
         rows.push_back(row_of(fmt::format("{}", block.mk_type), "shape", *shape, density));

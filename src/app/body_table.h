@@ -7,8 +7,18 @@
 #include "app/run_log.h"
 #include "shapes/moments.h"
 
+#include <optional>
+#include <string>
+
 namespace fppg
 {
+
+/// The shape that a block is drawn by: exact_body(), else the surface of the one fitted solid that
+/// it consists of, as combinations of draws are.
+///
+/// why_not  filled with a sentence when nothing is returned
+std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& walls,
+                                        const ParticleBlock& block, std::string& why_not);
 
 /// The volume, the centre and the inertia at density 1 of the particles of a block, by the share of
 /// dp^3 or the volume that each stands for.

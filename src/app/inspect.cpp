@@ -19,6 +19,7 @@
 #include "meshes/facing_distance.h"
 #include "meshes/mesh_formats.h"
 #include "meshes/mesh_query.h"
+#include "walls/thickened.h"
 
 namespace fppg
 {
@@ -138,6 +139,11 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
                                                            FacetSide::Behind, reach)};
         },
         64);
+    SurfaceMesh walls = mesh;
+    LatticeGrid grid;
+    grid.dp = found.options.dp;
+    found.is_thickened =
+        found.report.is_watertight && thicken(grid, found.options.threads, walls) > 0;
     std::size_t thin = 0;
     Thickness least;
     for (const Thickness& sample : samples)
@@ -394,11 +400,12 @@ void write_particles(const Inspection& found, const Lengths& in, const Line& lin
     const auto share = [&](std::size_t layers) { return 100 * found.share_with_layers(layers); };
     line("  layers (mDBC)",
          fmt::format(
-             "room for {} {}; 3 (coefh 1) behind {:.3g} % of the area, 4 (coefh 1.2) "
+             "room for {} {}{}; 3 (coefh 1) behind {:.3g} % of the area, 4 (coefh 1.2) "
              "behind {:.3g} %",
              least,
              least == Inspection::most_layers ? "or more everywhere" : "at the thinnest place",
-             share(3), share(4)));
+             found.is_thickened ? ", so walls are thickened to 2 dp, for 2" : "", share(3),
+             share(4)));
 }
 
 } // namespace
@@ -542,6 +549,7 @@ std::string to_json(const Inspection& found)
             json["layers"]["share_of_area"] = Json::array();
             for (const double share : found.layer_shares)
                 json["layers"]["share_of_area"].push_back(share);
+            json["layers"]["is_thickened"] = found.is_thickened;
         }
     }
     json["warnings"] = found.file_warnings;

@@ -82,6 +82,7 @@ struct Inspection
     /// most_layers: the share of the area for each number.
     static constexpr std::size_t most_layers = 4;
     std::array<double, most_layers + 1> layer_shares{};
+    bool is_thickened = false; ///< to 2 dp under mDBC, as it has room for one layer (thicken())
     /// The share of the area with room for so many layers or more.
     double share_with_layers(std::size_t layers) const
     {

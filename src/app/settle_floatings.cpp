@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 
+#include "app/body_table.h"
 #include "app/fit_check.h"
 #include "particles/initials.h"
 
@@ -201,7 +202,7 @@ SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
         settled.of_particles = body;
         const bool is_wanted =
             exact.all || std::find(exact.mk.begin(), exact.mk.end(), block.mk) != exact.mk.end();
-        const std::optional<ExactBody> shape = exact_body(scene, block.mk, settled.why_not);
+        const std::optional<ExactBody> shape = shape_of_block(scene, walls, block, settled.why_not);
         if (!shape || f == nullptr)
         {
             if (is_wanted)

@@ -13,6 +13,33 @@
 namespace fppg
 {
 
+/// Visits the children of an element that the solver reads: those that are not switched off.
+template <typename Visit>
+void for_each_read(const Element& e, const Visit& visit)
+{
+    for (const Element& child : e.children)
+    {
+        const std::string* active = child.find_attribute("active");
+        const bool is_off = active != nullptr && (*active == "false" || *active == "0");
+        if (child.kind == Element::Kind::Tag && !child.name.starts_with('_') && !is_off)
+            visit(child);
+    }
+}
+
+/// Visits what the solver reads of a list in `<special>`: inout, flexstrucs, ...
+template <typename Visit>
+void for_each_special(const std::vector<Element>& execution, std::string_view list,
+                      const Visit& visit)
+{
+    for (const Element& special : execution)
+        if (special.kind == Element::Kind::Tag && special.name == "special")
+            for_each_read(special,
+                          [&](const Element& e)
+                          {
+                              if (e.name == list) for_each_read(e, visit);
+                          });
+}
+
 /// What Case.xml takes over from `<execution>`: its children without those that this program writes
 /// itself, so that a generated Case.xml is a valid definition again.
 ///

@@ -196,6 +196,10 @@ private:
         {
             if (e.find_attribute("across") != nullptr)
                 read_.fail(e, "attribute across is for place=\"inside\" only");
+            // What is asked for on the surface keeps bodies there.
+            for (const char* surface : {"place", "clearance", "plates", "layers", "side"})
+                if (e.find_attribute(surface) != nullptr && !is_word(e, surface, "auto"))
+                    s.place = Placement::Surface;
             return;
         }
         s.place = Placement::Inside;
@@ -568,7 +572,7 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
     if ((choice == FitChoice::On || choice == FitChoice::Raw) && !def.fit.all)
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
-    settle_boundaries(def);
+    settle_boundaries(read, def);
     // Fluid that touches fitted walls is relaxed with them unless the case says otherwise.
     if (def.fluid_bands.empty() && !def.fit.is_empty()) def.fluid_bands.emplace_back();
     if (choice != FitChoice::Raw) return;

@@ -1,5 +1,6 @@
 #include "casedef/inout_zones.h"
 
+#include "casedef/execution.h"
 #include "core/finite_number.h"
 #include "core/text.h"
 #include "core/transforms.h"
@@ -134,18 +135,6 @@ bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
     return true;
 }
 
-template <typename Visit>
-void for_each_child(const Element& e, const Visit& visit)
-{
-    for (const Element& child : e.children)
-    {
-        const std::string* active = child.find_attribute("active");
-        const bool is_off = active != nullptr && (*active == "false" || *active == "0");
-        if (child.kind == Element::Kind::Tag && !child.name.starts_with('_') && !is_off)
-            visit(child);
-    }
-}
-
 } // namespace
 
 InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnings)
@@ -154,13 +143,13 @@ InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnin
     const auto read_zone = [&](const Element& zone)
     {
         bool is_known = false;
-        for_each_child(zone,
-                       [&](const Element& of)
-                       {
-                           if (of.name != "zone2d" && of.name != "zone3d") return;
-                           for_each_child(of, [&](const Element& shape)
-                                          { is_known = add_shape(shape, def, zones) || is_known; });
-                       });
+        for_each_read(zone,
+                      [&](const Element& of)
+                      {
+                          if (of.name != "zone2d" && of.name != "zone3d") return;
+                          for_each_read(of, [&](const Element& shape)
+                                        { is_known = add_shape(shape, def, zones) || is_known; });
+                      });
         if (!is_known)
             warnings.push_back(fmt::format(
                 "{}:{}: <{}>: where it lets fluid in or out is not known, expected <zone2d> or "
@@ -169,20 +158,11 @@ InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnin
                 "body-fitted walls is moved off the lattice.",
                 def.file, zone.line, zone.name));
     };
-    for (const Element& special : def.execution)
-    {
-        if (special.kind != Element::Kind::Tag || special.name != "special") continue;
-        for_each_child(special,
-                       [&](const Element& inout)
-                       {
-                           if (inout.name != "inout") return;
-                           for_each_child(inout,
-                                          [&](const Element& zone)
-                                          {
-                                              if (zone.name == "inoutzone") read_zone(zone);
-                                          });
-                       });
-    }
+    for_each_special(def.execution, "inout",
+                     [&](const Element& zone)
+                     {
+                         if (zone.name == "inoutzone") read_zone(zone);
+                     });
     return zones;
 }
 

@@ -208,4 +208,15 @@ std::set<std::uint16_t> mks_that_move(const CaseDef& def)
     return out;
 }
 
+bool floats(const CaseDef& def, std::uint16_t mk)
+{
+    const int mkbound = mk - def.mk_bound_first;
+    return std::any_of(def.floatings.begin(), def.floatings.end(),
+                       [&](const FloatingDef& floating)
+                       {
+                           const std::vector<std::uint16_t>& mks = floating.mkbound;
+                           return std::find(mks.begin(), mks.end(), mkbound) != mks.end();
+                       });
+}
+
 } // namespace fppg

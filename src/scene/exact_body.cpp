@@ -10,6 +10,19 @@
 
 namespace fppg
 {
+namespace
+{
+
+bool stays_in(const Combination& combination, std::uint16_t mk)
+{
+    for (std::size_t i = 0; i < combination.mks.size(); ++i)
+        if (combination.stays[i] != 0 && combination.mks[i].kind == MkKind::Bound &&
+            combination.mks[i].mk == mk)
+            return true;
+    return false;
+}
+
+} // namespace
 
 std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::string& why_not)
 {
@@ -20,11 +33,13 @@ std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::s
     }
     std::vector<const DrawOp*> draws;
     bool is_recoloured = false;
+    bool is_combined = false;
     for (const SceneStep& step : scene.remaining())
     {
         const DrawState& state = *step.draw->state;
-        if (step.combination || state.mk.kind != MkKind::Bound || state.mk.mk != mk ||
-            !state.draw_points)
+        is_combined = is_combined || (step.combination && stays_in(*step.combination, mk));
+        if (step.combination || step.is_part || state.mk.kind != MkKind::Bound ||
+            state.mk.mk != mk || !state.draw_points)
             continue;
         const auto* shape = std::get_if<Shape>(&step.draw->what);
         const Edit* edit = step.edit();
@@ -32,9 +47,10 @@ std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::s
             is_recoloured || !state.clips.empty() || (edit != nullptr && is_redraw(*edit));
         if (shape != nullptr && !std::holds_alternative<WaveOp>(*shape)) draws.push_back(step.draw);
     }
-    if (draws.size() != 1 || is_recoloured)
+    if (draws.size() != 1 || is_recoloured || is_combined)
     {
         why_not = is_recoloured ? "redraws or clips take part in it"
+                  : is_combined ? "a combination of draws makes it"
                                 : fmt::format("{} draws make it", draws.size());
         return std::nullopt;
     }

@@ -28,7 +28,10 @@ double sheet_reach(const Scene& scene, std::size_t step)
     return std::max(fluid_reach_dp, shells - 1) * scene.def->grid.dp;
 }
 
-/// A step that draws a body or a sheet, and those that are drawn into it.
+/// Solids whose boxes overlap by more than this are one, dp; what touches, too.
+constexpr double joins_dp = -1e-3;
+
+/// A step that draws a body or a sheet, and those that are drawn into it or belong to it.
 struct Body
 {
     std::size_t step = 0;
@@ -37,6 +40,7 @@ struct Body
     bool is_sheet = false; ///< the draw fills nothing
     TriangleSoup soup{};
     std::vector<std::size_t> drawn_into{};
+    std::vector<std::size_t> joined{};
 };
 
 /// What a step draws, by its true shape. Surfaces with open edges, whose inside is a guess, cannot
@@ -139,85 +143,150 @@ bool overlap(const Box3& a, const Box3& b, double reach_dp, const LatticeGrid& g
     return true;
 }
 
-std::shared_ptr<const Combination> difference(const Scene& scene, const Body& body)
+/// Takes a part into a tree: a difference or a union of what it was and the part.
+void combine(BooleanOp op, std::uint32_t part, BooleanNode& tree)
 {
+    if (tree.op != op) tree = {op, 0, {std::move(tree)}};
+    tree.operands.push_back({BooleanOp::Part, part, {}});
+}
+
+/// A body with what is drawn into it taken away and what belongs to it added, in their order.
+std::shared_ptr<const Combination> combined(const Scene& scene, const Body& body)
+{
+    std::vector<std::size_t> steps{body.step};
+    steps.insert(steps.end(), body.drawn_into.begin(), body.drawn_into.end());
+    steps.insert(steps.end(), body.joined.begin(), body.joined.end());
+    std::sort(steps.begin(), steps.end());
     auto hollowed = std::make_shared<HollowedSolid>();
     auto out = std::make_shared<Combination>();
-    hollowed->parts.push_back(*scene.steps[body.step].draw);
-    for (const std::size_t step : body.drawn_into)
-    {
-        hollowed->parts.push_back(*scene.steps[step].draw);
-        hollowed->by.push_back(&scene.steps[step].draw->source);
-    }
+    for (const std::size_t step : steps) hollowed->parts.push_back(*scene.steps[step].draw);
     const DrawOp& first = hollowed->parts.front();
     out->whole.source = first.source;
     out->whole.state = first.state;
     hollowed->boolean.line = first.source.line;
-    hollowed->boolean.tree.op = BooleanOp::Difference;
-    for (const DrawOp& part : hollowed->parts)
+    for (std::size_t i = 0; i < steps.size(); ++i)
     {
-        const auto index = static_cast<std::uint32_t>(out->parts.size());
-        hollowed->boolean.tree.operands.push_back({BooleanOp::Part, index, {}});
+        const DrawOp& part = hollowed->parts[i];
+        const auto index = static_cast<std::uint32_t>(i);
+        const bool stays = part.state->mk.kind == MkKind::Bound;
         BooleanDef::Part& kind = hollowed->boolean.parts.emplace_back();
-        if (body.is_sheet) kind.is_surface = index == 0;
-        if (body.is_sheet && index > 0) kind.least_depth = sheet_reach(scene, body.step);
+        if (body.is_sheet) kind.is_surface = stays;
+        if (body.is_sheet && !stays) kind.least_depth = sheet_reach(scene, body.step);
+        if (!stays) hollowed->by.push_back(&scene.steps[steps[i]].draw->source);
+        if (i > 0)
+            combine(stays ? BooleanOp::Union : BooleanOp::Difference, index,
+                    hollowed->boolean.tree);
         out->parts.push_back(&part);
         out->mks.push_back(first.state->mk); // the cavity moves with the solid
-        out->stays.push_back(index == 0 ? 1 : 0);
+        out->stays.push_back(stays ? 1 : 0);
     }
     out->boolean = &hollowed->boolean;
     out->hollowed = std::move(hollowed);
     return out;
 }
 
+/// Finds the bodies of a scene that something is drawn into, or that several draws make.
+class BodyFinder
+{
+public:
+    explicit BodyFinder(const Scene& scene) : scene_(scene), def_(*scene.def) {}
+
+    void find()
+    {
+        // Meshes are not looked at where nothing is drawn behind them.
+        std::size_t end = scene_.steps.size();
+        while (end > scene_.first_remaining && !may_hollow(scene_.steps[end - 1]) &&
+               !may_join(scene_.steps[end - 1]))
+            --end;
+        for (std::size_t i = scene_.first_remaining; i < end; ++i)
+        {
+            const bool is_bound = fit_of(scene_.steps[i]) != nullptr;
+            if (!is_bound && (bodies_.empty() || !may_hollow(scene_.steps[i]))) continue;
+            Body here = body_of(scene_, i);
+            if (here.box.is_empty() || !here.is_closed) continue;
+            if (is_bound)
+                add(std::move(here));
+            else if (!here.is_sheet)
+                hollow(here);
+        }
+    }
+
+    const std::vector<Body>& bodies() const { return bodies_; }
+
+private:
+    const FitSettings* fit_of(const SceneStep& step) const
+    {
+        const MkValue& mk = step.draw->state->mk;
+        return step.shape() != nullptr && mk.kind == MkKind::Bound ? fit_settings(def_.fit, mk.mk)
+                                                                   : nullptr;
+    }
+
+    bool may_hollow(const SceneStep& step) const
+    {
+        const DrawState& state = *step.draw->state;
+        return step.shape() != nullptr && state.mk.kind != MkKind::Bound && state.clips.empty() &&
+               !def_.solver.inout.fluids.contains(state.mk.mk);
+    }
+
+    /// Particles of bodies that are all inside stand for dp^3: those of several solids would be
+    /// too few where these meet.
+    bool may_join(const SceneStep& step) const
+    {
+        const FitSettings* settings = fit_of(step);
+        return settings != nullptr && settings->place == Placement::Inside &&
+               step.draw->state->clips.empty();
+    }
+
+    void add(Body&& here)
+    {
+        if (!here.is_sheet) here.soup = {}; // it is large, and its box does
+        const SceneStep& step = scene_.steps[here.step];
+        if (!here.is_sheet && may_join(step))
+            for (Body& body : bodies_)
+            {
+                const SceneStep& other = scene_.steps[body.step];
+                if (body.is_sheet || other.draw->state->mk.mk != step.draw->state->mk.mk ||
+                    !may_join(other) || !overlap(body.box, here.box, joins_dp, def_.grid))
+                    continue;
+                body.box.add(here.box.min);
+                body.box.add(here.box.max);
+                body.joined.push_back(here.step);
+                return;
+            }
+        bodies_.push_back(std::move(here));
+    }
+
+    void hollow(const Body& here)
+    {
+        const bool is_void = scene_.steps[here.step].draw->state->mk.kind == MkKind::Void;
+        FluidInSheets fluid(scene_, here);
+        for (Body& body : bodies_)
+            if (overlap(body.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def_.grid) &&
+                (!body.is_sheet || (!is_void && fluid.passes(body))))
+                body.drawn_into.push_back(here.step);
+    }
+
+    const Scene& scene_;
+    const CaseDef& def_;
+    std::vector<Body> bodies_;
+};
+
 } // namespace
 
 void hollow_solids(Scene& scene)
 {
-    const CaseDef& def = *scene.def;
-    if (def.fit.is_empty()) return;
-    const auto is_fitted = [&](const SceneStep& step)
+    if (scene.def->fit.is_empty()) return;
+    BodyFinder finder(scene);
+    finder.find();
+    for (const Body& body : finder.bodies())
     {
-        const MkValue& mk = step.draw->state->mk;
-        return step.shape() != nullptr && mk.kind == MkKind::Bound &&
-               fit_settings(def.fit, mk.mk) != nullptr;
-    };
-    const auto may_hollow = [&](const SceneStep& step)
-    {
-        const DrawState& state = *step.draw->state;
-        return step.shape() != nullptr && state.mk.kind != MkKind::Bound && state.clips.empty() &&
-               !def.solver.inout.fluids.contains(state.mk.mk);
-    };
-    // Meshes are not looked at where nothing is drawn behind them.
-    std::size_t end = scene.steps.size();
-    while (end > scene.first_remaining && !may_hollow(scene.steps[end - 1])) --end;
-    std::vector<Body> bodies;
-    for (std::size_t i = scene.first_remaining; i < end; ++i)
-    {
-        const bool is_bound = is_fitted(scene.steps[i]);
-        if (!is_bound && (bodies.empty() || !may_hollow(scene.steps[i]))) continue;
-        Body here = body_of(scene, i);
-        if (here.box.is_empty() || !here.is_closed) continue;
-        if (is_bound)
-        {
-            if (!here.is_sheet) here.soup = {}; // it is large, and its box does
-            bodies.push_back(std::move(here));
-            continue;
-        }
-        if (here.is_sheet) continue;
-        const bool is_void = scene.steps[i].draw->state->mk.kind == MkKind::Void;
-        FluidInSheets fluid(scene, here);
-        for (Body& body : bodies)
-            if (overlap(body.box, here.box, is_void ? void_reach_dp : fluid_reach_dp, def.grid) &&
-                (!body.is_sheet || (!is_void && fluid.passes(body))))
-                body.drawn_into.push_back(i);
-    }
-    for (const Body& body : bodies)
-    {
-        if (body.drawn_into.empty()) continue;
-        std::shared_ptr<const Combination> combination = difference(scene, body);
+        if (body.drawn_into.empty() && body.joined.empty()) continue;
+        std::shared_ptr<const Combination> combination = combined(scene, body);
         const DrawOp* whole = &combination->whole;
-        scene.steps[body.step] = {whole, std::move(combination), false};
+        scene.steps[body.step].is_part = true;
+        for (const std::size_t step : body.joined) scene.steps[step].is_part = true;
+        scene.steps[body.joined.empty() ? body.step : body.joined.back()] = {
+            whole, std::move(combination), false};
     }
 }
 

@@ -1,5 +1,7 @@
 #include "scene/near_domain.h"
 
+#include "fppg/moving_parts.h"
+
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -55,17 +57,6 @@ bool end_beside(Cylinder& cylinder, const Box3& box, double dp)
     cylinder.p0 = from + low * along;
     cylinder.p1 = from + high * along;
     return true;
-}
-
-bool floats(const CaseDef& def, std::uint16_t mk)
-{
-    const int mkbound = mk - def.mk_bound_first;
-    return std::any_of(def.floatings.begin(), def.floatings.end(),
-                       [&](const FloatingDef& floating)
-                       {
-                           const std::vector<std::uint16_t>& mks = floating.mkbound;
-                           return std::find(mks.begin(), mks.end(), mkbound) != mks.end();
-                       });
 }
 
 } // namespace

@@ -211,6 +211,25 @@ void give_nodes_to_lone_particles(const LatticeGrid& grid, int threads, FittedDr
     }
 }
 
+/// Whether particles of dp^3 in a body are near enough to one another to hold fluid: those of a
+/// plate thinner than this, dp, are not.
+bool has_room_inside(const FittedBody& body, double dp)
+{
+    constexpr double thinnest_dp = 0.75;
+    const FitMeasures& of = body.measures;
+    return body.is_solid && of.volume > 0 && 2 * of.volume > thinnest_dp * dp * of.area;
+}
+
+/// Settings of a body that would have its particles inside, but has no inside.
+FitSettings of_open_body(const FitSettings& settings)
+{
+    FitSettings out = settings;
+    out.place = Placement::Surface;
+    out.may_be_open = false;
+    out.depths_dp = settings.depths_of_open_dp;
+    return out;
+}
+
 } // namespace
 
 double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
@@ -302,6 +321,8 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.warnings = out.body.report.warnings;
     add_surface(settings, grid, threads, out);
     find_nodes(settings, grid, out.particles.size(), threads, out);
+    if (settings.may_be_open && !has_room_inside(out.body, grid.dp))
+        return fit_body(std::move(out.body), of_open_body(settings), grid, clips, threads);
     if (settings.place == Placement::Inside)
         fill_inside(settings, grid, threads, out);
     else if (!settings.depths_dp.empty())

@@ -2,6 +2,7 @@
 
 #include "fppg/error.h"
 #include "fppg/lattice.h"
+#include "fppg/moving_parts.h"
 
 #include "core/parallel.h"
 #include "nodes/run_at.h"
@@ -58,11 +59,12 @@ private:
     std::array<double, bins> off_{}; ///< times area, in bins from the middle
 };
 
-/// Whether a step draws a wall in layers behind its surface.
-bool has_layers(const SceneStep& step, const FitDef& fit)
+/// Whether a step draws a wall in layers behind its surface. What floats goes to its own place.
+bool has_layers(const SceneStep& step, const CaseDef& def)
 {
     const MkValue& mk = step.draw->state->mk;
-    const FitSettings* settings = mk.kind == MkKind::Bound ? fit_settings(fit, mk.mk) : nullptr;
+    if (mk.kind != MkKind::Bound || floats(def, mk.mk)) return false;
+    const FitSettings* settings = fit_settings(def.fit, mk.mk);
     return settings != nullptr && !settings->depths_dp.empty() && settings->depths_dp[0] > 0;
 }
 
@@ -95,7 +97,7 @@ bool may_move(const Scene& scene)
     return std::none_of(remaining.begin(), remaining.end(),
                         [&](const SceneStep& step) { return bounds_lattice(step, def.fit); }) &&
            std::any_of(remaining.begin(), remaining.end(),
-                       [&](const SceneStep& step) { return has_layers(step, def.fit); });
+                       [&](const SceneStep& step) { return has_layers(step, def); });
 }
 
 class WetPlanes
@@ -225,7 +227,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
             if (!draws_bound(step)) continue;
             const std::vector<StepSurface> surfaces = fitted_surfaces(scene, step, threads);
             if (surfaces.empty()) return {}; // points and lines stand on the lattice
-            if (has_layers(step, def.fit))
+            if (has_layers(step, def))
                 for (const StepSurface& surface : surfaces) walls.add(surface.shape);
         }
         for (int axis = 0; axis < 3; ++axis)

@@ -1,5 +1,7 @@
 #include "walls/thickened.h"
 
+#include "fppg/moving_parts.h"
+
 #include "core/parallel.h"
 #include "meshes/facing_distance.h"
 #include "meshes/measure_facets.h"
@@ -163,14 +165,8 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
 bool may_thicken(const CaseDef& def, std::uint16_t mk)
 {
     const FitSettings* settings = fit_settings(def.fit, mk);
-    const auto floats = [&](const FloatingDef& floating)
-    {
-        return std::any_of(floating.mkbound.begin(), floating.mkbound.end(),
-                           [&](int mkbound) { return mkbound + def.mk_bound_first == mk; });
-    };
     return settings != nullptr && settings->boundary == WallBoundary::Mdbc && !settings->layers &&
-           settings->place == Placement::Surface && !settings->depths_dp.empty() &&
-           std::none_of(def.floatings.begin(), def.floatings.end(), floats);
+           settings->place != Placement::Inside && !settings->depths_dp.empty() && !floats(def, mk);
 }
 
 double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)

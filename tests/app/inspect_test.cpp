@@ -176,6 +176,9 @@ TEST(Inspect, CountsTheLayersThatAWallHasRoomFor)
     EXPECT_LT(share(0.9, 1), 0.2);
     EXPECT_TRUE(has(to_text(inspect_mesh({.path = file.path(), .dp = 0.1 / 3})),
                     "room for 3 at the thinnest place; 3 (coefh 1) behind 100 % of the area"));
+    EXPECT_TRUE(has(
+        to_text(inspect_mesh({.path = file.path(), .dp = 0.1 / 1.4})),
+        "room for 1 at the thinnest place, so walls are thickened to 2 dp, for 2; 3 (coefh 1)"));
 }
 
 TEST(Inspect, GuessesMillimetresFromTheSizeAndFromDp)

@@ -12,6 +12,7 @@ may be off by half a per cent, as the last digits of sines and roots differ betw
 expected_fitted.json names the mesh with its mk and place, or a list of them as "parts" with the
 "volume" of their union, and the speeds of the case's rotations in their order as "turns". "fluid_from" is how
 near to the mesh fluid may be, dp: 0.2 where it is balanced, by the rule of the balance, else 0.5.
+"depth" is how far behind the mesh the outermost particles stand, dp: 0.5 for place="inside", else 0.
 
 A record may hold "bodies" instead, a list of mesh, mk, turn and move of bodies that stand apart;
 "volume_within" in one is how far the volume that its particles stand for may be off (default 0.01; more
@@ -238,14 +239,15 @@ def faults(case, folder, expected):
         parts.append((part["mk"], facets * part.get("scale", 1) + np.array(part["move"])))
     body = np.isin(mk, [part_mk for part_mk, _ in parts])
 
+    depth = expected.get("depth", 0)
     wall = body & (kind < VOLUME)
     wall_sample = sample(np.flatnonzero(wall))
     for part_mk in sorted({part_mk for part_mk, _ in parts}):
         own = np.concatenate([facets for k, facets in parts if k == part_mk])
         of_mk = positions[wall_sample[mk[wall_sample] == part_mk]]
-        farthest = distances(of_mk, own).max() / dp
-        if farthest > 1e-4:
-            yield f"a wall particle of mk {part_mk} is {farthest:.3g} dp off the mesh"
+        off = np.abs(distances(of_mk, own) / dp - depth).max()
+        if off > (0.02 if depth else 1e-4):
+            yield f"a wall particle of mk {part_mk} is {off:.3g} dp off its place"
     if len(parts) > 1:
         for i, (_, facets) in enumerate(parts):
             within = positions[wall_sample][is_inside(positions[wall_sample], facets)]
@@ -253,9 +255,9 @@ def faults(case, folder, expected):
             if deepest > 1e-4:
                 yield f"a wall particle is {deepest:.3g} dp inside part {i}"
     inside = np.count_nonzero(body & (kind == VOLUME))
-    stands_for = (inside + 0.5 * np.count_nonzero(wall)) * dp ** 3
+    stands_for = (inside + (1 if depth else 0.5) * np.count_nonzero(wall)) * dp ** 3
     volume = expected["volume"] if len(parts) > 1 else volume_of(parts[0][1])
-    if abs(stands_for / volume - 1) > 0.01:
+    if abs(stands_for / volume - 1) > (0.001 if depth else 0.01):
         yield f"the particles stand for {stands_for:.6g} m3, the body has {volume:.6g}"
     fluid = positions[mk == 1]
     every = np.concatenate([facets for _, facets in parts])

@@ -60,9 +60,13 @@ def check_fitted(program, definition, work):
     for mk in walls:
         assert mk["moved"] > 0 and 0 < mk["moved_dp"]["mean"] < mk["moved_dp"]["largest"] <= 1, mk
         assert f"  {mk['moved_dp']['largest']:.3f}" in text and "is body-fitted" in text, text
-        # Sheets with fluid on one side have layers behind it.
+        # Sheets with fluid on one side have layers behind it; what floats has all particles inside.
         fitted, lattice = (of["histogram"]["counts"][0] for of in mk["distance_dp"])
-        assert fitted > 0.2 * mk["count"][0] and fitted > 2 * lattice, f"mk {mk['mk']}: {fitted} and {lattice} are on the surface"
+        on_surface = f"mk {mk['mk']}: {fitted} and {lattice} are on the surface"
+        if mk["type"][0] == "floating":
+            assert fitted == 0, on_surface
+        else:
+            assert fitted > 0.2 * mk["count"][0] and fitted > 2 * lattice, on_surface
         assert mk["count"] == [mk["same_place"] + mk["moved"] + mk["missing"] + mk["mk_changed"],
                                mk["same_place"] + mk["moved"] + mk["extra"] + mk["mk_gained"]], mk
     assert all(mk["moved"] == 0 and mk["same_place"] > 0.5 * mk["count"][1] for mk in fluid), text

@@ -459,7 +459,7 @@ TEST(InitialRotation, TakesAFloatingBodyAlong)
 
 TEST(InitialMove, TakesAFittedBodyAlongWithTheLimits)
 {
-    const char* const fit = R"(<fppg><bodyfitted mkbound="0" /></fppg>)";
+    const char* const fit = R"(<fppg><bodyfitted mkbound="0" place="surface" /></fppg>)";
     const Started still = start("", "", fit);
     const Started moved = start(R"(<move mkbound="0" x="0.03" y="0" z="0.31" />)", "", fit);
     ASSERT_GT(moved.particles.off_lattice.size(), 30U);
@@ -473,7 +473,7 @@ TEST(InitialMove, TakesAFittedBodyAlongWithTheLimits)
 
 TEST(InitialMove, RefusesAFittedBodyThatLeavesTheDomain)
 {
-    const char* const fit = R"(<fppg><bodyfitted mkbound="0" /></fppg>)";
+    const char* const fit = R"(<fppg><bodyfitted mkbound="0" place="surface" /></fppg>)";
     EXPECT_NO_THROW(start(R"(<move mkbound="0" x="0.5" y="0" z="0" />)", "", fit));
     EXPECT_THROW(start(R"(<move mkbound="0" x="0.5001" y="0" z="0" />)", "", fit), CaseError);
 }
