@@ -156,7 +156,7 @@ struct FitSettings
 struct FitDef
 {
     std::optional<FitSettings> all; ///< for every boundary mk that has none of its own
-    std::vector<std::pair<std::uint16_t, FitSettings>> of_mk; ///< absolute mk; the last one counts
+    std::map<std::uint16_t, FitSettings> of_mk; ///< by absolute mk
     bool is_empty() const { return !all && of_mk.empty(); }
 };
 

@@ -84,7 +84,7 @@ std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& w
     std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
     if (shape || scene.def->grid.is_2d) return shape;
     const FittedBody* body = solid_of(walls, block);
-    if (body == nullptr) return std::nullopt;
+    if (body == nullptr || body->facet_mk.empty()) return std::nullopt;
     shape = body_of_facets(soup_of(body->mesh));
     shape->shape =
         fmt::format("<{}> of line {} and what is combined with it", body->name, body->line);
@@ -148,7 +148,8 @@ void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticle
         const FittedBody* body = solid_of(walls, block);
         if (body == nullptr || block.type == ParticleType::Fluid || block.count == 0) continue;
         std::string why_not;
-        const std::optional<ExactBody> shape = shape_of_block(scene, walls, block, why_not);
+        std::optional<ExactBody> shape = shape_of_block(scene, walls, block, why_not);
+        if (!shape) shape = body_of_facets(soup_of(body->mesh));
         const ExactBody found = body_of_particles(particles, block, body->is_inside);
         const double density = density_of(def, block, constants.rhop0);
         rows.push_back(row_of(fmt::format("{}", block.mk_type), "shape", *shape, density));

@@ -13,8 +13,8 @@
 namespace fppg
 {
 
-/// The shape that a block is drawn by: exact_body(), else the surface of the one fitted solid that
-/// it consists of, as combinations of draws are.
+/// The shape that a block is drawn by: exact_body(), or the surface of the one fitted solid that a
+/// combination of draws makes of it.
 ///
 /// why_not  filled with a sentence when nothing is returned
 std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& walls,

@@ -150,7 +150,7 @@ private:
         if (e.find_attribute("mkbound") != nullptr)
         {
             for (const std::uint16_t mk : mks_of(e, MkKind::Bound))
-                def_.fit.of_mk.emplace_back(mk, s);
+                def_.fit.of_mk.insert_or_assign(mk, s);
             return;
         }
         // What is for every mk comes after those before it, and so wins over them.
@@ -498,16 +498,12 @@ void warn_of_undrawn_mks(CaseDef& def)
         def.warnings.push_back(fmt::format("{}:{}: <{}>: {} {}{}: {}", def.file, line, element,
                                            type, fmt::join(numbers, ","), more, text));
     };
-    for (std::size_t i = 0; i < def.fit.of_mk.size();)
-    {
-        const int line = def.fit.of_mk[i].second.line;
-        std::vector<std::uint16_t> missing;
-        for (; i < def.fit.of_mk.size() && def.fit.of_mk[i].second.line == line; ++i)
-            if (!walls.contains(def.fit.of_mk[i].first)) missing.push_back(def.fit.of_mk[i].first);
-        if (!missing.empty())
-            warn(line, "bodyfitted", "mkbound", def.mk_bound_first, missing,
-                 "nothing with a surface is drawn with it, so nothing is fitted.");
-    }
+    std::map<int, std::vector<std::uint16_t>> missing_of_line;
+    for (const auto& [mk, settings] : def.fit.of_mk)
+        if (!walls.contains(mk)) missing_of_line[settings.line].push_back(mk);
+    for (const auto& [line, missing] : missing_of_line)
+        warn(line, "bodyfitted", "mkbound", def.mk_bound_first, missing,
+             "nothing with a surface is drawn with it, so nothing is fitted.");
     for (const FluidBand& band : def.fluid_bands)
     {
         std::vector<std::uint16_t> missing;
@@ -528,9 +524,8 @@ void warn_of_undrawn_mks(CaseDef& def)
 
 const FitSettings* fit_settings(const FitDef& fit, std::uint16_t mk)
 {
-    const auto found = std::find_if(fit.of_mk.rbegin(), fit.of_mk.rend(),
-                                    [mk](const auto& of_mk) { return of_mk.first == mk; });
-    if (found != fit.of_mk.rend()) return &found->second;
+    const auto found = fit.of_mk.find(mk);
+    if (found != fit.of_mk.end()) return &found->second;
     return fit.all ? &*fit.all : nullptr;
 }
 

@@ -146,7 +146,7 @@ void put_bodies_inside(const AttributeReader& read, bool is_mdbc, CaseDef& def)
         FitSettings inside = *given;
         inside.place = Placement::Inside;
         inside.may_be_open = true;
-        def.fit.of_mk.emplace_back(mk, std::move(inside));
+        def.fit.of_mk.insert_or_assign(mk, std::move(inside));
     }
 }
 
@@ -206,15 +206,19 @@ void settle_boundaries(const AttributeReader& read, CaseDef& def)
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;
     if (!(kernel_dp > 0 && kernel_dp <= most_layers + 1))
-        throw CaseError(def.file, def.fit.all ? def.fit.all->line : def.fit.of_mk[0].second.line,
+        throw CaseError(def.file,
+                        def.fit.all ? def.fit.all->line : def.fit.of_mk.begin()->second.line,
                         fmt::format("<bodyfitted>: 2h is {:.3g} dp by the constants of the case, "
                                     "expected more than 0 and at most {} dp; coefh or hdp sets it",
                                     kernel_dp, most_layers + 1));
+    // The elements with an mk list give one entry an mk; each element is judged once.
+    std::set<int> judged;
     const auto settle = [&](FitSettings& s)
     {
+        const bool is_first = judged.insert(s.line).second;
         if (!s.boundary)
             s.boundary = is_mdbc ? WallBoundary::Mdbc : WallBoundary::Dbc;
-        else if (parameter && (s.boundary == WallBoundary::Mdbc) != is_mdbc)
+        else if (is_first && parameter && (s.boundary == WallBoundary::Mdbc) != is_mdbc)
             def.warnings.push_back(fmt::format(
                 "{}:{}: <bodyfitted boundary=\"{}\">: the parameter Boundary of the case is {}, "
                 "with which the solver expects walls for {}.",
@@ -222,18 +226,11 @@ void settle_boundaries(const AttributeReader& read, CaseDef& def)
         settle_depths(kernel_dp, s);
         // The places themselves give the normals.
         if (s.boundary == WallBoundary::Mdbc) def.normals.is_active = true;
+        if (is_first) judge_layers(s, kernel_dp, def);
     };
     put_bodies_inside(read, is_mdbc, def);
     if (def.fit.all) settle(*def.fit.all);
-    // The elements with an mk list give one entry an mk.
-    int judged = 0;
-    if (def.fit.all) judge_layers(*def.fit.all, kernel_dp, def);
-    for (auto& of_mk : def.fit.of_mk)
-    {
-        settle(of_mk.second);
-        if (of_mk.second.line != judged) judge_layers(of_mk.second, kernel_dp, def);
-        judged = of_mk.second.line;
-    }
+    for (auto& of_mk : def.fit.of_mk) settle(of_mk.second);
     if (is_mdbc) hint_at_parameters(def);
     draw_shells_once(def);
 }

@@ -253,7 +253,9 @@ bool has_layers(const FitDef& fit)
 void warn_of_sides(const Scene& scene, const DrawOp& draw, const FitSettings& settings,
                    bool has_fluid, FittedStep& step)
 {
-    if (settings.depths_dp.empty() || settings.side || !settings.fluid_places.empty()) return;
+    if (settings.depths_dp.empty() || settings.may_be_open || settings.side ||
+        !settings.fluid_places.empty())
+        return;
     for (const FittedDraw& fitted : step.draws)
     {
         if (fitted.body.is_solid || (has_fluid && fitted.body.measures.volume > 0)) continue;

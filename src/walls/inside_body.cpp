@@ -61,9 +61,11 @@ struct Thickness
 };
 
 /// How thick a body is over its surface, as far as it is thinner than `most`, metres.
-Thickness thickness_of(const WallDepth& wall, double most, int threads)
+Thickness thickness_of(const WallDepth& wall, double most, const LatticeGrid& grid, int threads)
 {
-    std::vector<double> found = sample_thickness(wall, most, thickness_samples, threads);
+    std::vector<double> found =
+        sample_thickness(wall, most, thickness_samples,
+                         grid.is_2d ? std::optional(grid.origin.y) : std::nullopt, threads);
     std::sort(found.begin(), found.end());
     const auto first = std::upper_bound(found.begin(), found.end(), 0.0);
     Thickness out;
@@ -179,7 +181,8 @@ private:
         const double mean = 2 * body.measures.volume / body.measures.area;
         if (mean < thin_dp * grid_.dp) plan_.cell_dp = 0.5 * offset_cell_dp;
         if (!settings_.across && mean > thickest_plate_dp * grid_.dp) return;
-        const Thickness t = thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), threads_);
+        const Thickness t =
+            thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), grid_, threads_);
         const bool is_even = t.other <= most_of_other;
         const bool is_plate = is_even && t.share >= plate_share && t.middle < bar_ratio * mean &&
                               t.middle <= thickest_plate_dp * grid_.dp;
@@ -233,15 +236,22 @@ private:
         const double half_diagonal = std::sqrt(0.5) * grid_.dp;
         Box3 box;
         for (const Vec3& v : out_.body.mesh.vertices) box.add(v);
-        parallel_for(grid_.n[0], threads_,
-                     [&](std::size_t x)
+        const auto node = [&](double at, int axis)
+        {
+            const double k = std::floor((at - grid_.origin[axis]) / grid_.dp);
+            return static_cast<std::uint32_t>(
+                std::clamp(k, 0.0, static_cast<double>(grid_.n[static_cast<std::size_t>(axis)])));
+        };
+        const std::uint32_t first = node(box.min.x, 0);
+        const std::uint32_t end = std::min(node(box.max.x, 0) + 2, grid_.n[0]);
+        parallel_for(end - first, threads_,
+                     [&](std::size_t i)
                      {
-                         for (std::uint32_t z = 0; z < grid_.n[2]; ++z)
+                         const std::size_t x = first + i;
+                         const std::uint32_t z_end = std::min(node(box.max.z, 2) + 2, grid_.n[2]);
+                         for (std::uint32_t z = node(box.min.z, 2); z < z_end; ++z)
                          {
                              const Vec3 p = place_of(x, 0, z);
-                             if (p.x < box.min.x - grid_.dp || p.x > box.max.x + grid_.dp ||
-                                 p.z < box.min.z - grid_.dp || p.z > box.max.z + grid_.dp)
-                                 continue;
                              const double off = wall_->at(p).depth - under_layers_;
                              if (off > half_diagonal)
                                  of_slab[x] += 1;

@@ -246,7 +246,7 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 }
 
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
-                                     int threads)
+                                     std::optional<double> plane_y, int threads)
 {
     const SurfaceMesh& mesh = wall.mesh();
     double area = 0;
@@ -270,8 +270,9 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
                 v = 1 - v;
             }
             const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            const Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
-                           v * (mesh.vertices[mesh.facets[f][2]] - a);
+            Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
+                     v * (mesh.vertices[mesh.facets[f][2]] - a);
+            if (plane_y) p.y = *plane_y;
             if (const auto ball = inner_ball(wall, p, mesh.normals[f], 0.5 * most))
                 out[i] = 2 * ball->radius;
         },

@@ -45,8 +45,10 @@ std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& feat
 
 /// How thick a body is under points spread evenly over its surface: twice the radius of the ball of
 /// find_middle(), metres; 0 where that is more than `most` or the other side does not face away.
+///
+/// plane_y  of a 2D case, in whose plane the points are
 std::vector<double> sample_thickness(const WallDepth& wall, double most, std::size_t count,
-                                     int threads);
+                                     std::optional<double> plane_y, int threads);
 
 /// The particles that both sides of a thin part share: on its middle (the medial axis), one per
 /// dp^2 and evenly spaced.

@@ -199,8 +199,8 @@ TEST(FitBlock, SaysThatAllParticlesAreInside)
     EXPECT_TRUE(def.fit.all->has_exact_volumes);
     EXPECT_EQ(def.fit.all->depths_dp, std::vector<double>{0.5});
     ASSERT_EQ(def.fit.of_mk.size(), 1);
-    EXPECT_NE(def.fit.of_mk[0].second.place, Placement::Inside);
-    EXPECT_FALSE(def.fit.of_mk[0].second.has_exact_volumes);
+    EXPECT_NE(def.fit.of_mk.begin()->second.place, Placement::Inside);
+    EXPECT_FALSE(def.fit.of_mk.begin()->second.has_exact_volumes);
 }
 
 /// By itself: what the solver moves by the water it displaces, or by dp^3 a particle.

@@ -208,7 +208,7 @@ TEST(FittedWalls, OtherMksStayOnTheLattice)
 {
     Drawing drawing;
     drawing.def.fit.all.reset();
-    drawing.def.fit.of_mk.emplace_back(wall_mk + 1, FitSettings{});
+    drawing.def.fit.of_mk.insert_or_assign(wall_mk + 1, FitSettings{});
     drawing.draw(SphereOp{{0, 0, 0}, 1.1, {}});
     EXPECT_EQ(drawing.run().walls.bodies.size(), 0U);
     drawing.bound(1);

@@ -302,7 +302,7 @@ TEST(RelaxWalls, LeaveAnMkThatIsNotActiveAsItIs)
     Drawing drawing;
     FitSettings still;
     still.relax.is_active = false;
-    drawing.def.fit.of_mk.emplace_back(wall_mk, still);
+    drawing.def.fit.of_mk.insert_or_assign(wall_mk, still);
     drawing.draw(SphereOp{{-0.9, 0.02, 0.01}, 0.8, {}});
     drawing.bound(1);
     drawing.draw(SphereOp{{0.93, 0.02, 0.01}, 0.8, {}});
@@ -363,7 +363,8 @@ TEST(RelaxWalls, ShowAllWallParticlesInTheirSnapshots)
         settings.relax.band_dp = 0;
         settings.relax.iterations = mkbound == 0 ? 12 : 15;
         settings.relax.snapshots = 5;
-        drawing.def.fit.of_mk.emplace_back(static_cast<std::uint16_t>(wall_mk + mkbound), settings);
+        drawing.def.fit.of_mk.insert_or_assign(static_cast<std::uint16_t>(wall_mk + mkbound),
+                                               settings);
         drawing.bound(mkbound);
         drawing.draw(SphereOp{{-0.9 + 1.83 * mkbound, 0.02, 0.01}, 0.8, {}});
     }
