@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -137,13 +138,12 @@ struct FitSettings
     std::vector<double> depths_dp;
     /// The same of sheets for Dbc that stand still with fluid on one side, where `layers` is empty.
     std::vector<double> sheet_depths_dp;
-    /// Empty: Inside for bodies that the solver moves by the water they displace or by what their
-    /// particles stand for (settle_boundaries()), else Surface.
+    /// Empty: Inside for solids that float, with dynamic boundaries (settle_boundaries()), else
+    /// Surface.
     std::optional<Placement> place;
-    /// Inside without being asked for: shapes without an inside have their particles at
-    /// depths_of_open_dp instead.
+    /// Inside without being asked for: shapes without room inside have their particles on the
+    /// surface instead.
     bool may_be_open = false;
-    std::vector<double> depths_of_open_dp;
     /// Of bodies with Placement::Inside: how many sheets of particles through their thickness;
     /// empty: as many as it is dp, rounded.
     std::optional<int> across;
@@ -155,7 +155,7 @@ struct FitSettings
 /// Which boundary mks are body-fitted.
 struct FitDef
 {
-    std::optional<FitSettings> all; ///< for every boundary mk that has none of its own
+    std::optional<FitSettings> all;             ///< for every boundary mk that has none of its own
     std::map<std::uint16_t, FitSettings> of_mk; ///< by absolute mk
     bool is_empty() const { return !all && of_mk.empty(); }
 };
@@ -189,6 +189,7 @@ struct SolverParameters
     int slip_mode = 1; ///< of mDBC
     int kernel = 2;    ///< 1: cubic spline, 2: Wendland
     InOutZones inout;
+    std::set<std::uint16_t> flexible; ///< absolute mks, each of whose particles counts for dp^3
 };
 
 /// `<fppg><floatings exact="true">`: floating bodies whose mass, centre and inertia are those of

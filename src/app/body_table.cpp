@@ -19,6 +19,8 @@ namespace
 
 /// Of the nodes in a body that fills gave particles.
 constexpr double filled_body = 0.98;
+/// Of the volume of a flexible body, which is warned of.
+constexpr double flexible_off = 0.01;
 
 /// The one fitted solid of a block; null where there are several, or it is hollow.
 const FittedBody* solid_of(const FittedWalls& walls, const ParticleBlock& block)
@@ -132,6 +134,29 @@ ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock&
                 row[i] += volume * (dot(d, d) + own);
             }
         });
+    return out;
+}
+
+std::vector<std::string> weigh_flexible(const Scene& scene, const FittedWalls& walls,
+                                        const CaseParticles& particles)
+{
+    const CaseDef& def = *scene.def;
+    std::vector<std::string> out;
+    for (const ParticleBlock& block : particles.blocks)
+    {
+        const FittedBody* body =
+            def.solver.flexible.contains(block.mk) ? solid_of(walls, block) : nullptr;
+        if (body == nullptr) continue;
+        const double dp = def.grid.dp;
+        const double share =
+            static_cast<double>(block.count) * dp * dp * dp / body->measures.volume - 1;
+        if (std::abs(share) <= flexible_off) continue;
+        out.push_back(fmt::format(
+            "{}: flexible mkbound {}: DualSPHysics counts each of its {} particles for dp^{}, in "
+            "all {:+.1f} % of its volume; <bodyfitted place=\"inside\"> puts as many into it as "
+            "it has room for. Bodies of few rows bend too easily then.",
+            def.file, block.mk_type, block.count, def.grid.is_2d ? 2 : 3, 100 * share));
+    }
     return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace fppg
 {
@@ -26,6 +27,10 @@ std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& w
 /// are_cubes  each counts as a cube of dp, not as a point
 ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock& block,
                             bool are_cubes);
+
+/// A warning for each flexible body whose particles, as the solver counts them, are not its volume.
+std::vector<std::string> weigh_flexible(const Scene& scene, const FittedWalls& walls,
+                                        const CaseParticles& particles);
 
 /// Writes a table of the fitted solids into the log: volume, mass, centre and inertia of the shape
 /// and of the particles, each by mk. The mass is that of the density of `<floating>`, else of

@@ -242,6 +242,12 @@ void add_points(CaseRunState& run, MadeCase& made)
     for (std::string& w : report.warnings) run.warn(std::move(w));
 }
 
+void warn_of_flexible(CaseRunState& run, const MadeCase& made)
+{
+    for (std::string& w : weigh_flexible(made.scene, made.field.walls, made.particles))
+        run.warn(std::move(w));
+}
+
 void prepare_particles(CaseRunState& run, MadeCase& made)
 {
     run.stage("PreparePoints",
@@ -271,6 +277,7 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
                       settle_floatings(made.scene, made.field.walls, made.particles);
                   log_floatings(floatings, run.log);
                   log_bodies(made.scene, made.field.walls, made.particles, made.constants, run.log);
+                  warn_of_flexible(run, made);
                   for (const std::string& w : floatings.warnings) run.warn(w);
                   for (std::string& w : warnings) run.warn(std::move(w));
                   for (const std::string& w : floatings.light_or_heavy) run.diagnose(w);

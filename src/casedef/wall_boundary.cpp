@@ -49,10 +49,7 @@ void settle_depths(double kernel_dp, FitSettings& settings)
     settings.depths_dp.clear();
     settings.sheet_depths_dp.clear();
     if (settings.place == Placement::Inside)
-    {
         settings.depths_dp = {0.5};
-        if (is_mdbc) settings.depths_of_open_dp = std::move(depths);
-    }
     else if (is_mdbc || settings.layers)
         settings.depths_dp = std::move(depths);
     else
@@ -96,35 +93,29 @@ void hint_at_parameters(CaseDef& def)
         def.file, wrong));
 }
 
-/// Absolute mks of the flexible bodies of `<special><flexstrucs>`, or of what clamps them, as v5.4
-/// reads them (JSphFlexStruc.cpp).
-///
-/// name  mkbound or mkclamp
-std::set<std::uint16_t> flexible_mks(const AttributeReader& read, const CaseDef& def,
-                                     const char* name)
+/// Absolute mks of the flexible bodies of `<special><flexstrucs>`, as v5.4 reads them
+/// (JSphFlexStruc.cpp).
+std::set<std::uint16_t> flexible_mks(const AttributeReader& read, const CaseDef& def)
 {
     std::set<std::uint16_t> out;
-    for_each_special(def.execution, "flexstrucs",
-                     [&](const Element& body)
-                     {
-                         if (body.name != "flexstrucbody" || body.find_attribute(name) == nullptr)
-                             return;
-                         for (const int mkbound : read.number_list(body, name))
-                             out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
-                     });
+    for_each_special(
+        def.execution, "flexstrucs",
+        [&](const Element& body)
+        {
+            if (body.name != "flexstrucbody" || body.find_attribute("mkbound") == nullptr) return;
+            for (const int mkbound : read.number_list(body, "mkbound"))
+                out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+        });
     return out;
 }
 
-/// Puts the particles of bodies inside them where the solver asks for it and the case does not say
-/// otherwise: of flexible ones and their clamps, as each counts for dp^3, and with dynamic
-/// boundaries of floating ones. These hold water half a step off their surface then, and a whole
-/// one off particles on it (half as heavy as water, a ball floats 4.9 mm too high instead of 11.8,
-/// and a box draws 47 mm instead of 39, of 50).
-void put_bodies_inside(const AttributeReader& read, bool is_mdbc, CaseDef& def)
+/// Puts the particles of solids that float inside them, where boundaries are dynamic and the case
+/// does not say otherwise. These hold water half a step off their surface then, and a whole one off
+/// particles on it (half as heavy as water, a ball floats 4.9 mm too high instead of 11.8, and a
+/// box draws 47 mm instead of 39, of 50).
+void put_floating_inside(bool is_mdbc, CaseDef& def)
 {
-    const std::set<std::uint16_t> flexible = flexible_mks(read, def, "mkbound");
-    std::set<std::uint16_t> bodies = flexible_mks(read, def, "mkclamp");
-    bodies.insert(flexible.begin(), flexible.end());
+    std::set<std::uint16_t> bodies;
     for (const FloatingDef& floating : def.floatings)
         for (const int mkbound : floating.mkbound)
             bodies.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
@@ -140,9 +131,9 @@ void put_bodies_inside(const AttributeReader& read, bool is_mdbc, CaseDef& def)
     for (const std::uint16_t mk : bodies)
     {
         const FitSettings* given = fit_settings(def.fit, mk);
-        if (given == nullptr || given->place) continue;
-        const bool has_mdbc = given->boundary ? given->boundary == WallBoundary::Mdbc : is_mdbc;
-        if (has_mdbc && !flexible.contains(mk)) continue;
+        if (given == nullptr || given->place ||
+            (given->boundary ? given->boundary == WallBoundary::Mdbc : is_mdbc))
+            continue;
         FitSettings inside = *given;
         inside.place = Placement::Inside;
         inside.may_be_open = true;
@@ -202,6 +193,7 @@ void settle_boundaries(const AttributeReader& read, CaseDef& def)
     def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
     def.solver.kernel = whole_parameter(def, "Kernel").value_or(2);
     def.solver.inout = read_inout_zones(def, def.warnings);
+    def.solver.flexible = flexible_mks(read, def);
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;
     const double kernel_dp = 2 * def.h / def.grid.dp;
@@ -228,7 +220,7 @@ void settle_boundaries(const AttributeReader& read, CaseDef& def)
         if (s.boundary == WallBoundary::Mdbc) def.normals.is_active = true;
         if (is_first) judge_layers(s, kernel_dp, def);
     };
-    put_bodies_inside(read, is_mdbc, def);
+    put_floating_inside(is_mdbc, def);
     if (def.fit.all) settle(*def.fit.all);
     for (auto& of_mk : def.fit.of_mk) settle(of_mk.second);
     if (is_mdbc) hint_at_parameters(def);

@@ -226,7 +226,7 @@ FitSettings of_open_body(const FitSettings& settings)
     FitSettings out = settings;
     out.place = Placement::Surface;
     out.may_be_open = false;
-    out.depths_dp = settings.depths_of_open_dp;
+    out.depths_dp.clear();
     return out;
 }
 

@@ -98,6 +98,23 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values("",
                     R"(<objreal ref="0"><begin mov="1" start="0" /><mvnull id="1" /></objreal>)"));
 
+/// The solver counts each particle of a flexible body for dp^3.
+TEST(FlexibleBodies, ThatWeighMoreThanTheirShapesAreWarnedOf)
+{
+    const std::string said = "flexible mkbound 1: DualSPHysics counts each of its ";
+    for (const bool is_inside : {false, true})
+    {
+        const TemporaryFolder folder;
+        CaseText text = flexible("");
+        if (!is_inside)
+            text.after_geometry.replace(text.after_geometry.find(R"( place="inside")"), 15, "");
+        write_text(folder / "Case_Def.xml", text.text());
+        const RunResult result = run(folder, {"Case_Def", "Case"});
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_EQ(contains(result.output, said), !is_inside) << result.output;
+    }
+}
+
 TEST(InsideCase, InitialsMoveAllItsParticlesAlike)
 {
     const TemporaryFolder still, moved;

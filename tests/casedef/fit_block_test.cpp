@@ -203,8 +203,8 @@ TEST(FitBlock, SaysThatAllParticlesAreInside)
     EXPECT_FALSE(def.fit.of_mk.begin()->second.has_exact_volumes);
 }
 
-/// By itself: what the solver moves by the water it displaces, or by dp^3 a particle.
-TEST(FitBlock, PutsFloatingAndFlexibleBodiesInside)
+/// By itself: with dynamic boundaries, what floats.
+TEST(FitBlock, PutsFloatingBodiesInside)
 {
     const auto is_inside = [](const std::string& block, int mkbound, int boundary = 1)
     {
@@ -212,18 +212,14 @@ TEST(FitBlock, PutsFloatingAndFlexibleBodiesInside)
         text.after_geometry +=
             R"(<floatings><floating mkbound="1-2" rhopbody="500" /></floatings>)";
         text.execution = fmt::format(
-            R"(<special><flexstrucs><flexstrucbody mkbound="4" mkclamp="0,5" /><flexstrucbody mkbound="6" mkclamp="7" active="false" /></flexstrucs></special>
-<parameters><parameter key="Boundary" value="{}" /></parameters>)",
-            boundary);
+            R"(<parameters><parameter key="Boundary" value="{}" /></parameters>)", boundary);
         return settings(read(text), mkbound).place == Placement::Inside;
     };
-    for (const int mkbound : {1, 2, 4, 5}) EXPECT_TRUE(is_inside("<bodyfitted />", mkbound));
-    // The clamp 0 is a tank of faces.
-    for (const int mkbound : {0, 3, 6, 7}) EXPECT_FALSE(is_inside("<bodyfitted />", mkbound));
-    // Layers hold water at the surface; a flexible body weighs dp^3 a particle all the same.
+    for (const int mkbound : {1, 2}) EXPECT_TRUE(is_inside("<bodyfitted />", mkbound));
+    for (const int mkbound : {0, 3}) EXPECT_FALSE(is_inside("<bodyfitted />", mkbound));
+    // Layers hold water at the surface.
     EXPECT_FALSE(is_inside("<bodyfitted />", 1, 2));
-    EXPECT_FALSE(is_inside("<bodyfitted />", 5, 2));
-    EXPECT_TRUE(is_inside("<bodyfitted />", 4, 2));
+    EXPECT_FALSE(is_inside(R"(<bodyfitted boundary="mdbc" />)", 1));
     for (const char* asked : {R"(place="surface")", R"(layers="2")", R"(clearance="0.8")"})
         EXPECT_FALSE(is_inside(fmt::format("<bodyfitted {} />", asked), 2)) << asked;
     EXPECT_TRUE(is_inside(R"(<bodyfitted layers="auto" plates="auto" />)", 2));
