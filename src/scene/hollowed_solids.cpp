@@ -157,6 +157,7 @@ std::shared_ptr<const Combination> combined(const Scene& scene, const Body& body
     steps.insert(steps.end(), body.drawn_into.begin(), body.drawn_into.end());
     steps.insert(steps.end(), body.joined.begin(), body.joined.end());
     std::sort(steps.begin(), steps.end());
+    steps.erase(std::unique(steps.begin(), steps.end()), steps.end()); // drawn into several
     auto hollowed = std::make_shared<HollowedSolid>();
     auto out = std::make_shared<Combination>();
     for (const std::size_t step : steps) hollowed->parts.push_back(*scene.steps[step].draw);
@@ -237,23 +238,41 @@ private:
                step.draw->state->clips.empty();
     }
 
+    /// Whether a solid belongs to a body that is there.
+    bool belongs(const Body& here, const Body& body) const
+    {
+        const SceneStep& step = scene_.steps[here.step];
+        const SceneStep& other = scene_.steps[body.step];
+        return !here.is_sheet && !body.is_sheet &&
+               other.draw->state->mk.mk == step.draw->state->mk.mk &&
+               overlap(body.box, here.box, joins_dp, def_.grid) && may_join(step) &&
+               may_join(other);
+    }
+
     void add(Body&& here)
     {
         if (!here.is_sheet) here.soup = {}; // it is large, and its box does
-        const SceneStep& step = scene_.steps[here.step];
-        if (!here.is_sheet && may_join(step))
-            for (Body& body : bodies_)
-            {
-                const SceneStep& other = scene_.steps[body.step];
-                if (body.is_sheet || other.draw->state->mk.mk != step.draw->state->mk.mk ||
-                    !may_join(other) || !overlap(body.box, here.box, joins_dp, def_.grid))
-                    continue;
-                body.box.add(here.box.min);
-                body.box.add(here.box.max);
-                body.joined.push_back(here.step);
-                return;
-            }
-        bodies_.push_back(std::move(here));
+        const auto joined = std::stable_partition(
+            bodies_.begin(), bodies_.end(), [&](const Body& body) { return !belongs(here, body); });
+        if (joined == bodies_.end())
+        {
+            bodies_.push_back(std::move(here));
+            return;
+        }
+        // Those that it bridges are one with it.
+        for (auto other = joined + 1; other != bodies_.end(); ++other) join(*other, *joined);
+        join(here, *joined);
+        bodies_.erase(joined + 1, bodies_.end());
+    }
+
+    static void join(const Body& other, Body& body)
+    {
+        body.box.add(other.box.min);
+        body.box.add(other.box.max);
+        body.joined.push_back(other.step);
+        body.joined.insert(body.joined.end(), other.joined.begin(), other.joined.end());
+        body.drawn_into.insert(body.drawn_into.end(), other.drawn_into.begin(),
+                               other.drawn_into.end());
     }
 
     void hollow(const Body& here)
@@ -284,9 +303,13 @@ void hollow_solids(Scene& scene)
         std::shared_ptr<const Combination> combination = combined(scene, body);
         const DrawOp* whole = &combination->whole;
         scene.steps[body.step].is_part = true;
-        for (const std::size_t step : body.joined) scene.steps[step].is_part = true;
-        scene.steps[body.joined.empty() ? body.step : body.joined.back()] = {
-            whole, std::move(combination), false};
+        std::size_t last = body.step;
+        for (const std::size_t step : body.joined)
+        {
+            scene.steps[step].is_part = true;
+            last = std::max(last, step);
+        }
+        scene.steps[last] = {whole, std::move(combination), false};
     }
 }
 

@@ -292,6 +292,22 @@ TEST(FloatingMass, OfOverlappingSolidsIsThatOfTheirUnion)
     EXPECT_TRUE(contains(result.output, fmt::format("volume {:.5g} m^3", volume))) << result.output;
 }
 
+/// The third solid bridges the other two: the three are one.
+TEST(FloatingMass, OfBridgedSolidsIsThatOfTheirUnion)
+{
+    const TemporaryFolder folder;
+    const RunResult result = run_case(
+        folder,
+        floating(box_command(R"(x="0" y="0" z="0")", R"(x="0.1" y="0.2" z="0.1")") +
+                 box_command(R"(x="0.3" y="0" z="0")", R"(x="0.1" y="0.2" z="0.1")") +
+                 box_command(R"(x="0.05" y="0.05" z="0.02")", R"(x="0.3" y="0.1" z="0.06")")),
+        {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const double volume = 2 * 0.1 * 0.2 * 0.1 + 0.2 * 0.1 * 0.06;
+    EXPECT_NEAR(mass(folder) / (rhop_body * volume), 1, 0.001);
+    EXPECT_TRUE(contains(result.output, fmt::format("volume {:.5g} m^3", volume))) << result.output;
+}
+
 /// The mass of its first part was taken for that of a combination.
 TEST(FloatingMass, OfACombinationIsExactToo)
 {
