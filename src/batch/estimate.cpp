@@ -211,11 +211,15 @@ private:
         const bool is_on_surface = settings.depths_dp.empty() || settings.depths_dp[0] == 0;
         if (is_on_surface) count.on_surface = std::max(count.on_lines, on_area);
         const double volume = share * std::abs(report.volume) / (dp * dp * dp);
-        const bool is_sheet = !shape.is_solid && settings.depths_dp.empty();
-        count.in_layers =
-            on_area *
-            layers_of(is_sheet ? settings.sheet_depths_dp : settings.depths_dp, report, dp);
-        if (report.is_watertight) count.in_layers = std::min(count.in_layers, volume);
+        if (shape.is_solid)
+            count.in_layers = on_area * layers_of(settings.depths_dp, report, dp);
+        else
+            count.in_layers =
+                on_area * layers_outside(settings.depths_dp.empty() ? settings.sheet_depths_dp
+                                                                    : settings.depths_dp,
+                                         mesh, dp);
+        if (shape.is_solid && report.is_watertight)
+            count.in_layers = std::min(count.in_layers, volume);
         if (count.in_layers > 0)
         {
             const double finer =
@@ -252,6 +256,45 @@ private:
             out += left * left;
         }
         return out;
+    }
+
+    /// The layers of a sheet, each counted by its area: they stand outside of the vessel that it
+    /// bounds, and grow with the distance by its bends, sharp or smooth.
+    static double layers_outside(const std::vector<double>& depths_dp, const SurfaceMesh& mesh,
+                                 double dp)
+    {
+        double area = 0;
+        for (const double a : mesh.areas) area += a;
+        double bends = 0; // length times bend, inwards or outwards
+        for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+        {
+            const auto [f, g] = mesh.edge_facets[e];
+            if (g == no_index || mesh.is_manifold[e] == 0) continue;
+            const Vec3& a = mesh.vertices[mesh.edges[e][0]];
+            const Vec3& b = mesh.vertices[mesh.edges[e][1]];
+            const Vec3 turn = cross(mesh.normals[f], mesh.normals[g]);
+            const double cosine = dot(mesh.normals[f], mesh.normals[g]);
+            // 2 tan(bend / 2), of a bend of at most 150 degrees.
+            const double bend = 2 * norm(turn) / std::max(1 + cosine, 0.13);
+            bends += norm(b - a) * bend * bend_sign(mesh, e);
+        }
+        double out = 0;
+        for (const double depth_dp : depths_dp)
+            if (depth_dp > 0) out += 1 + depth_dp * dp * std::abs(bends) / area;
+        return out;
+    }
+
+    /// 1 where the surface bends away from its normals at an edge of two facets, else -1.
+    static double bend_sign(const SurfaceMesh& mesh, std::size_t e)
+    {
+        const auto [f, g] = mesh.edge_facets[e];
+        const auto middle = [&](std::uint32_t facet)
+        {
+            Vec3 sum;
+            for (const std::uint32_t v : mesh.facets[facet]) sum = sum + mesh.vertices[v];
+            return sum / 3;
+        };
+        return dot(middle(g) - middle(f), mesh.normals[f]) < 0 ? 1 : -1;
     }
 
     /// Fluid near walls that is balanced (balance.h).
