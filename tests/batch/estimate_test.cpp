@@ -109,8 +109,9 @@ TEST(Estimate, CountsTheLayersOutsideOfVessels)
             CaseText text;
             text.dp = "0.025";
             text.mainlist = vessel + draw + water;
-            text.after_geometry =
-                std::string(R"(<fppg><bodyfitted boundary=")") + boundary + R"(" /></fppg>)";
+            text.after_geometry = R"(<fppg><bodyfitted boundary=")";
+            text.after_geometry += boundary;
+            text.after_geometry += R"(" /></fppg>)";
             write_text(folder / "Case_Def.xml", text.text());
             const json found = estimate(folder);
             run(folder, {"Case_Def", "out/Case"});
