@@ -108,7 +108,9 @@ TEST(Estimate, CountsTheLayersOutsideOfVessels)
             const TemporaryFolder folder;
             CaseText text;
             text.dp = "0.025";
-            text.mainlist = vessel + draw + water;
+            text.mainlist = vessel;
+            text.mainlist += draw;
+            text.mainlist += water;
             text.after_geometry = R"(<fppg><bodyfitted boundary=")";
             text.after_geometry += boundary;
             text.after_geometry += R"(" /></fppg>)";
