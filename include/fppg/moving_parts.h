@@ -12,10 +12,13 @@ namespace fppg
 /// them; others stay fixed.
 std::set<int> moving_mkbound(const Element& motion);
 
+/// Absolute mks of what floats.
+std::set<std::uint16_t> floating_mks(const CaseDef& def);
+
 /// Absolute mks of what moves or floats.
 std::set<std::uint16_t> mks_that_move(const CaseDef& def);
 
-/// Whether an absolute mk is a floating body.
+/// Whether an absolute mk is one of floating_mks().
 bool floats(const CaseDef& def, std::uint16_t mk);
 
 } // namespace fppg

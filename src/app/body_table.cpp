@@ -146,16 +146,17 @@ std::vector<std::string> weigh_flexible(const Scene& scene, const FittedWalls& w
     {
         const FittedBody* body =
             def.solver.flexible.contains(block.mk) ? solid_of(walls, block) : nullptr;
-        if (body == nullptr) continue;
+        if (body == nullptr || body->is_inside) continue;
         const double dp = def.grid.dp;
         const double share =
             static_cast<double>(block.count) * dp * dp * dp / body->measures.volume - 1;
         if (std::abs(share) <= flexible_off) continue;
         out.push_back(fmt::format(
-            "{}: flexible mkbound {}: DualSPHysics counts each of its {} particles for dp^{}, in "
-            "all {:+.1f} % of its volume; <bodyfitted place=\"inside\"> puts as many into it as "
-            "it has room for. Bodies of few rows bend too easily then.",
-            def.file, block.mk_type, block.count, def.grid.is_2d ? 2 : 3, 100 * share));
+            "{}: flexible mkbound {}: DualSPHysics counts each of its {} particles for dp^{}, "
+            "{:.1f} % {} than its volume. <bodyfitted place=\"inside\"> gives it particles for "
+            "its volume, but bodies of few rows bend too easily then.",
+            def.file, block.mk_type, block.count, def.grid.is_2d ? 2 : 3, 100 * std::abs(share),
+            share > 0 ? "more" : "less"));
     }
     return out;
 }

@@ -28,7 +28,8 @@ std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& w
 ExactBody body_of_particles(const CaseParticles& particles, const ParticleBlock& block,
                             bool are_cubes);
 
-/// A warning for each flexible body whose particles, as the solver counts them, are not its volume.
+/// A warning for each flexible body whose particles, not placed inside, are not its volume as the
+/// solver counts them.
 std::vector<std::string> weigh_flexible(const Scene& scene, const FittedWalls& walls,
                                         const CaseParticles& particles);
 

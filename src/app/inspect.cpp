@@ -139,11 +139,6 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
                                                            FacetSide::Behind, reach)};
         },
         64);
-    SurfaceMesh walls = mesh;
-    LatticeGrid grid;
-    grid.dp = found.options.dp;
-    found.is_thickened =
-        found.report.is_watertight && thicken(grid, found.options.threads, walls) > 0;
     std::size_t thin = 0;
     Thickness least;
     for (const Thickness& sample : samples)
@@ -153,6 +148,13 @@ void find_thin_places(const SurfaceMesh& mesh, Inspection& found)
         if (!(sample.value < found.options.dp)) continue;
         ++thin;
         if (sample.value < least.value) least = sample;
+    }
+    if (found.report.is_watertight && found.layer_shares[0] + found.layer_shares[1] > 0)
+    {
+        SurfaceMesh walls = mesh;
+        LatticeGrid grid;
+        grid.dp = found.options.dp;
+        found.is_thickened = thicken(grid, found.options.threads, walls) > 0;
     }
     found.thin_share = static_cast<double>(thin) / thickness_samples;
     if (thin == 0) return;

@@ -42,7 +42,8 @@ struct SettledFloatings
 /// `<fppg><floatings exact="true">` asks for it the exact ones take the place of the others in
 /// `particles`, but for what `<floating>` itself gives.
 ///
-/// throws  CaseError where exact ones are asked for and no single closed shape draws the body
+/// throws  CaseError where exact ones are asked for and neither a single closed shape nor a
+///         combination draws the body
 SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
                                   CaseParticles& particles);
 

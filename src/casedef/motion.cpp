@@ -197,14 +197,20 @@ std::set<int> moving_mkbound(const Element& motion)
     return out;
 }
 
-std::set<std::uint16_t> mks_that_move(const CaseDef& def)
+std::set<std::uint16_t> floating_mks(const CaseDef& def)
 {
     std::set<std::uint16_t> out;
-    for (const int mkbound : moving_mkbound(def.motion))
-        out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
     for (const FloatingDef& floating : def.floatings)
         for (const int mkbound : floating.mkbound)
             out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+    return out;
+}
+
+std::set<std::uint16_t> mks_that_move(const CaseDef& def)
+{
+    std::set<std::uint16_t> out = floating_mks(def);
+    for (const int mkbound : moving_mkbound(def.motion))
+        out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
     return out;
 }
 

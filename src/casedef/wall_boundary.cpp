@@ -1,6 +1,7 @@
 #include "casedef/wall_boundary.h"
 
 #include "fppg/error.h"
+#include "fppg/moving_parts.h"
 
 #include "casedef/execution.h"
 #include "casedef/inout_zones.h"
@@ -115,10 +116,7 @@ std::set<std::uint16_t> flexible_mks(const AttributeReader& read, const CaseDef&
 /// box draws 47 mm instead of 39, of 50).
 void put_floating_inside(bool is_mdbc, CaseDef& def)
 {
-    std::set<std::uint16_t> bodies;
-    for (const FloatingDef& floating : def.floatings)
-        for (const int mkbound : floating.mkbound)
-            bodies.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+    std::set<std::uint16_t> bodies = floating_mks(def);
     for (const DrawOp& op : def.ops)
     {
         const auto* shape = std::get_if<Shape>(&op.what);

@@ -230,11 +230,11 @@ private:
     }
 
     /// Particles of bodies that are all inside stand for dp^3: those of several solids would be
-    /// too few where these meet.
+    /// too few where these meet. A number of sheets is that of each solid.
     bool may_join(const SceneStep& step) const
     {
         const FitSettings* settings = fit_of(step);
-        return settings != nullptr && settings->place == Placement::Inside &&
+        return settings != nullptr && settings->place == Placement::Inside && !settings->across &&
                step.draw->state->clips.empty();
     }
 

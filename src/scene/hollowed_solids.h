@@ -8,8 +8,8 @@ namespace fppg
 /// Makes Boolean differences of body-fitted solids that voids or fluids are drawn into later: the
 /// cavity then has a fitted surface, with layers and normals, as it has by
 /// `<boolean op="difference">`. Voids and fluids stay steps of their own, for all else that they
-/// draw over. Solids of one mk with Placement::Inside whose boxes overlap or touch become one by a
-/// union, in the place of the last of them; each void takes from those before it.
+/// draw over. Solids of one mk with Placement::Inside and no `across` whose boxes overlap or touch
+/// become one by a union, in the place of the last of them; each void takes from those before it.
 /// Sheets lose what fluid is drawn through, as deep as the farthest shell of their `<layers vdp>`
 /// and by more than half a dp, so that no wall counts there; a void only opens them
 /// (lattice/wall_openings.h).

@@ -246,7 +246,7 @@ def faults(case, folder, expected):
         own = np.concatenate([facets for k, facets in parts if k == part_mk])
         of_mk = positions[wall_sample[mk[wall_sample] == part_mk]]
         off = np.abs(distances(of_mk, own) / dp - depth).max()
-        if off > (0.02 if depth else 1e-4):
+        if off > 1e-4:
             yield f"a wall particle of mk {part_mk} is {off:.3g} dp off its place"
     if len(parts) > 1:
         for i, (_, facets) in enumerate(parts):
