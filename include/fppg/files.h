@@ -4,7 +4,9 @@
 #include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +24,8 @@ class OutputFile
 public:
     /// throws IoError if the folder cannot be written or `path` is a folder
     explicit OutputFile(std::string path);
+    /// A file that is not written: only its digest is made of what would be in it.
+    static OutputFile not_written(std::string path);
     ~OutputFile();
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&& other) noexcept;
@@ -42,13 +46,24 @@ public:
     const std::string& path() const { return path_; }
     /// Where the file is until commit() gives it its name.
     const std::string& temporary_path() const { return temporary_path_; }
+    /// Digest and size of a file that is not written, equal for equal bytes; else empty.
+    std::string digest() const;
 
 private:
+    struct Digest
+    {
+        std::atomic<std::uint64_t> sum{0}; ///< of byte_digest()
+        std::uint64_t reserved = 0;
+    };
+
+    OutputFile() = default;
+
     std::string path_;
     std::string temporary_path_;
     int descriptor_ = -1;
     int registry_slot_ = -1;
     std::uint64_t end_ = 0;
+    std::unique_ptr<Digest> digest_; ///< null where the file is written
 
     void discard() noexcept;
 };

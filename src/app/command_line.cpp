@@ -39,6 +39,12 @@ bool flag_of(const std::string& option, const std::string& value)
 
 void choose_formats(const std::string& list, DropInOptions& options)
 {
+    if (list == "none")
+    {
+        options.save_nothing = true;
+        options.save_cells = options.save_off_lattice_points = false;
+        return;
+    }
     for (std::string_view word : split(list, ','))
     {
         bool on = true;
@@ -52,7 +58,8 @@ void choose_formats(const std::string& list, DropInOptions& options)
             word != "vtkbound" && word != "vtkfluid" && word != "vtkfeatures" && word != "relaxcsv")
             throw UsageError(fmt::format(
                 "-save: \"{}\" is unknown, expected all, bi, vtkcells, vtkfreept, vtkall, "
-                "vtkbound, vtkfluid, vtkfeatures or relaxcsv, each with + or - before it",
+                "vtkbound, vtkfluid, vtkfeatures or relaxcsv, each with + or - before it, or none "
+                "alone",
                 word));
         if (all || word == "bi") options.save_bi4 = on;
         if (all || word == "vtkcells") options.save_cells = on;
@@ -268,6 +275,8 @@ DropInOptions parse_command_line(const std::vector<std::string>& arguments)
     if (options.action != DropInOptions::Action::Run &&
         options.action != DropInOptions::Action::Clean)
         return options;
+    if (options.save_nothing && !options.to.empty())
+        throw UsageError("-to writes files, expected it without -save:none");
     if (names.empty())
         throw UsageError("the name of the case definition is missing; see fppg --help");
     if (names.size() > 2)
@@ -347,7 +356,9 @@ std::string help_text()
         "vtkbound,\n"
         "                         vtkfluid, vtkfeatures (feature lines of body-fitted walls, "
         "where there are\n"
-        "                         any), relaxcsv (history of their relaxation), all\n"
+        "                         any), relaxcsv (history of their relaxation), all; or none: "
+        "no file is\n"
+        "                         written, counts and the digests of files are printed\n"
         "  -to:LIST               particles for other codes too: vtu, xdmf, csv, pysph, "
         "sphinxsys, ...;\n"
         "                         fppg convert --help lists all\n"

@@ -32,6 +32,7 @@ struct DropInOptions
     FitChoice fit = FitChoice::AsCase;
     int threads = 0; ///< 0: what the machine or its scheduler allows
     int debug = 0;
+    bool save_nothing = false; ///< makes all and writes no file
     bool save_bi4 = true;
     bool save_cells = true;
     bool save_off_lattice_points = true; ///< of setfrdrawmode, where there are any

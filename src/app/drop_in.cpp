@@ -137,10 +137,15 @@ int run_case(const DropInOptions& options)
     std::optional<OutputLock> lock;
     try
     {
-        prepare_folder(options);
-        lock.emplace(options.output);
-        run.limit = limit_of_disk(fs::path(options.output).parent_path().string(),
-                                  bytes_of_particle(options));
+        if (options.save_nothing)
+            run.files.write_none();
+        else
+        {
+            prepare_folder(options);
+            lock.emplace(options.output);
+            run.limit = limit_of_disk(fs::path(options.output).parent_path().string(),
+                                      bytes_of_particle(options));
+        }
         make_zones(run, made);
     }
     catch (const std::exception& error)

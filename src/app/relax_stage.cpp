@@ -212,7 +212,7 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
     }
     log_fluid_space(report, made, run);
     settle_fluid_mass(report, made, run.log);
-    if (snapshots > 0)
+    if (snapshots > 0 && run.files.are_written())
         run.log.line(
             fmt::format("{}_Relax_*.vtk: {} VTK files of the relaxation", made.output, snapshots));
     for (const std::string& w : report.warnings) run.warn(fmt::format("{}:{}", made.def.file, w));

@@ -69,6 +69,7 @@ void ResultFiles::copy_pictures()
 
 void ResultFiles::commit(bool three_vtk)
 {
+    if (!are_written_) return;
     if (three_vtk) copy_pictures();
     const StopSignalsIgnored ignored;
     for (OutputFile& file : files_) file.finish();

@@ -20,7 +20,14 @@ class ResultFiles
 {
 public:
     /// A new file; the reference holds until the next one is made.
-    OutputFile& add(const std::string& path) { return files_.emplace_back(path); }
+    OutputFile& add(const std::string& path)
+    {
+        return files_.emplace_back(are_written_ ? OutputFile(path) : OutputFile::not_written(path));
+    }
+
+    /// From here on files are not written: only their digests are made.
+    void write_none() { are_written_ = false; }
+    bool are_written() const { return are_written_; }
 
     /// Adds a file that is written already.
     void take(OutputFile file) { files_.push_back(std::move(file)); }
@@ -32,8 +39,12 @@ public:
         const Stopwatch time;
         OutputFile& file = add(path);
         body(file);
-        log.text_line(fmt::format("{}{}  (time:{:.3f}s)", file.path(), note, time.seconds()));
-        log.fact("file", {{"path", file.path()}, {"seconds", time.seconds()}});
+        const std::string digest = are_written_ ? "" : "  not written, digest " + file.digest();
+        log.text_line(
+            fmt::format("{}{}{}  (time:{:.3f}s)", file.path(), note, digest, time.seconds()));
+        Json fact{{"path", file.path()}, {"seconds", time.seconds()}};
+        if (!are_written_) fact["digest"] = file.digest();
+        log.fact("file", fact);
     }
 
     /// Adds a copy of a file.
@@ -60,11 +71,13 @@ public:
 
     /// Gives all their names, Case.bi4 and Case.xml last and side by side; a stop is held off
     /// meanwhile. The old Case.xml goes before the new Case.bi4 comes. `three_vtk`: three copies of
-    /// every .vtk, as GenCase makes them for its test runs.
+    /// every .vtk, as GenCase makes them for its test runs. Where files are not written it does
+    /// nothing.
     void commit(bool three_vtk);
 
 private:
     std::vector<OutputFile> files_;
+    bool are_written_ = true;
 
     void copy_pictures();
     void remove_old_xml() const;

@@ -290,7 +290,7 @@ void save_result(CaseRunState& run, MadeCase& made)
               {
                   const FileOrigin origin{full_name(), date_of_run(), made.def.case_name};
                   list_data_files(run, made);
-                  copy_meshes(run, made);
+                  if (run.files.are_written()) copy_meshes(run, made);
                   const std::vector<VtkOutEntry> vtk_out = save_shapes(run, made);
                   made.shape_files.clear();
                   save_node_files(run, made);
@@ -302,7 +302,7 @@ void save_result(CaseRunState& run, MadeCase& made)
                   made.particles.off_lattice_points = {};
                   save_particles(run, made, origin);
                   save_conversions(run, made);
-                  keep_overwritten_definition(run, made);
+                  if (run.files.are_written()) keep_overwritten_definition(run, made);
                   write(run, made, ".xml", "",
                         [&](OutputFile& f) {
                             write_case_xml(f, made.def, made.particles, made.constants, vtk_out,

@@ -1,3 +1,4 @@
+#include "core/byte_digest.h"
 #include "fppg/error.h"
 #include "fppg/files.h"
 #include "platform/files.h"
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -70,6 +72,20 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path))
     (void)lock_file(descriptor_, false);
 }
 
+OutputFile OutputFile::not_written(std::string path)
+{
+    OutputFile file;
+    file.path_ = std::move(path);
+    file.digest_ = std::make_unique<Digest>();
+    return file;
+}
+
+std::string OutputFile::digest() const
+{
+    if (!digest_) return {};
+    return digest_text(digest_->sum, std::max(end_, digest_->reserved));
+}
+
 OutputFile::~OutputFile()
 {
     discard();
@@ -80,7 +96,8 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       temporary_path_(std::exchange(other.temporary_path_, {})),
       descriptor_(std::exchange(other.descriptor_, -1)),
       registry_slot_(std::exchange(other.registry_slot_, -1)),
-      end_(other.end_)
+      end_(other.end_),
+      digest_(std::move(other.digest_))
 {
 }
 
@@ -93,6 +110,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept
     descriptor_ = std::exchange(other.descriptor_, -1);
     registry_slot_ = std::exchange(other.registry_slot_, -1);
     end_ = other.end_;
+    digest_ = std::move(other.digest_);
     return *this;
 }
 
@@ -108,6 +126,11 @@ void OutputFile::discard() noexcept
 void OutputFile::reserve(std::uint64_t bytes)
 {
     if (bytes == 0) return;
+    if (digest_)
+    {
+        digest_->reserved = bytes;
+        return;
+    }
     if (reserve_file(descriptor_, bytes)) return;
     if (!is_disk_full(errno)) fail(path_, errno);
     const double gib = static_cast<double>(bytes) / (1024.0 * 1024.0 * 1024.0);
@@ -119,6 +142,11 @@ void OutputFile::reserve(std::uint64_t bytes)
 
 void OutputFile::write_at(std::uint64_t offset, const void* data, std::size_t bytes)
 {
+    if (digest_)
+    {
+        digest_->sum += byte_digest(offset, data, bytes);
+        return;
+    }
     const char* next = static_cast<const char*>(data);
     while (bytes > 0)
     {
@@ -149,6 +177,7 @@ void OutputFile::finish()
 
 void OutputFile::commit()
 {
+    if (digest_) return;
     finish();
     if (!replace_file(temporary_path_, path_))
     {
