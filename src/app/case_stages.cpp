@@ -200,7 +200,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   {
                       move_lattice(move, run.threads, made.def, made.scene);
                       run.log.line(fmt::format(
-                          "Lattice moved by ({:g}, {:g}, {:g}) m: fluid half a dp off flat walls",
+                          "Lattice moved by ({:g}, {:g}, {:g}) m: fluid in step with flat walls",
                           move.shift.x, move.shift.y, move.shift.z));
                   }
                   end_fluid_at_walls(made.scene, run.threads, made.def);

@@ -205,8 +205,8 @@ void log_balance(const BalanceReport& report, RunLog& log)
     if (!report.is_balanced)
     {
         log.line(
-            fmt::format("Balance: {} particles near walls{} stay as they are, as these walls "
-                        "do not hold them at rest; accelerations: {}",
+            fmt::format("Balance: {} particles near walls{} stay as they are, as more than 0.1 g "
+                        "would be left; accelerations: {}",
                         thousands(report.particles), held, text(report.before)));
         return;
     }

@@ -44,12 +44,15 @@ public:
         off_[b] += wet * (at - bin - 0.5);
     }
 
-    /// The place of the most area; nothing without any.
+    /// The place of the most area; nothing without any. Of two with as much, as of walls that face
+    /// each other, the first from half a step on.
     std::optional<double> most() const
     {
-        std::size_t best = 0;
-        for (std::size_t b = 1; b < bins; ++b)
-            if (area_[b] > area_[best] * (1 + rounding)) best = b;
+        std::size_t best = bins / 2;
+        for (std::size_t k = 1; k < bins; ++k)
+            if (const std::size_t b = (bins / 2 + k) % bins;
+                area_[b] > area_[best] * (1 + rounding))
+                best = b;
         if (!(area_[best] > 0)) return std::nullopt;
         return (static_cast<double>(best) + off_[best] / area_[best]) / bins;
     }
@@ -59,13 +62,15 @@ private:
     std::array<double, bins> off_{}; ///< times area, in bins from the middle
 };
 
-/// Whether a step draws a wall in layers behind its surface. What floats goes to its own place.
-bool has_layers(const SceneStep& step, const CaseDef& def)
+/// How far behind the surface the first particles of the fitted wall that a step draws are, dp;
+/// nothing of other steps, and of what floats, which goes to its own place.
+std::optional<double> depth_of_wall(const SceneStep& step, const CaseDef& def)
 {
     const MkValue& mk = step.draw->state->mk;
-    if (mk.kind != MkKind::Bound || floats(def, mk.mk)) return false;
+    if (mk.kind != MkKind::Bound || floats(def, mk.mk)) return std::nullopt;
     const FitSettings* settings = fit_settings(def.fit, mk.mk);
-    return settings != nullptr && !settings->depths_dp.empty() && settings->depths_dp[0] > 0;
+    if (settings == nullptr) return std::nullopt;
+    return settings->depths_dp.empty() ? 0.0 : settings->depths_dp[0];
 }
 
 bool relaxes_fluid(const CaseDef& def)
@@ -97,7 +102,7 @@ bool may_move(const Scene& scene)
     return std::none_of(remaining.begin(), remaining.end(),
                         [&](const SceneStep& step) { return bounds_lattice(step, def.fit); }) &&
            std::any_of(remaining.begin(), remaining.end(),
-                       [&](const SceneStep& step) { return has_layers(step, def); });
+                       [&](const SceneStep& step) { return depth_of_wall(step, def).has_value(); });
 }
 
 class WetPlanes
@@ -108,7 +113,8 @@ public:
     {
     }
 
-    void add(const ShapeMesh& shape)
+    /// depth  of the first particles behind the surface, dp
+    void add(const ShapeMesh& shape, double depth)
     {
         const std::vector<Vec3>& v = shape.soup.vertices;
         for (std::size_t i = 0; i + 2 < v.size(); i += 3)
@@ -118,7 +124,8 @@ public:
             for (int axis = 0; axis < 3; ++axis)
             {
                 if (!lies_across(across, axis)) continue;
-                const double at = (v[i][axis] - field_.grid.origin[axis]) / field_.grid.dp;
+                // Depths are whole and half steps, which lie alike on both sides.
+                const double at = (v[i][axis] - field_.grid.origin[axis]) / field_.grid.dp + depth;
                 const double wet =
                     wet_share({v[i], v[i + 1], v[i + 2]}, across / size, !shape.is_solid);
                 places_[static_cast<std::size_t>(axis)].add(at - std::floor(at), wet * size / 2);
@@ -227,8 +234,8 @@ LatticeMove lattice_move(const Scene& scene, int threads)
             if (!draws_bound(step)) continue;
             const std::vector<StepSurface> surfaces = fitted_surfaces(scene, step, threads);
             if (surfaces.empty()) return {}; // points and lines stand on the lattice
-            if (has_layers(step, def))
-                for (const StepSurface& surface : surfaces) walls.add(surface.shape);
+            if (const std::optional<double> depth = depth_of_wall(step, def))
+                for (const StepSurface& surface : surfaces) walls.add(surface.shape, *depth);
         }
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -236,7 +243,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
             if (axis == 1 && def.grid.is_2d) continue;
             const std::optional<double> place = walls.of(axis).most();
             if (!place) continue;
-            const double moved = *place + 0.5 - std::floor(*place + 0.5);
+            const double moved = *place - std::floor(*place);
             if (moved > rounding && moved < 1 - rounding) move.shift[axis] = moved * def.grid.dp;
         }
     }
