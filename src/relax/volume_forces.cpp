@@ -15,8 +15,8 @@ namespace
 using PairFactors = VolumeForces::PairFactors;
 using PairSums = VolumeForces::PairSums;
 
-constexpr float push_reach = 0.8f;
-constexpr float push_strength = 5.6f; ///< in units of the kernel's factor, a dp
+constexpr float volume_push_reach = 0.8f;
+constexpr float volume_push_strength = 5.6f; ///< in units of the kernel's factor, a dp
 
 FPPG_LANES PairSums sum_pairs(const PointArrays& points, std::uint32_t i,
                               std::span<const std::uint32_t> near, const PairFactors& factors)
@@ -31,7 +31,7 @@ FPPG_LANES PairSums sum_pairs(const PointArrays& points, std::uint32_t i,
                       const Lanes half_q = r * factors.half_inverse_h;
                       const Lanes s = larger(none, 1 - half_q);
                       const Lanes s3 = s * s * s;
-                      const Lanes closeness = larger(none, 1 - r * (1 / push_reach));
+                      const Lanes closeness = larger(none, 1 - r * (1 / volume_push_reach));
                       const Lanes size = factors.slope * s3 + factors.push * closeness;
                       x += size * o.x;
                       y += size * o.y;
@@ -113,7 +113,7 @@ VolumeForces::VolumeForces(double h, double behind_wall, bool is_2d)
       alpha_(is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h)),
       behind_wall_(behind_wall),
       factors_{static_cast<float>(0.5 / h), static_cast<float>(5 * alpha_ / (h * h)),
-               static_cast<float>(double{push_strength} * alpha_)},
+               static_cast<float>(double{volume_push_strength} * alpha_)},
       sum_pairs_(is_avx2_there() ? sum_pairs_avx2 : sum_pairs_plain)
 {
 }

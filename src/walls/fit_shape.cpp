@@ -10,6 +10,7 @@
 #include "meshes/round_surface.h"
 #include "nodes/cell_nodes.h"
 #include "nodes/domain.h"
+#include "walls/flat_layers.h"
 #include "walls/inside_body.h"
 #include "walls/touching_shells.h"
 #include "walls/wall_layers.h"
@@ -25,6 +26,8 @@ namespace
 constexpr std::size_t particles_per_chunk = 4096;
 /// Of the distance of particles on lines of bodies with Placement::Inside.
 constexpr double line_room = 0.02;
+/// Of take_nodes_on_flats().
+constexpr double least_matched_of_surfaces = 0.95;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
 {
@@ -167,7 +170,11 @@ void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threa
             [&](std::size_t i)
             { project_to_exact(body, surface.positions[i], surface.facets[i], grid.is_2d); },
             particles_per_chunk);
+    std::vector<char> is_node(surface.positions.size(), 0);
+    if (!grid.is_2d && out.second_sheet.size() == 0)
+        is_node = take_nodes_on_flats(body, grid, least_matched_of_surfaces, surface);
     out.particles = of_body(std::move(surface));
+    out.particles.held = std::move(is_node);
 }
 
 FittedDraw nothing_of(FittedBody&& body, const LatticeGrid& grid)

@@ -27,7 +27,6 @@ constexpr double farthest_border_dp = 1.6;
 /// Edges a step away that run between two nodes are 1.12 dp from these.
 constexpr double nearest_border_dp = 0.96;
 constexpr double far_border_dp = 1.13;
-constexpr double least_matched = 0.6; ///< of the particles on edges around a plane
 constexpr double node_rounding = 1e-9;
 
 /// The axis across which a facet lies on a plane of nodes.
@@ -115,9 +114,9 @@ struct PlaneFit
     std::size_t matched = 0;
 };
 
-/// Gives planes up most of whose particles on edges are not a step from the outermost nodes: there
+/// Gives planes up too few of whose particles on edges are a step from the outermost nodes: there
 /// these would leave gaps along the edges, or crowd.
-void keep_matched(const LatticeGrid& grid, const SurfaceParticles& particles,
+void keep_matched(const LatticeGrid& grid, double least_matched, const SurfaceParticles& particles,
                   const std::map<std::uint32_t, Plane>& plane_of, std::vector<char>& is_flat,
                   FlatNodes& nodes)
 {
@@ -156,7 +155,7 @@ void keep_matched(const LatticeGrid& grid, const SurfaceParticles& particles,
 } // namespace
 
 std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid& grid,
-                                      SurfaceParticles& particles)
+                                      double least_matched, SurfaceParticles& particles)
 {
     const SurfaceMesh& mesh = layer.mesh;
     std::vector<char> is_flat(mesh.facets.size(), 0);
@@ -178,7 +177,7 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
     if (!nodes.empty())
     {
         keep_off_others(is_flat, grid, particles, nodes);
-        keep_matched(grid, particles, plane_of, is_flat, nodes);
+        keep_matched(grid, least_matched, particles, plane_of, is_flat, nodes);
     }
     PointGrid taken(off_others_dp * grid.dp, nodes.size());
     for (const auto& [node, facet] : nodes) taken.add(place_of(node, grid));

@@ -35,6 +35,8 @@ constexpr double opposing = -0.5;
 constexpr double in_wall_dp = 0.25;
 /// No particle of a layer is so near to the middle of a thin part, which has its own, dp.
 constexpr double off_middle_dp = 0.35;
+/// Of take_nodes_on_flats(): a layer is seen by fluid behind others.
+constexpr double least_matched_of_layers = 0.6;
 
 /// The lines in which a surface meets the plane of a 2D case, drawn out along y, so that distances
 /// near the plane are those in it.
@@ -309,7 +311,8 @@ void LayerBuilder::add_particles(FittedBody& layer, std::uint32_t index)
         out_.body.left_out[kind] += std::exchange(layer.left_out[kind], 0);
     // Bodies with Placement::Inside need not fit to fluid.
     std::vector<char> is_node(particles.positions.size(), 0);
-    if (!grid_.is_2d && !layer.is_inside) is_node = take_nodes_on_flats(layer, grid_, particles);
+    if (!grid_.is_2d && !layer.is_inside)
+        is_node = take_nodes_on_flats(layer, grid_, least_matched_of_layers, particles);
     const LayerPlaces places(layer, grid_.dp);
     std::vector<char> is_out(particles.positions.size());
     parallel_for(

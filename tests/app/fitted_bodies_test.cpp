@@ -501,9 +501,9 @@ TEST(FitCheck, NamesABodyThatGaveWayToAnother)
     CaseText text = floating("");
     text.after_geometry = {};
     text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
-                    box_command(R"(x="0" y="0" z="0")", R"(x="0.4" y="0.4" z="0.02")") +
+                    box_command(R"(x="0" y="0" z="0.006")", R"(x="0.4" y="0.4" z="0.02")") +
                     R"(<setmkbound mk="1" />)" +
-                    box_command(R"(x="0" y="0" z="-0.3")", R"(x="0.4" y="0.4" z="0.3098")");
+                    box_command(R"(x="0" y="0" z="-0.294")", R"(x="0.4" y="0.4" z="0.3098")");
     const RunResult result = run_case(folder, text, {"-fit"});
     ASSERT_EQ(result.code, 0) << result.output;
     EXPECT_TRUE(contains(result.output,
