@@ -26,7 +26,7 @@ namespace
 constexpr std::size_t particles_per_chunk = 4096;
 /// Of the distance of particles on lines of bodies with Placement::Inside.
 constexpr double line_room = 0.02;
-/// Of take_nodes_on_flats().
+/// As take_nodes_on_flats() takes it: walls that fluid touches get no gaps along their edges.
 constexpr double least_matched_of_surfaces = 0.95;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)
