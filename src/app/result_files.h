@@ -39,11 +39,12 @@ public:
         const Stopwatch time;
         OutputFile& file = add(path);
         body(file);
-        const std::string digest = are_written_ ? "" : "  not written, digest " + file.digest();
-        log.text_line(
-            fmt::format("{}{}{}  (time:{:.3f}s)", file.path(), note, digest, time.seconds()));
+        const std::string digest = file.digest();
+        log.text_line(fmt::format("{}{}{}{}  (time:{:.3f}s)", file.path(), note,
+                                  are_written_ ? "" : "  not written, digest ", digest,
+                                  time.seconds()));
         Json fact{{"path", file.path()}, {"seconds", time.seconds()}};
-        if (!are_written_) fact["digest"] = file.digest();
+        if (!digest.empty()) fact["digest"] = digest;
         log.fact("file", fact);
     }
 

@@ -26,7 +26,8 @@ namespace
 constexpr std::size_t particles_per_chunk = 4096;
 /// Of the distance of particles on lines of bodies with Placement::Inside.
 constexpr double line_room = 0.02;
-/// As take_nodes_on_flats() takes it: walls that fluid touches get no gaps along their edges.
+/// As take_nodes_on_flats() takes it. With 0.6, walls of a tank of 16.3 x 14.6 x 30 dp were less
+/// even (coefficient of variation 0.047 instead of 0.032).
 constexpr double least_matched_of_surfaces = 0.95;
 
 bool is_kept_by(const std::vector<ClipPlane>& clips, const Vec3& p, double dp)

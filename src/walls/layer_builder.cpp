@@ -35,7 +35,7 @@ constexpr double opposing = -0.5;
 constexpr double in_wall_dp = 0.25;
 /// No particle of a layer is so near to the middle of a thin part, which has its own, dp.
 constexpr double off_middle_dp = 0.35;
-/// As take_nodes_on_flats() takes it: behind the surface a gap along an edge does less.
+/// As take_nodes_on_flats() takes it.
 constexpr double least_matched_of_layers = 0.6;
 
 /// The lines in which a surface meets the plane of a 2D case, drawn out along y, so that distances
