@@ -3,6 +3,7 @@
 #include "fppg/fitted_walls.h"
 #include "fppg/vec.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -13,7 +14,9 @@
 namespace fppg
 {
 
-/// The cubic lattice of a case: node (i, j, k) stands at origin + (i, j, k) * dp.
+/// The lattice of a case: node (i, j, k) stands at origin + (i, j, k) * dp. It is cubic but where
+/// only fluid stands on it between walls that are no whole number of dp apart (LatticeMove): then
+/// its steps along the axes are somewhat longer or shorter than dp.
 /// Rules L1 to L5, found by experiment with GenCase v5.4.354 (origin at pointmin, or moved down to
 /// a whole multiple of dp from pointref; the node at pointmax is not part of it).
 struct LatticeGrid
@@ -25,6 +28,20 @@ struct LatticeGrid
     /// Axes along which the solver repeats the case (fppg/periodic.h): particles off the lattice
     /// may be half a step beyond the first and the last nodes.
     std::array<bool, 3> is_periodic{};
+    Vec3 stretch{1, 1, 1}; ///< steps along the axes over dp
+
+    double step(int axis) const { return dp * stretch[axis]; } ///< metres
+    double least_step() const { return dp * std::min({stretch.x, stretch.y, stretch.z}); }
+    Vec3 place(const Vec3& node) const
+    {
+        return {origin.x + node.x * step(0), origin.y + node.y * step(1),
+                origin.z + node.z * step(2)};
+    }
+    /// Where a place is, in steps from the first node.
+    Vec3 steps_to(const Vec3& p) const
+    {
+        return {(p.x - origin.x) / step(0), (p.y - origin.y) / step(1), (p.z - origin.z) / step(2)};
+    }
 };
 
 /// Nodes [z_begin, z_end) of the column at row `y` of one slab (= one x).

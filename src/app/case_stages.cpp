@@ -83,6 +83,21 @@ LatticeProgress draw_progress(CaseRunState& run)
     };
 }
 
+void log_lattice_move(const LatticeMove& move, RunLog& log)
+{
+    const Vec3& by = move.shift;
+    const Vec3& s = move.to.stretch;
+    if (by != Vec3{})
+        log.line(fmt::format("Lattice moved by ({:g}, {:g}, {:g}) m: fluid in step with flat walls",
+                             by.x, by.y, by.z));
+    if (s != Vec3{1, 1, 1})
+        log.line(
+            fmt::format("Lattice stretched by ({:+.2f}, {:+.2f}, {:+.2f}) %: walls on both "
+                        "sides of the fluid are no whole number of dp apart",
+                        100 * (s.x - 1), 100 * (s.y - 1), 100 * (s.z - 1)));
+    log.fact("lattice", {{"shift", coordinates(by)}, {"stretch", coordinates(s)}});
+}
+
 /// Checks for what GenCase accepts in silence. What no zone of a case with `<vres>` has is told
 /// with the last one.
 void check_blocks(CaseRunState& run, const MadeCase& made)
@@ -196,12 +211,10 @@ void draw(CaseRunState& run, MadeCase& made)
                   for (std::string& w : draw_shells_around_fluid(made.scene, run.threads, made.def))
                       made.def.hints.push_back(std::move(w));
                   if (const LatticeMove move = lattice_move(made.scene, run.threads);
-                      move.shift != Vec3{})
+                      !move.is_none())
                   {
                       move_lattice(move, run.threads, made.def, made.scene);
-                      run.log.line(fmt::format(
-                          "Lattice moved by ({:g}, {:g}, {:g}) m: fluid in step with flat walls",
-                          move.shift.x, move.shift.y, move.shift.z));
+                      log_lattice_move(move, run.log);
                   }
                   end_fluid_at_walls(made.scene, run.threads, made.def);
                   LatticeReport report;

@@ -312,7 +312,7 @@ private:
         const LatticeGrid& grid = def_.grid;
         for (int axis = 0; axis < 3; ++axis)
         {
-            const double at = (p[axis] - grid.origin[axis]) / grid.dp;
+            const double at = (p[axis] - grid.origin[axis]) / grid.step(axis);
             if (at < -0.5 || at > grid.n[static_cast<std::size_t>(axis)] - 0.5) return false;
         }
         return std::all_of(clips.begin(), clips.end(),

@@ -31,9 +31,8 @@ std::vector<Vec3> sample_fluid(const RunField& field, std::uint16_t first_bound)
         {
             std::uint64_t z = run.z_begin + until_next;
             for (; z < run.z_end; z += stride)
-                out.push_back(field.grid.origin + field.grid.dp * Vec3{static_cast<double>(x),
-                                                                       static_cast<double>(run.y),
-                                                                       static_cast<double>(z)});
+                out.push_back(field.grid.place(
+                    {static_cast<double>(x), static_cast<double>(run.y), static_cast<double>(z)}));
             until_next = z - run.z_end;
         });
     return out;

@@ -267,7 +267,7 @@ std::vector<Faces> all_faces(const RunField& field, int threads)
 std::array<Vec3, 4> corners(const LatticeGrid& grid, const Faces& faces, const Rectangle& r)
 {
     const auto edge = [&](int axis, std::uint32_t index)
-    { return grid.origin[axis] + (static_cast<double>(index) - 0.5) * grid.dp; };
+    { return grid.origin[axis] + (static_cast<double>(index) - 0.5) * grid.step(axis); };
     Vec3 corner;
     const double inwards = 0.001 * grid.dp;
     if (grid.is_2d)

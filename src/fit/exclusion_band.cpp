@@ -47,8 +47,10 @@ WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
     {
         if (axis == 1 && lattice.is_2d) continue;
         const auto k = static_cast<std::size_t>(axis);
-        const double low = std::floor((bounds.min[axis] - lattice.origin[axis]) / lattice.dp) - 2;
-        const double high = std::ceil((bounds.max[axis] - lattice.origin[axis]) / lattice.dp) + 2;
+        const double low =
+            std::floor((bounds.min[axis] - lattice.origin[axis]) / lattice.step(axis)) - 2;
+        const double high =
+            std::ceil((bounds.max[axis] - lattice.origin[axis]) / lattice.step(axis)) + 2;
         const double begin = std::min(low, 0.0);
         const double end = std::max(high + 1, static_cast<double>(lattice.n[k]));
         if (!(std::max(-begin, end - lattice.n[k]) < most_beyond))
@@ -58,7 +60,7 @@ WideGrid widen(const LatticeGrid& lattice, const Box3& bounds)
                 bounds.min[axis], bounds.max[axis], "xyz"[axis], lattice.dp));
         wide.offset[k] = static_cast<std::int64_t>(begin);
         wide.grid.n[k] = static_cast<std::uint32_t>(end - begin);
-        wide.grid.origin[axis] = lattice.origin[axis] + begin * lattice.dp;
+        wide.grid.origin[axis] = lattice.origin[axis] + begin * lattice.step(axis);
     }
     return wide;
 }

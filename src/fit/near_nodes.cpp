@@ -53,7 +53,7 @@ Range range_of(const Outline& outline, int axis, double reach, const LatticeGrid
         low = std::min(low, outline.corners[i][axis]);
         high = std::max(high, outline.corners[i][axis]);
     }
-    return nodes_between(low - reach, high + reach, grid.origin[axis], grid.dp,
+    return nodes_between(low - reach, high + reach, grid.origin[axis], grid.step(axis),
                          grid.n[static_cast<std::size_t>(axis)]);
 }
 
@@ -88,7 +88,7 @@ public:
     std::vector<NearNode> search(std::uint32_t slab, const std::uint32_t* begin,
                                  const std::uint32_t* end)
     {
-        x_ = grid_.origin.x + slab * grid_.dp;
+        x_ = grid_.origin.x + slab * grid_.step(0);
         stretches_.clear();
         facets_.clear();
         boxes_.clear();
@@ -131,14 +131,14 @@ private:
         if (left < 0) return;
         const double reach = std::sqrt(left);
         const Range rows = nodes_between(box.min.y - reach, box.max.y + reach, grid_.origin.y,
-                                         grid_.dp, grid_.n[1]);
+                                         grid_.step(1), grid_.n[1]);
         for (std::int64_t row = rows.begin; row < rows.end; ++row)
         {
-            const double y = grid_.origin.y + static_cast<double>(row) * grid_.dp;
+            const double y = grid_.origin.y + static_cast<double>(row) * grid_.step(1);
             const double across = distance_between(y, box.min.y, box.max.y);
             const double rest = std::sqrt(std::max(left - across * across, 0.0));
-            add(row, nodes_between(box.min.z - rest, box.max.z + rest, grid_.origin.z, grid_.dp,
-                                   grid_.n[2]));
+            add(row, nodes_between(box.min.z - rest, box.max.z + rest, grid_.origin.z,
+                                   grid_.step(2), grid_.n[2]));
         }
     }
 
@@ -152,7 +152,7 @@ private:
         const Range rows = range_of(outline, 1, reach_, grid_);
         for (std::int64_t row = rows.begin; row < rows.end; ++row)
         {
-            const double y = grid_.origin.y + static_cast<double>(row) * grid_.dp;
+            const double y = grid_.origin.y + static_cast<double>(row) * grid_.step(1);
             const Outline strip =
                 cut_outline(cut_outline(outline, 1, y - reach_, true), 1, y + reach_, false);
             if (strip.count > 0) add(row, range_of(strip, 2, reach_, grid_));
@@ -193,14 +193,14 @@ private:
     void measure(const Stretch& s)
     {
         const Box3& box = boxes_[s.facet];
-        Vec3 p{x_, grid_.origin.y + s.row * grid_.dp, 0};
+        Vec3 p{x_, grid_.origin.y + s.row * grid_.step(1), 0};
         const double aside = distance_between(p.x, box.min.x, box.max.x);
         const double across = distance_between(p.y, box.min.y, box.max.y);
         const double to_row = aside * aside + across * across;
         const double limit = reach_ * reach_;
         for (std::uint32_t k = s.begin; k < s.end; ++k)
         {
-            p.z = grid_.origin.z + k * grid_.dp;
+            p.z = grid_.origin.z + k * grid_.step(2);
             const double before = std::min(nearest_[k], limit);
             const double along = distance_between(p.z, box.min.z, box.max.z);
             if (to_row + along * along >= before) continue;
@@ -215,7 +215,7 @@ private:
     double distance_of(std::uint32_t row, std::uint32_t k) const
     {
         if (tree_ == nullptr) return std::sqrt(nearest_[k]);
-        const Vec3 p{x_, grid_.origin.y + row * grid_.dp, grid_.origin.z + k * grid_.dp};
+        const Vec3 p{x_, grid_.origin.y + row * grid_.step(1), grid_.origin.z + k * grid_.step(2)};
         return tree_->closest(p, reach_).distance;
     }
 
@@ -308,7 +308,8 @@ std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
     {
         const auto [low, high] = std::minmax(
             {soup.vertices[3 * f].x, soup.vertices[3 * f + 1].x, soup.vertices[3 * f + 2].x});
-        ranges[f] = nodes_between(low - reach, high + reach, grid.origin.x, grid.dp, grid.n[0]);
+        ranges[f] =
+            nodes_between(low - reach, high + reach, grid.origin.x, grid.step(0), grid.n[0]);
         for (std::int64_t x = ranges[f].begin; x < ranges[f].end; ++x)
             ++offsets[static_cast<std::size_t>(x) + 1];
     }

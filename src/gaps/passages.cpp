@@ -58,7 +58,7 @@ public:
         std::array<std::int64_t, 3> at{};
         for (int axis = 0; axis < 3; ++axis)
             at[static_cast<std::size_t>(axis)] =
-                std::llround((p[axis] - grid_.origin[axis]) / grid_.dp);
+                std::llround((p[axis] - grid_.origin[axis]) / grid_.step(axis));
         for (std::int64_t x = at[0] - 2; x <= at[0] + 2; ++x)
             for (std::int64_t y = at[1] - 2; y <= at[1] + 2; ++y)
                 for (std::int64_t z = at[2] - 2; z <= at[2] + 2; ++z)

@@ -91,7 +91,7 @@ private:
         const Vec3 index{x + static_cast<double>(heights_.begin[0]),
                          y + static_cast<double>(heights_.begin[1]),
                          z + static_cast<double>(heights_.begin[2])};
-        return field_.grid.origin + index * field_.grid.dp;
+        return field_.grid.place(index);
     }
 
     /// The box around all drawn nodes with room for a cube all around: who gets there is outside.
@@ -124,7 +124,7 @@ private:
             heights_.begin[axis] = low[axis] - room;
             size_[axis] = static_cast<std::size_t>(high[axis] - low[axis] + 1 + 2 * room);
         }
-        heights_.up = options_.up;
+        heights_.up = up_in_steps(options_.up, field_.grid);
         for (int axis = 0; axis < 3; ++axis)
             if (!(is_2d_ && axis == 1)) lowest_corner_ += width_ * std::min(0.0, options_.up[axis]);
     }

@@ -243,7 +243,7 @@ private:
     int threads_;
     CavityFillReport& report_;
     CavityOptions options_;
-    NodeHeights heights_{op_.up, {0, 0, 0}};
+    NodeHeights heights_{up_in_steps(op_.up, field_.grid), {0, 0, 0}};
 };
 
 } // namespace

@@ -112,10 +112,11 @@ public:
         }
         for (std::size_t k = 0; k < 3; ++k)
             first_node_[k] = std::max(box_.begin[k], std::int64_t{-1});
-        row_begin_ = grid_.origin.x + std::trunc((lowest_x - grid_.origin.x) / grid_.dp) * grid_.dp;
-        if (row_begin_ > lowest_x) row_begin_ -= grid_.dp;
-        row_begin_ -= grid_.dp / 2;
-        row_end_ = highest_x + grid_.dp / 2;
+        row_begin_ = grid_.origin.x +
+                     std::trunc((lowest_x - grid_.origin.x) / grid_.step(0)) * grid_.step(0);
+        if (row_begin_ > lowest_x) row_begin_ -= grid_.step(0);
+        row_begin_ -= grid_.step(0) / 2;
+        row_end_ = highest_x + grid_.step(0) / 2;
         box_ = intersect(box_, whole_lattice(grid_));
         for (Facet& f : facets_) f.reach = intersect(f.reach, box_);
     }
@@ -146,7 +147,7 @@ public:
                     const double x =
                         grid_.origin.x +
                         static_cast<double>(box_.begin[0] + static_cast<std::int64_t>(i)) *
-                            grid_.dp;
+                            grid_.step(0);
                     const double node = as_float32(x);
                     while (crossing != next &&
                            (crossing->is_entry ? as_float32(crossing->x) <= node
@@ -199,7 +200,7 @@ private:
     /// The last node that is not beyond a coordinate.
     std::int64_t node_below(double coordinate, int axis) const
     {
-        return to_index(std::floor((coordinate - grid_.origin[axis]) / grid_.dp));
+        return to_index(std::floor((coordinate - grid_.origin[axis]) / grid_.step(axis)));
     }
 
     void add_facet(const TriangleSoup& soup, std::size_t t)
@@ -218,8 +219,8 @@ private:
                 std::min({f.corners[0][axis], f.corners[1][axis], f.corners[2][axis]});
             const double high =
                 std::max({f.corners[0][axis], f.corners[1][axis], f.corners[2][axis]});
-            f.reach.begin[k] = snap(low - reach_, grid_.origin[axis], grid_.dp) - 1;
-            f.reach.end[k] = snap(high + reach_, grid_.origin[axis], grid_.dp) + 2;
+            f.reach.begin[k] = snap(low - reach_, grid_.origin[axis], grid_.step(axis)) - 1;
+            f.reach.end[k] = snap(high + reach_, grid_.origin[axis], grid_.step(axis)) + 2;
             box_.begin[k] = std::min(box_.begin[k], node_below(low - margin_, axis));
             box_.end[k] = std::max(box_.end[k], node_below(high + margin_, axis) + 1);
         }
@@ -232,8 +233,8 @@ private:
     double node_at(std::int64_t index, int axis) const
     {
         const std::int64_t first = first_node_[static_cast<std::size_t>(axis)];
-        return grid_.origin[axis] + static_cast<double>(first) * grid_.dp +
-               static_cast<double>(index - first) * grid_.dp;
+        return grid_.origin[axis] + static_cast<double>(first) * grid_.step(axis) +
+               static_cast<double>(index - first) * grid_.step(axis);
     }
 
     void add_crossings(const Facet& f, std::vector<RowCrossing>& out) const

@@ -68,15 +68,15 @@ void DrawChecks::check_shape(const DrawOp& op, const Box3& bounds)
         if (is_flat(axis) || grid.is_periodic[static_cast<std::size_t>(axis)]) continue;
         const std::int64_t last =
             static_cast<std::int64_t>(grid.n[static_cast<std::size_t>(axis)]) - 1;
-        const std::int64_t low = snap(bounds.min[axis], grid.origin[axis], grid.dp);
-        const std::int64_t high = snap(bounds.max[axis], grid.origin[axis], grid.dp);
+        const std::int64_t low = snap(bounds.min[axis], grid.origin[axis], grid.step(axis));
+        const std::int64_t high = snap(bounds.max[axis], grid.origin[axis], grid.step(axis));
         if (low >= 0 && high <= last) continue;
         warn(op.source, Kind::Lost,
              fmt::format("it reaches from {} = {:g} to {:g}, the nodes of the domain from {:g} to "
                          "{:g}: what lies beyond gives no particles; expected a <pointmin> and "
                          "<pointmax> around it (a node at pointmax is outside)",
                          "xyz"[axis], bounds.min[axis], bounds.max[axis], grid.origin[axis],
-                         grid.origin[axis] + static_cast<double>(last) * grid.dp));
+                         grid.origin[axis] + static_cast<double>(last) * grid.step(axis)));
         return;
     }
 }

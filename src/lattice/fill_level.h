@@ -18,7 +18,7 @@ struct NodeHeights
 {
     static constexpr double tolerance = 1e-6;
 
-    Vec3 up{0, 0, 1};                           ///< of length 1
+    Vec3 up{0, 0, 1};                           ///< how much higher a step is, per axis
     std::array<std::int64_t, 3> begin{0, 0, 0}; ///< lattice node that the indices count from
 
     double at(std::int64_t x, std::int64_t y, std::int64_t z) const
@@ -27,6 +27,14 @@ struct NodeHeights
                up.z * static_cast<double>(z + begin[2]);
     }
 };
+
+/// How much higher a step of the lattice is along each axis, dp.
+///
+/// up  of length 1
+inline Vec3 up_in_steps(const Vec3& up, const LatticeGrid& grid)
+{
+    return {up.x * grid.stretch.x, up.y * grid.stretch.y, up.z * grid.stretch.z};
+}
 
 std::uint64_t node_count(const std::vector<Spans>& nodes);
 

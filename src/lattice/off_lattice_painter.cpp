@@ -23,7 +23,7 @@ bool is_in_off_lattice_domain(const Vec3& p, const LatticeGrid& grid)
     for (int axis = 0; axis < 3; ++axis)
     {
         const double last =
-            grid.origin[axis] + (grid.n[static_cast<std::size_t>(axis)] - 1) * grid.dp;
+            grid.origin[axis] + (grid.n[static_cast<std::size_t>(axis)] - 1) * grid.step(axis);
         if (!(p[axis] >= grid.origin[axis] && p[axis] <= last + nearest_dp * grid.dp)) return false;
     }
     return true;
@@ -83,8 +83,8 @@ std::vector<Spans> emptied_by_cylinder(const CylinderOp& op, const std::vector<C
     for (int k = 0; k < 3; ++k)
     {
         const auto i = static_cast<std::size_t>(k);
-        const double low = (std::min(op.p0[k], op.p1[k]) - reach - grid.origin[k]) / grid.dp;
-        const double high = (std::max(op.p0[k], op.p1[k]) + reach - grid.origin[k]) / grid.dp;
+        const double low = (std::min(op.p0[k], op.p1[k]) - reach - grid.origin[k]) / grid.step(k);
+        const double high = (std::max(op.p0[k], op.p1[k]) + reach - grid.origin[k]) / grid.step(k);
         const auto n = static_cast<double>(grid.n[i]);
         begin[i] = static_cast<std::int64_t>(std::clamp(low, 0.0, n));
         end[i] = static_cast<std::int64_t>(std::clamp(high + 1, 0.0, n));

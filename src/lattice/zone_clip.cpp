@@ -62,7 +62,7 @@ NodeBox nodes_within(const ZoneBox& box, const LatticeGrid& grid)
     {
         if (grid.is_2d && axis == 1) continue;
         const auto step = [&](double x)
-        { return to_index(std::round((x - grid.origin[axis]) / grid.dp)); };
+        { return to_index(std::round((x - grid.origin[axis]) / grid.step(axis))); };
         const auto k = static_cast<std::size_t>(axis);
         out.begin[k] = std::max<std::int64_t>(out.begin[k], step(box.corner[axis]) + 1);
         out.end[k] = std::min<std::int64_t>(out.end[k], step(far[axis]));
@@ -93,7 +93,7 @@ bool is_nearest_in(const NodeBox& box, const LatticeGrid& grid, const Vec3& p)
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto k = static_cast<std::size_t>(axis);
-        const double node = std::round((p[axis] - grid.origin[axis]) / grid.dp);
+        const double node = std::round((p[axis] - grid.origin[axis]) / grid.step(axis));
         if (node < static_cast<double>(box.begin[k]) || node >= static_cast<double>(box.end[k]))
             return false;
     }
@@ -113,7 +113,8 @@ void erase_off_lattice(const NodeBox& box, const LatticeGrid& grid, VolumePartic
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto k = static_cast<std::size_t>(axis);
-            const double steps = (off_lattice.positions[i][axis] - grid.origin[axis]) / grid.dp;
+            const double steps =
+                (off_lattice.positions[i][axis] - grid.origin[axis]) / grid.step(axis);
             const double node = std::clamp(std::round(steps), static_cast<double>(box.begin[k]),
                                            static_cast<double>(box.end[k] - 1));
             squared += (steps - node) * (steps - node);
@@ -171,8 +172,8 @@ bool is_beyond_zone(const VresDef& vres, std::size_t zone, const LatticeGrid& gr
 {
     Vec3 node = p;
     for (int axis = 0; axis < 3; ++axis)
-        node[axis] =
-            grid.origin[axis] + grid.dp * std::round((p[axis] - grid.origin[axis]) / grid.dp);
+        node[axis] = grid.origin[axis] +
+                     grid.dp * std::round((p[axis] - grid.origin[axis]) / grid.step(axis));
     const VresZone& own = vres.zones[zone];
     if (zone > 0 && !own.inner.is_plain &&
         !is_within(resized(own.buffer, own.dp, vres.is_2d), node, vres.is_2d))

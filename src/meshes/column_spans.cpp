@@ -87,9 +87,9 @@ class SlabCutter
 {
 public:
     SlabCutter(const LatticeGrid& grid, std::int64_t i, const ColumnOptions& options)
-        : x_(Axis{grid.origin.x, grid.dp, grid.n[0]}.at(i)),
-          y_{grid.origin.y, grid.dp, grid.n[1]},
-          z_{grid.origin.z, grid.dp, grid.n[2]},
+        : x_(Axis{grid.origin.x, grid.step(0), grid.n[0]}.at(i)),
+          y_{grid.origin.y, grid.step(1), grid.n[1]},
+          z_{grid.origin.z, grid.step(2), grid.n[2]},
           options_(options)
     {
     }
@@ -271,8 +271,8 @@ struct SlabRange
 
 SlabRange slabs_of(const Vec3* corners, const LatticeGrid& grid)
 {
-    const Axis x{grid.origin.x, grid.dp, grid.n[0]};
-    const Axis y{grid.origin.y, grid.dp, grid.n[1]};
+    const Axis x{grid.origin.x, grid.step(0), grid.n[0]};
+    const Axis y{grid.origin.y, grid.step(1), grid.n[1]};
     const auto [x_low, x_high] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
     const auto [y_low, y_high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
     if (y_high < y.at(0) || y_low > y.at(y.n - 1)) return {};

@@ -70,6 +70,7 @@ ColumnCuts cut_along(int axis, const TriangleSoup& soup, const LatticeGrid& grid
     for (const Vec3& p : soup.vertices) other.vertices.push_back(turned(p));
     LatticeGrid lattice = grid;
     lattice.origin = turned(grid.origin);
+    lattice.stretch = turned(grid.stretch);
     for (std::size_t k = 0; k < 3; ++k)
         lattice.n[k] = grid.n[(static_cast<std::size_t>(axis) + 1 + k) % 3];
     return cut_columns(other, lattice, options, threads);
@@ -164,8 +165,8 @@ struct NodeRange
 NodeRange range_of(const Box3& bounds, const LatticeGrid& grid, int axis)
 {
     const double n = grid.n[static_cast<std::size_t>(axis)];
-    const double begin = std::floor((bounds.min[axis] - grid.origin[axis]) / grid.dp) - 1;
-    const double end = std::ceil((bounds.max[axis] - grid.origin[axis]) / grid.dp) + 2;
+    const double begin = std::floor((bounds.min[axis] - grid.origin[axis]) / grid.step(axis)) - 1;
+    const double end = std::ceil((bounds.max[axis] - grid.origin[axis]) / grid.step(axis)) + 2;
     return {static_cast<std::uint32_t>(std::clamp(begin, 0.0, n)),
             static_cast<std::uint32_t>(std::clamp(end, 0.0, n))};
 }
@@ -266,8 +267,8 @@ private:
         count(std::binary_search(mute_z.begin(), mute_z.end(), y), is_in(along_z_, node));
         if (votes >= 2 && (ayes == 0 || ayes == votes)) return ayes > 0;
         ++disputed_;
-        const Vec3 at{grid_.origin.x + static_cast<double>(x_) * grid_.dp,
-                      grid_.origin.y + y * grid_.dp, grid_.origin.z + z * grid_.dp};
+        const Vec3 at{grid_.origin.x + static_cast<double>(x_) * grid_.step(0),
+                      grid_.origin.y + y * grid_.step(1), grid_.origin.z + z * grid_.step(2)};
         return tree_.winding_number(at) > 0.5;
     }
 

@@ -14,7 +14,7 @@ Node nearest_node(const Vec3& p, const LatticeGrid& grid)
 {
     const auto round_of = [&](int axis)
     {
-        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        const double index = (p[axis] - grid.origin[axis]) / grid.step(axis);
         return to_index(std::ceil(index - 0.5));
     };
     return {round_of(0), round_of(1), round_of(2)};
@@ -26,7 +26,7 @@ CellCorners cell_corners(const Vec3& p, const LatticeGrid& grid)
 {
     const auto floor_of = [&](int axis)
     {
-        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        const double index = (p[axis] - grid.origin[axis]) / grid.step(axis);
         return to_index(std::floor(index));
     };
     const Node low{floor_of(0), floor_of(1), floor_of(2)};

@@ -19,7 +19,7 @@ inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid, double beyond_d
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto a = static_cast<std::size_t>(axis);
-        const double index = (p[axis] - grid.origin[axis]) / grid.dp;
+        const double index = (p[axis] - grid.origin[axis]) / grid.step(axis);
         const double last = grid.n[a] - 1;
         // What is at the end of a period is at its begin too.
         const double low = grid.is_periodic[a] ? -0.5 - beyond_dp - tolerance : -tolerance;

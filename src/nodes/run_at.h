@@ -32,7 +32,7 @@ inline const Run* run_at(const RunField& field, const Node& n)
 /// first_bound  absolute mk of the first boundary
 inline bool has_fluid_near(const RunField& field, const Vec3& p, std::uint16_t first_bound)
 {
-    const Vec3 at = (p - field.grid.origin) / field.grid.dp;
+    const Vec3 at = field.grid.steps_to(p);
     const auto nearest = [](double c)
     { return static_cast<std::int64_t>(std::clamp(std::round(c), -1.0, 1e10)); };
     const Run* run =

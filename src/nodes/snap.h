@@ -40,16 +40,16 @@ inline std::int64_t snap(double coordinate, double origin, double dp)
 
 inline Node snap(const Vec3& p, const LatticeGrid& grid)
 {
-    return {snap(p.x, grid.origin.x, grid.dp), snap(p.y, grid.origin.y, grid.dp),
-            snap(p.z, grid.origin.z, grid.dp)};
+    return {snap(p.x, grid.origin.x, grid.step(0)), snap(p.y, grid.origin.y, grid.step(1)),
+            snap(p.z, grid.origin.z, grid.step(2))};
 }
 
 /// The real place of a node.
 inline Vec3 position(const Node& n, const LatticeGrid& grid)
 {
-    return {grid.origin.x + static_cast<double>(n.x) * grid.dp,
-            grid.origin.y + static_cast<double>(n.y) * grid.dp,
-            grid.origin.z + static_cast<double>(n.z) * grid.dp};
+    return {grid.origin.x + static_cast<double>(n.x) * grid.step(0),
+            grid.origin.y + static_cast<double>(n.y) * grid.step(1),
+            grid.origin.z + static_cast<double>(n.z) * grid.step(2)};
 }
 
 inline bool is_inside(const Node& n, const LatticeGrid& grid)

@@ -232,14 +232,15 @@ Clip::Clip(const ClipPlane& plane)
 void apply_clip(Spans& spans, std::uint32_t slab, const ClipPlane& plane, const LatticeGrid& grid)
 {
     const Clip clip(plane);
-    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
-    spans = part_of_columns(spans,
-                            [&](std::uint32_t j, std::uint32_t k)
-                            {
-                                const double y = grid.origin.y + static_cast<double>(j) * grid.dp;
-                                const double z = grid.origin.z + static_cast<double>(k) * grid.dp;
-                                return clip.keeps({x, y, z});
-                            });
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.step(0);
+    spans =
+        part_of_columns(spans,
+                        [&](std::uint32_t j, std::uint32_t k)
+                        {
+                            const double y = grid.origin.y + static_cast<double>(j) * grid.step(1);
+                            const double z = grid.origin.z + static_cast<double>(k) * grid.step(2);
+                            return clip.keeps({x, y, z});
+                        });
 }
 
 Spans listed(const SlabRegion& region, std::uint32_t x, const std::vector<ClipPlane>& clips,

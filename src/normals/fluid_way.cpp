@@ -226,7 +226,7 @@ FluidWay::Way FluidWay::to(const Vec3& p) const
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const auto a = static_cast<int>(axis);
-        const double node = std::clamp((p[a] - grid_.origin[a]) / grid_.dp, -1e9, 1e9) -
+        const double node = std::clamp((p[a] - grid_.origin[a]) / grid_.step(a), -1e9, 1e9) -
                             static_cast<double>(first_[axis]);
         at[axis] = std::llround(node / side_ - 0.5 * (1 - 1.0 / side_));
         // Surfaces go on beyond periodic limits, and those of a case in 2D across its plane.

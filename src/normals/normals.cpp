@@ -454,9 +454,9 @@ private:
         const LatticeGrid& grid = particles_.grid;
         for (int axis = 0; axis < 3; ++axis)
         {
-            const double steps = (low[axis] - grid.origin[axis]) / grid.dp;
+            const double steps = (low[axis] - grid.origin[axis]) / grid.step(axis);
             // Half-way between two it is the lower one, so that no particle lies before it.
-            low[axis] = grid.origin[axis] + std::ceil(steps - 0.5 - 1e-6) * grid.dp;
+            low[axis] = grid.origin[axis] + std::ceil(steps - 0.5 - 1e-6) * grid.step(axis);
         }
         return low;
     }

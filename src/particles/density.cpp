@@ -74,10 +74,8 @@ private:
     }
     double height(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
-        const Vec3& origin = def_.grid.origin;
-        const double dp = def_.grid.dp;
-        return height(
-            {origin.x + static_cast<std::uint32_t>(x) * dp, origin.y + y * dp, origin.z + z * dp});
+        return height(def_.grid.place(
+            {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
     }
 
     /// The density at a depth.
@@ -86,7 +84,7 @@ private:
         const ConstantsDef& c = def_.constants;
         if (is_uniform_) return static_cast<float>(c.rhop0);
         // GenCase's surface goes through the highest particles, that of the fluid lies above them.
-        if (def_.balances()) depth += def_.grid.dp / 2;
+        if (def_.balances()) depth += (is_vertical_ ? def_.grid.step(2) : def_.grid.dp) / 2;
         const double pressure = c.rhop0 * g_ * depth / def_.fluid_fullness;
         return static_cast<float>(c.rhop0 * std::pow(1 + pressure / constants_.b, 1 / c.gamma));
     }
@@ -135,7 +133,7 @@ private:
         if (!by_height_)
         {
             if (is_vertical_)
-                off_lattice_.measure_along_z(top_, def_.grid.dp);
+                off_lattice_.measure_along_z(top_, def_.grid.step(2));
             else
                 off_lattice_.sort_by_slab(field_.slabs.size());
             return;
@@ -156,7 +154,8 @@ private:
         if (def_.main_hswl) return *def_.main_hswl;
         if (particles_.n_fluid == 0 || g_ == 0) return 0;
         if (by_height_) return water_.s_max - water_.s_min;
-        if (is_vertical_) return std::max(water_.deepest * def_.grid.dp, off_lattice_.deepest());
+        if (is_vertical_)
+            return std::max(water_.deepest * def_.grid.step(2), off_lattice_.deepest());
         double most = 0;
         TiltedDepths tilted(def_, field_, meter_);
         tilted.for_each(
@@ -216,7 +215,7 @@ private:
         particles_.rhop_of_depth.resize(static_cast<std::size_t>(most) + 1);
         for (std::uint32_t s = 0; s <= most; ++s)
         {
-            const double step = s * def_.grid.dp * def_.constants.gravity.z;
+            const double step = s * def_.grid.step(2) * def_.constants.gravity.z;
             particles_.rhop_of_depth[s] =
                 rhop(is_uniform_ ? 0 : std::sqrt(step * step) / g_ + excess_);
         }

@@ -99,7 +99,7 @@ public:
     Host find(const Vec3& p) const
     {
         const LatticeGrid& grid = field_.grid;
-        const Vec3 q = (p - grid.origin) / grid.dp;
+        const Vec3 q = grid.steps_to(p);
         std::array<std::int64_t, 3> nearest{};
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -227,7 +227,7 @@ public:
         : field_(field),
           meter_(meter),
           gravity_(def.constants.gravity),
-          dp_(def.grid.dp),
+          steps_{field.grid.step(0), field.grid.step(1), field.grid.step(2)},
           g_(norm(gravity_))
     {
     }
@@ -268,9 +268,9 @@ public:
     {
         const Run& r = field_.slabs[slab.x][run];
         const std::size_t at = slab.steps.begin[run] + (r.z_end - r.z_begin - 1 - below);
-        const double dx = std::max(slab.steps.x[at] + offset.x, 0.0) * dp_ * gravity_.x;
-        const double dy = std::max(slab.steps.y[at] + offset.y, 0.0) * dp_ * gravity_.y;
-        const double dz = std::max(slab.top[run] + below + offset.z, 0.0) * dp_ * gravity_.z;
+        const double dx = std::max(slab.steps.x[at] + offset.x, 0.0) * steps_.x * gravity_.x;
+        const double dy = std::max(slab.steps.y[at] + offset.y, 0.0) * steps_.y * gravity_.y;
+        const double dz = std::max(slab.top[run] + below + offset.z, 0.0) * steps_.z * gravity_.z;
         return std::sqrt(dx * dx + dy * dy + dz * dz) / g_;
     }
 
@@ -318,7 +318,7 @@ private:
     const RunField& field_;
     const DepthMeter& meter_;
     Vec3 gravity_;
-    double dp_;
+    Vec3 steps_; ///< of the lattice, metres
     double g_;
 };
 
@@ -357,15 +357,15 @@ public:
         return of_nodes_.empty() ? 0 : *std::max_element(of_nodes_.begin(), of_nodes_.end());
     }
 
-    void measure_along_z(const std::vector<std::vector<std::uint32_t>>& top, double dp)
+    void measure_along_z(const std::vector<std::vector<std::uint32_t>>& top, double step)
     {
         for (std::size_t i = 0; i < hosts_.size(); ++i)
         {
             const Host& h = hosts_[i];
             if (h.slab == Host::none) continue;
             const double steps = top[h.slab][h.run] + h.below;
-            depths_[i] = std::max(steps + h.offset.z, 0.0) * dp;
-            of_nodes_[i] = steps * dp;
+            depths_[i] = std::max(steps + h.offset.z, 0.0) * step;
+            of_nodes_[i] = steps * step;
         }
     }
 

@@ -49,8 +49,8 @@ Box3 box_in_domain(const SurfaceMesh& mesh, const LatticeGrid& grid, bool& is_cu
     for (int axis = 0; axis < 3; ++axis)
     {
         if (grid.is_2d && axis == 1) continue;
-        const double low = grid.origin[axis] - 0.5 * grid.dp;
-        const double high = low + grid.dp * grid.n[static_cast<std::size_t>(axis)];
+        const double low = grid.origin[axis] - 0.5 * grid.step(axis);
+        const double high = low + grid.step(axis) * grid.n[static_cast<std::size_t>(axis)];
         is_cut = is_cut || box.min[axis] < low || box.max[axis] > high;
         box.min[axis] = std::clamp(box.min[axis], low, high);
         box.max[axis] = std::clamp(box.max[axis], low, high);

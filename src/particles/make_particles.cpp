@@ -288,11 +288,12 @@ private:
             if (out_.np > out_.off_lattice.size())
             {
                 limits.min[axis] = std::min(
-                    limits.min[axis],
-                    def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] * def_.grid.dp);
-                limits.max[axis] = std::max(
-                    limits.max[axis],
-                    def_.grid.origin[axis] + high[static_cast<std::size_t>(axis)] * def_.grid.dp);
+                    limits.min[axis], def_.grid.origin[axis] + low[static_cast<std::size_t>(axis)] *
+                                                                   def_.grid.step(axis));
+                limits.max[axis] =
+                    std::max(limits.max[axis],
+                             def_.grid.origin[axis] +
+                                 high[static_cast<std::size_t>(axis)] * def_.grid.step(axis));
             }
         }
         out_.pos_min = limits.min;

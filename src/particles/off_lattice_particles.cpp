@@ -192,12 +192,12 @@ void merge_off_lattice_particles(CaseParticles& particles, ParticleBlock& block,
     std::uint64_t next = begin;
     for (const ParticleRun& run : block.runs)
     {
-        const double x = grid.origin.x + run.x * grid.dp;
-        const double y = grid.origin.y + run.y * grid.dp;
+        const double x = grid.origin.x + run.x * grid.step(0);
+        const double y = grid.origin.y + run.y * grid.step(1);
         const auto node = [&](std::uint32_t i)
         {
             const std::uint32_t z = block.run_descending ? run.z - i : run.z + i;
-            return order.key({x, y, grid.origin.z + z * grid.dp});
+            return order.key({x, y, grid.origin.z + z * grid.step(2)});
         };
         for (std::uint32_t done = 0; done < run.count;)
         {

@@ -101,15 +101,15 @@ void for_each_position(const CaseParticles& particles, const ParticleSegment& se
         return;
     }
     const LatticeGrid& grid = particles.grid;
-    const double x = grid.origin.x + segment.run->x * grid.dp;
-    const double y = grid.origin.y + segment.run->y * grid.dp;
+    const double x = grid.origin.x + segment.run->x * grid.step(0);
+    const double y = grid.origin.y + segment.run->y * grid.step(1);
     const double origin_z = grid.origin.z;
-    const double dp = grid.dp;
+    const double step_z = grid.step(2);
     const std::int64_t step = segment.block->run_descending ? -1 : 1;
     const std::int64_t z = static_cast<std::int64_t>(segment.run->z) + step * segment.offset;
     const std::int64_t count = segment.count;
     for (std::int64_t k = 0; k < count; ++k)
-        put(k, x, y, origin_z + static_cast<double>(z + step * k) * dp);
+        put(k, x, y, origin_z + static_cast<double>(z + step * k) * step_z);
 }
 
 /// Calls put(place in the segment, density) for every particle of a segment.

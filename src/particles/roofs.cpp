@@ -91,9 +91,8 @@ private:
             return true;
         const double dp = field_.grid.dp;
         const Vec3 at =
-            field_.grid.origin + Vec3{static_cast<double>(x), static_cast<double>(runs[last].y),
-                                      static_cast<double>(end - 1)} *
-                                     dp;
+            field_.grid.place({static_cast<double>(x), static_cast<double>(runs[last].y),
+                               static_cast<double>(end - 1)});
         bool found = false;
         walls_.for_each_near(
             at, 2.2 * dp,

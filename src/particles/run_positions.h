@@ -13,8 +13,8 @@ inline Vec3 place_in_run(const CaseParticles& particles, const ParticleBlock& bl
     const LatticeGrid& grid = particles.grid;
     const std::int64_t z = static_cast<std::int64_t>(run.z) +
                            (block.run_descending ? -1 : 1) * static_cast<std::int64_t>(k);
-    return {grid.origin.x + run.x * grid.dp, grid.origin.y + run.y * grid.dp,
-            grid.origin.z + static_cast<double>(z) * grid.dp};
+    return {grid.origin.x + run.x * grid.step(0), grid.origin.y + run.y * grid.step(1),
+            grid.origin.z + static_cast<double>(z) * grid.step(2)};
 }
 
 /// The density of particle k of a run.

@@ -126,6 +126,9 @@ public:
     {
         const Vec3& gravity = def_.constants.gravity;
         if (norm(gravity) > 0) down_ = gravity / norm(gravity);
+        const Vec3& stretch = field.grid.stretch;
+        longest_ = std::max({stretch.x, stretch.y, stretch.z});
+        volume_ = stretch.x * stretch.y * stretch.z;
         has_several_bodies_ =
             std::count_if(field.walls.bodies.begin(), field.walls.bodies.end(),
                           [](const FittedBody& body) { return !body.is_layer(); }) > 1;
@@ -149,13 +152,19 @@ public:
         count_nodes(out);
         if (adds_nodes_) add_nodes(cells, out);
         const double dp = field_.grid.dp;
+        std::map<std::uint16_t, double> near_walls; ///< nodes
         for (const CellSpace& cell : cells)
         {
             // A node in a pocket goes, and with it what it stood for.
             const bool stays = cell.fluid != 0 && !cell.is_in_pocket;
             if (cell.owner != 0) out.missing[cell.owner] += cell.owned * dp * dp * dp;
             if (stays) out.missing[cell.fluid] -= dp * dp * dp;
+            if (cell.fluid != 0 && volume_ != 1) near_walls[cell.fluid] += 1;
         }
+        // Nodes far from all walls stand for their cells, which may be no dp^3.
+        for (const auto& [mk, near] : near_walls)
+            out.missing[mk] +=
+                (volume_ - 1) * (static_cast<double>(out.nodes[mk]) - near) * dp * dp * dp;
         collect_pockets(cells, out);
         empty_pockets(cells, out);
         return out;
@@ -172,7 +181,7 @@ private:
 
     Vec3 in_nodes(const Vec3& p) const
     {
-        Vec3 at = (p - field_.grid.origin) / field_.grid.dp;
+        Vec3 at = field_.grid.steps_to(p);
         if (field_.grid.is_2d) at.y = 0;
         return at;
     }
@@ -224,7 +233,7 @@ private:
     {
         const auto is_beyond = [&](const Vec3& node)
         {
-            const Vec3 off = field_.grid.origin + field_.grid.dp * node - ball->other;
+            const Vec3 off = field_.grid.place(node) - ball->other;
             return dot(off, ball->center - ball->other) < 0;
         };
         const double before_wall = cell.is_behind ? 0.5 : 0;
@@ -267,7 +276,7 @@ private:
         {
             const Vec3 at = cell.node + (i / norm(level)) * level;
             if (fluid_of(at) != 0) return true;
-            const Vec3 p = field_.grid.origin + dp * at;
+            const Vec3 p = field_.grid.place(at);
             const Vec3 way = closest_(p, dp) - p;
             if (!(norm(way) < dp)) return false;
             if (dot(way, down_) < -0.5 * norm(way)) return true;
@@ -353,11 +362,31 @@ private:
         return has_several_bodies_ && all_.is_in_solid(p);
     }
 
-    /// Adds a cube about `p` with sides of `side` dp; cubes that are cut otherwise than by one
+    Vec3 stretched(const Vec3& v) const
+    {
+        const Vec3& s = field_.grid.stretch;
+        return {v.x * s.x, v.y * s.y, v.z * s.z};
+    }
+
+    /// How much of a cell lies before a plane.
+    ///
+    /// normal    of unit length
+    /// distance  of the plane from the middle, in sides of dp
+    double share_before(const Vec3& normal, double distance) const
+    {
+        const bool is_2d = field_.grid.is_2d;
+        if (field_.grid.stretch == Vec3{1, 1, 1})
+            return share_of_cube_before(normal, distance, is_2d);
+        const Vec3 scaled = stretched(normal);
+        const double length = norm(scaled);
+        return share_of_cube_before(scaled / length, distance / length, is_2d);
+    }
+
+    /// Adds a cell about `p` with sides of `side` steps; cells that are cut otherwise than by one
     /// plane are cut up first.
     ///
     /// fluid  of the node in its middle; 0: none
-    void add_cube(const Vec3& p, double side, std::uint16_t fluid, CellSpace& out) const
+    void add_cell(const Vec3& p, double side, std::uint16_t fluid, CellSpace& out) const
     {
         const double dp = field_.grid.dp;
         const bool is_2d = field_.grid.is_2d;
@@ -366,9 +395,8 @@ private:
         Vec3 up = near.distance > 1e-9 * dp ? off / near.distance : near.normal;
         if (is_2d) up.y = 0;
         const bool is_before = near.is_outside || near.distance <= 1e-9 * dp;
-        const bool is_cut = near.distance < reach_of_cell * side * dp;
-        const double before =
-            is_cut ? share_of_cube_before(-1.0 * up, near.distance / dp / side, is_2d) : 1;
+        const bool is_cut = near.distance < reach_of_cell * side * dp * longest_;
+        const double before = is_cut ? share_before(-1.0 * up, near.distance / dp / side) : 1;
         const bool is_inside = is_inside_of(near, up, is_before);
         const bool is_solid_behind = is_inside_of(near, -1.0 * up, !near.is_outside);
         WallFront own{0, true, false, 0};
@@ -388,11 +416,11 @@ private:
                 if (is_2d && (part & 2) != 0) continue;
                 const Vec3 shift{(part & 1) - 0.5, is_2d ? 0 : (part >> 1 & 1) - 0.5,
                                  (part >> 2) - 0.5};
-                add_cube(p + 0.5 * side * dp * shift, 0.5 * side, 0, out);
+                add_cell(p + 0.5 * side * dp * stretched(shift), 0.5 * side, 0, out);
             }
             return;
         }
-        const double volume = is_2d ? side * side : side * side * side;
+        const double volume = volume_ * (is_2d ? side * side : side * side * side);
         // Where the fluid itself stands it need not be looked for.
         if (fluid != 0 && !own.is_pocket && !own.is_solid)
             own.fluid = fluid;
@@ -411,7 +439,7 @@ private:
         CellSpace out;
         out.node = node;
         out.fluid = fluid_at(node.x, node.y, node.z);
-        add_cube(place_of(node, field_.grid), 1, out.fluid, out);
+        add_cell(place_of(node, field_.grid), 1, out.fluid, out);
         return out;
     }
 
@@ -519,7 +547,9 @@ private:
     ClosestWallPoint closest_;
     std::set<std::uint16_t> moving_; ///< mks
     bool has_several_bodies_ = false;
-    Vec3 down_; ///< along gravity; zero without
+    Vec3 down_;          ///< along gravity; zero without
+    double longest_ = 1; ///< step of the lattice, dp
+    double volume_ = 1;  ///< of its cells, dp^3
 };
 
 } // namespace

@@ -30,8 +30,9 @@ std::vector<Vec3> nodes_of(const InOutZones& inout, const RunField& field)
         for (const Run& run : field.slabs[x])
             for (std::uint32_t z = run.z_begin; z < run.z_end; ++z)
                 if (!run.is_covered && inout.fluids.contains(run.mk))
-                    out.push_back({grid.origin.x + static_cast<double>(x) * grid.dp,
-                                   grid.origin.y + run.y * grid.dp, grid.origin.z + z * grid.dp});
+                    out.push_back({grid.origin.x + static_cast<double>(x) * grid.step(0),
+                                   grid.origin.y + run.y * grid.step(1),
+                                   grid.origin.z + z * grid.step(2)});
     return out;
 }
 
@@ -49,7 +50,7 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
         if (!grid.is_periodic[a]) continue;
         inside_.min[axis] = grid.origin[axis] - grid.dp / 2 + reach_;
         inside_.max[axis] =
-            grid.origin[axis] + (static_cast<double>(grid.n[a]) - 0.5) * grid.dp - reach_;
+            grid.origin[axis] + (static_cast<double>(grid.n[a]) - 0.5) * grid.step(axis) - reach_;
     }
     for (const Vec3& p : nodes_of(def.solver.inout, field)) points_.add(p);
     for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));

@@ -27,7 +27,7 @@ public:
             std::array<double, 3> block{};
             for (int axis = 0; axis < 3; ++axis)
                 block[static_cast<std::size_t>(axis)] =
-                    std::floor((p[axis] - grid.origin[axis]) / grid.dp / side) + reach;
+                    std::floor((p[axis] - grid.origin[axis]) / grid.step(axis) / side) + reach;
             if (std::any_of(block.begin(), block.end(), [](double b) { return b < 0; })) continue;
             const std::uint64_t of_point = key(block[0], block[1], block[2]);
             if (keys_.empty() || keys_.back() != of_point) keys_.push_back(of_point);

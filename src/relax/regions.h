@@ -23,8 +23,8 @@ struct NodeIndex
 
 inline Vec3 place_of(const NodeIndex& n, const LatticeGrid& grid)
 {
-    return {grid.origin.x + n.x * grid.dp, grid.origin.y + n.y * grid.dp,
-            grid.origin.z + n.z * grid.dp};
+    return {grid.origin.x + n.x * grid.step(0), grid.origin.y + n.y * grid.step(1),
+            grid.origin.z + n.z * grid.step(2)};
 }
 
 struct Mover
@@ -55,11 +55,13 @@ Region fluid_region(const CaseDef& def, const FluidSpace& space);
 /// The mks of solid bodies, those of one body together; ascending by the first of each.
 std::vector<std::vector<std::uint16_t>> solid_mks(const std::vector<FittedBody>& bodies);
 
-/// How many particles of fluid make up the volume that layers behind the surface leave to it.
+/// How many particles of fluid make up the volume that layers behind the surface leave to it. What
+/// a stretched lattice is off by stays, up to half a percent: it would tear the crystal that it is.
 ///
 /// moving   particles that move now
 /// returns  nothing where so many are missing that they cannot come among those that move
-std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving, double dp);
+std::optional<double> number_between_layers(const FluidSpace& space, std::size_t moving,
+                                            const LatticeGrid& grid);
 
 /// Covers nodes of a slab, sorted by (y, z).
 void cover(std::vector<Run>& runs, const std::vector<Mover>& nodes);

@@ -404,7 +404,7 @@ private:
         if (region.is_solid)
             return wanted_number(field_.walls, region, moving, count_nodes(region, runs), dp);
         if (region.missing) return static_cast<double>(moving + *region.missing);
-        if (are_layered()) return number_between_layers(report_.space, moving, dp);
+        if (are_layered()) return number_between_layers(report_.space, moving, field_.grid);
         return std::nullopt;
     }
 

@@ -34,7 +34,7 @@ bool is_flat(const TriangleSoup& soup, const LatticeGrid& grid)
     const auto [low, high] =
         std::minmax_element(soup.vertices.begin(), soup.vertices.end(),
                             [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
-    const double from_plane = (low->y - grid.origin.y) / grid.dp;
+    const double from_plane = (low->y - grid.origin.y) / grid.step(1);
     return high->y - low->y <= plane_tolerance * grid.dp && from_plane > -0.5 && from_plane < 0.5;
 }
 

@@ -71,7 +71,7 @@ Box3 box_around(const LatticeGrid& grid, double margin_dp)
     const double margin = margin_dp * grid.dp;
     const Vec3 last{grid.n[0] - 1.0, grid.n[1] - 1.0, grid.n[2] - 1.0};
     return {grid.origin - Vec3{margin, margin, margin},
-            grid.origin + grid.dp * last + Vec3{margin, margin, margin}};
+            grid.place(last) + Vec3{margin, margin, margin}};
 }
 
 bool is_laid_whole(const CaseDef& def, std::uint16_t mk)

@@ -198,7 +198,8 @@ void measure(Body& body, const Widths& widths, const LatticeGrid& grid)
         const auto i = static_cast<std::size_t>(k);
         const double u = body.axis[k] / body.length;
         const double side =
-            (reach * std::sqrt(std::max(0.0, 1 - u * u)) + widths.cover * std::fabs(u)) / grid.dp;
+            (reach * std::sqrt(std::max(0.0, 1 - u * u)) + widths.cover * std::fabs(u)) /
+            grid.step(k);
         const auto steps = static_cast<std::int64_t>(std::ceil(side));
         body.box.begin[i] = std::min(body.a_node[k], body.b_node[k]) - steps - 1;
         body.box.end[i] = std::max(body.a_node[k], body.b_node[k]) + steps + 2;
@@ -241,8 +242,8 @@ public:
         : body_(body),
           widths_(widths),
           grid_(grid),
-          x_(grid.origin.x + slab * grid.dp),
-          y_(grid.origin.y + static_cast<double>(iy) * grid.dp),
+          x_(grid.origin.x + slab * grid.step(0)),
+          y_(grid.origin.y + static_cast<double>(iy) * grid.step(1)),
           iy_(iy),
           z_min_(body.box.begin[2]),
           z_max_(body.box.end[2] - 1)
@@ -282,7 +283,7 @@ public:
 private:
     Vec3 at(std::int64_t k) const
     {
-        return {x_, y_, grid_.origin.z + static_cast<double>(k) * grid_.dp};
+        return {x_, y_, grid_.origin.z + static_cast<double>(k) * grid_.step(2)};
     }
     double distance(std::int64_t k) const
     {
@@ -303,7 +304,7 @@ private:
 
     double to_index(double w) const
     {
-        const double i = (body_.a.z + w - grid_.origin.z) / grid_.dp;
+        const double i = (body_.a.z + w - grid_.origin.z) / grid_.step(2);
         return std::clamp(i, static_cast<double>(z_min_) - 3, static_cast<double>(z_max_) + 3);
     }
 

@@ -50,8 +50,9 @@ ShapeMesh ellipsoid_mesh(const Vec3& focus0, const Vec3& focus1, double sum, dou
 class FociColumn
 {
 public:
-    FociColumn(const Node& f0, const Node& f1, const NodeBox& box, std::uint32_t x, std::int64_t y)
-        : f0_(f0), f1_(f1), x_(x), y_(y), begin_(box.begin[2]), end_(box.end[2])
+    FociColumn(const std::array<Node, 2>& foci, const NodeBox& box, const Vec3& stretch,
+               std::uint32_t x, std::int64_t y)
+        : foci_(foci), stretch_(stretch), x_(x), y_(y), begin_(box.begin[2]), end_(box.end[2])
     {
         std::int64_t low = begin_;
         std::int64_t high = end_ - 1;
@@ -72,12 +73,12 @@ public:
     {
         const auto distance = [&](const Node& f)
         {
-            const auto dx = static_cast<double>(x_ - f.x);
-            const auto dy = static_cast<double>(y_ - f.y);
-            const auto dz = static_cast<double>(z - f.z);
+            const double dx = static_cast<double>(x_ - f.x) * stretch_.x;
+            const double dy = static_cast<double>(y_ - f.y) * stretch_.y;
+            const double dz = static_cast<double>(z - f.z) * stretch_.z;
             return std::sqrt(dx * dx + dy * dy + dz * dz);
         };
-        return distance(f0_) + distance(f1_);
+        return distance(foci_[0]) + distance(foci_[1]);
     }
 
     /// The nodes that hold; they are an interval around the one of the least sum.
@@ -103,8 +104,8 @@ public:
     }
 
 private:
-    Node f0_;
-    Node f1_;
+    std::array<Node, 2> foci_;
+    Vec3 stretch_;
     std::int64_t x_;
     std::int64_t y_;
     std::int64_t begin_;
@@ -155,14 +156,15 @@ SlabRegion nodes_of(const EllipsoidOp& ellipsoid, const DrawState& state, const 
         state.mode == DrawMode::Solid ? ellipsoid.radius / grid.dp : s0 + width;
     const bool is_open = state.mode != DrawMode::Solid;
     const double inner_limit = state.mode == DrawMode::Face ? s0 - width : -1;
-    const auto reach = static_cast<std::int64_t>(std::ceil(std::min(outer_limit, 4e9)));
+    const double steps = outer_limit * grid.dp / grid.least_step();
+    const auto reach = static_cast<std::int64_t>(std::ceil(std::min(steps, 4e9)));
     const NodeBox box = intersect(around(f0, reach, grid), around(f1, reach, grid));
     SlabRegion region = slabs_of(box);
     region.emit = [=](std::uint32_t x, Spans& out)
     {
         for (std::int64_t y = box.begin[1]; y < box.end[1]; ++y)
         {
-            const FociColumn nodes(f0, f1, box, x, y);
+            const FociColumn nodes({f0, f1}, box, grid.stretch, x, y);
             const Interval outer = nodes.widest(
                 [&](std::int64_t z)
                 { return is_open ? nodes.sum(z) < outer_limit : nodes.sum(z) <= outer_limit; });

@@ -151,29 +151,29 @@ public:
 
     void emit(std::int64_t ix, Spans& out) const
     {
-        const double x = grid_.origin.x + static_cast<double>(ix) * grid_.dp;
+        const double x = grid_.origin.x + static_cast<double>(ix) * grid_.step(0);
         std::int64_t y_first = box_.begin[1];
         std::int64_t y_last = box_.end[1] - 1;
         if (y_last - y_first > 6 && !narrow_rows(x, y_first, y_last)) return;
         for (std::int64_t iy = y_first; iy <= y_last; ++iy)
         {
-            const double y = grid_.origin.y + static_cast<double>(iy) * grid_.dp;
+            const double y = grid_.origin.y + static_cast<double>(iy) * grid_.step(1);
             double lo = static_cast<double>(box_.begin[2]);
             double hi = static_cast<double>(box_.end[2] - 1);
             const Vec3 foot{x, y, grid_.origin.z};
             const double height = plane_.value(foot);
-            const double step = plane_.normal.z * grid_.dp;
+            const double step = plane_.normal.z * grid_.step(2);
             const double noise = 1e-7 * length_ * grid_.dp;
             narrow(lo, hi, height, step, -weight_ * length_, noise);
             narrow(lo, hi, -height, -step, -weight_ * length_, noise);
             for (const Plane& limit : limits_)
-                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.dp, 0,
+                narrow(lo, hi, -limit.value(foot), -limit.normal.z * grid_.step(2), 0,
                        noise_of(limit, grid_.dp));
             std::int64_t first = 0;
             std::int64_t last = 0;
             if (!to_index_range(lo, hi, box_.begin[2], box_.end[2] - 1, first, last)) continue;
             const auto test = [&](std::int64_t k) {
-                return holds({x, y, grid_.origin.z + static_cast<double>(k) * grid_.dp});
+                return holds({x, y, grid_.origin.z + static_cast<double>(k) * grid_.step(2)});
             };
             if (trim_interval(first, last, box_.begin[2], box_.end[2] - 1, test))
                 out.push_back({static_cast<std::uint32_t>(iy), static_cast<std::uint32_t>(first),
@@ -207,7 +207,8 @@ private:
             const double margin = 1e-6 * grid_.dp * norm(plane.normal);
             const auto value = [&](const Point& p)
             {
-                const Vec3 q{x, grid_.origin.y + p.y * grid_.dp, grid_.origin.z + p.z * grid_.dp};
+                const Vec3 q{x, grid_.origin.y + p.y * grid_.step(1),
+                             grid_.origin.z + p.z * grid_.step(2)};
                 return sign * plane.value(q) + limit + margin;
             };
             std::size_t kept = 0;
@@ -358,9 +359,9 @@ private:
 
     bool holds(std::int64_t y, std::int64_t z) const
     {
-        const Vec3 p{grid_.origin.x + static_cast<double>(slab_) * grid_.dp,
-                     grid_.origin.y + static_cast<double>(y) * grid_.dp,
-                     grid_.origin.z + static_cast<double>(z) * grid_.dp};
+        const Vec3 p{grid_.origin.x + static_cast<double>(slab_) * grid_.step(0),
+                     grid_.origin.y + static_cast<double>(y) * grid_.step(1),
+                     grid_.origin.z + static_cast<double>(z) * grid_.step(2)};
         const double area = norm(cross(a_ - p, b_ - p)) / 2;
         return 2 * area / length_ < limit_;
     }

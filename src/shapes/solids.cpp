@@ -163,21 +163,21 @@ private:
 
 void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t slab, Spans& out)
 {
-    const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+    const double x = grid.origin.x + static_cast<double>(slab) * grid.step(0);
     for (std::int64_t iy = part.box.begin[1]; iy < part.box.end[1]; ++iy)
     {
-        const double y = grid.origin.y + static_cast<double>(iy) * grid.dp;
+        const double y = grid.origin.y + static_cast<double>(iy) * grid.step(1);
         double lo = static_cast<double>(part.box.begin[2]);
         double hi = static_cast<double>(part.box.end[2] - 1);
         for (const Plane& p : part.planes)
-            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.dp, 0,
+            narrow(lo, hi, p.value({x, y, grid.origin.z}), p.normal.z * grid.step(2), 0,
                    noise_of(p, grid.dp));
         std::int64_t first = 0;
         std::int64_t last = 0;
         if (!to_index_range(lo, hi, part.box.begin[2], part.box.end[2] - 1, first, last)) continue;
         const auto is_inside = [&](std::int64_t k)
         {
-            const Vec3 p{x, y, grid.origin.z + static_cast<double>(k) * grid.dp};
+            const Vec3 p{x, y, grid.origin.z + static_cast<double>(k) * grid.step(2)};
             return std::all_of(part.planes.begin(), part.planes.end(),
                                [&](const Plane& plane) { return plane.value(p) > 0; });
         };
@@ -193,8 +193,10 @@ void emit_part(const SolidPart& part, const LatticeGrid& grid, std::uint32_t sla
 void keep_inner(const Plane& limit, double x, const LatticeGrid& grid, Span& s)
 {
     if (s.z_begin >= s.z_end) return;
-    const auto is_inner = [&](std::uint32_t z) {
-        return limit.value({x, grid.origin.y + s.y * grid.dp, grid.origin.z + z * grid.dp}) > 0;
+    const auto is_inner = [&](std::uint32_t z)
+    {
+        return limit.value(
+                   {x, grid.origin.y + s.y * grid.step(1), grid.origin.z + z * grid.step(2)}) > 0;
     };
     const bool low = is_inner(s.z_begin);
     const bool high = is_inner(s.z_end - 1);
@@ -277,7 +279,7 @@ std::vector<SlabRegion> solid_parts(const PolyhedronOp& polyhedron, const Lattic
             }
             face.emit = [cutter, f, grid, all = face.emit](std::uint32_t slab, Spans& out)
             {
-                const double x = grid.origin.x + static_cast<double>(slab) * grid.dp;
+                const double x = grid.origin.x + static_cast<double>(slab) * grid.step(0);
                 Spans nodes;
                 all(slab, nodes);
                 for (Span s : nodes)

@@ -110,8 +110,8 @@ public:
     SphereColumn(const Node& c, const LatticeGrid& grid, std::uint32_t slab, std::int64_t y)
         : c_(c), center_(position(c, grid)), grid_(grid)
     {
-        const double dx = center_.x - (grid.origin.x + slab * grid.dp);
-        const double dy = center_.y - (grid.origin.y + static_cast<double>(y) * grid.dp);
+        const double dx = center_.x - (grid.origin.x + slab * grid.step(0));
+        const double dy = center_.y - (grid.origin.y + static_cast<double>(y) * grid.step(1));
         flat_ = dx * dx + dy * dy;
     }
 
@@ -138,7 +138,7 @@ public:
 private:
     double distance(std::int64_t z) const
     {
-        const double dz = center_.z - (grid_.origin.z + static_cast<double>(z) * grid_.dp);
+        const double dz = center_.z - (grid_.origin.z + static_cast<double>(z) * grid_.step(2));
         return std::sqrt(flat_ + dz * dz);
     }
 
@@ -148,7 +148,7 @@ private:
     {
         const double rest = limit * limit - flat_;
         if (limit < 0 || rest < -4 * grid_.dp * limit) return {};
-        const double half = std::min(std::sqrt(std::max(rest, 0.0)) / grid_.dp, 4e9);
+        const double half = std::min(std::sqrt(std::max(rest, 0.0)) / grid_.step(2), 4e9);
         Interval i{c_.z - static_cast<std::int64_t>(half), c_.z + static_cast<std::int64_t>(half)};
         if (!trim_interval(i.first, i.last, column.first, column.last, holds)) return {};
         return i;
@@ -215,9 +215,11 @@ SlabRegion nodes_of(const SphereOp& sphere, const DrawState& state, const Lattic
     const std::vector<Shell> shells = shells_of(sphere, state, grid);
     double reach = 0;
     for (const Shell& s : shells) reach = std::max({reach, s.radius + width, s.ball});
-    const NodeBox box = around(
-        c, static_cast<std::int64_t>(std::ceil(std::min(std::max(reach, 0.0) / grid.dp, 4e9))) + 1,
-        grid);
+    const NodeBox box = around(c,
+                               static_cast<std::int64_t>(std::ceil(
+                                   std::min(std::max(reach, 0.0) / grid.least_step(), 4e9))) +
+                                   1,
+                               grid);
     SlabRegion region = slabs_of(box);
     region.emit = [=](std::uint32_t slab, Spans& out)
     {

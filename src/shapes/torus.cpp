@@ -151,7 +151,7 @@ SlabRegion Torus::nodes(const DrawState& state, const LatticeGrid& grid) const
     for (int i = 0; i < 3; ++i)
     {
         const auto steps = static_cast<std::int64_t>(
-            std::min(std::ceil((half_width(i) + reach) / grid.dp), 4e9) + 1);
+            std::min(std::ceil((half_width(i) + reach) / grid.step(i)), 4e9) + 1);
         box.begin[static_cast<std::size_t>(i)] = c[i] - steps;
         box.end[static_cast<std::size_t>(i)] = c[i] + steps + 1;
     }

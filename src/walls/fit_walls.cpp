@@ -35,7 +35,8 @@ std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shape
     Box3 bounds;
     for (const ShapeMesh& shape : shapes)
         for (const Vec3& v : shape.soup.vertices) bounds.add(v);
-    return {(bounds.min.y - grid.origin.y) / grid.dp, (bounds.max.y - grid.origin.y) / grid.dp};
+    return {(bounds.min.y - grid.origin.y) / grid.step(1),
+            (bounds.max.y - grid.origin.y) / grid.step(1)};
 }
 
 /// Rounding of the place of a shape, dp.

@@ -30,23 +30,25 @@ using Range = std::array<double, 2>;
 std::optional<Range> range_of_nodes(double first, double last, int axis, const LatticeGrid& grid)
 {
     if (last < first) return std::nullopt;
-    return Range{grid.origin[axis] + first * grid.dp, grid.origin[axis] + last * grid.dp};
+    return Range{grid.origin[axis] + first * grid.step(axis),
+                 grid.origin[axis] + last * grid.step(axis)};
 }
 
 /// The outermost nodes of the lattice within [low, high] along an axis.
 std::optional<Range> nodes_within(double low, double high, int axis, const LatticeGrid& grid)
 {
-    return range_of_nodes(std::ceil((low - grid.origin[axis]) / grid.dp - same_place),
-                          std::floor((high - grid.origin[axis]) / grid.dp + same_place), axis,
-                          grid);
+    return range_of_nodes(std::ceil((low - grid.origin[axis]) / grid.step(axis) - same_place),
+                          std::floor((high - grid.origin[axis]) / grid.step(axis) + same_place),
+                          axis, grid);
 }
 
 /// The outermost nodes between the nodes that the ends of a body are rounded to, as solid mode
 /// draws it.
 std::optional<Range> nodes_inside(double low, double high, int axis, const LatticeGrid& grid)
 {
-    return range_of_nodes(std::floor((low - grid.origin[axis]) / grid.dp + 0.5) + 1,
-                          std::floor((high - grid.origin[axis]) / grid.dp + 0.5) - 1, axis, grid);
+    return range_of_nodes(std::floor((low - grid.origin[axis]) / grid.step(axis) + 0.5) + 1,
+                          std::floor((high - grid.origin[axis]) / grid.step(axis) + 0.5) - 1, axis,
+                          grid);
 }
 
 /// The limits of a fill, which takes the nodes strictly inside its snapped box.
@@ -58,8 +60,8 @@ void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
     double& high = &low == &box.corner0[axis] ? box.corner1[axis] : box.corner0[axis];
     const std::optional<Range> nodes = nodes_within(low + grown, high - grown, axis, grid);
     if (!nodes) return;
-    low = (*nodes)[0] - grid.dp;
-    high = (*nodes)[1] + grid.dp;
+    low = (*nodes)[0] - grid.step(axis);
+    high = (*nodes)[1] + grid.step(axis);
 }
 
 /// The body that a draw fills with this kind of mk; null: none.

@@ -238,7 +238,7 @@ private:
         for (const Vec3& v : out_.body.mesh.vertices) box.add(v);
         const auto node = [&](double at, int axis)
         {
-            const double k = std::floor((at - grid_.origin[axis]) / grid_.dp);
+            const double k = std::floor((at - grid_.origin[axis]) / grid_.step(axis));
             return static_cast<std::uint32_t>(
                 std::clamp(k, 0.0, static_cast<double>(grid_.n[static_cast<std::size_t>(axis)])));
         };
@@ -259,7 +259,7 @@ private:
                                  of_slab[x] += share_under_layers(p);
                          }
                      });
-        for (const double count : of_slab) room_ += count;
+        for (const double count : of_slab) room_ += count * grid_.stretch.x * grid_.stretch.z;
     }
 
     /// How much of a square of dp about a point is under the layers, in 2D.
@@ -272,7 +272,7 @@ private:
             const int row = i / parts;
             const double x = (i % parts + 0.5) / parts - 0.5;
             const double z = (row + 0.5) / parts - 0.5;
-            const Vec3 at = p + grid_.dp * Vec3{x, 0, z};
+            const Vec3 at = p + Vec3{x * grid_.step(0), 0, z * grid_.step(2)};
             if (wall_->at(at).depth > under_layers_) ++inside;
         }
         return static_cast<double>(inside) / (parts * parts);
@@ -280,8 +280,8 @@ private:
 
     Vec3 place_of(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
-        return grid_.origin + grid_.dp * Vec3{static_cast<double>(x), static_cast<double>(y),
-                                              static_cast<double>(z)};
+        return grid_.place(
+            {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
     }
 
     /// Of the number of particles in a layer, to which their spacing goes.

@@ -6,8 +6,10 @@
 
 #include "core/parallel.h"
 #include "nodes/run_at.h"
+#include "nodes/snap.h"
 #include "nodes/spans.h"
 #include "walls/fluid_ends.h"
+#include "walls/lattice_stretch.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
 
@@ -125,28 +127,48 @@ public:
             {
                 if (!lies_across(across, axis)) continue;
                 // Depths are whole and half steps, which lie alike on both sides.
-                const double at = (v[i][axis] - field_.grid.origin[axis]) / field_.grid.dp + depth;
-                const double wet =
-                    wet_share({v[i], v[i + 1], v[i + 2]}, across / size, !shape.is_solid);
-                places_[static_cast<std::size_t>(axis)].add(at - std::floor(at), wet * size / 2);
+                const double at =
+                    (v[i][axis] - field_.grid.origin[axis]) / field_.grid.step(axis) + depth;
+                const WetShares wet =
+                    wet_shares({v[i], v[i + 1], v[i + 2]}, across / size, !shape.is_solid);
+                const auto a = static_cast<std::size_t>(axis);
+                const double area = size / 2;
+                places_[a].add(at - std::floor(at), wet.either * area);
+                const int side = across[axis] > 0 ? 1 : -1;
+                if (wet.either > 0)
+                    planes_[a].push_back({v[i][axis], depth * field_.grid.dp, wet.either * area,
+                                          wet.back == 0    ? side
+                                          : wet.front == 0 ? -side
+                                                           : 0});
             }
         }
     }
 
     const WallPlaces& of(int axis) const { return places_[static_cast<std::size_t>(axis)]; }
+    const std::array<std::vector<WetPlane>, 3>& planes() const { return planes_; }
 
 private:
     bool is_fluid(const Vec3& p) const { return has_fluid_near(field_, p, first_bound_); }
 
-    /// How much of a facet has fluid before it, or behind it where it is a sheet.
-    double wet_share(const std::array<Vec3, 3>& corners, const Vec3& normal, bool is_sheet) const
+    /// How much of a facet has fluid before it, and behind it where it is a sheet.
+    struct WetShares
+    {
+        double front = 0;
+        double back = 0;
+        double either = 0;
+    };
+
+    WetShares wet_shares(const std::array<Vec3, 3>& corners, const Vec3& normal,
+                         bool is_sheet) const
     {
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k)
             longest = std::max(longest, norm(corners[(k + 1) % 3] - corners[k]));
         const int parts = static_cast<int>(std::clamp(longest / (piece_dp * field_.grid.dp), 1.0,
                                                       static_cast<double>(most_pieces)));
-        int wet = 0;
+        int front = 0;
+        int back = 0;
+        int either = 0;
         int all = 0;
         for (int a = 0; a < parts; ++a)
             for (int b = 0; a + b < parts; ++b)
@@ -156,66 +178,105 @@ private:
                 const Vec3 p =
                     corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
                 ++all;
-                for (const double look : looks_dp)
+                const auto is_wet = [&](double sense)
                 {
-                    const Vec3 off = (look * field_.grid.dp) * normal;
-                    if (!is_fluid(p + off) && !(is_sheet && is_fluid(p - off))) continue;
-                    ++wet;
-                    break;
-                }
+                    return std::any_of(
+                        looks_dp.begin(), looks_dp.end(),
+                        [&](double look)
+                        { return is_fluid(p + (sense * look * field_.grid.dp) * normal); });
+                };
+                const bool is_front_wet = is_wet(1);
+                const bool is_back_wet = is_sheet && is_wet(-1);
+                front += is_front_wet ? 1 : 0;
+                back += is_back_wet ? 1 : 0;
+                either += is_front_wet || is_back_wet ? 1 : 0;
             }
-        return static_cast<double>(wet) / all;
+        const auto share = [all](int wet) { return static_cast<double>(wet) / all; };
+        return {share(front), share(back), share(either)};
     }
 
     const RunField& field_;
     std::uint16_t first_bound_;
     std::array<WallPlaces, 3> places_;
+    std::array<std::vector<WetPlane>, 3> planes_;
 };
 
-/// The nodes of the moved lattice that are dp or less from nodes of the other along each axis; no
-/// slabs where there are none.
-SpanSet nodes_beside(const SpanSet& nodes, const LatticeGrid& grid, const Vec3& shift, int threads)
+/// Nodes [begin, end) along an axis.
+struct NodeRange
 {
-    // Node k is beside those from k + first to k + 1 of the moved lattice, which has a node more
-    // before it along the axes that it is moved along.
-    std::array<std::int64_t, 3> first{};
-    NodeBox all = whole_lattice(grid);
-    for (int axis = 0; axis < 3; ++axis)
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+};
+
+/// Of each node along an axis of a lattice, those of another that are dp or less from it.
+std::vector<NodeRange> ranges_beside(int axis, const LatticeGrid& grid, const LatticeGrid& other)
+{
+    const auto a = static_cast<std::size_t>(axis);
+    std::vector<NodeRange> out;
+    for (std::uint32_t k = 0; k < grid.n[a]; ++k)
     {
-        const bool is_moved = shift[axis] != 0;
-        first[static_cast<std::size_t>(axis)] = is_moved ? 0 : -1;
-        all.end[static_cast<std::size_t>(axis)] += is_moved ? 1 : 0;
+        const double at = grid.origin[axis] + k * grid.step(axis) - other.origin[axis];
+        const double first = std::ceil((at - grid.dp) / other.step(axis) - rounding);
+        const double last = std::floor((at + grid.dp) / other.step(axis) + rounding);
+        out.push_back({std::max(to_index(first), std::int64_t{0}),
+                       std::min(to_index(last) + 1, std::int64_t{other.n[a]})});
     }
+    return out;
+}
+
+/// The nodes of a lattice that are dp or less from nodes of another along each axis; no slabs where
+/// there are none.
+///
+/// nodes  of `grid`
+SpanSet nodes_beside(const SpanSet& nodes, const LatticeGrid& grid, const LatticeGrid& other,
+                     int threads)
+{
     SpanSet out;
     if (std::all_of(nodes.slabs.begin(), nodes.slabs.end(),
                     [](const Spans& s) { return s.empty(); }))
         return out;
-    out.slabs.resize(static_cast<std::size_t>(all.end[0]));
-    const auto slabs = static_cast<std::int64_t>(nodes.slabs.size());
+    const std::vector<NodeRange> slabs = ranges_beside(0, other, grid);
+    const std::vector<NodeRange> rows = ranges_beside(1, grid, other);
+    const std::vector<NodeRange> heights = ranges_beside(2, grid, other);
+    out.slabs.resize(other.n[0]);
     parallel_for(
         out.slabs.size(), threads,
         [&](std::size_t slab)
         {
-            const auto x = static_cast<std::int64_t>(slab);
             Spans& found = out.slabs[slab];
-            for (std::int64_t k = std::max(x - 1, std::int64_t{0}); k <= x - first[0] && k < slabs;
-                 ++k)
+            const auto known = static_cast<std::int64_t>(nodes.slabs.size());
+            for (std::int64_t k = slabs[slab].begin; k < std::min(slabs[slab].end, known); ++k)
                 for (const Span& s : nodes.slabs[static_cast<std::size_t>(k)])
-                    for (std::int64_t y = s.y + first[1]; y <= s.y + std::int64_t{1}; ++y)
-                    {
-                        if (y < 0 || y >= all.end[1]) continue;
-                        const std::int64_t begin = std::max(s.z_begin + first[2], std::int64_t{0});
-                        const std::int64_t end = std::min(s.z_end + std::int64_t{1}, all.end[2]);
+                    for (std::int64_t y = rows[s.y].begin; y < rows[s.y].end; ++y)
                         found.push_back({static_cast<std::uint32_t>(y),
-                                         static_cast<std::uint32_t>(begin),
-                                         static_cast<std::uint32_t>(end)});
-                    }
+                                         static_cast<std::uint32_t>(heights[s.z_begin].begin),
+                                         static_cast<std::uint32_t>(heights[s.z_end - 1].end)});
             sort_and_join(found);
         });
     return out;
 }
 
+/// The lattice with other steps along an axis, which has a plane of nodes at the anchor and holds
+/// the nodes of the old one.
+void stretch_axis(int axis, const LatticeStretch& to, LatticeGrid& grid)
+{
+    const auto a = static_cast<std::size_t>(axis);
+    const double first = grid.origin[axis];
+    const double last = first + (grid.n[a] - 1) * grid.step(axis);
+    grid.stretch[axis] = to.stretch[axis];
+    const double step = grid.step(axis);
+    grid.origin[axis] =
+        to.anchor[axis] - std::ceil((to.anchor[axis] - first) / step - rounding) * step;
+    grid.n[a] =
+        static_cast<std::uint32_t>(std::ceil((last - grid.origin[axis]) / step - rounding)) + 1;
+}
+
 } // namespace
+
+bool LatticeMove::is_none() const
+{
+    return shift == Vec3{} && to.stretch == Vec3{1, 1, 1};
+}
 
 LatticeMove lattice_move(const Scene& scene, int threads)
 {
@@ -246,6 +307,9 @@ LatticeMove lattice_move(const Scene& scene, int threads)
             const double moved = *place - std::floor(*place);
             if (moved > rounding && moved < 1 - rounding) move.shift[axis] = moved * def.grid.dp;
         }
+        LatticeGrid moved = def.grid;
+        moved.origin = moved.origin + move.shift;
+        move.to = stretch_between_walls(walls.planes(), moved, def.constants.gravity);
     }
     catch (const Error&)
     {
@@ -257,8 +321,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
 void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& scene)
 {
     LatticeGrid& grid = def.grid;
-    for (const SpanSet& nodes : move.flooded)
-        scene.fill_limits.push_back(nodes_beside(nodes, grid, move.shift, threads));
+    const LatticeGrid before = grid;
     std::array<bool, 3> is_moved{};
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -268,7 +331,12 @@ void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& sce
         grid.origin[axis] += move.shift[axis] - grid.dp;
         ++grid.n[static_cast<std::size_t>(axis)];
     }
+    // Ends that are nodes with steps of dp become those nearest to them, so that rows are not lost.
     end_fluid_between_nodes(is_moved, def);
+    for (int axis = 0; axis < 3; ++axis)
+        if (move.to.stretch[axis] != 1) stretch_axis(axis, move.to, grid);
+    for (const SpanSet& nodes : move.flooded)
+        scene.fill_limits.push_back(nodes_beside(nodes, before, grid, threads));
 }
 
 } // namespace fppg

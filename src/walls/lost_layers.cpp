@@ -29,7 +29,7 @@ struct Beyond
         for (int axis = 0; axis < 3; ++axis)
         {
             const auto a = static_cast<std::size_t>(axis);
-            const double last = grid.origin[axis] + (grid.n[a] - 1) * grid.dp;
+            const double last = grid.origin[axis] + (grid.n[a] - 1) * grid.step(axis);
             low[a] = std::max(low[a], grid.origin[axis] - p[axis]);
             high[a] = std::max(high[a], p[axis] - last);
         }

@@ -53,9 +53,8 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
     for (const Span& span : nodes)
         for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
         {
-            const Vec3 p =
-                grid.origin + grid.dp * Vec3{static_cast<double>(x), static_cast<double>(span.y),
-                                             static_cast<double>(z)};
+            const Vec3 p = grid.place(
+                {static_cast<double>(x), static_cast<double>(span.y), static_cast<double>(z)});
             if (taken.has_nearer(p, gap_dp * grid.dp)) continue;
             const DepthPlace here = wall.at(p);
             if (here.depth < gap_depth_dp * grid.dp) continue;
@@ -86,8 +85,7 @@ std::vector<Spans> deep_nodes_2d(const std::vector<Spans>& inside, const FittedB
         for (const Span& span : inside[x])
             for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
             {
-                const Vec3 p =
-                    grid.origin + grid.dp * Vec3{static_cast<double>(x), 0, static_cast<double>(z)};
+                const Vec3 p = grid.place({static_cast<double>(x), 0, static_cast<double>(z)});
                 const double depth = innermost.wall->at(p).depth;
                 if (depth >= innermost.depth + (0.5 - 1e-9) * grid.dp)
                     found.push_back({depth, x, {span.y, z, z + 1}});

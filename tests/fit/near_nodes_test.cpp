@@ -35,7 +35,10 @@ TriangleSoup cut_up(const TriangleSoup& soup, int n)
 
 TEST(NearNodes, AreTheSameOfLargeAndOfSmallFacets)
 {
-    const LatticeGrid grid{.origin = {-0.31, -0.27, -0.29}, .dp = 0.1, .n = {16, 17, 18}};
+    const LatticeGrid grid{.origin = {-0.31, -0.27, -0.29},
+                           .dp = 0.1,
+                           .n = {16, 17, 18},
+                           .stretch = {1.03, 0.98, 0.99}};
     const TriangleSoup large = hexahedron({Vec3{0, 0, 0},
                                            {0.8, 0.1, 0},
                                            {0.9, 0.9, 0.2},

@@ -168,13 +168,15 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// A small lattice; its place and spacing are no round numbers in binary.
+/// A small lattice, half of them stretched; its place and spacing are no round numbers in binary.
 inline LatticeGrid any_grid(Dice& dice)
 {
     LatticeGrid grid;
     grid.dp = dice.one_of({0.1, 0.05, 1.0, 0.013, 0.3});
     grid.origin = {dice.real(-2, 2), dice.coin() ? 0 : dice.real(-50, 50), -0.1};
     for (auto& n : grid.n) n = static_cast<std::uint32_t>(dice.whole(1, 18));
+    if (dice.coin())
+        grid.stretch = {dice.real(0.95, 1.05), dice.real(0.95, 1.05), dice.real(0.95, 1.05)};
     return grid;
 }
 

@@ -54,6 +54,9 @@ TEST(InsideSpans, FindsTheNodesOfABox)
 TEST(InsideSpans, AgreesWithTheWindingNumberOfASphere)
 {
     expect_as_winding_number(sphere(3), generic_grid);
+    LatticeGrid stretched = generic_grid;
+    stretched.stretch = {1.04, 0.97, 1.01};
+    expect_as_winding_number(sphere(3), stretched);
 }
 
 TEST(InsideSpans, AgreesWithRaysThroughASphere)

@@ -44,13 +44,19 @@ struct Result
     }
     std::vector<Vec3> fluid() const { return of_type(true); }
     std::vector<Vec3> bound() const { return of_type(false); }
-    /// Half a dp above the highest row, whose place walls in layers choose.
+    /// Half a step above the highest row, whose place walls in layers choose.
     double level() const
     {
         std::vector<double> heights;
         for (const Vec3& p : fluid()) heights.push_back(p.z);
         std::sort(heights.begin(), heights.end());
-        return heights[heights.size() * 49 / 50] + dp / 2;
+        return heights[heights.size() * 49 / 50] + step(2) / 2;
+    }
+    /// Of the lattice along an axis, metres.
+    double step(std::size_t axis) const
+    {
+        const std::vector<json> moves = all("lattice");
+        return moves.empty() ? dp : dp * moves[0]["stretch"][axis].get<double>();
     }
     std::vector<json> all(const std::string& event) const
     {

@@ -436,9 +436,9 @@ TEST(EllipsoidRegion, HasTheNodesByTheSumOfTheDistancesToTheFoci)
         {
             const auto distance = [&](const Node& f)
             {
-                const auto dx = static_cast<double>(n.x - f.x);
-                const auto dy = static_cast<double>(n.y - f.y);
-                const auto dz = static_cast<double>(n.z - f.z);
+                const double dx = static_cast<double>(n.x - f.x) * grid.stretch.x;
+                const double dy = static_cast<double>(n.y - f.y) * grid.stretch.y;
+                const double dz = static_cast<double>(n.z - f.z) * grid.stretch.z;
                 return std::sqrt(dx * dx + dy * dy + dz * dz);
             };
             const double sum = distance(f0) + distance(f1);
