@@ -29,8 +29,8 @@ struct LatticeStretch
 /// are no whole number of dp apart: along each axis by at most a twentieth of dp, and along another
 /// axis, first that of gravity, so much shorter or longer that a particle has dp^3 all the same. In
 /// the solver, mean speed in tanks of DBC 40.3 dp wide in 2D, 20 and 50 dp deep, after 0.1 s: with
-/// steps of dp 0.0043 and 0.0070, so stretched 0.0017 and 0.0019 m/s (GenCase's particles: 0.0225
-/// and 0.0097); of a crystal stretched by 5 % 0.0025, not at all 0.0019.
+/// steps of dp 0.0043 and 0.0070, so stretched 0.0020 and 0.0028 m/s (GenCase's particles: 0.0225
+/// and 0.0097). A crystal stretched by 5 % by hand had 0.0025, one not stretched 0.0019.
 ///
 /// planes   per axis
 /// grid     with steps of dp, moved to the walls of one side (lattice_move())

@@ -12,6 +12,7 @@ there already is kept, unless --again. Each run is one thread at low priority.
 
 import argparse
 import glob
+import functools
 import inspect
 import itertools
 import json
@@ -30,7 +31,7 @@ from period_cut import cut_period  # noqa: E402
 
 
 def trials_of(text):
-    """(label, Trial) of NAME[:key=value[,value...]...], one for each combination of values."""
+    """(label, maker) of NAME[:key=value[,value...]...], one for each combination of values; maker(variant) is the Trial."""
     name, *words = text.split(":")
     if name not in trial_cases.CASES:
         sys.exit(f"{name}: expected one of {', '.join(trial_cases.CASES)}")
@@ -45,8 +46,14 @@ def trials_of(text):
         lists.append([type(known[key].default)(v) for v in values.split(",")])
     for chosen in itertools.product(*lists):
         given = dict(zip(keys, chosen))
-        shown = {k: given.get(k, p.default) for k, p in known.items()}
-        yield ":".join([name, *(f"{k}={v:g}" for k, v in shown.items())]), make(**given)
+        shown = {k: given.get(k, p.default) for k, p in known.items() if k != "offset"}
+        yield ":".join([name, *(f"{k}={v:g}" for k, v in shown.items())]), functools.partial(make_trial, make, given)
+
+
+def make_trial(make, given, variant):
+    """The Trial of a case; one that asks for the offset of the lattice has that of the variant."""
+    asks = "offset" in inspect.signature(make).parameters
+    return make(**({"offset": variant.offset} if asks else {}) | given)
 
 
 def run_program(words, log, environment=None, limit=None):
@@ -74,9 +81,10 @@ def warnings_in(path):
         return [line.strip()[:300] for line in file if "WARNING" in line or "normal data" in line]
 
 
-def run_trial(arguments, label, trial, variant_text):
+def run_trial(arguments, label, maker, variant_text):
     """Makes, runs and judges one trial; the result as a dict."""
     variant = trial_definition.variant_of(variant_text)
+    trial = maker(variant)
     result = {"case": label, "variant": variant_text, "dp": trial.dp, "facts": trial.facts}
     folder = os.path.join(arguments.work, "runs", file_name(label, variant_text))
     shutil.rmtree(folder, ignore_errors=True)
@@ -118,12 +126,12 @@ def run_all(arguments):
     results = os.path.join(arguments.work, "results")
     os.makedirs(results, exist_ok=True)
     for case in arguments.case:
-        for label, trial in trials_of(case):
+        for label, maker in trials_of(case):
             for variant in arguments.variant:
                 path = os.path.join(results, file_name(label, variant) + ".json")
                 if os.path.exists(path) and not arguments.again:
                     continue
-                result = run_trial(arguments, label, trial, variant)
+                result = run_trial(arguments, label, maker, variant)
                 with open(path + ".new", "w", encoding="utf-8") as file:
                     json.dump(result, file, indent=1)
                 os.replace(path + ".new", path)

@@ -294,11 +294,17 @@ def sphere(dp=0.0075, time=0.2, radius=0.08):
                  lambda p, shift: np.linalg.norm(p, axis=1) - radius, "still_water", facts={"water_depth": radius})
 
 
-def boat(dp=0.0125, time=0.2, density=500.0):
-    """A box afloat at the depth where it rests, its water at rest."""
+def level_of_rows(level, dp, offset):
+    """The surface of the water of a <fillbox> up to a level, half a dp above its highest row: nodes on the sides of the box are not filled."""
+    return (math.floor(level / dp + 0.25 - offset) - 0.5 + offset) * dp
+
+
+def boat(dp=0.0125, time=0.2, density=500.0, offset=0.0):
+    """A box afloat at the depth where it rests in the water that the particles are, at rest."""
     length, width, height, level, wall = 0.3, 0.2, 0.18, 0.12, 4 * dp
     sides = np.array((0.15, 0.1, 0.08))
-    middle = np.array((length / 2 + 0.3 * dp, 0.2 * dp, level + sides[2] * (0.5 - density / 1000)))
+    surface = level_of_rows(level, dp, offset)
+    middle = np.array((length / 2 + 0.3 * dp, 0.2 * dp, surface + sides[2] * (0.5 - density / 1000)))
     tank_mesh = placed(make_meshes.trough([(0, 0), (length, 0)], length, width, height, wall), Y_UP)
 
     def depth(p, shift):
@@ -308,7 +314,7 @@ def boat(dp=0.0125, time=0.2, density=500.0):
     low, high = (-wall, -width / 2 - wall, -wall), (length + wall, width / 2 + wall, height + 4 * dp)
     return Trial("boat", dp, {"tank.stl": tank_mesh, "boat.stl": placed(make_meshes.box(*sides), np.eye(3), middle)},
                  around(low, high, 2 * dp), (0.02, 0, level / 2), level, time, 10, depth, "still_water",
-                 floating=f'<floatings><floating mkbound="1" rhopbody="{density:g}" /></floatings>', facts={"water_depth": level})
+                 floating=f'<floatings><floating mkbound="1" rhopbody="{density:g}" /></floatings>', facts={"water_depth": surface})
 
 
 def partition(dp=0.01, thick=4.0, time=0.2, level=0.12, low_level=0.06):
