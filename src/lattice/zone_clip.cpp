@@ -13,7 +13,7 @@ namespace
 
 Vec3 node_place(const LatticeGrid& grid, std::uint32_t x, std::uint32_t y, std::uint32_t z)
 {
-    return grid.origin + Vec3{x * grid.dp, y * grid.dp, z * grid.dp};
+    return grid.place({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
 }
 
 /// Whether a place is in a box, its faces included. The arithmetic, a plane a pair of faces with
@@ -173,7 +173,7 @@ bool is_beyond_zone(const VresDef& vres, std::size_t zone, const LatticeGrid& gr
     Vec3 node = p;
     for (int axis = 0; axis < 3; ++axis)
         node[axis] = grid.origin[axis] +
-                     grid.dp * std::round((p[axis] - grid.origin[axis]) / grid.step(axis));
+                     grid.step(axis) * std::round((p[axis] - grid.origin[axis]) / grid.step(axis));
     const VresZone& own = vres.zones[zone];
     if (zone > 0 && !own.inner.is_plain &&
         !is_within(resized(own.buffer, own.dp, vres.is_2d), node, vres.is_2d))

@@ -333,8 +333,8 @@ void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& sce
     }
     // Ends that are nodes with steps of dp become those nearest to them, so that rows are not lost.
     end_fluid_between_nodes(is_moved, def);
-    for (int axis = 0; axis < 3; ++axis)
-        if (move.to.stretch[axis] != 1) stretch_axis(axis, move.to, grid);
+    for (int axis = 0; axis < 3 && move.to.stretch != Vec3{1, 1, 1}; ++axis)
+        stretch_axis(axis, move.to, grid);
     for (const SpanSet& nodes : move.flooded)
         scene.fill_limits.push_back(nodes_beside(nodes, before, grid, threads));
 }
