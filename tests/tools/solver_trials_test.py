@@ -39,8 +39,14 @@ class Judging(unittest.TestCase):
                 self.assertGreater(len(trial_cases.wet_part(trial, mesh).facets), 9)
 
     def test_words_make_cases_and_variants(self):
-        found = [(t.dp, t.facts["speed"]) for _, t in run_trials.trials_of("vessel:dp=0.02,0.01:speed=1,4")]
+        trials = [make(trial_definition.variant_of("layers")) for _, make in run_trials.trials_of("vessel:dp=0.02,0.01:speed=1,4")]
+        found = [(t.dp, t.facts["speed"]) for t in trials]
         self.assertEqual(found, [(0.02, 1), (0.02, 4), (0.01, 1), (0.01, 4)])
+        # A boat lies in the water that the rows of its variant are.
+        for name, level in (("lattice-dbc", 8.5), ("layers", 9)):
+            (_, make), = run_trials.trials_of("boat:dp=0.0125")
+            boat = make(trial_definition.variant_of(name))
+            self.assertAlmostEqual(boat.facts["water_depth"] / boat.dp, level)
         variant = trial_definition.variant_of("layers:SlipMode=3:side=both")
         self.assertEqual((variant.parameters["SlipMode"], variant.attributes["side"]), ("3", "both"))
         self.assertNotIn("side", trial_definition.VARIANTS["layers"].attributes)
