@@ -454,6 +454,8 @@ TEST(DrawnFluid, StandsInStepWithTheWallsOfBothSides)
                 off = std::max(off, std::abs(at - std::round(at)));
             }
         EXPECT_LT(off, 0.12) << walls.fppg;
+        // Beside walls of DBC, whose particles stand on the surface, a row less.
+        EXPECT_EQ(made.fluid().size(), (walls.depth > 0 ? 20u * 12 : 19u * 11) * 8) << walls.fppg;
     }
 }
 
