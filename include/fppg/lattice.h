@@ -32,11 +32,12 @@ struct LatticeGrid
 
     double step(int axis) const { return dp * stretch[axis]; } ///< metres
     double least_step() const { return dp * std::min({stretch.x, stretch.y, stretch.z}); }
-    Vec3 place(const Vec3& node) const
+    /// Where a node is, or a place between nodes.
+    Vec3 place(double x, double y, double z) const
     {
-        return {origin.x + node.x * step(0), origin.y + node.y * step(1),
-                origin.z + node.z * step(2)};
+        return {origin.x + x * step(0), origin.y + y * step(1), origin.z + z * step(2)};
     }
+    Vec3 place(const Vec3& node) const { return place(node.x, node.y, node.z); }
     /// Where a place is, in steps from the first node.
     Vec3 steps_to(const Vec3& p) const
     {

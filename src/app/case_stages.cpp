@@ -25,6 +25,7 @@
 #include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
 #include "walls/lattice_shift.h"
+#include "walls/true_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -194,6 +195,21 @@ void read_definition(CaseRunState& run, std::size_t zone, const VresDef* vres, M
               });
 }
 
+/// Where walls stand and fluid ends, before they are drawn.
+void settle_walls(CaseRunState& run, MadeCase& made)
+{
+    for (std::string& w : draw_shells_around_fluid(made.scene, run.threads, made.def))
+        made.def.hints.push_back(std::move(w));
+    for (const std::string& line : draw_true_surfaces(made.scene, run.threads, made.def))
+        run.log.line(line);
+    if (const LatticeMove move = lattice_move(made.scene, run.threads); !move.is_none())
+    {
+        move_lattice(move, run.threads, made.def, made.scene);
+        log_lattice_move(move, run.log);
+    }
+    end_fluid_at_walls(made.scene, run.threads, made.def);
+}
+
 void draw(CaseRunState& run, MadeCase& made)
 {
     run.stage("Draw",
@@ -208,15 +224,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   expect_particles_fit(run.options.input + ".xml", options, made.def, run.threads,
                                        run.limit);
                   expect_metres(made.scene, run.threads);
-                  for (std::string& w : draw_shells_around_fluid(made.scene, run.threads, made.def))
-                      made.def.hints.push_back(std::move(w));
-                  if (const LatticeMove move = lattice_move(made.scene, run.threads);
-                      !move.is_none())
-                  {
-                      move_lattice(move, run.threads, made.def, made.scene);
-                      log_lattice_move(move, run.log);
-                  }
-                  end_fluid_at_walls(made.scene, run.threads, made.def);
+                  settle_walls(run, made);
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);

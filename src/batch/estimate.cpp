@@ -18,6 +18,7 @@
 #include "walls/layer_builder.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
+#include "walls/true_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -71,6 +72,7 @@ public:
         expect_metres(scene_, options_.threads);
         for (std::string& w : draw_shells_around_fluid(scene_, options_.threads, def_))
             def_.hints.push_back(std::move(w));
+        draw_true_surfaces(scene_, options_.threads, def_);
         out_.definition = path;
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;

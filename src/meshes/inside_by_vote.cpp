@@ -267,8 +267,7 @@ private:
         count(std::binary_search(mute_z.begin(), mute_z.end(), y), is_in(along_z_, node));
         if (votes >= 2 && (ayes == 0 || ayes == votes)) return ayes > 0;
         ++disputed_;
-        const Vec3 at{grid_.origin.x + static_cast<double>(x_) * grid_.step(0),
-                      grid_.origin.y + y * grid_.step(1), grid_.origin.z + z * grid_.step(2)};
+        const Vec3 at = grid_.place(static_cast<double>(x_), y, z);
         return tree_.winding_number(at) > 0.5;
     }
 

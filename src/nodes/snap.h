@@ -47,9 +47,7 @@ inline Node snap(const Vec3& p, const LatticeGrid& grid)
 /// The real place of a node.
 inline Vec3 position(const Node& n, const LatticeGrid& grid)
 {
-    return {grid.origin.x + static_cast<double>(n.x) * grid.step(0),
-            grid.origin.y + static_cast<double>(n.y) * grid.step(1),
-            grid.origin.z + static_cast<double>(n.z) * grid.step(2)};
+    return grid.place(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z));
 }
 
 inline bool is_inside(const Node& n, const LatticeGrid& grid)

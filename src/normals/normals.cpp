@@ -41,6 +41,8 @@ constexpr double on_surface_dp = 0.01;
 constexpr std::uint32_t most_at_once = 1024;
 /// Nearer to its surface than this a particle counts as on it, dp.
 constexpr double least_depth_dp = 0.1;
+/// Below this two sides of a wall are in one place, and no dp serves it.
+constexpr double folded_dp = 1e-6;
 
 Float3 as_float(const Vec3& v)
 {
@@ -334,21 +336,34 @@ private:
             }
         };
         parallel_for(places_.size(), threads_, visit, 64);
+        warn_of_thin_walls(wet, reach);
+    }
+
+    void warn_of_thin_walls(const WetSurface& wet, double reach)
+    {
+        const auto warn = [&](const WetSurface::ThinWall& wall, const char* fault,
+                              double thickness_dp, const char* or_else)
+        {
+            const bool is_folded = wall.thickness < folded_dp * def_.grid.dp;
+            report_.warnings.push_back(
+                fmt::format("{}: mkbound {} has walls of {:.3g} m {}; {}{}.", def_.file,
+                            wall.mk - def_.mk_bound_first, is_folded ? 0.0 : wall.thickness,
+                            fmt::format(fmt::runtime(fault), wall.area),
+                            is_folded ? "two of its sides coincide there and need a distance"
+                                      : fmt::format("they need a dp of {:.3g} m at most",
+                                                    wall.thickness / thickness_dp),
+                            or_else));
+        };
         for (const WetSurface::ThinWall& wall : wet.thin_walls())
-            report_.warnings.push_back(fmt::format(
-                "{}: mkbound {} has walls of {:.3g} m with fluid on both sides, over {:.3g} m^2: "
-                "thinner than 2h - dp/2, they cannot serve both, as a particle has one normal; "
-                "they need a dp of {:.3g} m at most.",
-                def_.file, wall.mk - def_.mk_bound_first, wall.thickness, wall.area,
-                wall.thickness / (reach / def_.grid.dp - 0.5)));
+            warn(wall,
+                 "with fluid on both sides, over {:.3g} m^2: thinner than 2h - dp/2, they cannot "
+                 "serve both, as a particle has one normal",
+                 reach / def_.grid.dp - 0.5, "");
         for (const WetSurface::ThinWall& wall : wet.one_layer_walls())
-            report_.warnings.push_back(fmt::format(
-                "{}: mkbound {} has walls of {:.3g} m beside fluid, over {:.3g} m^2: they have "
-                "room "
-                "for one layer of mDBC, and fluid goes through one; they need a dp of {:.3g} m at "
-                "most, or the boundary condition DBC (Boundary=1).",
-                def_.file, wall.mk - def_.mk_bound_first, wall.thickness, wall.area,
-                wall.thickness / two_layers_dp));
+            warn(wall,
+                 "beside fluid, over {:.3g} m^2: they have room for one layer of mDBC, and fluid "
+                 "goes through one",
+                 two_layers_dp, ", or the boundary condition DBC (Boundary=1)");
     }
 
     /// How deep a particle of a layer stands behind the true surface, metres; zero for all others.

@@ -1,10 +1,9 @@
 #include "normals/other_surface.h"
 
-#include "meshes/mesh_query.h"
+#include "meshes/surface_distance.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -18,45 +17,13 @@ namespace
 constexpr double same_dp = 0.05;
 constexpr double other_dp = 2;
 
-/// A triangle of a polygon: its middle, and its area.
-struct Piece
+/// The polygons of a shape in triangles.
+void add_triangles(const ShapePolygons& shape, TriangleSoup& out)
 {
-    Vec3 middle;
-    double area;
-};
-
-std::vector<Piece> pieces_of(const ShapePolygons& shape)
-{
-    std::vector<Piece> out;
     for (const std::vector<std::uint32_t>& polygon : shape.polygons)
         for (std::size_t k = 2; k < polygon.size(); ++k)
-        {
-            const Vec3& a = shape.vertices[polygon[0]];
-            const Vec3& b = shape.vertices[polygon[k - 1]];
-            const Vec3& c = shape.vertices[polygon[k]];
-            out.push_back({(a + b + c) / 3, 0.5 * norm(cross(b - a, c - a))});
-        }
-    return out;
-}
-
-/// The distance, in metres, that half of the area of some pieces is within.
-double median_distance(const std::vector<Piece>& pieces, const MeshQuery& surface)
-{
-    std::vector<std::pair<double, double>> by_distance;
-    double all = 0;
-    for (const Piece& piece : pieces)
-    {
-        by_distance.emplace_back(surface.closest_point(piece.middle).distance, piece.area);
-        all += piece.area;
-    }
-    std::sort(by_distance.begin(), by_distance.end());
-    double within = 0;
-    for (const auto& [distance, area] : by_distance)
-    {
-        within += area;
-        if (within >= 0.5 * all) return distance;
-    }
-    return 0;
+            for (const std::size_t corner : {std::size_t{0}, k - 1, k})
+                out.vertices.push_back(shape.vertices[polygon[corner]]);
 }
 
 } // namespace
@@ -83,13 +50,15 @@ std::optional<std::string> note_other_surfaces(const CaseDef& def,
     std::vector<std::string> off;
     for (auto& [mk, soup] : surfaces)
     {
-        std::vector<Piece> pieces;
+        TriangleSoup drawn;
         for (const ShapePolygons& shape : geometry)
-            if (shape.mk == mk)
-                for (const Piece& piece : pieces_of(shape)) pieces.push_back(piece);
-        if (pieces.empty() || soup.vertices.empty()) continue;
+            if (shape.mk == mk) add_triangles(shape, drawn);
+        if (def.grid.is_2d)
+            for (TriangleSoup* facets : {&drawn, &soup})
+                *facets = pressed_to_plane(*facets, def.grid.origin.y);
+        if (drawn.vertices.empty() || soup.vertices.empty()) continue;
         const double distance_dp =
-            median_distance(pieces, MeshQuery(std::move(soup), threads)) / def.grid.dp;
+            distance_of_share(drawn, MeshQuery(std::move(soup), threads), 0.5) / def.grid.dp;
         if (distance_dp > same_dp && distance_dp < other_dp)
             off.push_back(
                 fmt::format("mkbound {}: {:.2g} dp", mk - def.mk_bound_first, distance_dp));

@@ -10,11 +10,9 @@ inline Vec3 place_in_run(const CaseParticles& particles, const ParticleBlock& bl
                          const ParticleRun& run, std::uint32_t k)
 {
     if (run.is_off_lattice) return particles.off_lattice.positions[run.off_lattice_begin() + k];
-    const LatticeGrid& grid = particles.grid;
     const std::int64_t z = static_cast<std::int64_t>(run.z) +
                            (block.run_descending ? -1 : 1) * static_cast<std::int64_t>(k);
-    return {grid.origin.x + run.x * grid.step(0), grid.origin.y + run.y * grid.step(1),
-            grid.origin.z + static_cast<double>(z) * grid.step(2)};
+    return particles.grid.place(run.x, run.y, static_cast<double>(z));
 }
 
 /// The density of particle k of a run.

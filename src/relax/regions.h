@@ -23,8 +23,7 @@ struct NodeIndex
 
 inline Vec3 place_of(const NodeIndex& n, const LatticeGrid& grid)
 {
-    return {grid.origin.x + n.x * grid.step(0), grid.origin.y + n.y * grid.step(1),
-            grid.origin.z + n.z * grid.step(2)};
+    return grid.place(n.x, n.y, n.z);
 }
 
 struct Mover

@@ -1,6 +1,7 @@
+#include "scene/shape_files.h"
+
 #include "fppg/files.h"
 #include "fppg/lattice.h"
-#include "fppg/scene.h"
 
 #include "core/float32.h"
 #include "scene/shape_cells.h"
@@ -14,39 +15,21 @@ namespace fppg
 namespace
 {
 
-class ShapeCollector
+constexpr std::array<const char*, 4> endings{".vtk", ".vtp", ".vtu", ".stl"};
+
+const ShapeOutOp* output_of(const SceneStep& step)
+{
+    const auto* output = std::get_if<Output>(&step.draw->what);
+    return output != nullptr ? std::get_if<ShapeOutOp>(output) : nullptr;
+}
+
+/// The draws whose shapes the next `shapeout` writes, by form: actual, snapped.
+class KeptDraws
 {
 public:
-    explicit ShapeCollector(const Scene& scene) : scene_(scene) {}
+    void clear() { kept_ = {}; }
 
-    std::vector<ShapeFile> run()
-    {
-        const bool has_output =
-            std::any_of(scene_.steps.begin(), scene_.steps.end(),
-                        [](const SceneStep& step) { return output_of(step) != nullptr; });
-        if (!has_output) return {};
-        for (const SceneStep& step : scene_.steps)
-        {
-            if (step.combination) continue; // its parts are written
-            const DrawOp& op = *step.draw;
-            if (std::holds_alternative<ResetOp>(op.what))
-                kept_ = {};
-            else if (const ShapeOutOp* out = output_of(step))
-                write(*out, op.state->shape_mode);
-            else if (op.state->draw_shapes && has_shape_cells(op.what))
-                keep_shape(op);
-        }
-        return std::move(files_);
-    }
-
-private:
-    static const ShapeOutOp* output_of(const SceneStep& step)
-    {
-        const auto* output = std::get_if<Output>(&step.draw->what);
-        return output != nullptr ? std::get_if<ShapeOutOp>(output) : nullptr;
-    }
-
-    void keep_shape(const DrawOp& op)
+    void keep(const DrawOp& op)
     {
         const ShapeMode& mode = op.state->shape_mode;
         if (!mode.kinds[static_cast<std::size_t>(op.state->mk.kind)]) return;
@@ -54,33 +37,47 @@ private:
         if (mode.snapped) kept_[1].push_back(&op);
     }
 
-    void write(const ShapeOutOp& out, const ShapeMode& mode)
+    void write(const ShapeOutOp& out, const ShapeMode& mode, std::vector<ShapeFileDraws>& files)
     {
         for (const bool snapped : {true, false})
         {
             if (!(snapped ? mode.snapped : mode.actual)) continue;
             std::vector<const DrawOp*>& ops = kept_[snapped ? 1 : 0];
-            write_form(out, ops, snapped);
+            const std::string stem = "_" + out.file + (snapped ? "_Dp" : "_Actual");
+            files.push_back({stem, out.format, snapped, out.normal_dp, ops});
             if (out.reset) ops.clear();
         }
     }
 
-    void write_form(const ShapeOutOp& out, const std::vector<const DrawOp*>& ops, bool snapped)
+private:
+    std::array<std::vector<const DrawOp*>, 2> kept_;
+};
+
+class ShapeCollector
+{
+public:
+    explicit ShapeCollector(const Scene& scene) : scene_(scene) {}
+
+    std::vector<ShapeFile> run()
+    {
+        for (const ShapeFileDraws& draws : shape_file_draws(scene_)) write(draws);
+        return std::move(files_);
+    }
+
+private:
+    void write(const ShapeFileDraws& draws)
     {
         ShapeFile file;
-        constexpr std::array<const char*, 4> endings{".vtk", ".vtp", ".vtu", ".stl"};
-        const char* ending = endings[static_cast<std::size_t>(out.format)];
-        const std::string stem = "_" + out.file + (snapped ? "_Dp" : "_Actual");
-        file.name = stem + ending;
-        file.format = out.format;
-        for (const DrawOp* op : ops) add_cells(*op, snapped, file.shapes);
+        file.name = draws.name();
+        file.format = draws.format;
+        for (const DrawOp* op : draws.draws) add_cells(*op, draws.is_snapped, file.shapes);
         if (file.shapes.empty()) return;
-        if (out.normal_dp != 0)
+        if (draws.normal_dp != 0)
         {
             ShapeFile shown = file;
-            shown.name = stem + "_Nor" + ending;
+            shown.name = draws.stem + "_Nor" + endings[static_cast<std::size_t>(draws.format)];
             shown.has_normals = true;
-            std::vector<ShapePolygons> lines = normals(file.shapes, out.normal_dp);
+            std::vector<ShapePolygons> lines = normals(file.shapes, draws.normal_dp);
             shown.shapes.insert(shown.shapes.begin(), std::make_move_iterator(lines.begin()),
                                 std::make_move_iterator(lines.end()));
             keep(std::move(file));
@@ -156,12 +153,34 @@ private:
     }
 
     const Scene& scene_;
-    std::array<std::vector<const DrawOp*>, 2> kept_; ///< by form: actual, snapped
-    std::size_t call_ = 0;                           ///< of the cells that were added last
+    std::size_t call_ = 0; ///< of the cells that were added last
     std::vector<ShapeFile> files_;
 };
 
 } // namespace
+
+std::string ShapeFileDraws::name() const
+{
+    return stem + endings[static_cast<std::size_t>(format)];
+}
+
+std::vector<ShapeFileDraws> shape_file_draws(const Scene& scene)
+{
+    std::vector<ShapeFileDraws> out;
+    KeptDraws kept;
+    for (const SceneStep& step : scene.steps)
+    {
+        if (step.combination) continue; // its parts are written
+        const DrawOp& op = *step.draw;
+        if (std::holds_alternative<ResetOp>(op.what))
+            kept.clear();
+        else if (const ShapeOutOp* output = output_of(step))
+            kept.write(*output, op.state->shape_mode, out);
+        else if (op.state->draw_shapes && has_shape_cells(op.what))
+            kept.keep(op);
+    }
+    return out;
+}
 
 std::vector<ShapeFile> collect_shape_files(const Scene& scene)
 {

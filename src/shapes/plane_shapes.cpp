@@ -359,9 +359,8 @@ private:
 
     bool holds(std::int64_t y, std::int64_t z) const
     {
-        const Vec3 p{grid_.origin.x + static_cast<double>(slab_) * grid_.step(0),
-                     grid_.origin.y + static_cast<double>(y) * grid_.step(1),
-                     grid_.origin.z + static_cast<double>(z) * grid_.step(2)};
+        const Vec3 p =
+            grid_.place(static_cast<double>(slab_), static_cast<double>(y), static_cast<double>(z));
         const double area = norm(cross(a_ - p, b_ - p)) / 2;
         return 2 * area / length_ < limit_;
     }

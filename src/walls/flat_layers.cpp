@@ -93,8 +93,8 @@ using Plane = std::pair<int, std::int64_t>;
 
 Vec3 place_of(const std::array<std::int64_t, 3>& node, const LatticeGrid& grid)
 {
-    return grid.place(
-        {static_cast<double>(node[0]), static_cast<double>(node[1]), static_cast<double>(node[2])});
+    return grid.place(static_cast<double>(node[0]), static_cast<double>(node[1]),
+                      static_cast<double>(node[2]));
 }
 
 /// What lies on planes of nodes.

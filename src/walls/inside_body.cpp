@@ -280,8 +280,7 @@ private:
 
     Vec3 place_of(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
-        return grid_.place(
-            {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        return grid_.place(static_cast<double>(x), y, z);
     }
 
     /// Of the number of particles in a layer, to which their spacing goes.

@@ -13,7 +13,7 @@ namespace fppg::test
 
 inline Vec3 node(const LatticeGrid& grid, std::uint32_t i, std::uint32_t j, std::uint32_t k)
 {
-    return grid.place({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+    return grid.place(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
 }
 
 /// A cube of n x n x n nodes.

@@ -1,0 +1,111 @@
+// Walls for mDBC that a case draws twice: as the surface that normals lead to, and on nodes behind
+// it.
+
+#include "relax/fluid_case.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace
+{
+
+using namespace fluid_case;
+
+/// A tank of 1 m with water 0.5 m deep. Its surface is drawn for normals so many dp before its
+/// walls.
+CaseText drawn_twice(double before_dp, bool is_2d = false)
+{
+    const std::string box =
+        R"(<drawbox><boxfill>{}</boxfill><point x="0" y="{}" z="0" /><size x="1" y="1" z="1" /><layers vdp="{}" /></drawbox>)";
+    const std::string sides = is_2d ? "bottom|left|right" : "bottom|left|right|front|back";
+    const std::string y = is_2d ? "-0.3" : "0";
+    CaseText text = case_of(
+        R"(<setactive drawpoints="0" drawshapes="1" /><setshapemode>actual | bound</setshapemode><setnormalinvert invert="true" /><setmkbound mk="0" />)" +
+            fmt::format(fmt::runtime(box), sides, y, -before_dp) +
+            R"(<shapeout file="hdp" /><resetdraw /><setactive drawpoints="1" drawshapes="1" /><setnormalinvert invert="false" /><setmkbound mk="0" />)" +
+            fmt::format(fmt::runtime(box), sides, y, "0,1,2") +
+            R"(<setmkfluid mk="0" /><fillbox x="0.5" y="0.5" z="0.2"><modefill>void</modefill><point x="-0.1" y="-0.1" z="-0.1" /><size x="1.2" y="1.2" z="0.6" /></fillbox>)",
+        R"(<bodyfitted />)");
+    text.after_geometry +=
+        R"(<normals><norgeometry><distanceh v="2" /><geometryfile file="[CaseName]_hdp_Actual.vtk" /></norgeometry></normals>)";
+    text.execution =
+        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /></parameters>)";
+    if (is_2d)
+    {
+        text.pointmin = R"(<pointmin x="-0.4" y="0.5" z="-0.4" />)";
+        text.pointmax = R"(<pointmax x="1.7" y="0.5" z="1.5" />)";
+    }
+    return text;
+}
+
+/// As the public cases for mDBC draw them. With walls on the surface of their nodes there was room
+/// for a tenth more water, in a tank of 20 dp.
+TEST(TrueSurfaces, AreThoseThatWallsDrawForNormals)
+{
+    for (const bool is_2d : {false, true})
+    {
+        const Result made = make(drawn_twice(0.5, is_2d));
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_TRUE(contains(made.log, "its surface is that for normals")) << made.log;
+        EXPECT_FALSE(contains(made.log, "is not where the walls are drawn")) << made.log;
+        ASSERT_GT(made.fluid().size(), 100u);
+        double lowest = 1, bound = -1;
+        for (const Vec3& p : made.fluid())
+        {
+            lowest = std::min(lowest, p.z);
+            EXPECT_GT(std::min(p.x, 1 - p.x), 0.9 * dp);
+        }
+        for (const Vec3& p : made.bound())
+            if (std::abs(p.x - 0.5) < 0.3) bound = std::max(bound, p.z);
+        EXPECT_NEAR(lowest, dp, 0.1 * dp) << is_2d;
+        if (is_2d) EXPECT_NEAR(bound, 0, 0.01 * dp);
+        const double width = 1 - dp;
+        const double cells = is_2d ? width / dp : width * width / (dp * dp);
+        const double depth = static_cast<double>(made.fluid().size()) / cells * dp;
+        EXPECT_NEAR(depth, made.level() - 0.5 * dp, 0.05 * dp) << is_2d;
+    }
+}
+
+/// A solid block stands in the tank, of which the surface has the sides alone.
+TEST(TrueSurfaces, OfSolidsMayBeDrawnAsFaces)
+{
+    const std::string block =
+        R"(<setnormalinvert invert="false" /><setmkbound mk="1" /><drawbox><boxfill>{}</boxfill><point x="0.3" y="0.3" z="0.25" /><size x="0.4" y="0.4" z="0.4" />{}</drawbox>)";
+    for (const char* sides : {"solid", "all", "all^bottom"})
+    {
+        CaseText text = drawn_twice(0.5);
+        const auto insert = [&](const std::string& before, const std::string& part)
+        { text.mainlist.insert(text.mainlist.find(before), part); };
+        insert("<shapeout", fmt::format(fmt::runtime(block), sides, R"(<layers vdp="0.5" />)"));
+        insert("<setmkfluid", fmt::format(fmt::runtime(block), "solid", ""));
+        const Result made = make(text);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_FALSE(contains(made.log, "is not where the walls are drawn")) << made.log;
+        fppg::Box3 box;
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+            if (made.cloud.mk[i] == first_bound + 1) box.add(made.cloud.positions[i]);
+        for (const int axis : {0, 1})
+        {
+            EXPECT_NEAR(box.min[axis], 0.3, 0.01 * dp) << sides;
+            EXPECT_NEAR(box.max[axis], 0.7, 0.01 * dp) << sides;
+        }
+        EXPECT_NEAR(box.max.z, 0.65, 0.01 * dp) << sides;
+    }
+}
+
+/// A surface farther off is another thing.
+TEST(TrueSurfaces, AreNotThoseFarFromTheWalls)
+{
+    const Result made = make(drawn_twice(1.5));
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_FALSE(contains(made.log, "its surface is that for normals")) << made.log;
+    EXPECT_TRUE(contains(made.log, "is not where the walls are drawn (mkbound 0: 1.5 dp)"))
+        << made.log;
+}
+
+} // namespace
