@@ -18,6 +18,8 @@ namespace fppg
 /// most 0.9 dp from the other, and nearly all of the wall at most 2 dp. Shapes that are read from a
 /// file of another run, and parts of combinations, give no surface.
 ///
+/// Corners of walls without such a surface that stand on walls that have one go along with these.
+///
 /// returns  a sentence a draw
 /// throws   IoError for mesh files, with their places
 std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, CaseDef& def);

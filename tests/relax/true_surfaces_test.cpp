@@ -98,6 +98,26 @@ TEST(TrueSurfaces, OfSolidsMayBeDrawnAsFaces)
     }
 }
 
+/// A post without a surface for normals, drawn onto the nodes of the floor, stood half a dp deep in
+/// it and lacked its lowest row: fluid went under it.
+TEST(TrueSurfaces, CarryWhatIsDrawnOntoTheirNodes)
+{
+    for (const bool is_2d : {false, true})
+    {
+        CaseText text = drawn_twice(0.5, is_2d);
+        text.mainlist.insert(
+            text.mainlist.find("<setmkfluid"),
+            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.3" y="0.3" z="0" /><size x="0.4" y="0.4" z="0.8" /></drawbox>)");
+        const Result made = make(text);
+        ASSERT_EQ(made.code, 0) << made.output;
+        fppg::Box3 box;
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+            if (made.cloud.mk[i] == first_bound + 1) box.add(made.cloud.positions[i]);
+        EXPECT_NEAR(box.min.z, dp, 0.01 * dp) << is_2d;
+        EXPECT_NEAR(box.max.z, 0.8 - 0.5 * dp, 0.01 * dp) << is_2d;
+    }
+}
+
 /// A surface farther off is another thing.
 TEST(TrueSurfaces, AreNotThoseFarFromTheWalls)
 {
