@@ -156,16 +156,14 @@ std::optional<TrueSurface> true_surface_of(const DrawOp& wall,
     return TrueSurface{nearest, least, {std::move(own->query), std::move(found->query)}};
 }
 
-/// The corners of a wall that stand on moved walls go along with them, as those of a piston without
-/// a surface for normals that is drawn onto the nodes of the floor. Else it would stand half a dp
-/// deep in the floor, would lack its lowest row, and leak (public CaseFloatingWaves: 25 particles
-/// of 11,237 in 1.5 s).
+/// The corners of a wall, or ends of a cylinder, that stand on moved walls go along with them, as
+/// those of a piston without a surface for normals that is drawn onto the nodes of the floor. Else
+/// it would stand half a dp deep in the floor, would lack its lowest row, and leak (public
+/// CaseFloatingWaves: 25 particles of 11,237 in 1.5 s).
 void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, DrawOp& wall)
 {
-    const auto* own = shape_as<PolyhedronOp>(wall);
-    if (own == nullptr) return;
-    PolyhedronOp polyhedron = *own;
-    for (Vec3& corner : polyhedron.vertices)
+    const auto move = [&](Vec3& corner)
+    {
         for (const MovedWall& of : moved)
         {
             Vec3 place = corner;
@@ -174,7 +172,19 @@ void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, 
             const Vec3 way = of.to.closest_point(place).point - place;
             corner = corner + Vec3{way.x, grid.is_2d ? 0 : way.y, way.z};
         }
-    wall.what = Shape(std::move(polyhedron));
+    };
+    if (const auto* polyhedron = shape_as<PolyhedronOp>(wall))
+    {
+        PolyhedronOp shape = *polyhedron;
+        for (Vec3& corner : shape.vertices) move(corner);
+        wall.what = Shape(std::move(shape));
+    }
+    else if (const auto* cylinder = shape_as<CylinderOp>(wall))
+    {
+        CylinderOp shape = *cylinder;
+        for (Vec3* end : {&shape.p0, &shape.p1}) move(*end);
+        wall.what = Shape(std::move(shape));
+    }
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace
 {
@@ -102,19 +103,22 @@ TEST(TrueSurfaces, OfSolidsMayBeDrawnAsFaces)
 /// it and lacked its lowest row: fluid went under it.
 TEST(TrueSurfaces, CarryWhatIsDrawnOntoTheirNodes)
 {
-    for (const bool is_2d : {false, true})
+    const std::string block =
+        R"(<drawbox><boxfill>solid</boxfill><point x="0.3" y="0.3" z="0" /><size x="0.4" y="0.4" z="0.8" /></drawbox>)";
+    const std::string pile =
+        R"(<drawcylinder radius="0.2"><point x="0.5" y="0.5" z="0" /><point x="0.5" y="0.5" z="0.8" /></drawcylinder>)";
+    for (const auto& [post, is_2d] :
+         {std::pair{block, false}, std::pair{block, true}, std::pair{pile, false}})
     {
         CaseText text = drawn_twice(0.5, is_2d);
-        text.mainlist.insert(
-            text.mainlist.find("<setmkfluid"),
-            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.3" y="0.3" z="0" /><size x="0.4" y="0.4" z="0.8" /></drawbox>)");
+        text.mainlist.insert(text.mainlist.find("<setmkfluid"), R"(<setmkbound mk="1" />)" + post);
         const Result made = make(text);
         ASSERT_EQ(made.code, 0) << made.output;
         fppg::Box3 box;
         for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
             if (made.cloud.mk[i] == first_bound + 1) box.add(made.cloud.positions[i]);
-        EXPECT_NEAR(box.min.z, dp, 0.01 * dp) << is_2d;
-        EXPECT_NEAR(box.max.z, 0.8 - 0.5 * dp, 0.01 * dp) << is_2d;
+        EXPECT_NEAR(box.min.z, dp, 0.01 * dp) << post << is_2d;
+        EXPECT_NEAR(box.max.z, 0.8 - 0.5 * dp, 0.01 * dp) << post << is_2d;
     }
 }
 
