@@ -13,6 +13,8 @@ namespace
 /// Facets are looked at in parts, as many along each side, where there are few of them.
 constexpr std::size_t few_facets = 1000;
 constexpr int parts_of_few = 4;
+/// Of more than these every second, third, ... is looked at.
+constexpr std::size_t enough_facets = 20000;
 
 /// What is left of widths, so that facets keep their share of the area.
 constexpr double pressed = 1e-6;
@@ -39,12 +41,14 @@ std::vector<Vec3> middles_of_parts(const Vec3* corners, int parts)
 
 double distance_of_share(const TriangleSoup& facets, const MeshQuery& surface, double share)
 {
-    const int parts = facets.vertices.size() / 3 < few_facets ? parts_of_few : 1;
+    const std::size_t count = facets.vertices.size() / 3;
+    const int parts = count < few_facets ? parts_of_few : 1;
+    const std::size_t stride = 1 + count / enough_facets;
     std::vector<std::pair<double, double>> by_distance; // with the area
     double all = 0;
-    for (std::size_t f = 0; f + 2 < facets.vertices.size(); f += 3)
+    for (std::size_t f = 0; f < count; f += stride)
     {
-        const Vec3* corners = &facets.vertices[f];
+        const Vec3* corners = &facets.vertices[3 * f];
         const double area = 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));
         if (!(area > 0)) continue;
         for (const Vec3& middle : middles_of_parts(corners, parts))

@@ -10,7 +10,7 @@ namespace fppg
 
 /// Gives walls in layers for mDBC the surface that the case draws for normals. Cases for mDBC draw
 /// walls twice: as a surface half a dp before the nodes, which `<norgeometry>` names and normals
-/// lead to, and on the nodes. The first is the true surface of the wall (13 of 35 public mDBC
+/// lead to, and on the nodes. The first is the true surface of the wall (16 of 35 public mDBC
 /// cases; on the surface of the nodes CaseDamBreak3D has 3.7 % more fluid). Before the walls are
 /// fitted.
 ///
