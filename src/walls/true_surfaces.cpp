@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -59,14 +60,40 @@ std::optional<DrawnSurface> drawn_surface(const Scene& scene, const DrawOp& draw
     }
 }
 
-/// The draws whose shapes the file of `<norgeometry>` holds.
-std::vector<const DrawOp*> draws_for_normals(const Scene& scene)
+/// The last command that makes everything before it void; null: none.
+const DrawOp* last_voiding(const CaseDef& def)
+{
+    const DrawOp* out = nullptr;
+    for (const DrawOp& op : def.ops)
+    {
+        const auto* edit = std::get_if<Edit>(&op.what);
+        const auto* redraw = edit != nullptr ? std::get_if<RedrawOp>(edit) : nullptr;
+        if (redraw != nullptr && op.state->mk.kind == MkKind::Void && redraw->filters.empty() &&
+            !redraw->region)
+            out = &op;
+    }
+    return out;
+}
+
+/// The draws of true surfaces: those whose shapes the file of `<norgeometry>` holds, and those in
+/// other shape files that leave no particles (the piston of the public CaseWavesFrCylinder).
+std::vector<const DrawOp*> draws_of_surfaces(const Scene& scene)
 {
     const CaseDef& def = *scene.def;
+    const DrawOp* voiding = last_voiding(def);
+    std::set<const DrawOp*> known;
     std::vector<const DrawOp*> out;
-    for (ShapeFileDraws& file : shape_file_draws(scene))
-        if (!file.is_snapped && def.case_name + file.name() == def.normals.geometry->file)
-            out = std::move(file.draws);
+    for (const ShapeFileDraws& file : shape_file_draws(scene))
+    {
+        if (file.is_snapped) continue;
+        const bool is_for_normals = def.case_name + file.name() == def.normals.geometry->file;
+        for (const DrawOp* draw : file.draws)
+        {
+            const bool leaves_none =
+                !draw->state->draw_points || std::less<const DrawOp*>()(draw, voiding);
+            if ((is_for_normals || leaves_none) && known.insert(draw).second) out.push_back(draw);
+        }
+    }
     return out;
 }
 
@@ -192,7 +219,7 @@ void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, 
 std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, CaseDef& def)
 {
     if (!def.normals.geometry || def.fit.is_empty()) return {};
-    const std::vector<const DrawOp*> shapes = draws_for_normals(scene);
+    const std::vector<const DrawOp*> shapes = draws_of_surfaces(scene);
     std::set<const DrawOp*> walls;
     for (const SceneStep& step : scene.steps)
         if (is_in_layers(step, def)) walls.insert(step.draw);
