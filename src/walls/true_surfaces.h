@@ -15,8 +15,9 @@ namespace fppg
 /// fitted.
 ///
 /// A draw is on the nodes of a surface when half of the area of each is more than 0.05 dp and at
-/// most 0.9 dp from the other, and nearly all of the wall at most 2 dp. Shapes that are read from a
-/// file of another run, and parts of combinations, give no surface.
+/// most 0.9 dp from the other, and nearly all of the wall at most 2 dp. Draws in other shape files
+/// of the run that leave no particles are such surfaces too; shapes that are read from a file of
+/// another run, and parts of combinations, are none.
 ///
 /// Corners of walls without such a surface that stand on walls that have one go along with these.
 ///

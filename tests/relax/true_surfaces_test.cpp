@@ -99,6 +99,26 @@ TEST(TrueSurfaces, OfSolidsMayBeDrawnAsFaces)
     }
 }
 
+/// The piston of the public CaseWavesFrCylinder has its surface in another file than the tank.
+TEST(TrueSurfaces, MayBeInAnotherShapeFile)
+{
+    CaseText text = drawn_twice(0.5);
+    const auto insert = [&](const std::string& before, const std::string& part)
+    { text.mainlist.insert(text.mainlist.find(before), part); };
+    const std::string block =
+        R"(<setnormalinvert invert="false" /><setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.3" y="0.3" z="0.25" /><size x="0.4" y="0.4" z="0.4" />{}</drawbox>)";
+    insert("<resetdraw", fmt::format(fmt::runtime(block), R"(<layers vdp="0.5" />)") +
+                             R"(<shapeout file="other" />)");
+    insert("<setmkfluid", fmt::format(fmt::runtime(block), ""));
+    const Result made = make(text);
+    ASSERT_EQ(made.code, 0) << made.output;
+    fppg::Box3 box;
+    for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+        if (made.cloud.mk[i] == first_bound + 1) box.add(made.cloud.positions[i]);
+    EXPECT_NEAR(box.min.x, 0.3, 0.01 * dp);
+    EXPECT_NEAR(box.max.z, 0.65, 0.01 * dp);
+}
+
 /// A post without a surface for normals, drawn onto the nodes of the floor, stood half a dp deep in
 /// it and lacked its lowest row: fluid went under it.
 TEST(TrueSurfaces, CarryWhatIsDrawnOntoTheirNodes)
