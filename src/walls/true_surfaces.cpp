@@ -187,8 +187,11 @@ std::optional<TrueSurface> true_surface_of(const DrawOp& wall,
 /// those of a piston without a surface for normals that is drawn onto the nodes of the floor. Else
 /// it would stand half a dp deep in the floor, would lack its lowest row, and leak (public
 /// CaseFloatingWaves: 25 particles of 11,237 in 1.5 s).
-void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, DrawOp& wall)
+///
+/// returns  whether any moved
+bool move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, DrawOp& wall)
 {
+    bool has_moved = false;
     const auto move = [&](Vec3& corner)
     {
         for (const MovedWall& of : moved)
@@ -198,6 +201,7 @@ void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, 
             if (of.from.closest_point(place).distance > one_surface_dp * grid.dp) continue;
             const Vec3 way = of.to.closest_point(place).point - place;
             corner = corner + Vec3{way.x, grid.is_2d ? 0 : way.y, way.z};
+            has_moved = true;
         }
     };
     if (const auto* polyhedron = shape_as<PolyhedronOp>(wall))
@@ -212,6 +216,7 @@ void move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, 
         for (Vec3* end : {&shape.p0, &shape.p1}) move(*end);
         wall.what = Shape(std::move(shape));
     }
+    return has_moved;
 }
 
 } // namespace
@@ -241,7 +246,11 @@ std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, Cas
         moved.push_back(std::move(found->wall));
     }
     for (DrawOp& op : def.ops)
-        if (walls.contains(&op)) move_corners(moved, def.grid, op);
+        if (walls.contains(&op) && move_corners(moved, def.grid, op))
+            out.push_back(
+                fmt::format("{}: where it stands on walls that have a surface for "
+                            "normals, it ends at that surface",
+                            place_of(def, op.source)));
     return out;
 }
 

@@ -137,6 +137,7 @@ TEST(TrueSurfaces, CarryWhatIsDrawnOntoTheirNodes)
         fppg::Box3 box;
         for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
             if (made.cloud.mk[i] == first_bound + 1) box.add(made.cloud.positions[i]);
+        EXPECT_TRUE(contains(made.log, "it ends at that surface")) << made.log;
         EXPECT_NEAR(box.min.z, dp, 0.01 * dp) << post << is_2d;
         EXPECT_NEAR(box.max.z, 0.8 - 0.5 * dp, 0.01 * dp) << post << is_2d;
     }
