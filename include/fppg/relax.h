@@ -18,6 +18,9 @@ struct RelaxProgress
     double spacing_mean = 0;
     double spacing_variation = 0;    ///< coefficient of variation
     double largest_displacement = 0; ///< of this iteration
+    /// Where the particles are relaxed in pieces, the one that this is of, from 1, and their
+    /// number; particles, spacing and iteration are then of this piece.
+    std::size_t piece = 1, pieces = 1;
 };
 
 struct RelaxSurfaceOptions
@@ -31,11 +34,17 @@ struct RelaxSurfaceOptions
     /// It no longer improves when its coefficient of variation falls by less than this in 3
     /// iterations, not judged before 18; for less than 10,000 particles in 12, not before 58.
     double tolerance = 1e-3;
+    /// More particles than this are relaxed in pieces one after the other, so that memory for
+    /// relaxing is that of a piece: whole bodies, and slabs of those with more particles. A slab
+    /// takes in the last 10 dp of the one before, so that they meet without a seam.
+    std::size_t together = 2'000'000;
     /// Called after every iteration. False ends the relaxation, and the state reached is kept;
-    /// what it throws is passed on, and the particles stay as they were given.
+    /// what it throws is passed on, and the particles stay as they were given (in pieces: those of
+    /// the piece and of later ones).
     std::function<bool(const RelaxProgress&)> on_progress = {};
     /// Iterations between two calls with the particles as they stand, on their facets; 0: no call.
     /// What it throws is passed on.
+    /// All particles are relaxed together then.
     int snapshot_interval = 0;
     std::function<void(int iteration, const WallParticles&)> on_snapshot = {};
     /// Where particles may be put into holes, by index of the body, position and normal of the
@@ -80,8 +89,8 @@ struct RelaxSurfaceReport
 /// source     FPPG paper, "Interparticle force": equation 15 with equal target pressures and
 ///            Wendland's kernel, and pushes below 1.05 and 0.8 dp. Steps follow a heavy-ball scheme
 ///            with restart instead of the paper's damped time integration
-/// cost       about 4 microseconds per particle in all on one core (25 to 45 iterations), 300 bytes
-///            per particle
+/// cost       about 4 microseconds per particle in all on one core (25 to 45 iterations); 300 bytes
+///            per particle of a piece, and 16 for each of all particles where there are pieces
 RelaxSurfaceReport relax_surface(const std::vector<FittedBody>& bodies, WallParticles& particles,
                                  std::vector<char>& held, const RelaxSurfaceOptions& options,
                                  int threads);

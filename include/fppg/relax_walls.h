@@ -24,6 +24,7 @@ struct RelaxStep
     double mean = 0;           ///< spacing in dp on a surface, Shepard sum in a volume
     double variation = 0;      ///< coefficient of variation
     double largest_step_dp = 0;
+    std::size_t piece = 1, pieces = 1; ///< RelaxProgress
 };
 
 /// Called after every iteration; false ends the relaxation of everything, and what is reached is

@@ -21,6 +21,7 @@
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
 #include "particles/simulation_domain.h"
+#include "platform/memory.h"
 #include "scene/part_colours.h"
 #include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
@@ -228,6 +229,7 @@ void draw(CaseRunState& run, MadeCase& made)
                   LatticeReport report;
                   made.mesh_files.clear();
                   made.field = draw_scene(made.scene, run.threads, draw_progress(run), report);
+                  return_free_memory(); // shapes were cut row by row
                   enter_zone(made);
                   expect_room(made.def, count_particles(made.field), run.limit);
                   made.mesh_files = std::move(report.mesh_files);

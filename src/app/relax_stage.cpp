@@ -29,17 +29,32 @@ public:
     void note(const RelaxStep& step, double now)
     {
         // The first iteration of a part has its preparation with it and does not count.
-        if (step.iteration == 1) first_end_ = now;
+        if (step.iteration > 1) return;
+        first_end_ = now;
+        if (step.piece == 1) begin_ = now;
+        of_piece_ = step.piece > 1 ? (now - begin_) / static_cast<double>(step.piece - 1) : 0;
     }
     double seconds(const RelaxStep& step, double now) const
     {
         const double mean = (now - first_end_) / std::max(1, step.iteration - 1);
-        return mean * (step.last_iteration - step.iteration);
+        const double of_this = mean * (step.last_iteration - step.iteration);
+        // Until a piece is done, all are taken for as long as this one.
+        const double of_others = of_piece_ > 0 ? of_piece_ : now - first_end_ + of_this;
+        return of_this + of_others * static_cast<double>(step.pieces - step.piece);
     }
 
 private:
     double first_end_ = 0;
+    double begin_ = 0;
+    double of_piece_ = 0; ///< mean of those that are done
 };
+
+/// Without commas, as it stands in a table.
+std::string name_of(const RelaxStep& step)
+{
+    return step.pieces > 1 ? fmt::format("{} ({} of {})", step.what, step.piece, step.pieces)
+                           : step.what;
+}
 
 void log_relaxed(const RelaxedPart& part, RunLog& log)
 {
@@ -188,13 +203,13 @@ void run_relaxation(CaseRunState& run, MadeCase& made)
         const double now = time.seconds();
         left.note(step, now);
         made.relax_history +=
-            fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", step.what, step.iteration,
+            fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", name_of(step), step.iteration,
                         step.particles, step.mean, step.variation, step.largest_step_dp);
         const double rest = left.seconds(step, now);
-        run.progress(
-            now + rest > 0 ? now / (now + rest) : 0,
-            fmt::format("{}: {} of at most {}, variation {:.3f}, largest step {:.3f} dp", step.what,
-                        step.iteration, step.last_iteration, step.variation, step.largest_step_dp));
+        run.progress(now + rest > 0 ? now / (now + rest) : 0,
+                     fmt::format("{}: {} of at most {}, variation {:.3f}, largest step {:.3f} dp",
+                                 name_of(step), step.iteration, step.last_iteration, step.variation,
+                                 step.largest_step_dp));
         return true;
     };
     const auto snapshot = [&](int iteration, const WallParticles& particles)

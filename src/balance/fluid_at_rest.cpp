@@ -149,7 +149,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const double forces = rest_reach_dp(rest) + list_skin_dp + 0.1;
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
     const auto rhop0 = static_cast<float>(constants.rhop0);
-    const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2);
+    const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2, reach.threads);
 
     const std::uint64_t first_fluid = particles.np - particles.n_fluid;
     const RawArray<NearParticle> fluid =

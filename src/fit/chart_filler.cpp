@@ -141,6 +141,15 @@ void FillState::share_out_features()
             if (charts.is_near(chart, features[s].position)) particles[chart].features.push_back(s);
 }
 
+/// Room is left for the particles that fill holes.
+static void keep_no_spare_memory(std::vector<SurfaceSite>& sites)
+{
+    std::vector<SurfaceSite> kept;
+    kept.reserve(sites.size() + sites.size() / 32);
+    kept.insert(kept.end(), sites.begin(), sites.end());
+    sites = std::move(kept);
+}
+
 struct ChartFiller::Work
 {
     explicit Work(FillState& shared) : state(shared), mesh(shared.mesh), dp(shared.dp) {}
@@ -151,7 +160,8 @@ struct ChartFiller::Work
     std::uint32_t chart = 0;
     ChartParticles* own = nullptr;
     ChartGrid grid;
-    std::vector<Vec3> normals; ///< of all in the grid
+    std::vector<Vec3> normals;                    ///< of all in the grid
+    std::vector<std::array<float, 3>> directions; ///< of the front, per site
     NearPoints near;
     mutable NearPoints looked_at;
     std::vector<ChartPoint> polygon, spare;
@@ -166,6 +176,7 @@ struct ChartFiller::Work
         most_sites = count_most_sites();
         grid.start(dp, mesh.facets[state.charts.facets(which)[0]].corners[0]);
         normals.clear();
+        directions.clear();
         for (const std::uint32_t f : own->features)
             note(state.features[f].position, state.features[f].normal);
     }
@@ -217,12 +228,9 @@ struct ChartFiller::Work
     {
         if (static_cast<double>(own->sites.size()) > most_sites) refuse_endless(ray.position);
         const Vec3& d = ray.direction;
-        own->sites.push_back(
-            {ray.position,
-             ray.facet,
-             {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
-             is_irregular,
-             is_at_seam});
+        own->sites.push_back({ray.position, ray.facet, is_irregular, is_at_seam});
+        directions.push_back(
+            {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
         note(ray.position, mesh.facets[ray.facet].normal);
     }
 
@@ -259,7 +267,7 @@ struct ChartFiller::Work
     {
         const SurfaceSite site = own->sites[index];
         const Vec3 normal = mesh.facets[site.facet].normal;
-        Vec3 direction{site.direction[0], site.direction[1], site.direction[2]};
+        Vec3 direction{directions[index][0], directions[index][1], directions[index][2]};
         direction = direction - normal * dot(direction, normal);
         direction = direction / norm(direction);
         const Vec3 left = cross(normal, direction);
@@ -499,6 +507,8 @@ void ChartFiller::advance_front(std::uint32_t chart)
             {(f.corners[0] + f.corners[1] + f.corners[2]) / 3.0, facet, any_direction(f)});
     }
     for (std::size_t i = 0; i < w.own->sites.size(); ++i) w.advance_from(i);
+    w.own->rows = {};
+    keep_no_spare_memory(w.own->sites);
 }
 
 void ChartFiller::fill_holes(std::uint32_t chart)

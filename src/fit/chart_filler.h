@@ -47,9 +47,8 @@ struct SurfaceSite
 {
     Vec3 position;
     std::uint32_t facet = no_index; ///< of the work mesh
-    std::array<float, 3> direction{};
-    bool is_irregular = false; ///< not amid six others in a hexagon: a hole may be near
-    bool is_at_seam = false;   ///< another chart is near
+    bool is_irregular = false;      ///< not amid six others in a hexagon: a hole may be near
+    bool is_at_seam = false;        ///< another chart is near
 };
 
 /// The particles of one chart, and the rays of its front that ended in others.

@@ -8,6 +8,7 @@
 #include "fppg/error.h"
 #include "meshes/mesh_query.h"
 #include "meshes/point_grid.h"
+#include "platform/memory.h"
 
 #include <algorithm>
 
@@ -53,6 +54,38 @@ SurfaceParticles take_feature_particles(const SurfaceMesh& mesh,
     return result;
 }
 
+/// Moves the particles of all charts to the end of a result. What charts held goes back to the
+/// system on the way, so that not all of them are there twice.
+void gather(FillState& state, int threads, SurfaceParticles& result)
+{
+    constexpr std::size_t particles_at_once = 2'000'000;
+    const std::size_t charts = state.particles.size();
+    std::vector<std::size_t> first(charts + 1, result.positions.size());
+    for (std::size_t c = 0; c < charts; ++c)
+        first[c + 1] = first[c] + state.particles[c].sites.size();
+    result.positions.reserve(first.back());
+    result.facets.reserve(first.back());
+    for (std::size_t begin = 0, end = 0; begin < charts; begin = end)
+    {
+        while (end < charts && first[end] - first[begin] < particles_at_once) ++end;
+        result.positions.resize(first[end]);
+        result.facets.resize(first[end]);
+        parallel_for(end - begin, threads,
+                     [&](std::size_t k)
+                     {
+                         const std::size_t c = begin + k;
+                         std::size_t at = first[c];
+                         for (const SurfaceSite& site : state.particles[c].sites)
+                         {
+                             result.positions[at] = site.position;
+                             result.facets[at++] = state.mesh.facets[site.facet].parent;
+                         }
+                         state.particles[c] = {};
+                     });
+        if (first[end] - first[begin] >= particles_at_once) return_free_memory();
+    }
+}
+
 void add_area_particles(const SurfaceMesh& mesh, const Features& features,
                         const std::vector<FeatureParticle>& feature_particles, double dp,
                         int threads, SurfaceParticles& result)
@@ -69,25 +102,11 @@ void add_area_particles(const SurfaceMesh& mesh, const Features& features,
 
     for_each_chart(state, threads,
                    [](ChartFiller& filler, std::uint32_t c) { filler.advance_front(c); });
+    for (ChartParticles& of_chart : state.particles) of_chart.leaving = {};
     for_each_chart(state, threads,
                    [](ChartFiller& filler, std::uint32_t c) { filler.fill_holes(c); });
 
-    std::vector<std::size_t> first(charts.size() + 1, result.positions.size());
-    for (std::size_t c = 0; c < charts.size(); ++c)
-        first[c + 1] = first[c] + state.particles[c].sites.size();
-    result.positions.resize(first.back());
-    result.facets.resize(first.back());
-    parallel_for(charts.size(), threads,
-                 [&](std::size_t c)
-                 {
-                     std::size_t at = first[c];
-                     for (const SurfaceSite& site : state.particles[c].sites)
-                     {
-                         result.positions[at] = site.position;
-                         result.facets[at++] = work.facets[site.facet].parent;
-                     }
-                     state.particles[c] = {};
-                 });
+    gather(state, threads, result);
 }
 
 void add_cell_particles(const SurfaceMesh& mesh, const FitOptions& options, int threads,

@@ -120,20 +120,25 @@ void WallPainter::anchor(std::size_t first_particle, const std::vector<Spans>& z
     const LatticeGrid& grid = field_->grid;
     const std::vector<Vec3>& positions = field_->walls.particles.positions;
     anchors_.resize(field_->slabs.size());
-    std::vector<Node> nodes(positions.size() - first_particle);
-    parallel_for(
-        nodes.size(), threads_,
-        [&](std::size_t i)
-        { nodes[i] = find_node_in(zone, positions[first_particle + i], grid).value_or(Node{}); },
-        1024);
     std::vector<char> is_reached(anchors_.size(), 0);
-    for (std::size_t i = 0; i < nodes.size(); ++i)
+    constexpr std::size_t most_at_once = 1'000'000;
+    std::vector<Node> nodes;
+    for (std::size_t first = first_particle; first < positions.size(); first += nodes.size())
     {
-        const auto x = static_cast<std::size_t>(nodes[i].x);
-        anchors_[x].push_back({static_cast<std::uint32_t>(nodes[i].y),
-                               static_cast<std::uint32_t>(nodes[i].z),
-                               static_cast<std::uint32_t>(first_particle + i)});
-        is_reached[x] = 1;
+        nodes.resize(std::min(most_at_once, positions.size() - first));
+        parallel_for(
+            nodes.size(), threads_,
+            [&](std::size_t i)
+            { nodes[i] = find_node_in(zone, positions[first + i], grid).value_or(Node{}); },
+            1024);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+        {
+            const auto x = static_cast<std::size_t>(nodes[i].x);
+            anchors_[x].push_back({static_cast<std::uint32_t>(nodes[i].y),
+                                   static_cast<std::uint32_t>(nodes[i].z),
+                                   static_cast<std::uint32_t>(first + i)});
+            is_reached[x] = 1;
+        }
     }
     parallel_for(anchors_.size(), threads_,
                  [&](std::size_t x)

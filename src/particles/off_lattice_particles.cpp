@@ -1,26 +1,140 @@
 #include "particles/off_lattice_particles.h"
 
 #include "core/parallel.h"
-#include "core/parallel_sort.h"
+#include "core/row_lists.h"
 #include "particles/wall_surfaces.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace fppg
 {
 namespace
 {
 
-/// `source` counts the particles of walls, then those of the volume.
-struct Entry
+/// The particles of walls, then those of the volume, sorted by blocks and in each by its order;
+/// equal ones as they come. They go into buckets by the slowest coordinate first, so that what is
+/// sorted at once is small.
+class SortedSources
 {
-    PositionOrder::Key key;
-    std::uint32_t source = 0;
-
-    bool operator<(const Entry& other) const
+public:
+    SortedSources(const FittedWalls& walls, const std::vector<ParticleBlock>& blocks,
+                  const std::vector<PositionOrder>& orders, int threads)
+        : walls_(walls),
+          orders_(orders),
+          threads_(threads),
+          of_walls_(walls.particles.size()),
+          block_of_mk_(65536, 0),
+          ranges_(blocks.size())
     {
-        return key < other.key || (!(other.key < key) && source < other.source);
+        for (std::size_t b = 0; b < blocks.size(); ++b) block_of_mk_[blocks[b].mk] = b;
+        measure();
     }
+
+    /// Indices of the particles.
+    std::vector<std::uint32_t> take() const
+    {
+        const std::size_t n = size();
+        RowLists<std::uint32_t> buckets =
+            make_row_lists<std::uint32_t>(ranges_.empty() ? 0 : ranges_.back().end, n, threads_,
+                                          [&](std::size_t i, const auto& add)
+                                          { add(bucket_of(i), static_cast<std::uint32_t>(i)); });
+        parallel_for(buckets.first.size() - 1, threads_,
+                     [&](std::size_t bucket)
+                     {
+                         std::uint32_t* const begin = buckets.values.data() + buckets.first[bucket];
+                         const std::size_t count = buckets.row(bucket).size();
+                         std::vector<Entry> entries(count);
+                         for (std::size_t k = 0; k < count; ++k)
+                             entries[k] = {key(begin[k]), begin[k]};
+                         std::sort(entries.begin(), entries.end());
+                         for (std::size_t k = 0; k < count; ++k) begin[k] = entries[k].source;
+                     });
+        return std::move(buckets.values);
+    }
+
+private:
+    struct Entry
+    {
+        PositionOrder::Key key;
+        std::uint32_t source = 0;
+
+        bool operator<(const Entry& other) const
+        {
+            return key < other.key || (!(other.key < key) && source < other.source);
+        }
+    };
+    /// The slowest coordinates of a block's particles, and its buckets.
+    struct Range
+    {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        std::size_t count = 0;
+        std::size_t begin = 0, end = 0;
+    };
+    static constexpr std::size_t in_bucket = 1024;
+    static constexpr std::size_t most_buckets = std::size_t{1} << 18;
+
+    std::size_t size() const { return of_walls_ + walls_.volume.size(); }
+    std::size_t block_of(std::size_t i) const
+    {
+        return block_of_mk_[i < of_walls_ ? walls_.particles.mk[i]
+                                          : walls_.volume.mk[i - of_walls_]];
+    }
+    PositionOrder::Key key(std::size_t i) const
+    {
+        return orders_[block_of(i)].key(i < of_walls_ ? walls_.particles.positions[i]
+                                                      : walls_.volume.positions[i - of_walls_]);
+    }
+
+    void measure()
+    {
+        constexpr std::size_t chunk = 65536;
+        std::vector<std::vector<Range>> of_chunk((size() + chunk - 1) / chunk);
+        parallel_for(of_chunk.size(), threads_,
+                     [&](std::size_t c)
+                     {
+                         of_chunk[c].resize(ranges_.size());
+                         for (std::size_t i = c * chunk; i < std::min(size(), (c + 1) * chunk); ++i)
+                         {
+                             Range& range = of_chunk[c][block_of(i)];
+                             const double first = key(i)[0];
+                             range.low = std::min(range.low, first);
+                             range.high = std::max(range.high, first);
+                             ++range.count;
+                         }
+                     });
+        std::size_t buckets = 0;
+        for (std::size_t b = 0; b < ranges_.size(); ++b)
+        {
+            Range& range = ranges_[b];
+            for (const std::vector<Range>& part : of_chunk)
+            {
+                range.low = std::min(range.low, part[b].low);
+                range.high = std::max(range.high, part[b].high);
+                range.count += part[b].count;
+            }
+            range.begin = buckets;
+            buckets += std::clamp<std::size_t>(range.count / in_bucket, 1, most_buckets);
+            range.end = buckets;
+        }
+    }
+
+    std::size_t bucket_of(std::size_t i) const
+    {
+        const Range& range = ranges_[block_of(i)];
+        const double length = range.high - range.low;
+        if (!(length > 0)) return range.begin;
+        const auto count = static_cast<double>(range.end - range.begin);
+        const double share = (key(i)[0] - range.low) / length;
+        return range.begin + static_cast<std::size_t>(std::min(share * count, count - 1));
+    }
+
+    const FittedWalls& walls_;
+    const std::vector<PositionOrder>& orders_;
+    int threads_;
+    std::size_t of_walls_;
+    std::vector<std::size_t> block_of_mk_;
+    std::vector<Range> ranges_; ///< per block
 };
 
 /// Takes runs and single particles off the lattice in id order.
@@ -94,29 +208,12 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
                                                const std::vector<PositionOrder>& orders,
                                                int threads, std::vector<std::uint64_t>& begin)
 {
+    const std::vector<std::uint64_t> count = count_off_lattice_particles(walls);
+    begin.assign(blocks.size() + 1, 0);
+    for (std::size_t b = 0; b < blocks.size(); ++b) begin[b + 1] = begin[b] + count[blocks[b].mk];
     const std::size_t of_walls = walls.particles.size();
     const std::size_t n = of_walls + walls.volume.size();
-    const auto position = [&](std::size_t i) -> const Vec3&
-    { return i < of_walls ? walls.particles.positions[i] : walls.volume.positions[i - of_walls]; };
-
-    const std::vector<std::uint64_t> count = count_off_lattice_particles(walls);
-    std::vector<std::vector<Entry>> entries(blocks.size());
-    std::vector<std::size_t> block_of_mk(65536, 0);
-    begin.assign(blocks.size() + 1, 0);
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-    {
-        block_of_mk[blocks[b].mk] = b;
-        entries[b].reserve(count[blocks[b].mk]);
-        begin[b + 1] = begin[b] + count[blocks[b].mk];
-    }
-    for (std::size_t i = 0; i < n; ++i)
-    {
-        const std::uint16_t mk =
-            i < of_walls ? walls.particles.mk[i] : walls.volume.mk[i - of_walls];
-        const std::size_t b = block_of_mk[mk];
-        entries[b].push_back({orders[b].key(position(i)), static_cast<std::uint32_t>(i)});
-    }
-
+    const std::vector<std::uint32_t> order = SortedSources(walls, blocks, orders, threads).take();
     OffLatticeParticles out;
     out.positions.resize(n);
     out.kinds.resize(n);
@@ -124,39 +221,38 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
     out.distances.resize(n);
     out.layers.assign(n, 0);
     out.rhop.resize(n);
-    out.shares.assign(n, 1);
-    const WallSurfaces surfaces(walls);
-    for (std::size_t b = 0; b < blocks.size(); ++b)
+    const auto share_of = [&](std::size_t body)
     {
-        parallel_sort(entries[b], threads, std::less<Entry>());
-        parallel_for(
-            entries[b].size(), threads,
-            [&](std::size_t i)
+        const FittedBody& of = walls.bodies[body];
+        return of.is_layer() ? walls.owner_of(body).layer_share : of.share;
+    };
+    bool has_shares = false;
+    for (std::size_t b = 0; b < walls.bodies.size(); ++b)
+        has_shares = has_shares || share_of(b) != 1;
+    if (has_shares) out.shares.assign(n, 1);
+    const WallSurfaces surfaces(walls);
+    parallel_for(
+        n, threads,
+        [&](std::size_t at)
+        {
+            const std::size_t source = order[at];
+            if (source >= of_walls)
             {
-                const std::size_t source = entries[b][i].source;
-                const std::size_t at = begin[b] + i;
-                out.positions[at] = position(source);
-                if (source < of_walls)
-                {
-                    const SurfacePlace place = surfaces.at(source);
-                    out.kinds[at] = walls.particles.kinds[source];
-                    out.normals[at] = place.normal;
-                    out.distances[at] = place.distance;
-                    const std::uint32_t of = walls.particles.bodies[source];
-                    const FittedBody& body = walls.bodies[of];
-                    out.layers[at] = static_cast<std::uint8_t>(body.layer + 1);
-                    out.shares[at] = static_cast<float>(
-                        body.is_layer() ? walls.owner_of(of).layer_share : body.share);
-                }
-                else
-                {
-                    out.kinds[at] = FitKind::Volume;
-                    out.distances[at] = walls.volume.distances[source - of_walls];
-                }
-            },
-            4096);
-        entries[b] = {};
-    }
+                out.positions[at] = walls.volume.positions[source - of_walls];
+                out.kinds[at] = FitKind::Volume;
+                out.distances[at] = walls.volume.distances[source - of_walls];
+                return;
+            }
+            const SurfacePlace place = surfaces.at(source);
+            const std::uint32_t body = walls.particles.bodies[source];
+            out.positions[at] = walls.particles.positions[source];
+            out.kinds[at] = walls.particles.kinds[source];
+            out.normals[at] = place.normal;
+            out.distances[at] = place.distance;
+            out.layers[at] = static_cast<std::uint8_t>(walls.bodies[body].layer + 1);
+            if (has_shares) out.shares[at] = static_cast<float>(share_of(body));
+        },
+        4096);
     return out;
 }
 

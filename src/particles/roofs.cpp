@@ -19,10 +19,13 @@ public:
         : field_(field),
           meter_(meter),
           top_(top),
-          walls_(2 * field.grid.dp, field.walls.particles.size()),
+          walls_(2 * field.grid.dp, 0),
           roofed_(field.slabs.size())
     {
-        for (const Vec3& p : field.walls.particles.positions) walls_.add(p);
+        const Box3 water = box_of_water();
+        if (water.is_empty()) return;
+        for (const Vec3& p : field.walls.particles.positions)
+            if (water.has(p, reach_dp * field.grid.dp)) walls_.add(p);
     }
 
     void run()
@@ -59,6 +62,24 @@ public:
     }
 
 private:
+    /// A wall so near above a column is its roof, dp.
+    static constexpr double reach_dp = 2.2;
+
+    Box3 box_of_water() const
+    {
+        Box3 box;
+        for (std::uint32_t x = 0; x < field_.slabs.size(); ++x)
+            for (std::uint32_t i = 0; i < field_.slabs[x].size(); ++i)
+            {
+                if (!is_water(x, i)) continue;
+                const Run& run = field_.slabs[x][i];
+                for (const std::uint32_t z : {run.z_begin, run.z_end - 1})
+                    box.add(field_.grid.place({static_cast<double>(x), static_cast<double>(run.y),
+                                               static_cast<double>(z)}));
+            }
+        return box;
+    }
+
     bool is_water(std::uint32_t x, std::uint32_t i) const
     {
         return meter_.is_fluid(field_.slabs[x][i].mk);
@@ -95,7 +116,7 @@ private:
                                static_cast<double>(end - 1)});
         bool found = false;
         walls_.for_each_near(
-            at, 2.2 * dp,
+            at, reach_dp * dp,
             [&](std::uint32_t w, double)
             {
                 const Vec3 away = walls_.points()[w] - at;

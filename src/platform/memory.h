@@ -9,4 +9,8 @@ namespace fppg
 /// where the system does not say.
 std::uint64_t available_memory();
 
+/// Gives memory that was freed in many small pieces back to the system, where it keeps it for the
+/// process otherwise.
+void return_free_memory();
+
 } // namespace fppg

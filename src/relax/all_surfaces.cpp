@@ -35,6 +35,17 @@ constexpr double reach_of_crowd_dp = 2;
 /// No more than this share of the particles in the layers of a body is taken out.
 constexpr double most_thinned = 0.05;
 
+/// The positions of two sets, in `joined` where both have some.
+const std::vector<Vec3>& positions_of_both(const WallParticles& particles,
+                                           const WallParticles& others, std::vector<Vec3>& joined)
+{
+    if (others.size() == 0) return particles.positions;
+    joined.reserve(particles.size() + others.size());
+    joined.insert(joined.end(), particles.positions.begin(), particles.positions.end());
+    joined.insert(joined.end(), others.positions.begin(), others.positions.end());
+    return joined;
+}
+
 PointGrid grid_of(const std::vector<Vec3>& points, double cell)
 {
     PointGrid out(cell, points.size());
@@ -122,7 +133,8 @@ private:
         {
             return observe({"surface", p.iteration,
                             settings.iterations.value_or(surface_iterations), p.particles,
-                            p.spacing_mean, p.spacing_variation, p.largest_displacement});
+                            p.spacing_mean, p.spacing_variation, p.largest_displacement, p.piece,
+                            p.pieces});
         };
         options.snapshot_interval = snapshot_ ? settings.snapshots : 0;
         options.on_snapshot = [&](int iteration, const WallParticles& now)
@@ -229,9 +241,9 @@ private:
         Spacing out;
         if (particles.size() == 0) return out;
         const double dp = field_.grid.dp;
-        std::vector<Vec3> points = particles.positions;
-        points.insert(points.end(), others.positions.begin(), others.positions.end());
-        const std::vector<double> nearest = nearest_distances(points, alone_dp * dp, threads_);
+        std::vector<Vec3> joined;
+        const std::vector<double> nearest = nearest_distances(
+            positions_of_both(particles, others, joined), alone_dp * dp, threads_);
         double sum = 0, squares = 0;
         for (std::size_t i = 0; i < particles.size(); ++i)
         {
@@ -251,13 +263,14 @@ private:
     std::size_t leave_out_crowded(WallParticles& particles, const WallParticles& others)
     {
         FittedWalls& walls = field_.walls;
-        std::vector<Vec3> points = particles.positions;
+        std::vector<Vec3> joined;
+        const std::vector<Vec3>& points = positions_of_both(particles, others, joined);
         std::vector<std::uint32_t> rank;
-        for (std::size_t i = 0; i < points.size(); ++i)
+        rank.reserve(points.size());
+        for (std::size_t i = 0; i < particles.size(); ++i)
             rank.push_back(1 +
                            4 * static_cast<std::uint32_t>(walls.bodies[particles.bodies[i]].layer) +
                            static_cast<std::uint32_t>(particles.kinds[i]));
-        points.insert(points.end(), others.positions.begin(), others.positions.end());
         rank.resize(points.size(), 0);
         const std::size_t own = particles.size();
         const auto may_stay = [&](std::size_t i, std::size_t j)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parallel.h"
 #include "fppg/lattice.h"
 
 #include <algorithm>
@@ -18,21 +19,22 @@ public:
     /// side   of a block, nodes
     /// reach  how many blocks beyond that of the particle count
     NearBlocks(const std::vector<Vec3>& points, const LatticeGrid& grid, std::uint32_t side,
-               int reach)
+               int reach, int threads)
         : side_(side)
     {
-        // Blocks are counted from `reach` before the lattice on, so that all near it have a key.
-        for (const Vec3& p : points)
-        {
-            std::array<double, 3> block{};
-            for (int axis = 0; axis < 3; ++axis)
-                block[static_cast<std::size_t>(axis)] =
-                    std::floor((p[axis] - grid.origin[axis]) / grid.step(axis) / side) + reach;
-            if (std::any_of(block.begin(), block.end(), [](double b) { return b < 0; })) continue;
-            const std::uint64_t of_point = key(block[0], block[1], block[2]);
-            if (keys_.empty() || keys_.back() != of_point) keys_.push_back(of_point);
-        }
-        sort_once();
+        constexpr std::size_t chunk = 65536;
+        std::vector<std::vector<std::uint64_t>> of_chunk((points.size() + chunk - 1) / chunk);
+        parallel_for(of_chunk.size(), threads,
+                     [&](std::size_t c)
+                     {
+                         const std::size_t end = std::min(points.size(), (c + 1) * chunk);
+                         for (std::size_t i = c * chunk; i < end; ++i)
+                             add_block_of(points[i], grid, reach, of_chunk[c]);
+                         sort_once(of_chunk[c]);
+                     });
+        for (const std::vector<std::uint64_t>& keys : of_chunk)
+            keys_.insert(keys_.end(), keys.begin(), keys.end());
+        sort_once(keys_);
         for (const std::uint64_t step : {key(0, 0, 1), key(0, 1, 0), key(1, 0, 0)})
         {
             std::vector<std::uint64_t> spread;
@@ -40,7 +42,7 @@ public:
                 for (int d = 0; d <= 2 * reach; ++d)
                     spread.push_back(k + static_cast<std::uint64_t>(d) * step);
             keys_ = std::move(spread);
-            sort_once();
+            sort_once(keys_);
         }
         // Both shifts, from the lattice to the first key and from there to the first neighbour.
         const std::uint64_t off = 2 * static_cast<std::uint64_t>(reach);
@@ -65,10 +67,22 @@ public:
 
 private:
     static constexpr std::uint64_t part = 0x1FFFFF; ///< of a key, a coordinate
-    void sort_once()
+    static void sort_once(std::vector<std::uint64_t>& keys)
     {
-        std::sort(keys_.begin(), keys_.end());
-        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+        std::sort(keys.begin(), keys.end());
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    }
+    /// Blocks are counted from `reach` before the lattice on, so that all near it have a key.
+    void add_block_of(const Vec3& p, const LatticeGrid& grid, int reach,
+                      std::vector<std::uint64_t>& keys) const
+    {
+        std::array<double, 3> block{};
+        for (int axis = 0; axis < 3; ++axis)
+            block[static_cast<std::size_t>(axis)] =
+                std::floor((p[axis] - grid.origin[axis]) / grid.step(axis) / side_) + reach;
+        if (std::any_of(block.begin(), block.end(), [](double b) { return b < 0; })) return;
+        const std::uint64_t of_point = key(block[0], block[1], block[2]);
+        if (keys.empty() || keys.back() != of_point) keys.push_back(of_point);
     }
     static std::uint64_t key(std::uint64_t x, std::uint64_t y, std::uint64_t z)
     {

@@ -238,7 +238,7 @@ private:
         const auto [place, is_new] = near_blocks_.try_emplace({side, reach});
         if (is_new)
             place->second = std::make_unique<NearBlocks>(field_.walls.particles.positions,
-                                                         field_.grid, side, reach);
+                                                         field_.grid, side, reach, threads_);
         return *place->second;
     }
 
@@ -436,11 +436,12 @@ private:
             if (std::isfinite(band)) widest = std::max(widest, band);
         // Twice the side reaches from a wall particle over the band and the reach of forces.
         const auto side = std::max(3u, static_cast<std::uint32_t>(std::ceil(widest)) + 1);
-        const PointGrid cut = places_of_cuts(field_, region, all, threads_);
-        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1), cut);
         const bool is_of_inside = region.is_solid && is_inside(field_.walls, region);
         const SlidingWalls sliding =
             is_of_inside ? find_sliding(field_.walls, region) : SlidingWalls{};
+        if (runs.empty() && sliding.particles.empty()) return;
+        const PointGrid cut = places_of_cuts(field_, region, all, threads_);
+        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1), cut);
         if (movers.empty() && sliding.particles.empty()) return;
         const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
         // Before walls all of whose particles stand behind their surface, a continuum from there on
@@ -450,7 +451,6 @@ private:
             is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers, sliding);
 
         std::vector<Vec3> positions;
-        positions.reserve(movers.size());
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
         if (is_of_inside)
             move_to_own_lattices(field_.walls, own_lattices_, all, movers, positions, threads_);

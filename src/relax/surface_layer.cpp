@@ -135,12 +135,13 @@ Vec3 middle_of(const SurfaceMesh& mesh)
 
 } // namespace
 
-SurfaceLayer::SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> particles, double dp,
-                           double h, int threads)
+SurfaceLayer::SurfaceLayer(const FittedBody& body, std::shared_ptr<const WorkMesh> work,
+                           std::vector<LayerParticle> particles, double dp, double h, int threads)
     : body_(&body),
       dp_(dp),
       threads_(threads),
-      work_(make_work_mesh(body.mesh, body.features, longest_chart_side * dp, threads)),
+      shared_work_(std::move(work)),
+      work_(*shared_work_),
       forces_of_(static_cast<float>(h)),
       step_over_force_(static_cast<float>(pace_of(particles.size()).share /
                                           (stiffest_mode(h) + SurfaceForces::stiffness_of_push()))),

@@ -51,10 +51,11 @@ struct LayerChange
 class SurfaceLayer
 {
 public:
+    /// work       of the body's mesh, cut to longest_chart_side
     /// particles  those of the body; facets of places are still those of the mesh
     /// h          smoothing length, dp
-    SurfaceLayer(const FittedBody& body, std::vector<LayerParticle> particles, double dp, double h,
-                 int threads);
+    SurfaceLayer(const FittedBody& body, std::shared_ptr<const WorkMesh> work,
+                 std::vector<LayerParticle> particles, double dp, double h, int threads);
     ~SurfaceLayer();
     SurfaceLayer(SurfaceLayer&&) noexcept;
 
@@ -115,7 +116,8 @@ private:
     const FittedBody* body_;
     double dp_;
     int threads_;
-    WorkMesh work_;
+    std::shared_ptr<const WorkMesh> shared_work_;
+    const WorkMesh& work_;
     std::vector<FeatureSite> sites_;
     SurfaceForces forces_of_;
     float step_over_force_;

@@ -1,4 +1,5 @@
 #include "meshes/crowded_points.h"
+#include "meshes/point_slabs.h"
 
 #include <gtest/gtest.h>
 
@@ -68,6 +69,72 @@ TEST(CrowdedPoints, GoInTheOrderOfTheirRank)
     EXPECT_GT(gone, 200);
     EXPECT_LT(gone, 4900);
     EXPECT_EQ(find_crowded(points, rank, reach, may_stay, 2), expected);
+}
+
+/// On a sheet of 1500 by 1500 places, each a little off its own.
+std::vector<Vec3> many_points()
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> off(-0.3, 0.3);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 1500; ++i)
+        for (int j = 0; j < 1500; ++j)
+            points.push_back({i + off(random), j + off(random), off(random)});
+    return points;
+}
+
+TEST(CrowdedPoints, AreTheSameForMorePointsThanAreWorkedOnAtOnce)
+{
+    const std::vector<Vec3> points = many_points();
+    const std::vector<double> nearest = nearest_distances(points, 1.5, 2);
+    const std::vector<char> goes =
+        find_crowded(points, std::vector<std::uint32_t>(points.size(), 0), 0.5, {}, 2);
+    // The first rows alone, but for the last of them, whose neighbours are missing.
+    const std::size_t part = 900 * 1500, sure = 890 * 1500;
+    for (const bool is_end : {false, true})
+    {
+        const std::size_t first = is_end ? points.size() - part : 0;
+        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+        const std::vector<Vec3> some(begin, begin + static_cast<std::ptrdiff_t>(part));
+        const std::vector<double> own = nearest_distances(some, 1.5, 1);
+        const std::size_t from = is_end ? part - sure : 0;
+        for (std::size_t i = from; i < from + sure; ++i)
+            ASSERT_EQ(nearest[first + i], own[i]) << first << ", " << i;
+    }
+    std::vector<Vec3> stays;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (goes[i] == 0) stays.push_back(points[i]);
+    EXPECT_LT(stays.size(), points.size() - 1000);
+    for (const double distance : nearest_distances(stays, 1.5, 2))
+        ASSERT_GE(distance, 0.5 * (1 - 1e-4));
+}
+
+TEST(PointSlabs, HoldEachPointOnceAndAreNoThinnerThanAsked)
+{
+    const std::vector<Vec3> points = some_points(5000, 0);
+    std::vector<std::uint32_t> which;
+    for (std::uint32_t i = 0; i < points.size(); i += 2) which.push_back(i);
+    for (const double thinnest : {0.0, 0.17})
+    {
+        const std::vector<PointSlab> slabs = cut_into_slabs(points, which, 200, thinnest);
+        ASSERT_EQ(slabs.size(), thinnest > 0 ? 5u : 13u);
+        std::vector<std::uint32_t> all;
+        for (const PointSlab& slab : slabs)
+        {
+            for (const std::uint32_t i : slab.members)
+            {
+                EXPECT_GE(points[i][slab.axis], slab.low - 1e-12);
+                EXPECT_LE(points[i][slab.axis], slab.high + 1e-12);
+            }
+            EXPECT_GE(slab.high - slab.low, thinnest);
+            EXPECT_LE(slab.members.size(), thinnest > 0 ? 850u : 210u);
+            all.insert(all.end(), slab.members.begin(), slab.members.end());
+        }
+        std::sort(all.begin(), all.end());
+        EXPECT_EQ(all, which);
+    }
+    EXPECT_EQ(cut_into_slabs(points, {7, 7}, 1, 0).size(), 1u);
+    EXPECT_TRUE(cut_into_slabs(points, {}, 1, 0)[0].members.empty());
 }
 
 } // namespace

@@ -98,6 +98,33 @@ double farthest_point(const Walls& walls)
     return farthest_point_dp(walls.bodies[0].mesh, walls.particles.positions, walls.options.dp, 30);
 }
 
+/// Of a surface particle of the first body to another particle of its sheet.
+double nearest_pair_dp(const Walls& walls)
+{
+    const double dp = walls.options.dp;
+    PointGrid grid(dp, walls.particles.size());
+    for (const Vec3& p : walls.particles.positions) grid.add(p);
+    double least = dp * dp;
+    for (std::uint32_t i = 0; i < walls.particles.size(); ++i)
+    {
+        if (walls.particles.kinds[i] != FitKind::Surface) continue;
+        const auto& normals = walls.bodies[0].mesh.normals;
+        const Vec3& normal = normals[walls.particles.facets[i]];
+        grid.for_each_near(
+            walls.particles.positions[i], dp,
+            [&](std::uint32_t j, double squared)
+            {
+                const Vec3 offset = walls.particles.positions[j] - walls.particles.positions[i];
+                // Edge particles behind a plate belong to its other side.
+                const bool is_behind = walls.particles.kinds[j] != FitKind::Surface &&
+                                       std::abs(dot(offset, normal)) > 0.1 * dp;
+                if (j != i && !is_behind && dot(normal, normals[walls.particles.facets[j]]) > -0.5)
+                    least = std::min(least, squared);
+            });
+    }
+    return std::sqrt(least) / dp;
+}
+
 /// How far a particle is from the plane of its facet and beyond its sides, in dp.
 double off_facet(const Walls& walls, std::size_t i)
 {
@@ -157,29 +184,7 @@ TEST(RelaxSurface, KeepsSurfaceParticlesApart)
     {
         Walls walls(shape.soup, shape.dp);
         walls.relax(2);
-        const double dp = shape.dp;
-        PointGrid grid(dp, walls.particles.size());
-        for (const Vec3& p : walls.particles.positions) grid.add(p);
-        double least = dp * dp;
-        for (std::uint32_t i = 0; i < walls.particles.size(); ++i)
-        {
-            if (walls.particles.kinds[i] != FitKind::Surface) continue;
-            const auto& normals = walls.bodies[0].mesh.normals;
-            const Vec3& normal = normals[walls.particles.facets[i]];
-            grid.for_each_near(
-                walls.particles.positions[i], dp,
-                [&](std::uint32_t j, double squared)
-                {
-                    const Vec3 offset = walls.particles.positions[j] - walls.particles.positions[i];
-                    // Edge particles behind a plate belong to its other side.
-                    const bool is_behind = walls.particles.kinds[j] != FitKind::Surface &&
-                                           std::abs(dot(offset, normal)) > 0.1 * dp;
-                    if (j != i && !is_behind &&
-                        dot(normal, normals[walls.particles.facets[j]]) > -0.5)
-                        least = std::min(least, squared);
-                });
-        }
-        EXPECT_GE(std::sqrt(least) / dp, 0.6) << shape.name;
+        EXPECT_GE(nearest_pair_dp(walls), 0.6) << shape.name;
     }
 }
 
@@ -397,6 +402,93 @@ TEST(RelaxSurface, CrossesAnyNumberOfNarrowFacets)
     EXPECT_EQ(report.returned, 0u);
     EXPECT_LT(report.after.spacing_variation, 0.06);
     EXPECT_LE(farthest_point(walls), 0.75);
+    for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
+}
+
+TEST(RelaxSurface, CutsBodiesOfManyParticlesIntoSlabsWithoutSeams)
+{
+    for (const Named& shape :
+         {Named{"sphere", sphere(5), 0.015, 0}, Named{"gear", gear(14, 0.8, 1, 3), 0.02, 0}})
+    {
+        SCOPED_TRACE(shape.name);
+        Walls whole(shape.soup, shape.dp);
+        Walls cut = whole;
+        cut.options.together = 15'000;
+        std::size_t pieces = 0;
+        cut.options.on_progress = [&](const RelaxProgress& progress)
+        {
+            EXPECT_LE(progress.piece, progress.pieces);
+            pieces = progress.pieces;
+            return true;
+        };
+        const RelaxSurfaceReport of_whole = whole.relax(2);
+        const RelaxSurfaceReport of_cut = cut.relax(2);
+        EXPECT_GE(pieces, 3u);
+        EXPECT_LE(farthest_point(cut), 0.75);
+        EXPECT_GE(nearest_pair_dp(cut), 0.6);
+        EXPECT_NEAR(of_cut.after.spacing_variation, of_whole.after.spacing_variation, 0.002);
+        EXPECT_NEAR(of_cut.after.spacing_mean, of_whole.after.spacing_mean, 0.003);
+        const auto n = static_cast<double>(whole.particles.size());
+        EXPECT_NEAR(static_cast<double>(cut.particles.size()), n, 0.002 * n);
+        EXPECT_EQ(of_cut.after.particles, cut.particles.size());
+        for (std::size_t i = 0; i < cut.particles.size(); ++i) ASSERT_LE(off_facet(cut, i), 1e-9);
+    }
+}
+
+TEST(RelaxSurface, GivesTheSameBytesInSlabsForAnyNumberOfThreads)
+{
+    Walls one(gear(14, 0.8, 1, 3), 0.02);
+    one.options.together = 15'000;
+    one.options.iterations = 20;
+    Walls many = one;
+    one.relax(1);
+    many.relax(3);
+    expect_same(one.particles, many.particles);
+}
+
+TEST(RelaxSurface, KeepsTheOrderOfBodiesWhereSomeAreCut)
+{
+    Walls walls(box({0, 0, 0}, {0.3, 0.3, 0.3}), 0.02);
+    walls.add(gear(14, 0.8, 1, 3), 0.02);
+    walls.add(box({2, 0, 0}, {2.3, 0.3, 0.3}), 0.02);
+    walls.options.together = 15'000;
+    const WallParticles given = walls.particles;
+    for (std::size_t i = 0; i < given.size(); ++i) walls.held.push_back(given.positions[i].z > 2);
+    const RelaxSurfaceReport report = walls.relax(2);
+    const WallParticles& now = walls.particles;
+    ASSERT_EQ(now.size(), given.size() + report.inserted - report.removed);
+    ASSERT_EQ(walls.held.size(), now.size());
+    ASSERT_TRUE(std::is_sorted(now.bodies.begin(), now.bodies.end()));
+    EXPECT_GT(report.inserted, 0u);
+    // Corners, edges and held particles stand where they stood, in their order.
+    const auto is_fixed = [](const WallParticles& p, const std::vector<char>& held, std::size_t i)
+    { return p.kinds[i] != FitKind::Surface || held[i] != 0; };
+    std::size_t next = 0, fixed = 0;
+    for (std::size_t i = 0; i < given.size(); ++i)
+    {
+        if (given.kinds[i] == FitKind::Surface && !(given.positions[i].z > 2)) continue;
+        // Behind those of a body new ones may be held, beside such as are.
+        const auto is_of_body = [&](std::size_t k) { return now.bodies[k] == given.bodies[i]; };
+        while (next < now.size() && !(is_of_body(next) && is_fixed(now, walls.held, next))) ++next;
+        ASSERT_LT(next, now.size());
+        ASSERT_EQ(now.positions[next], given.positions[i]);
+        EXPECT_EQ(now.mk[next], given.mk[i]);
+        EXPECT_EQ(now.bodies[next++], given.bodies[i]);
+        ++fixed;
+    }
+    EXPECT_GT(fixed, 1'000u);
+}
+
+TEST(RelaxSurface, KeepsAWholeStateWhenToldToStopAmidSlabs)
+{
+    Walls walls(gear(14, 0.8, 1, 3), 0.02);
+    walls.options.together = 15'000;
+    walls.options.on_progress = [&](const RelaxProgress& progress)
+    { return progress.piece < 2 || progress.iteration < 9; };
+    const std::size_t given = walls.particles.size();
+    const RelaxSurfaceReport report = walls.relax(2);
+    EXPECT_EQ(walls.particles.size(), given + report.inserted - report.removed);
+    EXPECT_LE(farthest_point(walls), 0.92);
     for (std::size_t i = 0; i < walls.particles.size(); ++i) ASSERT_LE(off_facet(walls, i), 1e-9);
 }
 

@@ -1,9 +1,11 @@
 // Fits particles to the surface of an STL file, relaxes them on request, says how long that takes,
 // and writes them as a legacy VTK file with their kind as mk and the normal of their facet.
 //
-//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] [--relax N] [--h H] [--quality]
+//   fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] [--relax N] [--h H] [--together N]
+//   [--quality]
 //
-// N is the number of iterations, 0 for as many as improve the spacing.
+// N of --relax is the number of iterations, 0 for as many as improve the spacing; of --together how
+// many particles are relaxed at once.
 
 #include "fppg/features.h"
 #include "fppg/fit.h"
@@ -31,6 +33,14 @@ namespace
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The most memory that the process had so far.
+double peak_mb()
+{
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    return static_cast<double>(used.ru_maxrss) / 1000;
 }
 
 void write_double(std::ofstream& out, double value)
@@ -93,11 +103,12 @@ void relax(fppg::SurfaceMesh& mesh, const fppg::Features& features,
     std::printf(
         "   relaxed: %d iterations, %zu particles (+%zu -%zu), spacing %.4f +- %.4f to "
         "%.4f +- %.4f, %zu projected, %zu returned\n   %.3f s (%.3f s of processor, "
-        "%.3f us a particle and iteration)\n",
+        "%.3f us a particle, %.3f an iteration), peak %.0f MB\n",
         report.after.iteration, walls.size(), report.inserted, report.removed,
         report.before.spacing_mean, report.before.spacing_variation, report.after.spacing_mean,
         report.after.spacing_variation, report.projected, report.returned, seconds, cpu_seconds,
-        1e6 * cpu_seconds / updates);
+        1e6 * cpu_seconds / static_cast<double>(walls.size()), 1e6 * cpu_seconds / updates,
+        peak_mb());
     particles.positions = std::move(walls.positions);
     particles.kinds = std::move(walls.kinds);
     particles.facets = std::move(walls.facets);
@@ -201,6 +212,7 @@ int main(int count, char** values)
     std::vector<char*> argv(values, values + count);
     const char* iterations = take_option(argv, "--relax");
     const char* h = take_option(argv, "--h");
+    const char* together = take_option(argv, "--together");
     const auto quality = std::find_if(
         argv.begin(), argv.end(), [](const char* a) { return std::strcmp(a, "--quality") == 0; });
     const bool wants_quality = quality != argv.end();
@@ -210,7 +222,7 @@ int main(int count, char** values)
     {
         std::fprintf(stderr,
                      "usage: fit_bench mesh.stl DP [out.vtk] [threads] [area|cell] "
-                     "[--relax N] [--h H] [--quality]\n");
+                     "[--relax N] [--h H] [--together N] [--quality]\n");
         return 2;
     }
     using Clock = std::chrono::steady_clock;
@@ -232,9 +244,7 @@ int main(int count, char** values)
     auto particles = fppg::fit_surface(mesh, features, on_features, options, threads);
     const double seconds = seconds_since(start);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
-    const double peak_mb = static_cast<double>(used.ru_maxrss) / 1000;
+    const double peak = peak_mb();
     double area = 0;
     for (const double a : mesh.areas) area += a;
     const auto n = static_cast<double>(particles.positions.size());
@@ -242,17 +252,22 @@ int main(int count, char** values)
         "%zu facets, %zu on features (%.2f s), %.0f particles, %.3f a dp2, %.3f s "
         "(%.3f s of processor, %.2f us a particle), peak %.0f MB\n",
         mesh.facets.size(), on_features.size(), line_seconds, n, n / area * dp * dp, seconds,
-        cpu_seconds, 1e6 * cpu_seconds / n, peak_mb);
+        cpu_seconds, 1e6 * cpu_seconds / n, peak);
     if (iterations != nullptr)
     {
         fppg::RelaxSurfaceOptions relax_options;
         relax_options.dp = dp;
         relax_options.iterations = std::atoi(iterations);
         if (h != nullptr) relax_options.h = std::atof(h);
+        if (together != nullptr)
+            relax_options.together = static_cast<std::size_t>(std::atof(together));
         relax(mesh, features, particles, relax_options, threads);
     }
-    if (wants_quality) print_quality(mesh, particles, dp);
-    count_close_pairs(mesh, particles, dp);
+    if (wants_quality)
+    {
+        print_quality(mesh, particles, dp);
+        count_close_pairs(mesh, particles, dp);
+    }
     if (argc > 3 && std::strcmp(argv[3], "-") != 0) write_vtk(argv[3], mesh, particles);
     return 0;
 }

@@ -1,5 +1,8 @@
 #include "platform/memory.h"
 
+#ifdef __linux__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -92,6 +95,13 @@ std::uint64_t available_memory()
     const std::uint64_t free = number_of_file("/proc/meminfo", "MemAvailable:");
     return std::min(
         {free == unlimited ? free : free * 1024, left_in_groups(), left_of_addresses()});
+}
+
+void return_free_memory()
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }
 
 } // namespace fppg

@@ -39,4 +39,9 @@ std::uint64_t available_memory()
         {status.ullAvailPhys, status.ullAvailPageFile, status.ullAvailVirtual, left_in_job()});
 }
 
+void return_free_memory()
+{
+    HeapCompact(GetProcessHeap(), 0);
+}
+
 } // namespace fppg
