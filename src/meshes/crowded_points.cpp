@@ -20,6 +20,25 @@ constexpr double rounding = 1e-4;
 /// More points than this are worked on in slabs, to need less memory.
 constexpr std::size_t points_together = 2'000'000;
 
+/// The members of a slab, then those of the ones beside it that are within reach.
+std::vector<std::uint32_t> members_and_near(const std::vector<Vec3>& points,
+                                            const std::vector<PointSlab>& slabs, std::size_t s,
+                                            double reach)
+{
+    const PointSlab& slab = slabs[s];
+    std::vector<std::uint32_t> out = slab.members;
+    const auto add_near = [&](const PointSlab& beside)
+    {
+        for (const std::uint32_t i : beside.members)
+            if (const double at = points[i][slab.axis];
+                at >= slab.low - reach && at <= slab.high + reach)
+                out.push_back(i);
+    };
+    if (s > 0) add_near(slabs[s - 1]);
+    if (s + 1 < slabs.size()) add_near(slabs[s + 1]);
+    return out;
+}
+
 /// Calls visit(chunk, i, j, squared distance) for every point i and every other one j within reach,
 /// in any order; chunks are worked through by one thread each, and all pairs of i are of one chunk.
 /// Before, begin(chunks) is called for each round of chunks, and end() after it.
@@ -48,13 +67,7 @@ void for_each_close_pair(const std::vector<Vec3>& points, double reach, int thre
     for (std::size_t s = 0; s < slabs.size(); ++s)
     {
         const PointSlab& slab = slabs[s];
-        std::vector<std::uint32_t> members = slab.members;
-        for (const std::size_t beside : {s - 1, s + 1})
-            if (beside < slabs.size())
-                for (const std::uint32_t i : slabs[beside].members)
-                    if (points[i][slab.axis] >= slab.low - reach &&
-                        points[i][slab.axis] <= slab.high + reach)
-                        members.push_back(i);
+        const std::vector<std::uint32_t> members = members_and_near(points, slabs, s, reach);
         std::vector<Vec3> own(members.size());
         for (std::size_t k = 0; k < own.size(); ++k) own[k] = points[members[k]];
         const ClosePairs pairs(own, reach, threads);

@@ -174,13 +174,7 @@ private:
             relax_surface(walls.bodies, particles, held, options, threads_);
         particles.held = std::move(held);
         particles.held.resize(particles.size(), 0);
-        if (has_border)
-        {
-            std::vector<char> is_border(particles.size());
-            for (std::size_t i = 0; i < is_border.size(); ++i)
-                is_border[i] = particles.held[i] == of_border ? 1 : 0;
-            particles.erase(is_border);
-        }
+        if (has_border) take_borders_out(particles);
         parallel_for(
             particles.size(), threads_,
             [&](std::size_t i)
@@ -387,6 +381,14 @@ private:
             found = true;
         }
         return found;
+    }
+
+    static void take_borders_out(WallParticles& particles)
+    {
+        std::vector<char> is_border(particles.size());
+        for (std::size_t i = 0; i < is_border.size(); ++i)
+            is_border[i] = particles.held[i] == of_border ? 1 : 0;
+        particles.erase(is_border);
     }
 
     /// Whether no particle of a body was taken out near a place on it.

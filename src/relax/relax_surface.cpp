@@ -206,10 +206,10 @@ private:
         WallParticles piece = take(members);
         std::vector<char> held(members.size(), 1);
         for (std::size_t k = 0; k < moved; ++k) held[k] = held_.empty() ? 0 : held_[members[k]];
-        RelaxOrigins origins;
-        sum_.add(relax_together(bodies_, work_meshes_, piece, held, options_of(range), threads_,
-                                origins));
-        keep(piece, origins, members);
+        const RelaxedTogether relaxed =
+            relax_together(bodies_, work_meshes_, piece, held, options_of(range), threads_);
+        sum_.add(relaxed.report);
+        keep(piece, relaxed.origins, members);
     }
 
     RelaxSurfaceOptions options_of(const PointSlab* range)
@@ -350,8 +350,7 @@ RelaxSurfaceReport relax_surface(const std::vector<FittedBody>& bodies, WallPart
     if (particles.size() <= options.together || options.snapshot_interval > 0)
     {
         std::vector<std::shared_ptr<const WorkMesh>> work_meshes(bodies.size());
-        RelaxOrigins origins;
-        return relax_together(bodies, work_meshes, particles, held, options, threads, origins);
+        return relax_together(bodies, work_meshes, particles, held, options, threads).report;
     }
     return PieceRelaxation(bodies, particles, held, options, threads).run();
 }

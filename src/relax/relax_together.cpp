@@ -282,18 +282,19 @@ private:
 
 } // namespace
 
-RelaxSurfaceReport relax_together(const std::vector<FittedBody>& bodies,
-                                  std::vector<std::shared_ptr<const WorkMesh>>& work_meshes,
-                                  WallParticles& particles, std::vector<char>& held,
-                                  const RelaxSurfaceOptions& options, int threads,
-                                  RelaxOrigins& origins)
+RelaxedTogether relax_together(const std::vector<FittedBody>& bodies,
+                               std::vector<std::shared_ptr<const WorkMesh>>& work_meshes,
+                               WallParticles& particles, std::vector<char>& held,
+                               const RelaxSurfaceOptions& options, int threads)
 {
     SurfaceRelaxation relaxation(bodies, work_meshes, particles, held, options, threads);
     relaxation.run(particles, held);
+    RelaxedTogether out;
     std::vector<char> held_now;
-    particles = relaxation.gather(particles, held, held_now, origins);
+    particles = relaxation.gather(particles, held, held_now, out.origins);
     held = std::move(held_now);
-    return relaxation.report();
+    out.report = relaxation.report();
+    return out;
 }
 
 } // namespace fppg

@@ -18,14 +18,19 @@ struct RelaxOrigins
     std::vector<char> is_new;
 };
 
+struct RelaxedTogether
+{
+    RelaxSurfaceReport report;
+    RelaxOrigins origins;
+};
+
 /// relax_surface() of particles that are all relaxed at once.
 ///
 /// work_meshes  per body, made where a body has particles and it is null
-/// costs        4 microseconds per particle on one core, 300 bytes per particle
-RelaxSurfaceReport relax_together(const std::vector<FittedBody>& bodies,
-                                  std::vector<std::shared_ptr<const WorkMesh>>& work_meshes,
-                                  WallParticles& particles, std::vector<char>& held,
-                                  const RelaxSurfaceOptions& options, int threads,
-                                  RelaxOrigins& origins);
+/// cost         4 microseconds per particle on one core, 300 bytes per particle
+RelaxedTogether relax_together(const std::vector<FittedBody>& bodies,
+                               std::vector<std::shared_ptr<const WorkMesh>>& work_meshes,
+                               WallParticles& particles, std::vector<char>& held,
+                               const RelaxSurfaceOptions& options, int threads);
 
 } // namespace fppg
