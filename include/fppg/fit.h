@@ -60,7 +60,7 @@ struct SurfaceParticles
 /// throws   GeometryError for Cell when the mesh has no facet or spans more than 2^30 dp
 /// source   a hexagonal front of spacing 1.075 dp that starts from rows 0.93 dp off the feature
 ///          lines, then farthest-point insertion in the holes; constants by trial on ten shapes
-/// cost     about 1.3 microseconds per particle on one core, 90 bytes per particle at its peak;
+/// cost     about 0.6 microseconds per particle on one core, 50 bytes per particle at its peak;
 ///          more where features crowd or facets are far smaller than dp
 SurfaceParticles fit_surface(const SurfaceMesh& mesh, const Features& features,
                              const std::vector<FeatureParticle>& feature_particles,

@@ -20,11 +20,25 @@ namespace
 
 constexpr std::size_t points_per_block = 1 << 14;
 
-/// The last six bits of morton_key().
-unsigned place_in_block(std::int64_t i, std::int64_t j, std::int64_t k)
+/// The cells of a block from one to another along an axis, a bit each.
+///
+/// low, high  what is outside of the block, 0 to 3, does not count
+/// returns    bits by the last six of morton_key()
+std::uint64_t cells_between(int axis, std::int64_t low, std::int64_t high)
 {
-    constexpr std::array<unsigned, 4> spread{0, 1, 8, 9};
-    return spread[i & 3] | spread[j & 3] << 1 | spread[k & 3] << 2;
+    constexpr std::array<std::array<std::uint64_t, 4>, 3> planes = []
+    {
+        std::array<std::array<std::uint64_t, 4>, 3> out{};
+        for (std::uint32_t cell = 0; cell < 64; ++cell)
+            for (std::uint32_t a = 0; a < 3; ++a)
+                out[a][(cell >> a & 1) | (cell >> (a + 3) & 1) << 1] |= std::uint64_t{1} << cell;
+        return out;
+    }();
+    std::uint64_t out = 0;
+    for (std::int64_t at = std::max<std::int64_t>(low, 0); at <= std::min<std::int64_t>(high, 3);
+         ++at)
+        out |= planes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(at)];
+    return out;
 }
 
 /// Where the cells along one axis begin, and how many a unit of length there are.
@@ -389,26 +403,34 @@ void CellRows::gather(std::size_t cell, Scratch& scratch) const
         low[a] = std::max<std::int64_t>(at[a] - 1, 0);
         high[a] = std::min<std::int64_t>(at[a] + 1, most_morton_cells - 1);
     }
-    const auto visit_block = [&](std::int64_t bi, std::int64_t bj, std::int64_t bk)
-    {
-        const Block* block = find_block(morton_key(bi, bj, bk));
-        if (block == nullptr) return;
-        for (std::int64_t k = std::max(low[2], 4 * bk); k <= std::min(high[2], 4 * bk + 3); ++k)
-            for (std::int64_t j = std::max(low[1], 4 * bj); j <= std::min(high[1], 4 * bj + 3); ++j)
-                for (std::int64_t i = std::max(low[0], 4 * bi); i <= std::min(high[0], 4 * bi + 3);
-                     ++i)
-                {
-                    const std::uint64_t bit = std::uint64_t{1} << place_in_block(i, j, k);
-                    if ((block->mask & bit) == 0) continue;
-                    const std::size_t c =
-                        block->first_cell +
-                        static_cast<std::size_t>(std::popcount(block->mask & (bit - 1)));
-                    copy_rows(cell_begin_[c], cell_begin_[c + 1], scratch);
-                }
-    };
     for (std::int64_t k = low[2] >> 2; k <= high[2] >> 2; ++k)
         for (std::int64_t j = low[1] >> 2; j <= high[1] >> 2; ++j)
-            for (std::int64_t i = low[0] >> 2; i <= high[0] >> 2; ++i) visit_block(i, j, k);
+            for (std::int64_t i = low[0] >> 2; i <= high[0] >> 2; ++i)
+            {
+                const Block* block = find_block(morton_key(i, j, k));
+                if (block == nullptr) continue;
+                const std::uint64_t wanted = cells_between(0, low[0] - 4 * i, high[0] - 4 * i) &
+                                             cells_between(1, low[1] - 4 * j, high[1] - 4 * j) &
+                                             cells_between(2, low[2] - 4 * k, high[2] - 4 * k);
+                copy_cells(*block, block->mask & wanted, scratch);
+            }
+}
+
+/// Copies the points of some of a block's cells: those that follow one another at once.
+///
+/// cells  a bit each, as in the block's mask
+void CellRows::copy_cells(const Block& block, std::uint64_t cells, Scratch& scratch) const
+{
+    while (cells != 0)
+    {
+        const int first = std::countr_zero(cells);
+        const int count = std::countr_one(cells >> first);
+        const std::uint64_t before = (std::uint64_t{1} << first) - 1;
+        const std::size_t c =
+            block.first_cell + static_cast<std::size_t>(std::popcount(block.mask & before));
+        copy_rows(cell_begin_[c], cell_begin_[c + static_cast<std::size_t>(count)], scratch);
+        cells = first + count < 64 ? cells & (~std::uint64_t{0} << (first + count)) : 0;
+    }
 }
 
 void CellRows::find_near(std::size_t row, float reach, Scratch& scratch) const

@@ -88,6 +88,7 @@ private:
     {
         scratch.found = {scratch.buffer.data(), count};
     }
+    void copy_cells(const Block& block, std::uint64_t cells, Scratch& scratch) const;
     void copy_rows(std::size_t begin, std::size_t end, Scratch& scratch) const;
 
     std::vector<std::uint32_t> order_;

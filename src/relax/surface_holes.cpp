@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace fppg
@@ -24,6 +25,8 @@ constexpr double farthest_place = 1.1;
 constexpr int climbing_steps = 8;
 constexpr double area_of_sample = 4; // dp squared
 constexpr float reach_of_samples = 2;
+/// Of its square, what a neighbour is at least away along the plane to count in it.
+constexpr float least_beside = 0.04f;
 
 /// The Voronoi cell of the origin in a plane, cut by one neighbour after another.
 class VoronoiCell
@@ -78,6 +81,40 @@ private:
     std::array<float, capacity> x_;
     std::array<float, capacity> y_;
     std::size_t count_ = 4;
+};
+
+struct FloatVector
+{
+    float x, y, z;
+
+    explicit FloatVector(const Vec3& v)
+        : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)), z(static_cast<float>(v.z))
+    {
+    }
+    float along(float dx, float dy, float dz) const { return x * dx + y * dy + z * dz; }
+};
+
+/// Two axes of a plane.
+struct PlaneAxes
+{
+    FloatVector x, y;
+
+    /// normal  unit
+    explicit PlaneAxes(const Vec3& normal) : PlaneAxes(normal, across(normal)) {}
+
+    Vec3 direction(double along_x, double along_y) const
+    {
+        return Vec3{x.x, x.y, x.z} * along_x + Vec3{y.x, y.y, y.z} * along_y;
+    }
+
+private:
+    PlaneAxes(const Vec3& normal, const Vec3& x_axis) : x(x_axis), y(cross(normal, x_axis)) {}
+
+    static Vec3 across(const Vec3& normal)
+    {
+        const Vec3 other = cross(normal, std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+        return other / norm(other);
+    }
 };
 
 /// Points around a particle, over the plane of a facet; lengths in dp.
@@ -139,6 +176,45 @@ FPPG_AVX2 bool is_covered_avx2(const PlanePoints& points, float radius)
     return is_circle_covered(points, radius);
 }
 
+/// Whether its neighbours leave no place on a circle around a particle, in a plane, that is nearer
+/// to it. False where the particle needs a closer look.
+FPPG_LANES bool is_amid(const PackedPoint* points, std::uint32_t particle,
+                        std::span<const std::uint32_t> neighbours, const PlaneAxes& axes,
+                        float radius)
+{
+    if (neighbours.size() > PlanePoints::most) return false;
+    PlanePoints around;
+    const Lanes none{};
+    NeighbourLanes(PackedGather{points}, particle)
+        .for_each(neighbours.data(), neighbours.size(),
+                  [&](const LaneOffsets& o)
+                  {
+                      const Lanes x = -(o.x * axes.x.x + o.y * axes.x.y + o.z * axes.x.z);
+                      const Lanes y = -(o.x * axes.y.x + o.y * axes.y.y + o.z * axes.y.z);
+                      const LaneMask is_beside = x * x + y * y >= o.squared * least_beside;
+                      const Lanes kept_x = is_beside ? x : none;
+                      const Lanes kept_y = is_beside ? y : none;
+                      std::memcpy(&around.x[around.count], &kept_x, sizeof kept_x);
+                      std::memcpy(&around.y[around.count], &kept_y, sizeof kept_y);
+                      std::memcpy(&around.squared[around.count], &o.squared, sizeof o.squared);
+                      around.count += lane_count;
+                  });
+    return is_circle_covered(around, radius);
+}
+
+bool is_amid_plain(const PackedPoint* points, std::uint32_t particle,
+                   std::span<const std::uint32_t> neighbours, const PlaneAxes& axes, float radius)
+{
+    return is_amid(points, particle, neighbours, axes, radius);
+}
+
+FPPG_AVX2 bool is_amid_avx2(const PackedPoint* points, std::uint32_t particle,
+                            std::span<const std::uint32_t> neighbours, const PlaneAxes& axes,
+                            float radius)
+{
+    return is_amid(points, particle, neighbours, axes, radius);
+}
+
 /// Whether a facet is beyond one side of a box.
 bool is_apart(const Box3& box, const std::array<Vec3, 3>& corners)
 {
@@ -150,40 +226,6 @@ bool is_apart(const Box3& box, const std::array<Vec3, 3>& corners)
     }
     return false;
 }
-
-struct FloatVector
-{
-    float x, y, z;
-
-    explicit FloatVector(const Vec3& v)
-        : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)), z(static_cast<float>(v.z))
-    {
-    }
-    float along(float dx, float dy, float dz) const { return x * dx + y * dy + z * dz; }
-};
-
-/// Two axes of a plane.
-struct PlaneAxes
-{
-    FloatVector x, y;
-
-    /// normal  unit
-    explicit PlaneAxes(const Vec3& normal) : PlaneAxes(normal, across(normal)) {}
-
-    Vec3 direction(double along_x, double along_y) const
-    {
-        return Vec3{x.x, x.y, x.z} * along_x + Vec3{y.x, y.y, y.z} * along_y;
-    }
-
-private:
-    PlaneAxes(const Vec3& normal, const Vec3& x_axis) : x(x_axis), y(cross(normal, x_axis)) {}
-
-    static Vec3 across(const Vec3& normal)
-    {
-        const Vec3 other = cross(normal, std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-        return other / norm(other);
-    }
-};
 
 } // namespace
 
@@ -269,6 +311,10 @@ void HoleFinder::find_in_plane(std::size_t row, std::uint32_t facet,
     const bool is_feature = layer_.particles_[i].kind != FitKind::Surface;
     const WorkFacet& plane = layer_.work_.facets[facet];
     const PlaneAxes axes(plane.normal);
+    const auto is_amid_others = is_avx2_there() ? is_amid_avx2 : is_amid_plain;
+    if (!is_feature && is_amid_others(layer_.packed_.data(), i, layer_.list_.neighbours(row), axes,
+                                      share_of_radius * static_cast<float>(radius_)))
+        return;
     PlanePoints around;
     for (const std::uint32_t j : layer_.list_.neighbours(row))
     {
@@ -283,11 +329,11 @@ void HoleFinder::find_in_plane(std::size_t row, std::uint32_t facet,
         around.y[n] = axes.y.along(dx, dy, dz);
         around.squared[n] = squared;
         const bool is_beside =
-            around.x[n] * around.x[n] + around.y[n] * around.y[n] >= 0.04f * squared;
+            around.x[n] * around.x[n] + around.y[n] * around.y[n] >= least_beside * squared;
         around.count += is_beside && n + 1 < PlanePoints::most ? 1 : 0;
     }
     const auto is_covered = is_avx2_there() ? is_covered_avx2 : is_covered_plain;
-    if (is_covered(around, share_of_radius * static_cast<float>(radius_))) return;
+    if (is_feature && is_covered(around, share_of_radius * static_cast<float>(radius_))) return;
     VoronoiCell cell(half_square);
     for (std::size_t n = 0; n < around.count; ++n)
         cell.cut(around.x[n], around.y[n], around.squared[n]);
@@ -324,10 +370,13 @@ Box3 HoleFinder::box_of_particles() const
     return box;
 }
 
-/// Points all over the facets near particles, one in a few dp squared.
+/// Points on the facets near particles of edges and corners, one in a few dp squared.
 std::vector<SlidePlace> HoleFinder::sample_facets() const
 {
     const Box3 around = box_of_particles();
+    const double reach = reach_of_samples * layer_.dp_;
+    PointGrid lines(reach, layer_.sites_.size());
+    for (const FeatureSite& site : layer_.sites_) lines.add(site.position);
     std::vector<SlidePlace> samples;
     double due = 0;
     double count = 0;
@@ -347,7 +396,8 @@ std::vector<SlidePlace> HoleFinder::sample_facets() const
                 u = 1 - u;
                 v = 1 - v;
             }
-            samples.push_back({c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v, f});
+            const Vec3 place = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
+            if (lines.has_nearer(place, reach)) samples.push_back({place, f});
         }
     }
     return samples;

@@ -43,6 +43,7 @@ constexpr double held_up = 0.01;
 /// How far within a feature edge particles are kept, dp.
 constexpr double inside_border = 1e-10;
 constexpr float none_near = 1e30f;
+constexpr float far_off = 1e15f; // dp: its square is still a float
 
 /// Particles whose normals oppose by more than 120 degrees are on two sheets, as in fitting: were
 /// only those right behind one another left out, the two sides of a thin plate would thin and fill
@@ -252,16 +253,28 @@ LayerState SurfaceLayer::state_of_rows(std::size_t begin, std::size_t end) const
     return state;
 }
 
-LayerState SurfaceLayer::look_around()
+/// Those that no longer count are packed far away from all.
+///
+/// is_out  empty, or per particle
+void SurfaceLayer::pack_points(const std::vector<char>& is_out)
 {
-    if (!is_listed_ || (steps_off_ == 0 && list_.is_outdated(points_, threads_))) build_list();
     packed_.resize(particles_.size());
     parallel_for(
         particles_.size(), threads_,
-        [&](std::size_t i) {
-            packed_[i] = PackedPoint{points_.x[i], points_.y[i], points_.z[i], 0};
+        [&](std::size_t i)
+        {
+            if (is_out.empty() || is_out[i] == 0)
+                packed_[i] = PackedPoint{points_.x[i], points_.y[i], points_.z[i], 0};
+            else
+                packed_[i] = PackedPoint{far_off, far_off, far_off, 0};
         },
         NeighbourList::rows_per_chunk);
+}
+
+LayerState SurfaceLayer::look_around()
+{
+    if (!is_listed_ || (steps_off_ == 0 && list_.is_outdated(points_, threads_))) build_list();
+    pack_points({});
     std::vector<LayerState> states(chunks_of(list_.rows()));
     for_chunks(
         list_.rows(), threads_,
@@ -474,6 +487,7 @@ LayerChange SurfaceLayer::renew(const Limits& limits, bool is_local,
     settle(0);
     if (!is_listed_) look_around();
     const std::vector<char> is_out = find_crowded(limits.least);
+    pack_points(is_out);
     const HoleFinder finder(*this, is_out, limits.hole_radius);
     const std::vector<SurfaceHole> holes = finder.find(may_fill, limits.is_sampled);
     const std::size_t given = particles_.size();

@@ -99,6 +99,7 @@ private:
     void place_on_work_mesh();
     void sort();
     void build_list();
+    void pack_points(const std::vector<char>& is_out);
     LayerState state_of_rows(std::size_t begin, std::size_t end) const;
     float push_on(std::size_t i, bool is_restart);
     void settle(double least);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -219,6 +220,29 @@ bool move_corners(const std::vector<MovedWall>& moved, const LatticeGrid& grid, 
     return has_moved;
 }
 
+bool has_corners(const DrawOp& wall)
+{
+    return shape_as<PolyhedronOp>(wall) != nullptr || shape_as<CylinderOp>(wall) != nullptr;
+}
+
+/// Whether a wall, such as a mesh or a sphere, touches moved walls as they were drawn.
+bool stands_on(const std::vector<MovedWall>& moved, const Scene& scene, const DrawOp& wall,
+               int threads)
+{
+    const std::optional<DrawnSurface> surface = drawn_surface(scene, wall, threads);
+    if (!surface) return false;
+    const double near = one_surface_dp * scene.def->grid.dp;
+    const std::vector<Vec3>& corners = surface->soup().vertices;
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](const Vec3& corner)
+                       {
+                           return std::any_of(
+                               moved.begin(), moved.end(),
+                               [&](const MovedWall& of)
+                               { return of.from.closest_point(corner, near).distance <= near; });
+                       });
+}
+
 } // namespace
 
 std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, CaseDef& def)
@@ -246,11 +270,21 @@ std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, Cas
         moved.push_back(std::move(found->wall));
     }
     for (DrawOp& op : def.ops)
-        if (walls.contains(&op) && move_corners(moved, def.grid, op))
+    {
+        if (moved.empty() || !walls.contains(&op)) continue;
+        if (move_corners(moved, def.grid, op))
             out.push_back(
                 fmt::format("{}: where it stands on walls that have a surface for "
                             "normals, it ends at that surface",
                             place_of(def, op.source)));
+        else if (!has_corners(op) && stands_on(moved, scene, op, threads))
+            def.hints.push_back(
+                fmt::format("{}: it stands on walls whose surface is that for normals, and stays "
+                            "where it is drawn, up to a dp in or off them: its lowest particles "
+                            "may be missing, or fluid get under it. Draw its surface for normals "
+                            "too.",
+                            place_of(def, op.source)));
+    }
     return out;
 }
 

@@ -19,7 +19,8 @@ namespace fppg
 /// of the run that leave no particles are such surfaces too; shapes that are read from a file of
 /// another run, and parts of combinations, are none.
 ///
-/// Corners of walls without such a surface that stand on walls that have one go along with these.
+/// Corners of walls without such a surface that stand on walls that have one go along with these;
+/// of spheres and meshes, which do not, def.hints warns.
 ///
 /// returns  a sentence a draw
 /// throws   IoError for mesh files, with their places

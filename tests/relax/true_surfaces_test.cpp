@@ -143,6 +143,24 @@ TEST(TrueSurfaces, CarryWhatIsDrawnOntoTheirNodes)
     }
 }
 
+/// A ball has no corners that could go along.
+TEST(TrueSurfaces, WarnOfRoundShapesOnTheirNodes)
+{
+    for (const double height : {0.2, 0.3})
+    {
+        CaseText text = drawn_twice(0.5);
+        text.mainlist.insert(
+            text.mainlist.find("<setmkfluid"),
+            fmt::format(
+                R"(<setmkbound mk="1" /><drawsphere radius="0.2"><point x="0.5" y="0.5" z="{}" /></drawsphere>)",
+                height));
+        const Result made = make(text);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_EQ(contains(made.log, "Draw its surface for normals too."), height == 0.2)
+            << made.log;
+    }
+}
+
 /// A surface farther off is another thing.
 TEST(TrueSurfaces, AreNotThoseFarFromTheWalls)
 {
