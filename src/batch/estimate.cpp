@@ -4,6 +4,7 @@
 #include "fppg/features.h"
 #include "fppg/lattice.h"
 #include "fppg/moving_parts.h"
+#include "fppg/relax.h"
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
@@ -448,6 +449,15 @@ private:
             out_.output_bytes / rates.written_bytes_a_second;
     }
 
+    /// Of particles of surfaces: many are relaxed in pieces.
+    static double bytes_to_relax(double particles)
+    {
+        const double together = static_cast<double>(RelaxSurfaceOptions{}.together);
+        const double pieces = std::max(1.0, std::ceil(particles / together));
+        return rates.bytes_a_relaxed_particle * particles / pieces +
+               (pieces > 1 ? rates.bytes_a_piece_particle * particles : 0);
+    }
+
     /// What stays over the run, and the largest of what its stages need besides.
     void set_memory(double bound, double near_walls)
     {
@@ -459,8 +469,7 @@ private:
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
         out_.memory_bytes += std::max(
             {rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
-             rates.bytes_a_relaxed_particle * (relaxed_ + in_layers_) +
-                 rates.bytes_a_band_particle * in_band_,
+             bytes_to_relax(relaxed_ + in_layers_) + rates.bytes_a_band_particle * in_band_,
              rates.bytes_a_balanced_particle * near_walls});
     }
 

@@ -64,7 +64,10 @@ TEST(TrueSurfaces, AreThoseThatWallsDrawForNormals)
         for (const Vec3& p : made.bound())
             if (std::abs(p.x - 0.5) < 0.3) bound = std::max(bound, p.z);
         EXPECT_NEAR(lowest, dp, 0.1 * dp) << is_2d;
-        if (is_2d) EXPECT_NEAR(bound, 0, 0.01 * dp);
+        if (is_2d)
+        {
+            EXPECT_NEAR(bound, 0, 0.01 * dp);
+        }
         const double width = 1 - dp;
         const double cells = is_2d ? width / dp : width * width / (dp * dp);
         const double depth = static_cast<double>(made.fluid().size()) / cells * dp;

@@ -88,7 +88,10 @@ TEST(HollowedSolid, HoldsTheFluidOfItsCavityAndLooksAtIt)
         const double outside =
             std::max({cavity_low.x - p.x, p.x - cavity_low.x - cavity_size.x, cavity_low.y - p.y,
                       p.y - cavity_low.y - cavity_size.y, cavity_low.z - p.z});
-        if (p.z < low.z + size.z) EXPECT_GT(outside, 0.49 * dp) << p.x << " " << p.y << " " << p.z;
+        if (p.z < low.z + size.z)
+        {
+            EXPECT_GT(outside, 0.49 * dp) << p.x << " " << p.y << " " << p.z;
+        }
         // Beside the cavity's faces, below the level.
         const bool is_beside = p.z > cavity_low.z && p.z < level && outside < 2.6 * dp &&
                                std::abs(p.x) < 0.75 && std::abs(p.y) > 0.5;
