@@ -253,7 +253,7 @@ std::vector<SurfaceHole> HoleFinder::find(
                  });
     std::vector<SurfaceHole> holes;
     for (const auto& some : of_chunk) holes.insert(holes.end(), some.begin(), some.end());
-    if (is_sampled) find_by_samples(holes);
+    if (is_sampled) find_by_samples(!may_fill, holes);
     if (may_fill)
         std::erase_if(holes,
                       [&](const SurfaceHole& hole) {
@@ -370,8 +370,10 @@ Box3 HoleFinder::box_of_particles() const
     return box;
 }
 
-/// Points on the facets near particles of edges and corners, one in a few dp squared.
-std::vector<SlidePlace> HoleFinder::sample_facets() const
+/// Points on the facets near particles, one in a few dp squared.
+///
+/// at_edges  only near particles of edges and corners
+std::vector<SlidePlace> HoleFinder::sample_facets(bool at_edges) const
 {
     const Box3 around = box_of_particles();
     const double reach = reach_of_samples * layer_.dp_;
@@ -397,18 +399,21 @@ std::vector<SlidePlace> HoleFinder::sample_facets() const
                 v = 1 - v;
             }
             const Vec3 place = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
-            if (lines.has_nearer(place, reach)) samples.push_back({place, f});
+            if (!at_edges || lines.has_nearer(place, reach)) samples.push_back({place, f});
         }
     }
     return samples;
 }
 
 /// Edge particles of another sheet that are close behind a face cover it for fitting, and no
-/// Voronoi cell of theirs is cut in its plane.
-void HoleFinder::find_by_samples(std::vector<SurfaceHole>& holes) const
+/// Voronoi cell of theirs is cut in its plane. Where particles may not be put everywhere, a place
+/// amid a narrow gap is left, too, of which the corners of cells lie where none may be.
+///
+/// at_edges  only near particles of edges and corners
+void HoleFinder::find_by_samples(bool at_edges, std::vector<SurfaceHole>& holes) const
 {
     if (layer_.sites_.empty()) return;
-    const std::vector<SlidePlace> samples = sample_facets();
+    const std::vector<SlidePlace> samples = sample_facets(at_edges);
     PointArrays points = layer_.points_;
     const std::size_t own = points.size();
     points.resize(own + samples.size());

@@ -44,8 +44,8 @@ private:
     void find_around(std::size_t row, std::vector<SurfaceHole>& holes) const;
     void find_in_plane(std::size_t row, std::uint32_t facet, std::vector<SurfaceHole>& holes) const;
     Box3 box_of_particles() const;
-    std::vector<SlidePlace> sample_facets() const;
-    void find_by_samples(std::vector<SurfaceHole>& holes) const;
+    std::vector<SlidePlace> sample_facets(bool at_edges) const;
+    void find_by_samples(bool at_edges, std::vector<SurfaceHole>& holes) const;
     bool climb(SurfaceHole& hole, std::span<const std::uint32_t> near) const;
     Vec3 nearest_to(SurfaceHole& hole, std::span<const std::uint32_t> near) const;
     bool is_far_from_all(const SurfaceHole& hole) const;

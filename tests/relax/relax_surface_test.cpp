@@ -343,6 +343,59 @@ TEST(RelaxSurface, FillsHolesOnlyWhereItMay)
     for (const Vec3& at : p.positions) EXPECT_LE(at.z, 0.5);
 }
 
+/// Two walls in one plane, as the layers of two boxes that overlap: each has its particles on its
+/// side of a gap of 1.5 dp, and none may come nearer than 0.6 dp to the other.
+TEST(RelaxSurface, FillsAGapBetweenTwoWalls)
+{
+    const double dp = 0.05;
+    TriangleSoup plate;
+    add_quad(plate, {0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0});
+    Walls walls(plate, dp);
+    walls.add(plate, dp);
+    const WallParticles fitted = std::move(walls.particles);
+    const MeshQuery query(soup_of(walls.bodies[0].mesh), 1);
+    const auto is_of = [&](std::uint32_t body, double x)
+    { return body == 0 ? x < 1.501 : x > 1.499 + 1.5 * dp; };
+    WallParticles& given = walls.particles;
+    given = {};
+    const auto add = [&](std::uint32_t body, const Vec3& p, FitKind kind, std::uint32_t facet)
+    {
+        given.positions.push_back(p);
+        given.kinds.push_back(kind);
+        given.bodies.push_back(body);
+        given.facets.push_back(facet);
+        given.mk.push_back(static_cast<std::uint16_t>(10 + body));
+        walls.held.push_back(1);
+    };
+    for (std::uint32_t body = 0; body < 2; ++body)
+    {
+        for (std::size_t i = 0; i < fitted.size(); ++i)
+            if (fitted.bodies[i] == body && fitted.kinds[i] != FitKind::Surface &&
+                is_of(body, fitted.positions[i].x))
+                add(body, fitted.positions[i], fitted.kinds[i], fitted.facets[i]);
+        for (int column = 1; column < 60; ++column)
+            for (int row = 1; row < 20; ++row)
+            {
+                const Vec3 p{column * dp + body * 0.5 * dp, (row + body * 0.4) * dp, 0};
+                if (p.x < 3 - 0.6 * dp && p.y < 1 - 0.6 * dp && is_of(body, p.x))
+                    add(body, p, FitKind::Surface, query.closest_point(p).facet);
+            }
+    }
+    const WallParticles all = given;
+    PointGrid grid(dp, all.size());
+    for (const Vec3& p : all.positions) grid.add(p);
+    walls.options.may_insert = [&](std::size_t body, const Vec3& p, const Vec3&)
+    {
+        bool is_apart = true;
+        grid.for_each_near(p, 0.6 * dp,
+                           [&](std::uint32_t i, double)
+                           { is_apart = is_apart && all.bodies[i] == body; });
+        return is_apart;
+    };
+    walls.relax(2);
+    EXPECT_LE(farthest_point(walls), 0.78);
+}
+
 TEST(RelaxSurface, GivesNewParticlesTheMkAroundThem)
 {
     Walls walls(sphere(4), 0.05);
