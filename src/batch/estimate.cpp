@@ -4,7 +4,6 @@
 #include "fppg/features.h"
 #include "fppg/lattice.h"
 #include "fppg/moving_parts.h"
-#include "fppg/relax.h"
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
@@ -452,8 +451,7 @@ private:
     /// Of particles of surfaces: many are relaxed in pieces.
     static double bytes_to_relax(double particles)
     {
-        const double together = static_cast<double>(RelaxSurfaceOptions{}.together);
-        const double pieces = std::max(1.0, std::ceil(particles / together));
+        const double pieces = std::max(1.0, std::ceil(particles / rates.relaxed_together));
         return rates.bytes_a_relaxed_particle * particles / pieces +
                (pieces > 1 ? rates.bytes_a_piece_particle * particles : 0);
     }

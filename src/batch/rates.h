@@ -15,6 +15,7 @@ struct Rates
     double bytes_per_triangle = 600;         ///< of mesh files, with the trees to search them
     double bytes_a_wall_particle = 46;       ///< off the lattice, placed
     double bytes_a_relaxed_particle = 240;   ///< besides, of those relaxed together
+    double relaxed_together = 2e6;           ///< RelaxSurfaceOptions::together
     double bytes_a_piece_particle = 16;      ///< of all that are relaxed in pieces
     double bytes_a_band_particle = 460;      ///< of a volume that is relaxed
     double bytes_to_fit = 6e6;               ///< where any wall is fitted

@@ -1,5 +1,6 @@
 #include "fppg/relax.h"
 
+#include "batch/rates.h"
 #include "fit/fit_shapes.h"
 #include "fppg/error.h"
 #include "helpers/surface_cover.h"
@@ -486,6 +487,12 @@ TEST(RelaxSurface, CutsBodiesOfManyParticlesIntoSlabsWithoutSeams)
         EXPECT_EQ(of_cut.after.particles, cut.particles.size());
         for (std::size_t i = 0; i < cut.particles.size(); ++i) ASSERT_LE(off_facet(cut, i), 1e-9);
     }
+}
+
+/// Estimates of memory go by what is relaxed at once.
+TEST(RelaxSurface, RelaxesAsManyTogetherAsEstimatesTakeItTo)
+{
+    EXPECT_EQ(static_cast<double>(RelaxSurfaceOptions{}.together), rates.relaxed_together);
 }
 
 TEST(RelaxSurface, GivesTheSameBytesInSlabsForAnyNumberOfThreads)
