@@ -43,8 +43,7 @@ struct RelaxSurfaceOptions
     /// the piece and of later ones).
     std::function<bool(const RelaxProgress&)> on_progress = {};
     /// Iterations between two calls with the particles as they stand, on their facets; 0: no call.
-    /// What it throws is passed on.
-    /// All particles are relaxed together then.
+    /// What it throws is passed on. With calls, all particles are relaxed together.
     int snapshot_interval = 0;
     std::function<void(int iteration, const WallParticles&)> on_snapshot = {};
     /// Where particles may be put into holes, by index of the body, position and normal of the
