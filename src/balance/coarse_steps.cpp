@@ -14,13 +14,11 @@ namespace
 /// So much of the mean step of a cell is added, once and by momentum. Waves of the shortest length
 /// that cells resolve, 8 dp, stay stable up to about 15.
 constexpr double gain = 4;
-constexpr double momentum = 0.85;
-/// Besides, of what leads against the force.
 constexpr double against_force = 0.5;
 
 } // namespace
 
-Vec3 momentum_of(const Vec3& v, const Vec3& force)
+Vec3 momentum_of(const Vec3& v, const Vec3& force, double momentum)
 {
     return momentum * (dot(v, force) < 0 ? against_force : 1.0) * v;
 }
@@ -57,7 +55,7 @@ CoarseSteps::CoarseSteps(std::span<const Vec3> positions,
     velocities_.resize(first_.size() - 1);
 }
 
-void CoarseSteps::add(const std::function<Vec3(std::size_t)>& step, int threads)
+void CoarseSteps::add(const std::function<Vec3(std::size_t)>& step, double momentum, int threads)
 {
     parallel_for(
         velocities_.size(), threads,
@@ -70,7 +68,7 @@ void CoarseSteps::add(const std::function<Vec3(std::size_t)>& step, int threads)
                 mean = mean + step(members_[m]);
             mean = mean / count;
             Vec3& v = velocities_[c];
-            v = momentum_of(v, mean) + gain * mean;
+            v = momentum_of(v, mean, momentum) + gain * mean;
         },
         64);
 }

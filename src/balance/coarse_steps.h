@@ -12,10 +12,13 @@
 namespace fppg
 {
 
+/// Momenta by trial.
+inline constexpr double short_momentum = 0.85;
+inline constexpr double long_momentum = 0.95;
+
 /// What stays of a step v, metres, before the step that a force makes is added; the same for single
-/// particles and for cells. By trial: with more, particles are thrown out of the corners of a
-/// lattice.
-Vec3 momentum_of(const Vec3& v, const Vec3& force);
+/// particles and for cells: `momentum` of it, half as much where it leads against the force.
+Vec3 momentum_of(const Vec3& v, const Vec3& force, double momentum);
 
 /// What steps of many particles have in common over cells of a few dp, carried on with a momentum
 /// of its own. Each particle's momentum is lost with every change of the force on it, which comes
@@ -33,7 +36,7 @@ public:
     /// Takes in the steps that forces alone would make.
     ///
     /// step  Vec3(std::size_t) of a particle that counts, metres
-    void add(const std::function<Vec3(std::size_t)>& step, int threads);
+    void add(const std::function<Vec3(std::size_t)>& step, double momentum, int threads);
 
     /// What is added to the step of a particle, metres.
     Vec3 at(const Vec3& p) const;

@@ -36,6 +36,20 @@ std::vector<Vec3> nodes_of(const InOutZones& inout, const RunField& field)
     return out;
 }
 
+/// The box of all nodes of runs and particles of walls.
+Box3 extent_of(const RunField& field)
+{
+    const LatticeGrid& grid = field.grid;
+    Box3 box;
+    for (std::size_t x = 0; x < field.slabs.size(); ++x)
+        for (const Run& run : field.slabs[x])
+            for (const std::uint32_t z : {run.z_begin, run.z_end - 1})
+                box.add(grid.place(
+                    {static_cast<double>(x), static_cast<double>(run.y), static_cast<double>(z)}));
+    for (const Vec3& p : field.walls.particles.positions) box.add(p);
+    return box;
+}
+
 } // namespace
 
 LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
@@ -44,13 +58,20 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
     constexpr double far = std::numeric_limits<double>::infinity();
     inside_ = {{-far, -far, -far}, {far, far, far}};
     const LatticeGrid& grid = field.grid;
-    for (int axis = 0; axis < 3; ++axis)
+    const std::array<bool, 3>& is_periodic = grid.is_periodic;
+    if (is_periodic != std::array<bool, 3>{})
     {
-        const auto a = static_cast<std::size_t>(axis);
-        if (!grid.is_periodic[a]) continue;
-        inside_.min[axis] = grid.origin[axis] - grid.dp / 2 + reach_;
-        inside_.max[axis] =
-            grid.origin[axis] + (static_cast<double>(grid.n[a]) - 0.5) * grid.step(axis) - reach_;
+        // Particles may end before the lattice does (set_period() warns of it).
+        const Box3 extent = extent_of(field);
+        const Vec3 first = grid.origin;
+        const Vec3 last = grid.place({grid.n[0] - 1.0, grid.n[1] - 1.0, grid.n[2] - 1.0});
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (!is_periodic[static_cast<std::size_t>(axis)]) continue;
+            const double half = grid.step(axis) / 2;
+            inside_.min[axis] = std::max(first[axis], extent.min[axis]) - half + reach_;
+            inside_.max[axis] = std::min(last[axis], extent.max[axis]) + half - reach_;
+        }
     }
     for (const Vec3& p : nodes_of(def.solver.inout, field)) points_.add(p);
     for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));

@@ -172,7 +172,7 @@ void add_surface(const FitSettings& settings, const LatticeGrid& grid, int threa
             { project_to_exact(body, surface.positions[i], surface.facets[i], grid.is_2d); },
             particles_per_chunk);
     std::vector<char> is_node(surface.positions.size(), 0);
-    if (!grid.is_2d && out.second_sheet.size() == 0)
+    if (out.second_sheet.size() == 0)
         is_node = take_nodes_on_flats(body, grid, least_matched_of_surfaces, surface);
     out.particles = of_body(std::move(surface));
     out.particles.held = std::move(is_node);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,10 @@ constexpr double farthest_border_dp = 1.6;
 constexpr double nearest_border_steps = 0.96;
 constexpr double far_border_steps = 1.13;
 constexpr double node_rounding = 1e-9;
+/// From nodes to edges that do not fit to them, where others do, dp: so far particles are evened
+/// out. And how many of a plane's nodes must be left.
+constexpr double clear_of_borders_dp = 3;
+constexpr double least_left = 0.5;
 
 /// How far a layer may be off a plane of nodes, steps. Layers are dp apart: where steps are no dp,
 /// those behind one on nodes are beside others.
@@ -47,7 +52,7 @@ std::optional<int> axis_of(const SurfaceMesh& mesh, std::size_t facet, const Lat
     const Vec3& normal = mesh.normals[facet];
     for (int axis = 0; axis < 3; ++axis)
     {
-        if (!(std::abs(normal[axis]) > 1 - tilt_of_flats)) continue;
+        if ((grid.is_2d && axis == 1) || !(std::abs(normal[axis]) > 1 - tilt_of_flats)) continue;
         for (const std::uint32_t v : mesh.facets[facet])
         {
             const double at = grid.steps_to(mesh.vertices[v])[axis];
@@ -71,10 +76,19 @@ void add_nodes(const SurfaceMesh& mesh, std::uint32_t facet, int axis, const Lat
     const auto turn = [&](const Vec3& a, const Vec3& b, double pu, double pv)
     { return (b[u] - a[u]) * (pv - a[v]) - (b[v] - a[v]) * (pu - a[u]); };
     const double sense = turn(c[0], c[1], c[2][u], c[2][v]) < 0 ? -1 : 1;
-    const auto [low_u, high_u] = std::minmax({c[0][u], c[1][u], c[2][u]});
-    const auto [low_v, high_v] = std::minmax({c[0][v], c[1][v], c[2][v]});
-    for (double pu = std::ceil(low_u - node_rounding); pu <= high_u + node_rounding; ++pu)
-        for (double pv = std::ceil(low_v - node_rounding); pv <= high_v + node_rounding; ++pv)
+    const auto nodes_along = [&](int along)
+    {
+        const auto [low, high] = std::minmax({c[0][along], c[1][along], c[2][along]});
+        std::pair<double, double> range{std::ceil(low - node_rounding),
+                                        std::floor(high + node_rounding)};
+        if (grid.is_2d && along == 1)
+            range = {std::max(range.first, 0.0), std::min(range.second, 0.0)};
+        return range;
+    };
+    const auto [first_u, last_u] = nodes_along(u);
+    const auto [first_v, last_v] = nodes_along(v);
+    for (double pu = first_u; pu <= last_u; ++pu)
+        for (double pv = first_v; pv <= last_v; ++pv)
         {
             bool is_in = true;
             for (std::size_t k = 0; k < 3; ++k)
@@ -128,28 +142,37 @@ void keep_off_others(const LatticeGrid& grid, const SurfaceParticles& particles,
 struct PlaneFit
 {
     PointGrid nodes;
-    std::size_t edges = 0; ///< particles on them
+    std::size_t edges = 0; ///< particles on them; in 2D corners
     std::size_t matched = 0;
+    std::size_t left = 0; ///< nodes that are far enough from edges that do not fit
+
+    bool fits(double least_matched) const
+    {
+        return static_cast<double>(matched) >= least_matched * static_cast<double>(edges);
+    }
 };
 
-/// Gives planes up too few of whose particles on edges are a step from the outermost nodes: there
-/// these would leave gaps along the edges, or crowd.
+using PlaneFits = std::map<Plane, PlaneFit>;
+
+/// How planes fit to their edges, whose particles are a step from the outermost nodes.
 ///
-/// room  how far particles on edges may be off a plane of nodes, steps
-void keep_matched(const LatticeGrid& grid, double room, double least_matched,
-                  const SurfaceParticles& particles, Flats& flats)
+/// room   how far particles on edges may be off a plane of nodes, steps
+/// loose  filled: particles on edges that do not fit
+PlaneFits fit_planes(const LatticeGrid& grid, double room, const SurfaceParticles& particles,
+                     const Flats& flats, PointGrid& loose)
 {
     const auto [least, most] = std::minmax({grid.stretch.x, grid.stretch.y, grid.stretch.z});
     const double nearest_border = nearest_border_steps * least * grid.dp;
     const double far_border = far_border_steps * most * grid.dp;
-    std::map<Plane, PlaneFit> fits;
+    const FitKind border = grid.is_2d ? FitKind::Corner : FitKind::Edge;
+    PlaneFits fits;
     for (const auto& [node, facet] : flats.nodes)
         fits.try_emplace(flats.plane_of.at(facet),
                          PlaneFit{PointGrid(farthest_border_dp * grid.dp, 64)})
             .first->second.nodes.add(place_of(node, grid));
     for (std::size_t i = 0; i < particles.positions.size(); ++i)
     {
-        if (particles.kinds[i] != FitKind::Edge) continue;
+        if (particles.kinds[i] != border) continue;
         const Vec3& p = particles.positions[i];
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -162,14 +185,39 @@ void keep_matched(const LatticeGrid& grid, double room, double least_matched,
             ++fit.edges;
             if (fit.nodes.has_nearer(p, far_border) && !fit.nodes.has_nearer(p, nearest_border))
                 ++fit.matched;
+            else
+                loose.add(p);
         }
     }
+    return fits;
+}
+
+/// Of planes too few of whose particles on edges are a step from the outermost nodes, the nodes
+/// near the edges that do not fit go: there they would leave gaps, or crowd.
+void keep_matched(const LatticeGrid& grid, double room, double least_matched,
+                  const SurfaceParticles& particles, Flats& flats)
+{
+    const double clear = clear_of_borders_dp * grid.dp;
+    PointGrid loose(clear, 256);
+    PlaneFits fits = fit_planes(grid, room, particles, flats, loose);
+    const auto fit_of = [&](std::uint32_t facet) -> PlaneFit&
+    { return fits.at(flats.plane_of.at(facet)); };
+    std::erase_if(flats.nodes,
+                  [&](const auto& node)
+                  {
+                      PlaneFit& fit = fit_of(node.second);
+                      const bool goes = !fit.fits(least_matched) &&
+                                        loose.has_nearer(place_of(node.first, grid), clear);
+                      fit.left += goes ? 0 : 1;
+                      return goes;
+                  });
     for (const auto& [facet, plane] : flats.plane_of)
     {
         const auto found = fits.find(plane);
         flats.is_flat[facet] =
-            found != fits.end() && static_cast<double>(found->second.matched) >=
-                                       least_matched * static_cast<double>(found->second.edges);
+            found != fits.end() &&
+            static_cast<double>(found->second.left) >=
+                least_left * static_cast<double>(found->second.nodes.points().size());
     }
     std::erase_if(flats.nodes, [&](const auto& node) { return flats.is_flat[node.second] == 0; });
 }
@@ -193,6 +241,121 @@ Flats find_flats(const SurfaceMesh& mesh, const LatticeGrid& grid, double room)
                                   [](const auto& a, const auto& b) { return a.first == b.first; }),
                       flats.nodes.end());
     return flats;
+}
+
+/// A particle on a line of nodes of a 2D case.
+struct OnLine
+{
+    double along = 0; ///< metres
+    std::uint32_t particle = 0;
+    bool is_node = false, is_corner = false;
+};
+
+/// Spreads the particles of a line between its nodes and corners evenly, as many as are a dp apart.
+class LineSpreader
+{
+public:
+    LineSpreader(const Plane& line, double dp, SurfaceParticles& particles)
+        : axis_(2 - line.first), dp_(dp), particles_(particles)
+    {
+    }
+
+    /// on  all of the line, in its order
+    void spread(const std::vector<OnLine>& on)
+    {
+        std::size_t begin = 0;
+        for (std::size_t k = 1; k < on.size(); ++k)
+        {
+            if (!on[k].is_node && !on[k].is_corner) continue;
+            spread_between(on[begin], on[k], std::span(on).subspan(begin + 1, k - begin - 1));
+            begin = k;
+        }
+    }
+    /// Of particles, which go.
+    std::vector<std::uint32_t> surplus;
+
+private:
+    void spread_between(const OnLine& a, const OnLine& b, std::span<const OnLine> between)
+    {
+        const bool is_gap = between.empty() && a.is_node && b.is_node; // something stands there
+        if (is_gap || !(a.is_node || b.is_node)) return;
+        const double length = b.along - a.along;
+        const auto count = static_cast<std::size_t>(std::max(0.0, std::round(length / dp_) - 1));
+        for (std::size_t k = 0; k < count; ++k)
+        {
+            const double at =
+                a.along + length * static_cast<double>(k + 1) / static_cast<double>(count + 1);
+            if (k < between.size())
+                particles_.positions[between[k].particle][axis_] = at;
+            else
+                add(a.is_node ? a : b, at);
+        }
+        for (std::size_t k = count; k < between.size(); ++k) surplus.push_back(between[k].particle);
+    }
+
+    void add(const OnLine& beside, double at)
+    {
+        Vec3 place = particles_.positions[beside.particle];
+        place[axis_] = at;
+        particles_.positions.push_back(place);
+        particles_.kinds.push_back(FitKind::Surface);
+        particles_.facets.push_back(particles_.facets[beside.particle]);
+    }
+
+    int axis_;
+    double dp_;
+    SurfaceParticles& particles_;
+};
+
+/// In 2D, where walls are not relaxed: spreads particles between nodes and the corners that do not
+/// fit to them.
+///
+/// is_node  of particles; with those that are put in
+void even_out_lines(const LatticeGrid& grid, double room, const Flats& flats,
+                    SurfaceParticles& particles, std::vector<char>& is_node)
+{
+    std::map<Plane, std::vector<OnLine>> lines;
+    for (const auto& [node, facet] : flats.nodes) lines[flats.plane_of.at(facet)];
+    for (std::uint32_t i = 0; i < particles.positions.size(); ++i)
+    {
+        const Vec3 at = grid.steps_to(particles.positions[i]);
+        for (const int axis : {0, 2})
+        {
+            const auto line = lines.find({axis, std::llround(at[axis])});
+            const bool is_corner = particles.kinds[i] == FitKind::Corner;
+            if (line == lines.end() || std::abs(at[axis] - std::round(at[axis])) > room) continue;
+            const auto of_facet = flats.plane_of.find(particles.facets[i]);
+            if (!is_corner && (of_facet == flats.plane_of.end() || of_facet->second != line->first))
+                continue;
+            line->second.push_back(
+                {particles.positions[i][2 - axis], i, is_node[i] != 0, is_corner});
+        }
+    }
+    std::vector<char> goes;
+    for (auto& [line, on] : lines)
+    {
+        std::sort(on.begin(), on.end(),
+                  [](const OnLine& a, const OnLine& b) { return a.along < b.along; });
+        LineSpreader spreader(line, grid.dp, particles);
+        spreader.spread(on);
+        goes.resize(particles.positions.size(), 0);
+        for (const std::uint32_t i : spreader.surplus) goes[i] = 1;
+    }
+    is_node.resize(particles.positions.size(), 0);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < goes.size(); ++i)
+    {
+        if (goes[i] != 0) continue;
+        particles.positions[kept] = particles.positions[i];
+        particles.kinds[kept] = particles.kinds[i];
+        particles.facets[kept] = particles.facets[i];
+        is_node[kept++] = is_node[i];
+    }
+    if (goes.empty()) return;
+    particles.positions.resize(kept);
+    particles.kinds.resize(kept);
+    particles.facets.resize(kept);
+    is_node.resize(kept);
 }
 
 } // namespace
@@ -229,6 +392,7 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
         add(place, FitKind::Surface, facet);
     }
     is_node.resize(out.positions.size(), 1);
+    if (grid.is_2d) even_out_lines(grid, room, flats, out, is_node);
     particles = std::move(out);
     return is_node;
 }

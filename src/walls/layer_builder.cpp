@@ -311,7 +311,7 @@ void LayerBuilder::add_particles(FittedBody& layer, std::uint32_t index)
         out_.body.left_out[kind] += std::exchange(layer.left_out[kind], 0);
     // Bodies with Placement::Inside need not fit to fluid.
     std::vector<char> is_node(particles.positions.size(), 0);
-    if (!grid_.is_2d && !layer.is_inside)
+    if (!layer.is_inside)
         is_node = take_nodes_on_flats(layer, grid_, least_matched_of_layers, particles);
     const LayerPlaces places(layer, grid_.dp);
     std::vector<char> is_out(particles.positions.size());

@@ -33,7 +33,7 @@ TEST(CoarseSteps, AreWhatNeighboursHaveInCommon)
         const auto parity = std::lround(at[i].x + at[i].y + at[i].z) % 2;
         return Vec3{0, parity == 0 ? 1e-2 : -1e-2, at[i].x < 12 ? 1e-3 : -1e-3};
     };
-    steps.add(step, 2);
+    steps.add(step, short_momentum, 2);
     const Vec3 up = steps.at({4, 12, 12});
     const Vec3 down = steps.at({19, 12, 12});
     EXPECT_NEAR(up.z, -down.z, 1e-9);
@@ -41,7 +41,7 @@ TEST(CoarseSteps, AreWhatNeighboursHaveInCommon)
     EXPECT_LT(std::abs(up.y), 0.05 * up.z);
     EXPECT_LT(std::abs(steps.at({11.5, 12, 12}).z), 0.5 * up.z); // between both
     // They go on as long as the force does.
-    steps.add(step, 2);
+    steps.add(step, short_momentum, 2);
     EXPECT_GT(steps.at({4, 12, 12}).z, 1.5 * up.z);
 }
 
@@ -50,11 +50,11 @@ TEST(CoarseSteps, AreNoneWhereNothingMoves)
     const std::vector<Vec3> at = block();
     CoarseSteps steps(
         at, [&](std::size_t i) { return at[i].x < 8; }, 4);
-    steps.add([](std::size_t) { return Vec3{0, 0, 1e-3}; }, 1);
+    steps.add([](std::size_t) { return Vec3{0, 0, 1e-3}; }, short_momentum, 1);
     EXPECT_GT(steps.at({2, 12, 12}).z, 1e-3);
     CoarseSteps none(
         at, [](std::size_t) { return false; }, 4);
-    none.add([](std::size_t) { return Vec3{0, 0, 1e-3}; }, 1);
+    none.add([](std::size_t) { return Vec3{0, 0, 1e-3}; }, short_momentum, 1);
     EXPECT_EQ(none.at({2, 12, 12}), (Vec3{}));
 }
 

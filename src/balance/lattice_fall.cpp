@@ -1,0 +1,107 @@
+#include "balance/lattice_fall.h"
+
+#include "balance/pressure_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fppg
+{
+namespace
+{
+
+constexpr double step_dp = 2;    ///< of the table
+constexpr double off_row = 0.02; ///< steps
+
+/// A node and those within 2h of it, and the lists of a group that has that node alone.
+struct LatticePatch
+{
+    std::vector<Vec3> offsets; ///< metres; the node itself first
+    std::vector<std::uint32_t> near;
+    PressureField field;
+    PointGroup group;
+
+    LatticePatch(const FluidAtRest& rest, const LatticeGrid& grid)
+    {
+        const double reach = 2 * rest.h;
+        offsets.push_back({});
+        std::array<int, 3> n{};
+        for (int axis = 0; axis < 3; ++axis)
+            n[static_cast<std::size_t>(axis)] =
+                rest.is_2d && axis == 1 ? 0 : static_cast<int>(reach / grid.step(axis));
+        for (int x = -n[0]; x <= n[0]; ++x)
+            for (int y = -n[1]; y <= n[1]; ++y)
+                for (int z = -n[2]; z <= n[2]; ++z)
+                {
+                    const Vec3 r{x * grid.step(0), y * grid.step(1), z * grid.step(2)};
+                    if (norm(r) > 0 && norm(r) < reach) offsets.push_back(r);
+                }
+        field.resize(offsets.size());
+        for (std::uint32_t k = 0; k < offsets.size(); ++k) near.push_back(k);
+        group.count = 1;
+        group.near = near;
+    }
+};
+
+/// The axis of the lattice that gravity is along.
+std::optional<int> axis_along(const Vec3& gravity)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(gravity[axis]) > (1 - 1e-9) * norm(gravity)) return axis;
+    return std::nullopt;
+}
+
+} // namespace
+
+LatticeFall::LatticeFall(const FluidAtRest& rest, const LatticeGrid& grid, double mass,
+                         double deepest)
+    : first_(2 * rest.h + rest.dp), step_(step_dp * rest.dp), axis_(axis_along(rest.gravity))
+{
+    if (axis_)
+    {
+        first_ = 0.5 * rest.dp;
+        step_ = grid.step(*axis_);
+        first_row_ = grid.origin[*axis_];
+    }
+    LatticePatch patch(rest, grid);
+    const double unit = rest.is_2d ? rest.dp * rest.dp : rest.dp * rest.dp * rest.dp;
+    const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
+    const auto entries = static_cast<std::size_t>(std::max(0.0, (deepest - first_) / step_)) + 2;
+    for (std::size_t e = 0; e < entries; ++e)
+    {
+        const double depth = first_ + static_cast<double>(e) * step_;
+        double own_density = rest.rhop0;
+        for (std::size_t k = patch.offsets.size(); k-- > 0;)
+        {
+            const Vec3& r = patch.offsets[k];
+            const double pressure = rest.pressure(depth - rest.height(r));
+            own_density = rest.density(pressure);
+            const double volume = pressure > 0 ? mass / own_density / unit : 0;
+            const Vec3 at = r / rest.dp;
+            patch.field.packed[k] =
+                PackedPoint{static_cast<float>(at.x), static_cast<float>(at.y),
+                            static_cast<float>(at.z), static_cast<float>(volume)};
+            patch.field.pressures[k] = static_cast<float>(pressure);
+        }
+        const PressureSums sums = pressure_sums(patch.field, patch.group, shape);
+        table_.push_back(rest.gravity - rest.slope_scale() / own_density * sums.of(0));
+    }
+}
+
+bool LatticeFall::is_on_row(const Vec3& place) const
+{
+    if (!axis_) return true;
+    const double row = (place[*axis_] - first_row_) / step_;
+    return std::abs(row - std::round(row)) < off_row;
+}
+
+Vec3 LatticeFall::at(double depth) const
+{
+    const double place =
+        std::clamp((depth - first_) / step_, 0.0, static_cast<double>(table_.size() - 1));
+    const auto low = std::min(static_cast<std::size_t>(place), table_.size() - 2);
+    const double share = place - static_cast<double>(low);
+    return (1 - share) * table_[low] + share * table_[low + 1];
+}
+
+} // namespace fppg
