@@ -62,10 +62,13 @@ constexpr int iterations_per_check = 10;
 /// until the next check.
 constexpr double calm = 0.0005;
 constexpr double still = 0.0003;
-/// So many iterations the mean may stay above its least: along curved walls it often does for 30 or
-/// 40 before the fluid finds better places.
-constexpr int patience = 60;
-constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
+/// Where the least mean has fallen by less than this share in so many iterations, more gain little;
+/// along curved walls it stays for as many before the fluid finds better places, so that those that
+/// cost little are made all the same.
+constexpr double slow_fall = 0.15;
+constexpr int iterations_of_fall = 80;
+constexpr double least_work = 5e6; ///< particles times iterations
+constexpr int first_judged = 20;   ///< iteration at which hopeless_mean decides
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.1;
@@ -126,7 +129,7 @@ public:
         report.before = judge();
         const State even = state(report.before.mean);
         State best = state(report.before.mean);
-        int last_best = 0;
+        std::vector<double> least; // mean, up to each check
         const int last = last_iteration(report.particles);
         for (int it = 1; it <= last && report.particles > report.held; ++it)
         {
@@ -144,12 +147,11 @@ public:
             if (on_iteration && !on_iteration({it, last, mean})) break;
             if (!is_check) continue;
             if (it == first_judged && mean > hopeless_mean) break;
-            if (mean < best.mean)
-            {
-                best = state(mean);
-                last_best = it;
-            }
-            if (mean < calm || it - last_best >= patience) break;
+            if (mean < best.mean) best = state(mean);
+            least.push_back(best.mean);
+            if (mean < calm ||
+                (is_slow(least) && static_cast<double>(report.particles) * it >= least_work))
+                break;
         }
         report.is_balanced = best.mean <= calm_mean;
         return_to(report.is_balanced ? best : even);
@@ -180,6 +182,14 @@ private:
             },
             4096);
         return out;
+    }
+
+    /// least  mean acceleration up to each check
+    static bool is_slow(const std::vector<double>& least)
+    {
+        constexpr std::size_t checks = iterations_of_fall / iterations_per_check;
+        return least.size() > checks + even_iterations / iterations_per_check &&
+               least.back() > (1 - slow_fall) * least[least.size() - 1 - checks];
     }
 
     static int last_iteration(std::size_t particles)
