@@ -9,7 +9,7 @@ namespace fppg
 {
 
 /// What the solver's sums leave of gravity in the midst of a lattice whose nodes have the pressure
-/// of their depth: a few thousandths to a hundredth of g, mostly downwards.
+/// of their depth: 0.004 to 0.03 g downwards.
 ///
 /// In the solver such fluid sinks as a whole until its pressure has risen by as much. Fluid beside
 /// walls is at rest against it when it has the same acceleration: where its own was brought to

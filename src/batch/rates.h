@@ -33,7 +33,7 @@ struct Rates
     double seconds_a_cut_particle = 5e-6;           ///< the surface that it is laid on
     double seconds_a_layer_particle = 18e-6;        ///< laid and relaxed
     double seconds_a_layered_line = 50e-6;          ///< of creases of layers, dp of the edge
-    double seconds_a_balanced_particle = 62e-6;     ///< fluid near walls in layers
+    double seconds_a_balanced_particle = 130e-6;    ///< fluid near walls in layers
     double seconds_a_particle_not_balanced = 53e-6; ///< near single sheets
     double band_particles = 2.3;                    ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;
