@@ -33,6 +33,8 @@ constexpr double node_rounding = 1e-9;
 /// out. And how many of a plane's nodes must be left.
 constexpr double clear_of_borders_dp = 3;
 constexpr double least_left = 0.5;
+/// Planes fewer of whose edges fit take no nodes at all: along a sine particles would crowd.
+constexpr double least_partly_matched = 0.5;
 
 /// How far a layer may be off a plane of nodes, steps. Layers are dp apart: where steps are no dp,
 /// those behind one on nodes are beside others.
@@ -215,7 +217,7 @@ void keep_matched(const LatticeGrid& grid, double room, double least_matched,
     {
         const auto found = fits.find(plane);
         flats.is_flat[facet] =
-            found != fits.end() &&
+            found != fits.end() && found->second.fits(least_partly_matched) &&
             static_cast<double>(found->second.left) >=
                 least_left * static_cast<double>(found->second.nodes.points().size());
     }
@@ -364,7 +366,7 @@ void even_out_lines(const LatticeGrid& grid, double room, const Flats& flats,
 bool leaves_gaps(const std::vector<Vec3>& before, const std::vector<Vec3>& now, double dp)
 {
     constexpr double farthest_neighbour = 1.2; // dp
-    constexpr double farthest = 0.62;          // dp
+    constexpr double farthest = 0.66;          // dp
     PointGrid old(farthest_neighbour * dp, before.size());
     PointGrid present(farthest * dp, now.size());
     for (const Vec3& p : before) old.add(p);
