@@ -33,8 +33,10 @@ constexpr double node_rounding = 1e-9;
 /// out. And how many of a plane's nodes must be left.
 constexpr double clear_of_borders_dp = 3;
 constexpr double least_left = 0.5;
-/// Planes fewer of whose edges fit take no nodes at all: along a sine particles would crowd.
-constexpr double least_partly_matched = 0.5;
+/// Planes fewer of whose edges fit take no nodes at all: along a sine particles would crowd, and
+/// boxes of which one side in two fits had 3 % more than one a dp^2. Of lines in 2D one end does.
+constexpr double least_partly_matched = 0.6;
+constexpr double least_partly_matched_2d = 0.5;
 
 /// How far a layer may be off a plane of nodes, steps. Layers are dp apart: where steps are no dp,
 /// those behind one on nodes are beside others.
@@ -201,6 +203,7 @@ void keep_matched(const LatticeGrid& grid, double room, double least_matched,
 {
     const double clear = clear_of_borders_dp * grid.dp;
     PointGrid loose(clear, 256);
+    const double least_partly = grid.is_2d ? least_partly_matched_2d : least_partly_matched;
     PlaneFits fits = fit_planes(grid, room, particles, flats, loose);
     const auto fit_of = [&](std::uint32_t facet) -> PlaneFit&
     { return fits.at(flats.plane_of.at(facet)); };
@@ -217,7 +220,7 @@ void keep_matched(const LatticeGrid& grid, double room, double least_matched,
     {
         const auto found = fits.find(plane);
         flats.is_flat[facet] =
-            found != fits.end() && found->second.fits(least_partly_matched) &&
+            found != fits.end() && found->second.fits(least_partly) &&
             static_cast<double>(found->second.left) >=
                 least_left * static_cast<double>(found->second.nodes.points().size());
     }
