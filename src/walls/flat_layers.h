@@ -17,8 +17,9 @@ namespace fppg
 /// (mDBC: mean 0.0066 m/s, beside nodes 0.0034). DBC, 16 x 14 x 30 dp, after 0.2 s: 0.0050, 0.0041.
 ///
 /// least_matched  of the particles on the edges around a plane, how many must be a step from its
-///                outermost nodes, 0 to 1; else nodes near the edges that do not fit go, and
-///                none are taken where less than half of them are left
+///                outermost nodes, 0 to 1; with fewer, nodes near the edges that do not fit go. No
+///                nodes where fewer than 0.6 (2D: 0.5) fit, where less than half of the nodes are
+///                left, and in 2D where they would leave a gap
 /// particles      of the layer; those that nodes replace go, nodes come behind the others
 /// returns        per particle, whether it is such a node
 std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid& grid,
