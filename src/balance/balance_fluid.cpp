@@ -73,7 +73,14 @@ constexpr int first_settled = 80;
 constexpr double slow_fall = 0.15;
 constexpr int iterations_of_fall = 80;
 constexpr double least_work = 5e6; ///< particles times iterations
-constexpr int first_judged = 20;   ///< iteration at which hopeless_mean decides
+/// Where the mean has been below the first and risen to so much of the least one, rows of a lattice
+/// have lost their order, and the fluid keeps what it had before: with modified boundaries a tank
+/// 50 dp deep in 2D, 40.3 dp wide, is at 0.0010 m/s after 0.1 s, and at 0.0025 where it goes on to
+/// new places at rest. Along curved walls, and where parts of one tank do not fit the lattice,
+/// going on gains as much or more.
+constexpr double nearly_settled = 0.004;
+constexpr double loses_order = 1.25;
+constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.1;
@@ -155,6 +162,7 @@ public:
             if (mean < best.mean) best = state(mean);
             least.push_back(best.mean);
             if (mean < calm || (best.mean < settled && it >= first_settled) ||
+                (best.mean < nearly_settled && mean > loses_order * best.mean) ||
                 (is_slow(least) && static_cast<double>(report.particles) * it >= least_work))
                 break;
         }

@@ -17,8 +17,10 @@ namespace fppg
 namespace
 {
 
-/// Of the normal of a flat facet across an axis, less one, and its distance from nodes, dp.
+/// Of the normal of a flat facet across an axis, less one; of one beside such a facet, as vertices
+/// of layers near their corners are up to 0.004 dp off; and its distance from nodes, dp.
 constexpr double tilt_of_flats = 1e-6;
+constexpr double tilt_beside_flats = 1e-4;
 constexpr double off_nodes_dp = 0.01;
 /// From nodes to particles on edges and corners, and to those of other parts, dp.
 constexpr double off_features_dp = 0.7;
@@ -49,14 +51,15 @@ double off_nodes(const FittedBody& layer, const LatticeGrid& grid)
 
 /// The axis across which a facet lies on a plane of nodes.
 ///
+/// tilt  how far its normal may be off
 /// room  how far it may be off, steps
 std::optional<int> axis_of(const SurfaceMesh& mesh, std::size_t facet, const LatticeGrid& grid,
-                           double room)
+                           double tilt, double room)
 {
     const Vec3& normal = mesh.normals[facet];
     for (int axis = 0; axis < 3; ++axis)
     {
-        if ((grid.is_2d && axis == 1) || !(std::abs(normal[axis]) > 1 - tilt_of_flats)) continue;
+        if ((grid.is_2d && axis == 1) || !(std::abs(normal[axis]) > 1 - tilt)) continue;
         for (const std::uint32_t v : mesh.facets[facet])
         {
             const double at = grid.steps_to(mesh.vertices[v])[axis];
@@ -227,19 +230,51 @@ void keep_matched(const LatticeGrid& grid, double room, double least_matched,
     std::erase_if(flats.nodes, [&](const auto& node) { return flats.is_flat[node.second] == 0; });
 }
 
+/// The planes of nodes that facets lie on: of flat ones, and of those of a layer beside them.
+std::map<std::uint32_t, Plane> find_planes(const FittedBody& layer, const LatticeGrid& grid,
+                                           double room)
+{
+    const SurfaceMesh& mesh = layer.mesh;
+    std::map<std::uint32_t, Plane> planes;
+    std::vector<std::optional<Plane>> of_vertex(mesh.vertices.size());
+    const auto plane_of = [&](std::uint32_t facet, double tilt)
+    {
+        std::optional<Plane> plane;
+        if (const std::optional<int> axis = axis_of(mesh, facet, grid, tilt, room))
+        {
+            const Vec3 at = grid.steps_to(mesh.vertices[mesh.facets[facet][0]]);
+            plane = {*axis, std::llround(at[*axis])};
+        }
+        return plane;
+    };
+    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+        if (const std::optional<Plane> plane = plane_of(f, tilt_of_flats))
+        {
+            planes[f] = *plane;
+            for (const std::uint32_t v : mesh.facets[f]) of_vertex[v] = *plane;
+        }
+    if (!layer.is_layer()) return planes;
+    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        const std::optional<Plane> plane = plane_of(f, tilt_beside_flats);
+        if (plane && std::any_of(mesh.facets[f].begin(), mesh.facets[f].end(),
+                                 [&](std::uint32_t v) { return of_vertex[v] == plane; }))
+            planes.emplace(f, *plane);
+    }
+    return planes;
+}
+
 /// The facets of a surface or layer on planes of nodes, with these.
-Flats find_flats(const SurfaceMesh& mesh, const LatticeGrid& grid, double room)
+Flats find_flats(const FittedBody& layer, const LatticeGrid& grid, double room)
 {
     Flats flats;
-    flats.is_flat.resize(mesh.facets.size(), 0);
-    for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
-        if (const std::optional<int> axis = axis_of(mesh, f, grid, room))
-        {
-            flats.is_flat[f] = 1;
-            const Vec3 at = grid.steps_to(mesh.vertices[mesh.facets[f][0]]);
-            flats.plane_of[f] = {*axis, std::llround(at[*axis])};
-            add_nodes(mesh, f, *axis, grid, flats.nodes);
-        }
+    flats.is_flat.resize(layer.mesh.facets.size(), 0);
+    flats.plane_of = find_planes(layer, grid, room);
+    for (const auto& [facet, plane] : flats.plane_of)
+    {
+        flats.is_flat[facet] = 1;
+        add_nodes(layer.mesh, facet, plane.first, grid, flats.nodes);
+    }
     // Of the facets that meet at a node the first one holds it.
     std::sort(flats.nodes.begin(), flats.nodes.end());
     flats.nodes.erase(std::unique(flats.nodes.begin(), flats.nodes.end(),
@@ -363,27 +398,44 @@ void even_out_lines(const LatticeGrid& grid, double room, const Flats& flats,
     is_node.resize(kept);
 }
 
+/// Whether two particles lie on parallel lines of nodes: such are rows one behind the other.
+bool are_in_rows(const Flats& flats, std::uint32_t facet, std::uint32_t other)
+{
+    const auto line = flats.plane_of.find(facet);
+    const auto other_line = flats.plane_of.find(other);
+    return line != flats.plane_of.end() && other_line != flats.plane_of.end() &&
+           line->second.first == other_line->second.first &&
+           line->second.second != other_line->second.second;
+}
+
 /// Whether a place between two neighbours among particles before is far from all of those now, in
 /// 2D: where lines bend, corners are left out or layers come together, nodes do not always reach to
-/// the next particle, and nothing fills such a gap. Through one of 1.4 dp fluid goes.
-bool leaves_gaps(const std::vector<Vec3>& before, const std::vector<Vec3>& now, double dp)
+/// the next particle, and nothing fills such a gap. Through one of 1.4 dp fluid goes. Between rows
+/// of layers there is none, however they stand to one another.
+bool leaves_gaps(const Flats& flats, const SurfaceParticles& before, const std::vector<Vec3>& now,
+                 double dp)
 {
     constexpr double farthest_neighbour = 1.2; // dp
     constexpr double farthest = 0.66;          // dp
-    PointGrid old(farthest_neighbour * dp, before.size());
+    PointGrid old(farthest_neighbour * dp, before.positions.size());
     PointGrid present(farthest * dp, now.size());
-    for (const Vec3& p : before) old.add(p);
+    for (const Vec3& p : before.positions) old.add(p);
     for (const Vec3& p : now) present.add(p);
     bool has_gap = false;
-    for (const Vec3& p : before)
+    for (std::size_t i = 0; i < before.positions.size(); ++i)
+    {
+        const Vec3& p = before.positions[i];
         old.for_each_near(p, farthest_neighbour * dp,
                           [&](std::uint32_t other, double)
                           {
-                              const Vec3 way = before[other] - p;
+                              if (are_in_rows(flats, before.facets[i], before.facets[other]))
+                                  return;
+                              const Vec3 way = before.positions[other] - p;
                               for (const double t : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5})
                                   has_gap =
                                       has_gap || !present.has_nearer(p + t * way, farthest * dp);
                           });
+    }
     return has_gap;
 }
 
@@ -393,7 +445,7 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
                                       double least_matched, SurfaceParticles& particles)
 {
     const double room = off_nodes(layer, grid);
-    Flats flats = find_flats(layer.mesh, grid, room);
+    Flats flats = find_flats(layer, grid, room);
     if (!flats.nodes.empty())
     {
         keep_off_others(grid, particles, flats);
@@ -424,7 +476,7 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
     if (grid.is_2d)
     {
         even_out_lines(grid, room, flats, out, is_node);
-        if (leaves_gaps(particles.positions, out.positions, grid.dp))
+        if (leaves_gaps(flats, particles, out.positions, grid.dp))
             return std::vector<char>(particles.positions.size(), 0);
     }
     particles = std::move(out);
