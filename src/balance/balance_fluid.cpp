@@ -142,7 +142,9 @@ public:
         const State even = state(report.before.mean);
         State best = state(report.before.mean);
         std::vector<double> least; // mean, up to each check
-        const int last = last_iteration(report.particles);
+        std::size_t moving = 0;
+        for (std::size_t i = 0; i < rest_.size(); ++i) moving += moves(i) ? 1 : 0;
+        const int last = last_iteration(moving);
         for (int it = 1; it <= last && report.particles > report.held; ++it)
         {
             momentum_ = it <= even_iterations ? short_momentum : long_momentum;
@@ -163,7 +165,7 @@ public:
             least.push_back(best.mean);
             if (mean < calm || (best.mean < settled && it >= first_settled) ||
                 (best.mean < nearly_settled && mean > loses_order * best.mean) ||
-                (is_slow(least) && static_cast<double>(report.particles) * it >= least_work))
+                (is_slow(least) && static_cast<double>(moving) * it >= least_work))
                 break;
         }
         report.is_balanced = best.mean <= calm_mean;
@@ -267,7 +269,8 @@ private:
             64);
     }
 
-    bool moves(std::size_t i) const { return rest_.roles[i] == RestRole::Moving; }
+    bool moves(std::size_t i) const { return rest_.moves(i); }
+    bool is_judged(std::size_t i) const { return rest_.roles[i] == RestRole::Moving; }
 
     void wake_all() { std::fill(is_still_.begin(), is_still_.end(), 0); }
     /// What is at rest stands still until it is woken.
@@ -454,7 +457,7 @@ private:
                          const std::size_t end = std::min(rest_.size(), (c + 1) * chunk_of_sums);
                          for (std::size_t i = c * chunk_of_sums; i < end; ++i)
                          {
-                             if (!moves(i)) continue;
+                             if (!is_judged(i)) continue;
                              chunks[c].sizes += norm(accelerations_[i]);
                              ++chunks[c].count;
                          }
@@ -474,7 +477,7 @@ private:
         const double g = norm(rest_.gravity);
         std::vector<double> sizes;
         for (std::size_t i = 0; i < rest_.size(); ++i)
-            if (moves(i)) sizes.push_back(norm(accelerations_[i]) / g);
+            if (is_judged(i)) sizes.push_back(norm(accelerations_[i]) / g);
         Accelerations out;
         if (sizes.empty()) return out;
         const auto n = static_cast<double>(sizes.size());
@@ -494,7 +497,7 @@ private:
         std::size_t count = 0;
         for (std::size_t i = 0; i < rest_.size(); ++i)
         {
-            if (!moves(i)) continue;
+            if (!is_judged(i)) continue;
             const double moved = norm(rest_.positions[i] - start_[i]) / rest_.dp;
             report.mean_move_dp += moved;
             report.largest_move_dp = std::max(report.largest_move_dp, moved);
@@ -545,7 +548,7 @@ void take_over(const CaseDef& def, const FluidAtRest& rest, int threads, CasePar
     {
         if (rest.roles[i] == RestRole::Bound)
             particles.bound_rhop[rest.ids[i]] = static_cast<float>(rest.densities[i]);
-        if (rest.roles[i] != RestRole::Moving) continue;
+        if (!rest.moves(i)) continue;
         places.push_back({rest.ids[i], rest.positions[i], static_cast<float>(rest.densities[i])});
         for (int axis = 0; axis < 3; ++axis)
             is_at_limit = is_at_limit ||
@@ -573,6 +576,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     if (all.is_empty()) return report;
     RestReach reach;
     reach.band_dp = bands(def);
+    reach.most_whole = most_balanced_whole;
     reach.threads = threads;
     reach.closest = [&](const Vec3& p, double within) { return all.closest_point(p, within); };
     FluidAtRest rest = gather_fluid(def, field, constants, particles, reach);
@@ -581,7 +585,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     if (report.particles == 0) return report;
     double deepest = 0;
     for (std::size_t i = 0; i < rest.size(); ++i)
-        if (rest.roles[i] == RestRole::Moving)
+        if (rest.moves(i))
             deepest = std::max(deepest, rest.levels[i] - rest.height(rest.positions[i]));
     const LatticeFall fall(rest, field.grid, constants.mass_fluid, deepest);
     Balancer(rest, fall, reach.closest, boundary_of(def), threads).run(report, on_iteration);

@@ -16,6 +16,9 @@ namespace
 {
 
 constexpr double list_skin_dp = 0.6;
+/// Neighbours on the lattice, over an edge too.
+constexpr double joined_dp = 1.5;
+constexpr std::uint32_t whole_lattice = 1U << 20U; ///< nodes a side of a block that holds all
 
 struct NearParticle
 {
@@ -128,6 +131,44 @@ void take_all(const RawArray<Taken>& taken, const CaseConstants& constants,
         chunk);
 }
 
+/// All fluid that is joined to what moves near walls moves along; what falls through the air stays.
+void take_joined(const RawArray<NearParticle>& fluid, const std::vector<char>& may_move, double dp,
+                 std::vector<RestRole>& roles)
+{
+    PointGrid grid(joined_dp * dp, fluid.size());
+    std::vector<std::uint32_t> next;
+    for (std::uint32_t i = 0; i < fluid.size(); ++i)
+    {
+        grid.add(fluid[i].position);
+        if (roles[i] == RestRole::Moving) next.push_back(i);
+    }
+    while (!next.empty())
+    {
+        const std::uint32_t i = next.back();
+        next.pop_back();
+        grid.for_each_near(fluid[i].position, joined_dp * dp,
+                           [&](std::uint32_t other, double)
+                           {
+                               if (may_move[other] == 0 || roles[other] != RestRole::Held) return;
+                               roles[other] = RestRole::Along;
+                               next.push_back(other);
+                           });
+    }
+}
+
+/// Far from fitted walls, fluid beside other ones stays on the lattice with them.
+void hold_at_other_walls(const RawArray<NearParticle>& fluid, const RawArray<NearParticle>& bound,
+                         const std::vector<char>& near_bound, double reach,
+                         std::vector<RestRole>& roles)
+{
+    PointGrid walls(reach, bound.size());
+    for (std::size_t i = 0; i < bound.size(); ++i)
+        if (near_bound[i] != 0) walls.add(bound[i].position);
+    for (std::size_t i = 0; i < fluid.size(); ++i)
+        if (roles[i] == RestRole::Along && walls.has_nearer(fluid[i].position, reach))
+            roles[i] = RestRole::Held;
+}
+
 } // namespace
 
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
@@ -148,29 +189,35 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     for (const double band : reach.band_dp) widest = std::max(widest, band);
     const double forces = rest_reach_dp(rest) + list_skin_dp + 0.1;
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
+    const bool is_whole = particles.n_fluid <= reach.most_whole;
     const auto rhop0 = static_cast<float>(constants.rhop0);
-    const NearBlocks blocks(field.walls.particles.positions, field.grid, side, 2, reach.threads);
+    const NearBlocks blocks(field.walls.particles.positions, field.grid,
+                            is_whole ? whole_lattice : side, 2, reach.threads);
 
     const std::uint64_t first_fluid = particles.np - particles.n_fluid;
     const RawArray<NearParticle> fluid =
         near_particles(particles, blocks, rhop0, first_fluid, particles.np, reach.threads);
     const LatticeStrips strips(def, field);
-    std::vector<char> moves(fluid.size(), 0);
+    std::vector<RestRole> roles(fluid.size(), RestRole::Held);
+    std::vector<char> may_move(fluid.size(), 0);
     parallel_for(
         fluid.size(), reach.threads,
         [&](std::size_t i)
         {
             const double band = reach.band_dp[fluid[i].block->mk] * rest.dp;
-            if (band <= 0) return;
             const Vec3& p = fluid[i].position;
-            moves[i] = norm(reach.closest(p, band) - p) <= band && !strips.has(p);
+            if (band <= 0 || strips.has(p)) return;
+            may_move[i] = 1;
+            if (norm(reach.closest(p, band) - p) <= band) roles[i] = RestRole::Moving;
         },
         256);
-    const auto moving = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), 1));
+    if (is_whole) take_joined(fluid, may_move, rest.dp, roles);
+    const auto moving = static_cast<std::size_t>(
+        roles.size() - std::count(roles.begin(), roles.end(), RestRole::Held));
     if (moving == 0) return rest;
     PointGrid movers(forces * rest.dp, moving);
     for (std::size_t i = 0; i < fluid.size(); ++i)
-        if (moves[i]) movers.add(fluid[i].position);
+        if (roles[i] != RestRole::Held) movers.add(fluid[i].position);
     rest.origin = movers.points().front();
     const auto near_of = [&](const RawArray<NearParticle>& from, const auto& is_taken)
     {
@@ -183,16 +230,18 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
         return is_near;
     };
     const std::vector<char> near_fluid =
-        near_of(fluid, [&](std::size_t i) { return moves[i] != 0; });
+        near_of(fluid, [&](std::size_t i) { return roles[i] != RestRole::Held; });
+    const NearBlocks around(movers.points(), field.grid,
+                            static_cast<std::uint32_t>(std::ceil(forces)) + 1, 1, reach.threads);
     const RawArray<NearParticle> bound =
-        near_particles(particles, blocks, rhop0, 0, first_fluid, reach.threads);
+        near_particles(particles, around, rhop0, 0, first_fluid, reach.threads);
     const std::vector<char> near_bound = near_of(bound, [](std::size_t) { return false; });
+    if (is_whole) hold_at_other_walls(fluid, bound, near_bound, forces * rest.dp, roles);
     RawArray<Taken> taken;
     taken.reserve(static_cast<std::size_t>(std::count(near_fluid.begin(), near_fluid.end(), 1) +
                                            std::count(near_bound.begin(), near_bound.end(), 1)));
     for (std::size_t i = 0; i < fluid.size(); ++i)
-        if (near_fluid[i])
-            taken.push_back({&fluid[i], moves[i] ? RestRole::Moving : RestRole::Held});
+        if (near_fluid[i]) taken.push_back({&fluid[i], roles[i]});
     for (std::size_t i = 0; i < bound.size(); ++i)
         if (near_bound[i]) taken.push_back({&bound[i], RestRole::Bound});
     take_all(taken, constants, particles, reach.threads, rest);
@@ -247,8 +296,8 @@ std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int thread
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (is_held[i])
         {
+            count += rest.roles[i] == RestRole::Moving ? 1 : 0;
             rest.roles[i] = RestRole::Held;
-            ++count;
         }
     return count;
 }

@@ -22,8 +22,9 @@ namespace fppg
 /// What a particle near a wall is to balance_fluid().
 enum class RestRole : std::uint8_t
 {
-    Moving,
-    Held, ///< fluid that stays
+    Moving, ///< near fitted walls
+    Along,  ///< moves too, farther from them
+    Held,   ///< fluid that stays
     Bound,
 };
 
@@ -64,6 +65,10 @@ struct FluidAtRest
         pressures.resize(n);
         densities.resize(n);
         ghosts.resize(n);
+    }
+    bool moves(std::size_t i) const
+    {
+        return roles[i] == RestRole::Moving || roles[i] == RestRole::Along;
     }
     double height(const Vec3& p) const { return -dot(p, gravity) / norm(gravity); }
     /// The pressure at a depth below the level; 0 above. Its sums over particles that are heavier
@@ -114,6 +119,8 @@ struct RestReach
 {
     /// Fluid of an absolute mk this near to a fitted wall may move, in dp; 0: it stays. 65536.
     std::vector<double> band_dp;
+    /// Where a case has no more fluid particles, all that are joined to such fluid move along.
+    std::size_t most_whole = 0;
     ClosestWallPoint closest;
     int threads = 1;
 };

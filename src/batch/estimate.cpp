@@ -1,5 +1,6 @@
 #include "batch/estimate.h"
 
+#include "fppg/balance.h"
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/lattice.h"
@@ -303,6 +304,7 @@ private:
     double balanced() const
     {
         if (!def_.balances() || out_.n_fluid == 0) return 0;
+        if (out_.n_fluid <= most_balanced_whole) return static_cast<double>(out_.n_fluid);
         double width = 2 * def_.h / def_.grid.dp + 1.5;
         for (const FluidBand& band : def_.fluid_bands) width = std::max(width, band.width_dp);
         return static_cast<double>(out_.n_fluid) *

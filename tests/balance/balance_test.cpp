@@ -181,7 +181,8 @@ TEST(Balance, WaterBesideFlatWallsFallsAsTheLatticeDoes)
         for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
         {
             const Vec3& p = calm.cloud.positions[i];
-            if (calm.cloud.mk[i] >= first_bound || p.x < from || p.x > to || p.z < 1 || p.z > 3)
+            if (calm.cloud.mk[i] >= first_bound || p.x < from || p.x > to || p.z < 0.95 ||
+                p.z > 3.05)
                 continue;
             sum += acceleration_2d(calm, b, i).z / g;
             ++count;
@@ -234,6 +235,49 @@ TEST(Balance, RowsOfTheLatticeStayInOrder)
     }
     EXPECT_GT(count, 700);
     EXPECT_LT(sum / static_cast<double>(count), 0.03 * dp);
+}
+
+/// Where a step that does not fit the lattice has moved the fluid beside it off that, fluid farther
+/// off moves along: else the two slid along one another. What falls through the air stays.
+TEST(Balance, FluidFartherFromWallsMovesAlongAndWhatFallsStays)
+{
+    CaseText text;
+    text.pointmin = R"(<pointmin x="-0.6" y="0" z="-0.6" />)";
+    text.pointmax = R"(<pointmax x="4.6" y="0" z="6.6" />)";
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+        box_command(R"(x="-0.4" y="-1" z="-0.4")", R"(x="4.8" y="2" z="6.4")") + "<setmkvoid />" +
+        box_command(R"(x="0" y="-1" z="0")", R"(x="4" y="2" z="6.5")") +
+        R"(<setmkfluid mk="0" />)" + box_command(R"(x="0" y="-1" z="0")", R"(x="4" y="2" z="3")") +
+        box_command(R"(x="1.8" y="-1" z="4.5")", R"(x="0.6" y="2" z="0.6")") +
+        R"(<setmkbound mk="0" />)" +
+        box_command(R"(x="0" y="-1" z="0")", R"(x="1.54" y="2" z="1.27")");
+    const auto places = [&](const std::string& balance)
+    {
+        const TemporaryFolder folder;
+        text.after_geometry =
+            R"(<fppg><bodyfitted /><fluidband balance=")" + balance + R"(" /></fppg>)";
+        return make(folder, text).cloud;
+    };
+    const ParticleCloud even = places("false");
+    const ParticleCloud calm = places("true");
+    double farthest = 0;
+    int in_the_air = 0;
+    for (std::size_t i = 0; i < even.positions.size(); ++i)
+    {
+        const Vec3& p = even.positions[i];
+        if (even.mk[i] >= first_bound) continue;
+        const double off = distance_to_fluid(calm, p);
+        if (p.z > 4)
+        {
+            ++in_the_air;
+            EXPECT_LT(off, 1e-6) << p.x << ' ' << p.z;
+        }
+        else if (p.x > 2.4 && p.x < 3.3 && p.z > 0.7 && p.z < 2.6)
+            farthest = std::max(farthest, off);
+    }
+    EXPECT_GT(in_the_air, 30);
+    EXPECT_GT(farthest, 0.1 * dp);
 }
 
 /// Its walls are 3 to 4 dp thick here. Where the lattice stood a whole dp off its sides, this water
