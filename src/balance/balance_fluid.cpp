@@ -165,7 +165,7 @@ public:
             least.push_back(best.mean);
             if (mean < calm || (best.mean < settled && it >= first_settled) ||
                 (best.mean < nearly_settled && mean > loses_order * best.mean) ||
-                (is_slow(least) && static_cast<double>(moving) * it >= least_work))
+                (is_slow(least) && static_cast<double>(report.particles) * it >= least_work))
                 break;
         }
         report.is_balanced = best.mean <= calm_mean;
