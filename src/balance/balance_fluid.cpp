@@ -576,7 +576,6 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     if (all.is_empty()) return report;
     RestReach reach;
     reach.band_dp = bands(def);
-    reach.most_whole = most_balanced_whole;
     reach.threads = threads;
     reach.closest = [&](const Vec3& p, double within) { return all.closest_point(p, within); };
     FluidAtRest rest = gather_fluid(def, field, constants, particles, reach);

@@ -1,5 +1,7 @@
 #include "balance/fluid_at_rest.h"
 
+#include "fppg/balance.h"
+
 #include "balance/pressure_sums.h"
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
@@ -189,7 +191,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     for (const double band : reach.band_dp) widest = std::max(widest, band);
     const double forces = rest_reach_dp(rest) + list_skin_dp + 0.1;
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
-    const bool is_whole = particles.n_fluid <= reach.most_whole;
+    const bool is_whole = particles.n_fluid <= most_balanced_whole;
     const auto rhop0 = static_cast<float>(constants.rhop0);
     const NearBlocks blocks(field.walls.particles.positions, field.grid,
                             is_whole ? whole_lattice : side, 2, reach.threads);

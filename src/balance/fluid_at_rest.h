@@ -119,13 +119,12 @@ struct RestReach
 {
     /// Fluid of an absolute mk this near to a fitted wall may move, in dp; 0: it stays. 65536.
     std::vector<double> band_dp;
-    /// Where a case has no more fluid particles, all that are joined to such fluid move along.
-    std::size_t most_whole = 0;
     ClosestWallPoint closest;
     int threads = 1;
 };
 
-/// Gathers fluid that is near fitted walls, and fluid and boundary particles that its forces reach.
+/// Gathers fluid that is near fitted walls, in cases with up to most_balanced_whole of it what is
+/// joined to that, and fluid and boundary particles that its forces reach.
 /// Nothing where no fluid is near a fitted wall.
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach);

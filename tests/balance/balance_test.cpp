@@ -118,6 +118,15 @@ Vec3 acceleration_2d(const Result& r, double b, std::size_t i)
     return a;
 }
 
+/// A case whose walls are fitted, its fluid balanced or left even.
+ParticleCloud fitted(CaseText text, bool is_balanced)
+{
+    const TemporaryFolder folder;
+    text.after_geometry =
+        fmt::format(R"(<fppg><bodyfitted /><fluidband balance="{}" /></fppg>)", is_balanced);
+    return make(folder, text).cloud;
+}
+
 double distance_to_fluid(const ParticleCloud& cloud, const Vec3& p)
 {
     double out = 1e9;
@@ -215,15 +224,8 @@ TEST(Balance, RowsOfTheLatticeStayInOrder)
                     box_command(R"(x="0.03" y="-1" z="0.03")", R"(x="4.03" y="2" z="6")") +
                     R"(<setmkfluid mk="0" />)" +
                     box_command(R"(x="0.03" y="-1" z="0.03")", R"(x="4.03" y="2" z="5")");
-    const auto places = [&](const std::string& balance)
-    {
-        const TemporaryFolder folder;
-        text.after_geometry =
-            R"(<fppg><bodyfitted /><fluidband balance=")" + balance + R"(" /></fppg>)";
-        return make(folder, text).cloud;
-    };
-    const ParticleCloud even = places("false");
-    const ParticleCloud calm = places("true");
+    const ParticleCloud even = fitted(text, false);
+    const ParticleCloud calm = fitted(text, true);
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < even.positions.size(); ++i)
@@ -252,15 +254,8 @@ TEST(Balance, FluidFartherFromWallsMovesAlongAndWhatFallsStays)
         box_command(R"(x="1.8" y="-1" z="4.5")", R"(x="0.6" y="2" z="0.6")") +
         R"(<setmkbound mk="0" />)" +
         box_command(R"(x="0" y="-1" z="0")", R"(x="1.54" y="2" z="1.27")");
-    const auto places = [&](const std::string& balance)
-    {
-        const TemporaryFolder folder;
-        text.after_geometry =
-            R"(<fppg><bodyfitted /><fluidband balance=")" + balance + R"(" /></fppg>)";
-        return make(folder, text).cloud;
-    };
-    const ParticleCloud even = places("false");
-    const ParticleCloud calm = places("true");
+    const ParticleCloud even = fitted(text, false);
+    const ParticleCloud calm = fitted(text, true);
     double farthest = 0;
     int in_the_air = 0;
     for (std::size_t i = 0; i < even.positions.size(); ++i)
