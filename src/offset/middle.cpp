@@ -15,8 +15,8 @@ constexpr double least_height = 1e-9;
 
 } // namespace
 
-std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
-                                    double most)
+std::optional<InnerBall> touching_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
+                                       double most)
 {
     const Vec3 down = -wall.sign() * normal;
     InnerBall ball{foot + most * down, most};
@@ -38,8 +38,16 @@ std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, con
     if (!is_thin) return std::nullopt;
     const Vec3 up = ball.centre - other;
     const double size = norm(up);
-    if (!(size > 0) || !(dot(up, down) < facing_away * size)) return std::nullopt;
+    if (!(size > 0)) return std::nullopt;
+    ball.is_across = dot(up, down) < facing_away * size;
     return ball;
+}
+
+std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
+                                    double most)
+{
+    const auto ball = touching_ball(wall, foot, normal, most);
+    return ball && ball->is_across ? ball : std::nullopt;
 }
 
 Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)

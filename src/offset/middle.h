@@ -7,11 +7,12 @@
 namespace fppg
 {
 
-/// A ball inside a body that touches both sides of a thin part.
+/// A ball inside a body that touches its surface in two places.
 struct InnerBall
 {
     Vec3 centre; ///< on the middle of the part, its medial axis
     double radius = 0;
+    bool is_across = false; ///< the two places face away from each other by more than 120 degrees
 };
 
 /// The largest ball that touches the surface at a point and holds no other point of it (Ma, Bae and
@@ -19,8 +20,11 @@ struct InnerBall
 ///
 /// foot, normal  a point of a facet and the facet's normal
 /// most          metres
-/// returns       nothing where its radius would be more than `most`, or where the other side does
-///               not face away by more than 120 degrees
+/// returns       nothing where its radius would be more than `most`
+std::optional<InnerBall> touching_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
+                                       double most);
+
+/// The same where the other side faces away by more than 120 degrees: in thin parts.
 std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
                                     double most);
 

@@ -33,7 +33,7 @@ constexpr double alone_dp = 2;
 /// Particles within this reach crowd one another; of them one is taken out at most, dp.
 constexpr double reach_of_crowd_dp = 2;
 /// No more than this share of the particles in the layers of a body is taken out.
-constexpr double most_thinned = 0.05;
+constexpr double most_thinned = 0.15;
 
 /// The positions of two sets, in `joined` where both have some.
 const std::vector<Vec3>& positions_of_both(const WallParticles& particles,
@@ -187,7 +187,8 @@ private:
                         project_to_depth(*body.wall, particles.positions[i], body.depth);
             },
             1024);
-        const std::size_t crowded = leave_out_crowded(particles, others) + thin_shells(particles);
+        const std::size_t crowded =
+            leave_out_crowded(particles, others) + thin_shells(particles, others);
         take_new_counts(before, count_by_body(particles));
         add_report(done, spacing_of(particles, others), variation_before);
         report_.parts.back().particles = particles.size();
@@ -290,7 +291,9 @@ private:
     /// Closing holes leaves some 3 % too many particles in layers. In bodies that have all
     /// particles inside, the rest would be too sparse then. Takes out the most crowded ones until
     /// each stands for dp^3 of the shell; bodies that were cut keep theirs. Returns how many went.
-    std::size_t thin_shells(WallParticles& particles) const
+    ///
+    /// others  do not move, as the sheets in the middle of thin parts, and count as well
+    std::size_t thin_shells(WallParticles& particles, const WallParticles& others) const
     {
         const FittedWalls& walls = field_.walls;
         const double dp = field_.grid.dp;
@@ -298,27 +301,41 @@ private:
         for (const std::uint32_t b : walls.cut_bodies) cut.insert(&walls.owner_of(b));
         std::map<const FittedBody*, double> count;
         for (const std::uint32_t b : particles.bodies) ++count[&walls.owner_of(b)];
+        for (const std::uint32_t b : others.bodies)
+            if (const auto own = count.find(&walls.owner_of(b)); own != count.end()) ++own->second;
         std::map<const FittedBody*, double> excess;
         for (const auto& [body, number] : count)
             if (body->is_inside && !has_fixed_number(*body) && cut.count(body) == 0)
                 excess[body] = std::min(most_thinned * number,
                                         number - body->measures.shell_volume / (dp * dp * dp));
+        std::size_t all = 0;
+        while (const std::size_t taken = thin(particles, excess)) all += taken;
+        return all;
+    }
+
+    /// Takes out the most crowded particles of bodies that have too many, none within reach of
+    /// another one. Returns how many.
+    ///
+    /// excess  is less by those afterwards
+    std::size_t thin(WallParticles& particles, std::map<const FittedBody*, double>& excess) const
+    {
         if (std::none_of(excess.begin(), excess.end(), [](auto& e) { return e.second >= 1; }))
             return 0;
+        const FittedWalls& walls = field_.walls;
         std::vector<std::uint32_t> order(particles.size());
         std::iota(order.begin(), order.end(), 0u);
         const std::vector<double> crowd = crowds(particles.positions);
         std::stable_sort(order.begin(), order.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return crowd[a] > crowd[b]; });
         std::vector<char> goes(particles.size(), 0);
-        PointGrid gone(reach_of_crowd_dp * dp, 64);
+        PointGrid gone(reach_of_crowd_dp * field_.grid.dp, 64);
         std::size_t taken = 0;
         for (const std::uint32_t i : order)
         {
             const auto left = excess.find(&walls.owner_of(particles.bodies[i]));
             if (left == excess.end() || left->second < 1 || particles.held[i] != 0 ||
                 particles.kinds[i] != FitKind::Surface ||
-                gone.has_nearer(particles.positions[i], reach_of_crowd_dp * dp))
+                gone.has_nearer(particles.positions[i], reach_of_crowd_dp * field_.grid.dp))
                 continue;
             goes[i] = 1;
             gone.add(particles.positions[i]);

@@ -22,7 +22,9 @@ namespace
 using Matrix = std::array<Vec3, 3>;
 
 constexpr int most_rounds = 12;
-constexpr double longest_way_dp = 0.5;
+/// No particle moves farther, dp, or than this share of the body's size about its centre.
+constexpr double longest_way_dp = 0.75;
+constexpr double most_stretch = 0.03;
 constexpr double most_jump_dp = 0.02;
 /// Of the centre, dp, and of the second moments where fitting ends.
 constexpr double centre_tolerance = 1e-3;
@@ -334,14 +336,16 @@ private:
         if (misfit_of(now, off) < 1) return false;
         const Matrix stretch = stretch_for(now.second, off, 0.25 * dp_ * dp_);
         std::vector<Vec3> steps(way_.size());
-        double longest = 0;
+        double longest = 0, size = 0;
         for (std::size_t i = 0; i < way_.size(); ++i)
         {
+            size = std::max(size, norm(place(i) - now.centre));
             steps[i] = shift + times(stretch, place(i) - now.centre);
             longest = std::max(longest, norm(way_[i] + steps[i]));
         }
+        const double most = std::max(longest_way_dp * dp_, most_stretch * size);
         double share = 1;
-        if (longest > longest_way_dp * dp_)
+        if (longest > most)
         {
             double before = 0, step = 0;
             for (std::size_t i = 0; i < way_.size(); ++i)
@@ -349,7 +353,7 @@ private:
                 before = std::max(before, norm(way_[i]));
                 step = std::max(step, norm(steps[i]));
             }
-            share = (longest_way_dp * dp_ - before) / step;
+            share = (most - before) / step;
             if (share < 0.05) return false;
         }
         for (Vec3& step : steps) step = share * step;

@@ -120,12 +120,12 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
 {
     plan_ = plan;
     rounded_ = nullptr;
-    middle_.clear();
+    thin_ = {};
     near_middle_.reset();
     const double deepest = plan.depths_dp.empty() ? 0 : plan.depths_dp.back();
     wall_ = wall_of(side, is_closed, settings_.feature_angle_deg, deepest);
     if (wall_ == nullptr) return;
-    if (plan.middle_dp > 0) find_thin_parts(*wall_);
+    if (plan.middle_dp > 0) look_for_thin_parts(*wall_);
     // The number of particles inside a body is measured by its layers' facets.
     const double cell_dp =
         grid_.is_2d || out_.body.is_inside ? plan.cell_dp : layer_cell_dp(wall_->mesh(), grid_.dp);
@@ -234,25 +234,28 @@ MergedSheetOptions LayerBuilder::sheet_options() const
     if (plan_.number > 0)
         options.wanted =
             plan_.number > out_.particles.size() ? plan_.number - out_.particles.size() : 0;
+    else if (plan_.parts == 1 && thin_.volume > 0)
+        options.wanted =
+            static_cast<std::size_t>(std::lround(thin_.volume / std::pow(grid_.dp, 3)));
     if (grid_.is_2d) options.plane_y = grid_.origin.y;
     return options;
 }
 
 /// Where a part is too thin for a layer of each side.
-void LayerBuilder::find_thin_parts(const WallDepth& wall)
+void LayerBuilder::look_for_thin_parts(const WallDepth& wall)
 {
     sharp_ = find_features(wall.mesh(), feature_options(settings_, grid_), {},
                            grid_.is_2d ? bends_of(nullptr) : bends_of(out_.body.cad));
-    middle_ = find_middle(wall, sharp_, sheet_options(), threads_);
-    near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, middle_.size());
-    for (const MiddlePoint& p : middle_) near_middle_->add(p.position);
+    thin_ = find_thin_parts(wall, sharp_, sheet_options(), threads_);
+    near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, thin_.middle.size());
+    for (const MiddlePoint& p : thin_.middle) near_middle_->add(p.position);
 }
 
 void LayerBuilder::merge_sides()
 {
-    if (middle_.empty()) return;
-    SurfaceParticles sheet =
-        merged_sheet(*wall_, sharp_, middle_, out_.particles.positions, sheet_options(), threads_);
+    if (thin_.middle.empty()) return;
+    SurfaceParticles sheet = merged_sheet(*wall_, sharp_, thin_.middle, out_.particles.positions,
+                                          sheet_options(), threads_);
     FittedBody body;
     body.name = "shared layer";
     body.is_solid = out_.body.is_solid;

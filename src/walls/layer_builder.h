@@ -83,7 +83,7 @@ private:
     void name_owners(const WallDepth& wall, FittedBody& body) const;
     bool meets_other_side(const FittedBody& body, const Vec3& p) const;
     MergedSheetOptions sheet_options() const;
-    void find_thin_parts(const WallDepth& wall);
+    void look_for_thin_parts(const WallDepth& wall);
     void drop_crowded(const std::vector<char>& is_out, SurfaceParticles& particles,
                       std::vector<char>& goes);
     void add_particles(FittedBody& layer, std::uint32_t index);
@@ -97,7 +97,7 @@ private:
     std::shared_ptr<const WallDepth> wall_;
     std::shared_ptr<const WallDepth> rounded_; ///< made where a mitre fails
     Features sharp_;
-    std::vector<MiddlePoint> middle_; ///< of thin parts
+    ThinParts thin_;
     std::unique_ptr<PointGrid> near_middle_;
 };
 

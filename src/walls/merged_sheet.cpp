@@ -1,5 +1,7 @@
 #include "walls/merged_sheet.h"
 
+#include "fppg/features.h"
+
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 #include "offset/middle.h"
@@ -16,6 +18,9 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
+/// Cosine of what faces turn by at the rims of thin parts; at edges that turn by less, as those
+/// that facets of a twisted blade make, it goes on.
+constexpr double turn_at_rim = 0.5;
 /// Of a line in 2D: their number is met by the distance between those that are taken in turn.
 constexpr double sample_of_line_dp = 0.02;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
@@ -27,6 +32,9 @@ constexpr double step_dp = 0.25;
 /// Of sheets whose particles stand for dp^3, times dp.
 constexpr double closest_spacing = 0.7;
 constexpr double widest_spacing = 2.5;
+/// Rims of thin parts are so near to their middle, of the depth up to which they are thin: the
+/// diagonal of their corners.
+constexpr double rim_reach = 1.5;
 constexpr int rounds = 4;
 constexpr int steps_a_round = 12;
 
@@ -45,8 +53,11 @@ public:
                                 [](const auto& facets) { return facets[1] == no_index; });
         for (const std::uint32_t e : features.edges)
         {
+            const auto [f, other] = mesh.edge_facets[e];
             // Far rims of what is drawn out along y.
-            if (options.plane_y && mesh.edge_facets[e][1] == no_index) continue;
+            if (options.plane_y && other == no_index) continue;
+            if (other != no_index && dot(mesh.normals[f], mesh.normals[other]) > turn_at_rim)
+                continue;
             const Vec3& a = mesh.vertices[mesh.edges[e][0]];
             const Vec3 along = mesh.vertices[mesh.edges[e][1]] - a;
             const int parts = 1 + static_cast<int>(norm(along) / (0.2 * options.dp));
@@ -55,18 +66,34 @@ public:
         }
     }
 
+    /// The ball under a point of the surface, if the part is thin there or ends.
+    ///
+    /// normal  of the facet, unit
+    std::optional<InnerBall> ball_under(const Vec3& foot, const Vec3& normal) const
+    {
+        const auto ball = touching_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
+        if (!ball || (has_rims_ && is_at_rim(ball->centre, ball->radius))) return std::nullopt;
+        return ball;
+    }
+
     /// The middle under a point of the surface, if the part is thin there.
     ///
     /// normal  of the facet, unit
     std::optional<MiddlePoint> under(const Vec3& foot, const Vec3& normal,
                                      std::uint32_t facet) const
     {
-        const auto ball = inner_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
-        if (!ball || (has_rims_ && is_at_rim(ball->centre, ball->radius))) return std::nullopt;
-        if (options_.off_edges_dp > 0 &&
-            edges_.has_nearer(ball->centre, options_.off_edges_dp * options_.dp))
+        const auto ball = ball_under(foot, normal);
+        return ball ? at(*ball, facet) : std::nullopt;
+    }
+
+    /// The middle at the centre of a ball, if it is one.
+    std::optional<MiddlePoint> at(const InnerBall& ball, std::uint32_t facet) const
+    {
+        if (!ball.is_across ||
+            (options_.off_edges_dp > 0 &&
+             edges_.has_nearer(ball.centre, options_.off_edges_dp * options_.dp)))
             return std::nullopt;
-        return MiddlePoint{ball->centre, facet, spacing_at(2 * ball->radius)};
+        return MiddlePoint{ball.centre, facet, spacing_at(2 * ball.radius)};
     }
 
     /// A point back on the middle.
@@ -127,6 +154,41 @@ void for_each_sample(const SurfaceMesh& mesh, std::size_t f, double apart, const
         }
 }
 
+/// What lies under a facet where the part is thin.
+struct ThinFacet
+{
+    std::vector<MiddlePoint> middle;
+    double volume = 0; ///< above the middle, metres cubed
+    /// Centres of balls that touch an edge's other face, and the volume above them: at the rims of
+    /// thin parts, and along edges of thick ones.
+    std::vector<std::pair<Vec3, double>> ends;
+};
+
+ThinFacet sample_facet(std::uint32_t f, const Middle& middle, const SurfaceMesh& mesh, double dp)
+{
+    ThinFacet out;
+    std::size_t samples = 0;
+    for_each_sample(mesh, f, sample_dp * dp,
+                    [&](const Vec3& p)
+                    {
+                        ++samples;
+                        const auto ball = middle.ball_under(p, mesh.normals[f]);
+                        if (!ball) return;
+                        if (const auto at = middle.at(*ball, f))
+                        {
+                            out.middle.push_back(*at);
+                            out.volume += ball->radius;
+                        }
+                        else
+                            out.ends.emplace_back(ball->centre, ball->radius);
+                    });
+    if (samples == 0) return out;
+    const double area = mesh.areas[f] / static_cast<double>(samples);
+    out.volume *= area;
+    for (auto& [centre, volume] : out.ends) volume *= area;
+    return out;
+}
+
 /// Along a line of the section of a 2D case, which two facets were drawn out of: the first is
 /// asked.
 void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mesh,
@@ -147,17 +209,22 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
             out.push_back(*at);
 }
 
-/// Takes candidates that are at least `spacing` from all that is taken, up to a number.
+/// Takes candidates that are at least `spacing` from all that is taken, dp, up to a number; at
+/// least least_pair_dp from what keeps its place, for the others are evened out.
 void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
-          double spacing, std::size_t most, std::vector<MiddlePoint>& sheet)
+          double spacing, double dp, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
-    PointGrid grid(spacing, taken.size() + sheet.size());
-    for (const Vec3& p : taken) grid.add(p);
+    PointGrid held(std::max(spacing, least_pair_dp) * dp, taken.size());
+    for (const Vec3& p : taken) held.add(p);
+    PointGrid grid(spacing * dp, sheet.size());
     for (const MiddlePoint& p : sheet) grid.add(p.position);
     for (const MiddlePoint& p : candidates)
     {
         if (sheet.size() >= most) break;
-        if (grid.has_nearer(p.position, spacing * p.spacing)) continue;
+        const double apart = spacing * p.spacing;
+        if (grid.has_nearer(p.position, apart * dp) ||
+            held.has_nearer(p.position, std::max(apart, least_pair_dp) * dp))
+            continue;
         grid.add(p.position);
         sheet.push_back(p);
     }
@@ -172,13 +239,30 @@ void take_number(const std::vector<MiddlePoint>& candidates, const std::vector<V
     {
         const double spacing = 0.5 * (near + far);
         sheet.clear();
-        take(candidates, taken, spacing * dp, wanted + 1, sheet);
+        take(candidates, taken, spacing, dp, wanted + 1, sheet);
         (sheet.size() > wanted ? near : far) = spacing;
     }
     sheet.clear();
-    take(candidates, taken, far * dp, wanted, sheet);
+    take(candidates, taken, far, dp, wanted, sheet);
     for (double spacing = far; sheet.size() < wanted && spacing > 0.3; spacing *= 0.97)
-        take(candidates, taken, spacing * dp, wanted, sheet);
+        take(candidates, taken, spacing, dp, wanted, sheet);
+}
+
+/// Whether a particle comes nearer than `least` to one that keeps its place, and nearer than it
+/// was.
+///
+/// first  of those, in `grid`
+bool comes_near(const PointGrid& grid, std::size_t first, const Vec3& from, const Vec3& to,
+                double least)
+{
+    bool found = false;
+    grid.for_each_near(to, least,
+                       [&](std::uint32_t j, double squared)
+                       {
+                           const Vec3 before = from - grid.points()[j];
+                           found = found || (j >= first && squared < dot(before, before));
+                       });
+    return found;
 }
 
 /// One step away from the neighbours, back onto the middle.
@@ -208,7 +292,10 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
             const double size = norm(force);
             const double most = 0.1;
             const Vec3 step = (size > most ? most / size : 1) * step_dp * 4 * dp * force;
-            if (const auto at = middle.back(sheet[i].position + step)) moved[i] = *at;
+            const auto at = middle.back(sheet[i].position + step);
+            if (at && !comes_near(grid, sheet.size(), sheet[i].position, at->position,
+                                  least_pair_dp * dp))
+                moved[i] = *at;
         },
         64);
     sheet = std::move(moved);
@@ -216,32 +303,35 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
 
 } // namespace
 
-std::vector<MiddlePoint> find_middle(const WallDepth& wall, const Features& features,
-                                     const MergedSheetOptions& options, int threads)
+ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
+                          const MergedSheetOptions& options, int threads)
 {
     const Middle middle(wall, features, options);
     const SurfaceMesh& mesh = wall.mesh();
-    std::vector<std::vector<MiddlePoint>> of_facet(mesh.facets.size());
+    std::vector<ThinFacet> of_facet(mesh.facets.size());
     parallel_for(
         mesh.facets.size(), threads,
         [&](std::size_t f)
         {
             if (options.plane_y)
-            {
-                sample_line(f, middle, mesh, options, of_facet[f]);
-                return;
-            }
-            for_each_sample(mesh, f, sample_dp * options.dp,
-                            [&](const Vec3& p)
-                            {
-                                if (const auto at = middle.under(p, mesh.normals[f],
-                                                                 static_cast<std::uint32_t>(f)))
-                                    of_facet[f].push_back(*at);
-                            });
+                sample_line(f, middle, mesh, options, of_facet[f].middle);
+            else
+                of_facet[f] = sample_facet(static_cast<std::uint32_t>(f), middle, mesh, options.dp);
         },
         16);
-    std::vector<MiddlePoint> out;
-    for (const auto& points : of_facet) out.insert(out.end(), points.begin(), points.end());
+    ThinParts out;
+    for (const ThinFacet& facet : of_facet)
+    {
+        out.middle.insert(out.middle.end(), facet.middle.begin(), facet.middle.end());
+        out.volume += facet.volume;
+    }
+    if (out.middle.empty()) return out;
+    const double reach = rim_reach * options.least_depth_dp * options.dp;
+    PointGrid grid(reach, out.middle.size());
+    for (const MiddlePoint& p : out.middle) grid.add(p.position);
+    for (const ThinFacet& facet : of_facet)
+        for (const auto& [centre, volume] : facet.ends)
+            if (grid.has_nearer(centre, reach)) out.volume += volume;
     return out;
 }
 
@@ -291,12 +381,12 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
     if (options.wanted)
         take_number(points, taken, options.dp, *options.wanted, sheet);
     else
-        take(points, taken, first_spacing_dp * options.dp, no_limit, sheet);
+        take(points, taken, first_spacing_dp, options.dp, no_limit, sheet);
     for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);
-        if (!options.wanted) take(points, taken, hole_dp * options.dp, no_limit, sheet);
+        if (!options.wanted) take(points, taken, hole_dp, options.dp, no_limit, sheet);
     }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)
