@@ -19,6 +19,8 @@ namespace
 
 /// Of the nodes in a body that fills gave particles.
 constexpr double filled_body = 0.98;
+/// Of the volume of a mesh, that its parts have in common.
+constexpr double overlapping = 1e-3;
 /// Of the volume of a flexible body, which is warned of.
 constexpr double flexible_off = 0.01;
 
@@ -38,6 +40,21 @@ const FittedBody* solid_of(const FittedWalls& walls, const ParticleBlock& block)
         !(found->measures.volume > 0))
         return nullptr;
     return found;
+}
+
+/// Whether a body of facets has another volume than its fitted solid, which counts what parts of
+/// its mesh have in common once.
+bool differs_from(const ExactBody& shape, const FittedBody& solid)
+{
+    return solid.round == nullptr && solid.cad == nullptr && solid.measures.kept >= 1 &&
+           std::abs(shape.volume / solid.measures.volume - 1) > overlapping;
+}
+
+/// The body that the facets of a solid bound, if no parts of them overlap.
+std::optional<ExactBody> facets_of(const FittedBody& solid)
+{
+    ExactBody out = body_of_facets(soup_of(solid.mesh));
+    return differs_from(out, solid) ? std::nullopt : std::optional(std::move(out));
 }
 
 std::vector<std::string> row_of(const std::string& mk, const char* of, const ExactBody& body,
@@ -84,12 +101,18 @@ std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& w
                                         const ParticleBlock& block, std::string& why_not)
 {
     std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
-    if (shape || scene.def->grid.is_2d) return shape;
+    if (scene.def->grid.is_2d) return shape;
     const FittedBody* body = solid_of(walls, block);
-    if (body == nullptr || body->facet_mk.empty()) return std::nullopt;
-    shape = body_of_facets(soup_of(body->mesh));
-    shape->shape =
-        fmt::format("<{}> of line {} and what is combined with it", body->name, body->line);
+    if (body == nullptr || (shape && !differs_from(*shape, *body))) return shape;
+    if (!shape && body->facet_mk.empty()) return std::nullopt;
+    const std::string name =
+        shape ? shape->shape
+              : fmt::format("<{}> of line {} and what is combined with it", body->name, body->line);
+    shape = facets_of(*body);
+    if (shape)
+        shape->shape = name;
+    else
+        why_not = "parts of its mesh overlap, or it is open";
     return shape;
 }
 
@@ -169,13 +192,19 @@ void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticle
     std::vector<std::vector<std::string>> rows{{"mkbound", "of", "volume m3", "mass kg",
                                                 "centre x m", "y", "z", "inertia xx kg m2", "yy",
                                                 "zz"}};
+    std::vector<std::string> overlap;
     for (const ParticleBlock& block : particles.blocks)
     {
         const FittedBody* body = solid_of(walls, block);
         if (body == nullptr || block.type == ParticleType::Fluid || block.count == 0) continue;
         std::string why_not;
         std::optional<ExactBody> shape = shape_of_block(scene, walls, block, why_not);
-        if (!shape) shape = body_of_facets(soup_of(body->mesh));
+        if (!shape) shape = facets_of(*body);
+        if (!shape)
+        {
+            overlap.push_back(fmt::format("{}", block.mk_type));
+            continue;
+        }
         const ExactBody found = body_of_particles(particles, block, body->is_inside);
         const double density = density_of(def, block, constants.rhop0);
         rows.push_back(row_of(fmt::format("{}", block.mk_type), "shape", *shape, density));
@@ -192,9 +221,16 @@ void log_bodies(const Scene& scene, const FittedWalls& walls, const CaseParticle
         log.fact("body",
                  {{"mkbound", block.mk_type}, {"shape", fact(*shape)}, {"particles", fact(found)}});
     }
-    if (rows.size() == 1) return;
-    log.text_line("Fitted solids and their particles:");
-    log.text_line(text_table(rows, 2, "  "));
+    if (rows.size() > 1)
+    {
+        log.text_line("Fitted solids and their particles:");
+        log.text_line(text_table(rows, 2, "  "));
+    }
+    if (!overlap.empty())
+        log.text_line(
+            fmt::format("No exact volume, centre and inertia of the shape of mkbound {}: "
+                        "parts of its mesh overlap, or it is open.",
+                        fmt::join(overlap, ", ")));
 }
 
 } // namespace fppg

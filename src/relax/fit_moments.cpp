@@ -31,6 +31,8 @@ constexpr double centre_tolerance = 1e-3;
 constexpr double moment_tolerance = 2e-4;
 /// Bodies whose particles have another volume by more are cut.
 constexpr double whole = 0.03;
+/// Parts of those whose facets bound another volume by more overlap.
+constexpr double overlapping = 0.005;
 /// Particles come so far apart where there is room, dp; else least_pair_dp.
 constexpr double even_pair_dp = 0.75;
 /// So often particles are parted and moments fitted in turn.
@@ -118,7 +120,7 @@ public:
         shape_ = moments_of(body.mesh);
         spread();
         if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
-            std::abs(shape_.volume / body.measures.volume - 1) > whole)
+            std::abs(shape_.volume / body.measures.volume - 1) > overlapping)
             return put_distances();
         const std::vector<Vec3> start = places();
         for (int pass = 0; pass < passes_apart && !fit(even_pair_dp); ++pass) spread();
