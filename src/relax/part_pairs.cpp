@@ -108,4 +108,21 @@ double part_pairs(std::vector<Vec3>& places, std::size_t moving, double least, c
     return std::min(best_distance, least);
 }
 
+void put_back_crowded(std::vector<Vec3>& places, const std::vector<Vec3>& starts, double least,
+                      int threads)
+{
+    bool is_changed = true;
+    while (is_changed)
+    {
+        is_changed = false;
+        const std::vector<double> nearest = nearest_distances(places, least, threads);
+        for (std::size_t i = 0; i < places.size(); ++i)
+        {
+            if (nearest[i] >= least * (1 - 1e-9) || places[i] == starts[i]) continue;
+            places[i] = starts[i];
+            is_changed = true;
+        }
+    }
+}
+
 } // namespace fppg

@@ -22,4 +22,11 @@ using PutBeside = std::function<Vec3(std::size_t, const Vec3& from, const Vec3& 
 double part_pairs(std::vector<Vec3>& places, std::size_t moving, double least, const PutBeside& put,
                   int threads);
 
+/// Puts points that came nearer to another one than `least`, metres, back to where they started,
+/// and so on until none is left but those that were so near at first.
+///
+/// starts  of each of the places
+void put_back_crowded(std::vector<Vec3>& places, const std::vector<Vec3>& starts, double least,
+                      int threads);
+
 } // namespace fppg

@@ -1,5 +1,7 @@
 #include "fppg/relax_volume.h"
 
+#include "fppg/features.h"
+
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
 #include "fppg/error.h"
@@ -363,6 +365,7 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     check(options, positions, surroundings);
     RelaxVolumeReport report;
     if (positions.empty()) return report;
+    const std::vector<Vec3> before = surroundings.slides.empty() ? std::vector<Vec3>{} : positions;
     Band band = make_band(positions, surroundings, options, threads);
     NeighbourList list(0, 0);
     build_list(list, band, options.h_dp, threads);
@@ -415,6 +418,15 @@ RelaxVolumeReport relax_volume(std::vector<Vec3>& positions, const VolumeSurroun
     give_back(band, surroundings, options, threads, positions, report);
     if (options.fit_count && options.least_pair_dp > 0)
         drop_crowded(surroundings, options.least_pair_dp * options.dp, threads, positions, report);
+    if (!before.empty())
+    {
+        // In thin parts particles that slide on layers may be put back to one place of these.
+        std::vector<Vec3> starts = positions;
+        const std::size_t there = report.sources.empty() ? positions.size() : report.kept;
+        for (std::size_t i = 0; i < there; ++i)
+            starts[i] = before[report.sources.empty() ? i : report.sources[i]];
+        put_back_crowded(positions, starts, least_pair_dp * options.dp, threads);
+    }
     return report;
 }
 

@@ -75,5 +75,18 @@ TEST(PartPairs, IsTheSameWithAnyNumberOfThreads)
     EXPECT_EQ(one, many);
 }
 
+/// Those that came to one place go back, and what is in their way then, too.
+TEST(PutBackCrowded, LeavesNoneNearerThanAtFirst)
+{
+    const std::vector<Vec3> starts{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}, {5.3, 0, 0}};
+    std::vector<Vec3> places{{0.9, 0, 0}, {0.91, 0, 0}, {1.1, 0, 0}, {5, 0.2, 0}, {5.3, 0, 0}};
+    put_back_crowded(places, starts, 0.6, 1);
+    EXPECT_EQ(places, starts);
+    places[2] = {2.1, 0, 0};
+    const std::vector<Vec3> apart = places;
+    put_back_crowded(places, starts, 0.6, 1);
+    EXPECT_EQ(places, apart);
+}
+
 } // namespace
 } // namespace fppg
