@@ -64,7 +64,8 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
 /// dp^2 and evenly spaced.
 ///
 /// From points on the middle the sheet is filled at 0.92 dp, relaxed on the middle, and filled
-/// where it is 0.83 dp from all.
+/// where it is 0.83 dp from all; or, with a number wanted, with so many as far apart as may be, and
+/// relaxed. None comes nearer to `taken` than least_pair_dp.
 ///
 /// taken    particles of layers already there, which keep their place
 /// returns  positions, and the facet under each
