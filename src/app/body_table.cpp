@@ -100,10 +100,11 @@ double density_of(const CaseDef& def, const ParticleBlock& block, double rhop0)
 std::optional<ExactBody> shape_of_block(const Scene& scene, const FittedWalls& walls,
                                         const ParticleBlock& block, std::string& why_not)
 {
-    std::optional<ExactBody> shape = exact_body(scene, block.mk, why_not);
-    if (scene.def->grid.is_2d) return shape;
     const FittedBody* body = solid_of(walls, block);
-    if (body == nullptr || (shape && !differs_from(*shape, *body))) return shape;
+    // The facets of fitted solids are turned.
+    std::optional<ExactBody> shape = exact_body(scene, block.mk, body == nullptr, why_not);
+    if (scene.def->grid.is_2d || body == nullptr || (shape && !differs_from(*shape, *body)))
+        return shape;
     if (!shape && body->facet_mk.empty()) return std::nullopt;
     const std::string name =
         shape ? shape->shape

@@ -1,5 +1,7 @@
 #include "scene/exact_body.h"
 
+#include "fppg/surface_mesh.h"
+
 #include "scene/surfaces.h"
 #include "shapes/shape.h"
 
@@ -22,9 +24,19 @@ bool stays_in(const Combination& combination, std::uint16_t mk)
     return false;
 }
 
+/// The body of a closed mesh all of whose shells look outwards.
+ExactBody body_of_turned(const MeshFileOp& file, const MeshFile& mesh)
+{
+    TriangleSoup soup;
+    for (const Vec3& v : mesh.soup.vertices) soup.vertices.push_back(file.transform(v));
+    MeshReport report;
+    return body_of_facets(soup_of(repair_mesh(soup, {}, 1, report)));
+}
+
 } // namespace
 
-std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::string& why_not)
+std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, bool turns_shells,
+                                    std::string& why_not)
 {
     if (scene.def->grid.is_2d)
     {
@@ -54,9 +66,13 @@ std::optional<ExactBody> exact_body(const Scene& scene, std::uint16_t mk, std::s
                                 : fmt::format("{} draws make it", draws.size());
         return std::nullopt;
     }
-    std::optional<ExactBody> body = body_of(
-        std::get<Shape>(draws.front()->what),
-        {*draws.front()->state, scene.def->grid, mesh_of(scene, *draws.front(), 1)}, why_not);
+    const Shape& shape = std::get<Shape>(draws.front()->what);
+    const MeshFile* mesh = mesh_of(scene, *draws.front(), 1);
+    std::optional<ExactBody> body =
+        body_of(shape, {*draws.front()->state, scene.def->grid, mesh}, why_not);
+    const auto* file = std::get_if<MeshFileOp>(&shape);
+    if (body && turns_shells && file != nullptr && mesh->cad == nullptr)
+        body = body_of_turned(*file, *mesh);
     if (body)
         body->shape = fmt::format("<{}> of line {}", draws.front()->source.command,
                                   draws.front()->source.line);

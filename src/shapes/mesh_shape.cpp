@@ -1,5 +1,4 @@
 #include "fppg/error.h"
-#include "fppg/surface_mesh.h"
 
 #include "meshes/cad_surface.h"
 #include "shapes/file_polygons.h"
@@ -123,11 +122,7 @@ std::optional<ExactBody> body_of(const MeshFileOp& file, const ShapeContext& con
     // Of a CAD model not its facets, but its exact faces.
     if (out && context.mesh->cad != nullptr)
         if (auto exact = body_of_parts(context.mesh->cad->parts, file.transform)) return exact;
-    if (!out) return out;
-    // Shells of a file need not all look outwards.
-    MeshReport report;
-    const SurfaceMesh mesh = repair_mesh(soup, {}, 1, report);
-    return report.flipped_facets > 0 ? body_of_facets(soup_of(mesh)) : out;
+    return out;
 }
 
 } // namespace fppg::kinds

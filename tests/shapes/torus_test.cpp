@@ -223,7 +223,7 @@ TEST(Torus, GivesAFloatingBodyItsExactMassAndCentre)
     const CaseDef def = case_with(torus_command("radius=\"0.4\" tube=\"0.2\"", upright));
     const Scene scene = make_scene(def);
     std::string why_not;
-    const auto body = exact_body(scene, def.mk_bound_first, why_not);
+    const auto body = exact_body(scene, def.mk_bound_first, true, why_not);
     ASSERT_TRUE(body) << why_not;
     EXPECT_NEAR(body->volume, volume_of(0.4, 0.2), 1e-12);
     EXPECT_EQ(body->center, (Vec3{0.4, 0.4, 0.4}));
