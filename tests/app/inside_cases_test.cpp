@@ -261,8 +261,8 @@ std::string impeller(double size)
     return out + "endsolid impeller\n";
 }
 
-/// What was before: at 1 dp its blades had a seventh of their particles and its hub the rest, so
-/// that its inertia was 11 % too small; 1.4 % at 2 dp, and 5 % too large at 3.
+/// What was before: at 1 dp its blades had a third of their particles and its hub the rest, so
+/// that its inertia was 12 % too small; 0.8 % at 2 dp, and 5.7 % too large at 3.
 class ThinBlades : public testing::TestWithParam<int>
 {
 };
