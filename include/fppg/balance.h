@@ -33,13 +33,14 @@ struct BalanceProgress
 /// slides along the rest if that stays (2D, 30 dp deep, stairs off the lattice, DBC, after 0.3 and
 /// 1 s: mean 0.0093 and 0.0123 m/s; all balanced 0.0019, and 0.0033 after 1 s; GenCase's particles
 /// 0.0056 and 0.0122).
-inline constexpr std::size_t most_balanced_whole = 50000;
+inline constexpr std::size_t most_balanced_whole = 200000;
 
 struct BalanceReport
 {
     std::size_t particles = 0; ///< near walls, that may move; all else here is of them
     std::size_t held = 0; ///< of the fluid near walls, as a free face that is not level is near
     int iterations = 0;
+    bool is_packed = false;   ///< all fluid is on close packed lattices now
     bool is_balanced = false; ///< false: accelerations stay too large, the fluid is left as it was
     Accelerations before, after;
     double mean_move_dp = 0;
@@ -66,6 +67,11 @@ struct BalanceReport
 /// has that acceleration, and so has all that is moved: where it was brought to zero,
 /// fluid beside walls slid along the rest at 0.01 to 0.03 g (2D tanks of 50 dp: mean speed after
 /// 0.2 s 0.0066 m/s, now 0.0012).
+///
+/// Where all fluid is moved and none held it is laid on close packed lattices first, which stay at
+/// rest, unlike cubic ones (balance/close_packing.h), and brought to rest for good, without a fall.
+/// It keeps its numbers and levels; ids of one mk go along x, then y, then z. Where more than 0.01
+/// g would be left in the mean, it is left on its lattice.
 ///
 /// Fluid of a free face that is not level stays, with all within 2h of it: it is meant to fall, as
 /// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.1 g

@@ -215,8 +215,14 @@ void log_balance(const BalanceReport& report, RunLog& log)
                     "{:.3f} dp, {:.2f} dp at most",
                     thousands(report.particles), held, report.iterations, report.mean_move_dp,
                     report.largest_move_dp));
-    log.line(fmt::format("  accelerations beside those of a lattice at rest: {}; before: {}",
-                         text(report.after), text(report.before)));
+    if (report.is_packed)
+        log.line(
+            fmt::format("  all fluid is packed closely (<fluidband packing=\"cubic\"> keeps it "
+                        "on its lattice); accelerations: {}; before: {}",
+                        text(report.after), text(report.before)));
+    else
+        log.line(fmt::format("  accelerations beside those of a lattice at rest: {}; before: {}",
+                             text(report.after), text(report.before)));
 }
 
 } // namespace fppg

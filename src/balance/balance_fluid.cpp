@@ -1,5 +1,6 @@
 #include "fppg/balance.h"
 
+#include "balance/close_packing.h"
 #include "balance/coarse_steps.h"
 #include "balance/fluid_at_rest.h"
 #include "balance/lattice_fall.h"
@@ -7,9 +8,9 @@
 #include "balance/take_places.h"
 #include "balance/wall_pressure.h"
 #include "core/parallel.h"
-#include "core/parallel_sort.h"
 #include "particles/initials.h"
 #include "relax/all_walls.h"
+#include "relax/group_list.h"
 #include "relax/wall_planes.h"
 
 #include <fmt/format.h>
@@ -87,6 +88,8 @@ constexpr double calm_mean = 0.1;
 /// And where it is above this at the first check: in all cases tried those that came to rest were
 /// below 0.09 then, the others above 0.4.
 constexpr double hopeless_mean = 0.25;
+/// Fluid that is packed closely and keeps more than this in the mean is left on its lattice.
+constexpr double calm_packed = 0.01;
 
 /// Why a case is not balanced; empty where it is.
 std::string reason_against(const CaseDef& def, const CaseConstants& constants,
@@ -110,6 +113,11 @@ RestBoundary boundary_of(const CaseDef& def)
     return def.solver.slip_mode == 1 ? RestBoundary::Mdbc : RestBoundary::Mdbc2;
 }
 
+double least_distance_dp(RestBoundary boundary)
+{
+    return boundary == RestBoundary::Dbc ? least_distance_dbc : least_distance_mdbc;
+}
+
 /// Moves particles along their accelerations until these are small.
 class Balancer
 {
@@ -123,7 +131,7 @@ public:
           list_(static_cast<float>(rest_reach_dp(rest)), static_cast<float>(list_skin)),
           ghosts_(rest, boundary),
           has_ghosts_(boundary != RestBoundary::Dbc),
-          least_distance_(has_ghosts_ ? least_distance_mdbc : least_distance_dbc)
+          least_distance_(least_distance_dp(boundary))
     {
     }
 
@@ -133,7 +141,6 @@ public:
         start_at_rest();
         set_points();
         renew_lists(true);
-        report.held = hold_free_faces(rest_, list_, threads_);
         coarse_.emplace(
             rest_.positions, [&](std::size_t i) { return moves(i); }, coarse_cell * rest_.dp);
         renew_pressures();
@@ -527,40 +534,16 @@ private:
     double momentum_ = 0;
 };
 
-std::vector<double> bands(const CaseDef& def)
+bool packs(const CaseDef& def)
 {
-    // Farther from walls than the reach of kernels, fluid lies as even as it was made.
-    const double least = 2 * def.h / def.grid.dp + 1.5;
-    std::vector<double> out(65536, 0);
-    for (std::uint16_t mk = 0; mk < def.mk_bound_first; ++mk)
-        if (const FluidBand* band = fluid_band(def, mk))
-            out[mk] = band->is_active && band->balances ? std::max(least, band->width_dp) : 0;
-    return out;
+    return std::all_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                       [](const FluidBand& band) { return band.packs_closely; });
 }
 
-/// Gives the particles of a case what balancing found.
-void take_over(const CaseDef& def, const FluidAtRest& rest, int threads, CaseParticles& particles)
+std::size_t near_walls(const FluidAtRest& rest)
 {
-    std::vector<NewPlace> places;
-    particles.bound_rhop.assign(particles.np - particles.n_fluid, static_cast<float>(rest.rhop0));
-    bool is_at_limit = false;
-    for (std::size_t i = 0; i < rest.size(); ++i)
-    {
-        if (rest.roles[i] == RestRole::Bound)
-            particles.bound_rhop[rest.ids[i]] = static_cast<float>(rest.densities[i]);
-        if (!rest.moves(i)) continue;
-        places.push_back({rest.ids[i], rest.positions[i], static_cast<float>(rest.densities[i])});
-        for (int axis = 0; axis < 3; ++axis)
-            is_at_limit = is_at_limit ||
-                          rest.positions[i][axis] < particles.pos_min[axis] + 1.5 * rest.dp ||
-                          rest.positions[i][axis] > particles.pos_max[axis] - 1.5 * rest.dp;
-    }
-    parallel_sort(places, threads,
-                  [](const NewPlace& a, const NewPlace& b) { return a.id < b.id; });
-    take_places(particles, places);
-    const bool is_periodic = std::any_of(def.grid.is_periodic.begin(), def.grid.is_periodic.end(),
-                                         [](bool is) { return is; });
-    if (is_at_limit && !is_periodic) set_limits(def, particles);
+    return static_cast<std::size_t>(
+        std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
 }
 
 } // namespace
@@ -575,19 +558,35 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     const AllWalls all(field.walls.bodies, field.grid, threads);
     if (all.is_empty()) return report;
     RestReach reach;
-    reach.band_dp = bands(def);
+    reach.band_dp = balanced_bands(def);
     reach.threads = threads;
     reach.closest = [&](const Vec3& p, double within) { return all.closest_point(p, within); };
     FluidAtRest rest = gather_fluid(def, field, constants, particles, reach);
-    report.particles = static_cast<std::size_t>(
-        std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
+    report.particles = near_walls(rest);
     if (report.particles == 0) return report;
+    report.held = hold_free_faces(rest, threads);
+    const RestBoundary boundary = boundary_of(def);
+    const double least_distance = least_distance_dp(boundary) * rest.dp;
+    FluidAtRest packed = rest;
+    if (packs(def) && pack_closely(packed, particles, least_distance, reach.closest, threads))
+    {
+        BalanceReport of_packed = report;
+        of_packed.is_packed = true;
+        of_packed.particles = near_walls(packed);
+        Balancer(packed, LatticeFall(), reach.closest, boundary, threads)
+            .run(of_packed, on_iteration);
+        if (of_packed.after.mean <= calm_packed)
+        {
+            take_over(def, packed, threads, particles);
+            return of_packed;
+        }
+    }
     double deepest = 0;
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (rest.moves(i))
             deepest = std::max(deepest, rest.levels[i] - rest.height(rest.positions[i]));
     const LatticeFall fall(rest, field.grid, constants.mass_fluid, deepest);
-    Balancer(rest, fall, reach.closest, boundary_of(def), threads).run(report, on_iteration);
+    Balancer(rest, fall, reach.closest, boundary, threads).run(report, on_iteration);
     take_over(def, rest, threads, particles);
     return report;
 }

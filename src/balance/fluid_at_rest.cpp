@@ -7,6 +7,7 @@
 #include "meshes/point_grid.h"
 #include "particles/particle_stream.h"
 #include "particles/run_positions.h"
+#include "relax/group_list.h"
 #include "relax/lattice_strips.h"
 #include "relax/near_blocks.h"
 
@@ -173,6 +174,17 @@ void hold_at_other_walls(const RawArray<NearParticle>& fluid, const RawArray<Nea
 
 } // namespace
 
+std::vector<double> balanced_bands(const CaseDef& def)
+{
+    // Farther from walls than the reach of kernels, fluid lies as even as it was made.
+    const double least = 2 * def.h / def.grid.dp + 1.5;
+    std::vector<double> out(65536, 0);
+    for (std::uint16_t mk = 0; mk < def.mk_bound_first; ++mk)
+        if (const FluidBand* band = fluid_band(def, mk))
+            out[mk] = band->is_active && band->balances ? std::max(least, band->width_dp) : 0;
+    return out;
+}
+
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach)
 {
@@ -250,7 +262,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     return rest;
 }
 
-std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int threads)
+std::size_t hold_free_faces(FluidAtRest& rest, int threads)
 {
     // Of a lattice, the rows at a free face have 0.6 to 0.7 / h, those at a sheet 0.5 at most.
     constexpr double least = 0.55;
@@ -270,6 +282,10 @@ std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int thread
                 PackedPoint{field.points.x[i], field.points.y[i], field.points.z[i], 1};
         },
         4096);
+    GroupList list(static_cast<float>(rest_reach_dp(rest)), 0);
+    list.build(
+        field.points, threads, [&](std::size_t i) { return rest.moves(i); },
+        [](std::size_t) { return true; });
     const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
     std::vector<char> is_face(rest.size(), 0);
     list.for_each_group(threads,

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/raw_array.h"
-#include "relax/group_list.h"
+#include "relax/cell_rows.h"
 #include "relax/kernel.h"
 
 #include <algorithm>
@@ -114,6 +114,9 @@ inline double rest_reach_dp(const FluidAtRest& rest)
     return 2 * rest.h / rest.dp;
 }
 
+/// The bands of RestReach, by the `<fluidband>` of a case.
+std::vector<double> balanced_bands(const CaseDef& def);
+
 /// How far gather_fluid() looks.
 struct RestReach
 {
@@ -129,9 +132,8 @@ struct RestReach
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach);
 
-/// Holds fluid within 2h of a free face that is not level. The number of those held.
-///
-/// list  of all particles that may move, made where they are
-std::size_t hold_free_faces(FluidAtRest& rest, const GroupList& list, int threads);
+/// Holds fluid within 2h of a free face that is not level. The number of those held, of fluid near
+/// walls.
+std::size_t hold_free_faces(FluidAtRest& rest, int threads);
 
 } // namespace fppg

@@ -90,6 +90,7 @@ LatticeFall::LatticeFall(const FluidAtRest& rest, const LatticeGrid& grid, doubl
 
 bool LatticeFall::is_on_row(const Vec3& place) const
 {
+    if (table_.empty()) return false;
     if (!axis_) return true;
     const double row = (place[*axis_] - first_row_) / step_;
     return std::abs(row - std::round(row)) < off_row;
@@ -97,6 +98,7 @@ bool LatticeFall::is_on_row(const Vec3& place) const
 
 Vec3 LatticeFall::at(double depth) const
 {
+    if (table_.empty()) return {};
     const double place =
         std::clamp((depth - first_) / step_, 0.0, static_cast<double>(table_.size() - 1));
     const auto low = std::min(static_cast<std::size_t>(place), table_.size() - 2);

@@ -17,6 +17,8 @@ namespace fppg
 class LatticeFall
 {
 public:
+    /// None: of fluid all of which is brought to rest.
+    LatticeFall() = default;
     /// A table over the depth: of the rows below a level surface, of which the two highest draw
     /// together (-0.16 and 0.12 g at h = 2 dp); where gravity is along no axis of the lattice, from
     /// the depth on at which no kernel reaches the surface.
@@ -28,12 +30,13 @@ public:
 
     /// Metres a second squared, at a depth below the level in metres.
     Vec3 at(double depth) const;
-    /// Whether a place is on a row of the lattice; any is where gravity is along none of its axes.
+    /// Whether a place is on a row of the lattice; any is where gravity is along none of its axes,
+    /// and none where there is no fall.
     bool is_on_row(const Vec3& place) const;
 
 private:
-    double first_; ///< depth of the first entry, metres
-    double step_;
+    double first_ = 0; ///< depth of the first entry, metres
+    double step_ = 0;
     std::optional<int> axis_; ///< that gravity is along
     double first_row_ = 0;    ///< along the axis, metres
 

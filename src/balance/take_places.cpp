@@ -1,9 +1,19 @@
 #include "balance/take_places.h"
 
+#include "core/parallel_sort.h"
+#include "particles/initials.h"
+
 namespace fppg
 {
 namespace
 {
+
+struct NewPlace
+{
+    std::uint64_t id = 0;
+    Vec3 position;
+    float rhop = 0;
+};
 
 /// Rebuilds the particles off the lattice and the runs of all blocks, in the order of ids.
 class PlaceTaker
@@ -117,9 +127,28 @@ private:
 
 } // namespace
 
-void take_places(CaseParticles& particles, const std::vector<NewPlace>& places)
+void take_over(const CaseDef& def, const FluidAtRest& rest, int threads, CaseParticles& particles)
 {
+    std::vector<NewPlace> places;
+    particles.bound_rhop.assign(particles.np - particles.n_fluid, static_cast<float>(rest.rhop0));
+    bool is_at_limit = false;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+    {
+        if (rest.roles[i] == RestRole::Bound)
+            particles.bound_rhop[rest.ids[i]] = static_cast<float>(rest.densities[i]);
+        if (!rest.moves(i)) continue;
+        places.push_back({rest.ids[i], rest.positions[i], static_cast<float>(rest.densities[i])});
+        for (int axis = 0; axis < 3; ++axis)
+            is_at_limit = is_at_limit ||
+                          rest.positions[i][axis] < particles.pos_min[axis] + 1.5 * rest.dp ||
+                          rest.positions[i][axis] > particles.pos_max[axis] - 1.5 * rest.dp;
+    }
+    parallel_sort(places, threads,
+                  [](const NewPlace& a, const NewPlace& b) { return a.id < b.id; });
     PlaceTaker(particles, places).run();
+    const bool is_periodic = std::any_of(def.grid.is_periodic.begin(), def.grid.is_periodic.end(),
+                                         [](bool is) { return is; });
+    if (is_at_limit && !is_periodic) set_limits(def, particles);
 }
 
 } // namespace fppg

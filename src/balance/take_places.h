@@ -1,24 +1,15 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/particles.h"
 
-#include <cstdint>
-#include <vector>
+#include "balance/fluid_at_rest.h"
 
 namespace fppg
 {
 
-/// A fluid particle with the place and density that it gets.
-struct NewPlace
-{
-    std::uint64_t id = 0;
-    Vec3 position;
-    float rhop = 0;
-};
-
-/// Puts fluid particles at new places. Those on nodes become particles off the lattice; ids stay.
-///
-/// places  in the order of ids
-void take_places(CaseParticles& particles, const std::vector<NewPlace>& places);
+/// Gives the particles of a case the places and densities that balancing found. Fluid on nodes that
+/// moves becomes particles off the lattice; ids stay.
+void take_over(const CaseDef& def, const FluidAtRest& rest, int threads, CaseParticles& particles);
 
 } // namespace fppg

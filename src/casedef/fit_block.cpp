@@ -425,7 +425,7 @@ private:
 
     void read_fluid_band(const Element& e) const
     {
-        require_known(e, {"mkfluid", "width", "active", "balance", "mass"}, {});
+        require_known(e, {"mkfluid", "width", "active", "balance", "mass", "packing"}, {});
         FluidBand band;
         band.line = e.line;
         band.mk = mks_of(e, MkKind::Fluid);
@@ -445,6 +445,12 @@ private:
                        fmt::format("mass=\"{}\" is unknown, expected exact (the mass of the space "
                                    "between walls) or dp (rhop0 dp^3 each)",
                                    mass));
+        const std::string packing = read_.text_or(e, "packing", "close");
+        band.packs_closely = packing == "close";
+        if (packing != "close" && packing != "cubic")
+            read_.fail(e, fmt::format("packing=\"{}\" is unknown, expected close (hexagonal in 2D, "
+                                      "face-centred cubic in 3D) or cubic",
+                                      packing));
         def_.fluid_bands.push_back(std::move(band));
     }
 

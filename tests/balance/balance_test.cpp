@@ -118,12 +118,12 @@ Vec3 acceleration_2d(const Result& r, double b, std::size_t i)
     return a;
 }
 
-/// A case whose walls are fitted, its fluid balanced or left even.
+/// A case whose walls are fitted, its fluid balanced on its lattice or left even.
 ParticleCloud fitted(CaseText text, bool is_balanced)
 {
     const TemporaryFolder folder;
-    text.after_geometry =
-        fmt::format(R"(<fppg><bodyfitted /><fluidband balance="{}" /></fppg>)", is_balanced);
+    text.after_geometry = fmt::format(
+        R"(<fppg><bodyfitted /><fluidband balance="{}" packing="cubic" /></fppg>)", is_balanced);
     return make(folder, text).cloud;
 }
 
@@ -180,7 +180,7 @@ TEST(Balance, WaterBesideFlatWallsFallsAsTheLatticeDoes)
         box_command(R"(x="-0.4" y="-1" z="-0.4")", R"(x="3.2" y="2" z="4.8")") + "<setmkvoid />" +
         box_command(R"(x="0" y="-1" z="0")", R"(x="2.4" y="2" z="5")") +
         R"(<setmkfluid mk="0" />)" + box_command(R"(x="0" y="-1" z="0")", R"(x="2.4" y="2" z="4")");
-    text.after_geometry = "<fppg><bodyfitted /></fppg>";
+    text.after_geometry = R"(<fppg><bodyfitted /><fluidband packing="cubic" /></fppg>)";
     const Result calm = make(folder, text);
     const double b = b_of(folder);
     const auto falls = [&](double from, double to)
@@ -348,13 +348,13 @@ TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
     const TemporaryFolder folder;
     const Result even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
-    const Result calm =
-        make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)"), {"-threads:1"});
+    const std::string banded = R"(<bodyfitted layers="3" /><fluidband packing="cubic" />)";
+    const Result calm = make(folder, tank(banded), {"-threads:1"});
     ASSERT_EQ(calm.cloud.mk, even.cloud.mk);
     for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
         EXPECT_LE(norm(calm.cloud.positions[i] - even.cloud.positions[i]), 1.0001 * dp);
     const std::string one = read_text(folder / "out/Case.bi4");
-    make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)"), {"-threads:8"});
+    make(folder, tank(banded), {"-threads:8"});
     EXPECT_EQ(read_text(folder / "out/Case.bi4"), one);
 }
 

@@ -280,10 +280,12 @@ TEST(FitBlock, EvaluatesExpressionsWithVariablesOfTheCommands)
 TEST(FitBlock, ReadsBandsOfFluid)
 {
     const CaseDef def = read_block(
-        R"(<fluidband width="2.5" /><fluidband mkfluid="0" /><bodyfitted mkbound="0" />)");
+        R"(<fluidband width="2.5" packing="cubic" /><fluidband mkfluid="0" /><bodyfitted mkbound="0" />)");
     ASSERT_EQ(def.fluid_bands.size(), 2u);
     EXPECT_TRUE(def.fluid_bands[0].mk.empty());
     EXPECT_EQ(def.fluid_bands[0].width_dp, 2.5);
+    EXPECT_FALSE(def.fluid_bands[0].packs_closely);
+    EXPECT_TRUE(def.fluid_bands[1].packs_closely);
     EXPECT_EQ(def.fluid_bands[1].mk, std::vector<std::uint16_t>{1});
     EXPECT_EQ(def.fluid_bands[1].width_dp, 3);
 }
@@ -495,6 +497,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "snapshots=\"0.5\" is 0.5, expected a whole number of iterations from 0"},
         Mistake{"NegativeBand", R"(<fppg><bodyfitted><relax band="-1" /></bodyfitted></fppg>)",
                 "band=\"-1\" is -1, expected all or a width from 0 on"},
+        Mistake{"UnknownPacking", R"(<fppg><fluidband packing="square" /></fppg>)",
+                "<fluidband>: packing=\"square\" is unknown, expected close"},
         Mistake{"NoWidth", R"(<fppg><fluidband width="0" /></fppg>)",
                 "<fluidband>: attribute width=\"0\" is 0, expected a width above 0"},
         Mistake{"BadList", R"(<fppg><bodyfitted mkbound="3-1" /></fppg>)",

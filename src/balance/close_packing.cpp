@@ -1,0 +1,470 @@
+#include "balance/close_packing.h"
+
+#include "core/parallel_sort.h"
+#include "meshes/point_grid.h"
+#include "relax/cell_rows.h"
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+namespace fppg
+{
+namespace
+{
+
+// Lengths in dp.
+constexpr double linked = 1.5; ///< particles of one body of fluid
+constexpr double reach_of_cover = 1.5;
+constexpr double least_cover = 0.5; ///< at the border of the fluid
+constexpr double least_size = 3;    ///< of a body, along each axis
+/// A body that fills more than this of its bounds is a box: its lattice has the box's volume.
+constexpr double box_fill = 0.97;
+/// Lattices are tried until one has no more than so many places too many, over the number of
+/// particles; the best is taken, by places that are too many, or too few times a cost.
+constexpr double wanted_excess = 0.02;
+constexpr double cost_of_crowding = 5;
+constexpr int most_trials = 4;
+/// Up to so many too many are left out of the highest rows, more all around at the border.
+constexpr double most_excess = 0.06;
+constexpr double most_strain = 0.07;
+/// Places that are too many, over the number of particles, against the square of a strain.
+constexpr double cost_of_excess = 0.02;
+constexpr double cost_of_excess_squared = 4;
+/// The most that a row of the highest ones gives up.
+constexpr double most_thinned = 1.0 / 3;
+
+/// Distance between layers over that in them; every second layer is half a step on.
+double ideal_ratio(bool is_2d)
+{
+    return is_2d ? std::sqrt(0.75) : std::sqrt(0.5);
+}
+
+std::optional<int> axis_of(const Vec3& gravity)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(gravity[axis]) > (1 - 1e-9) * norm(gravity)) return axis;
+    return std::nullopt;
+}
+
+/// Layers of rows between the bounds of a body of fluid.
+struct Packing
+{
+    std::array<int, 3> axes{}; ///< of two directions along layers, in 2D one, and across
+    std::array<double, 3> low{};
+    std::array<double, 3> steps{}; ///< metres
+    /// Half steps between the bounds along layers; of layers across. In 2D the second is 0.
+    std::array<int, 3> counts{};
+
+    std::vector<Vec3> places(double y_of_2d) const;
+};
+
+std::vector<Vec3> Packing::places(double y_of_2d) const
+{
+    std::vector<Vec3> out;
+    const bool is_2d = counts[1] == 0;
+    // Nested because a lattice has three directions.
+    for (int k = 0; k < counts[2]; ++k)
+    {
+        // Ends of rows are a quarter and three quarters of a step off the bounds by turns.
+        const double first = 0.25 + 0.5 * (k % 2);
+        for (int j = 0; j == 0 || (!is_2d && j + first < 0.5 * counts[1]); ++j)
+            for (int i = 0; i + first < 0.5 * counts[0]; ++i)
+            {
+                Vec3 at{0, y_of_2d, 0};
+                at[axes[0]] = low[0] + (i + first) * steps[0];
+                if (!is_2d) at[axes[1]] = low[1] + (j + first) * steps[1];
+                at[axes[2]] = low[2] + (k + 0.5) * steps[2];
+                out.push_back(at);
+            }
+    }
+    return out;
+}
+
+/// The counts to try for a length.
+struct Counts
+{
+    int first, last;
+    Counts(double length, double step)
+        : first(std::max(1, static_cast<int>(std::ceil(length / step * (1 - most_strain))))),
+          last(std::max(first, static_cast<int>(length / step * (1 + most_strain))))
+    {
+    }
+};
+
+/// The lattice whose cells are nearest to the ideal ones and, by volume, a little smaller than
+/// `cell`, so that there are a few places too many.
+///
+/// cell  what a particle has, m^3 (2D: m^2)
+Packing fit_packing(const FluidAtRest& rest, const Vec3& low, const Vec3& high, int up, double cell)
+{
+    Packing p;
+    p.axes = {up == 0 ? 1 : 0, up == 2 ? 1 : 2, up};
+    if (rest.is_2d) p.axes = {up == 0 ? 2 : 0, 1, up};
+    std::array<double, 3> lengths{};
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        p.low[k] = low[p.axes[k]];
+        lengths[k] = high[p.axes[k]] - low[p.axes[k]];
+    }
+    const double ratio = ideal_ratio(rest.is_2d);
+    const double along = rest.is_2d ? std::sqrt(cell / ratio) : std::cbrt(cell / ratio);
+    const auto strain = [](double step, double ideal)
+    { return std::pow(std::log(step / ideal), 2); };
+    const Counts rows(lengths[0], along / 2), columns(lengths[1], along / 2),
+        layers(lengths[2], ratio * along);
+    Packing best = p;
+    double least = std::numeric_limits<double>::infinity();
+    // Nested because a lattice has three counts.
+    for (int c = layers.first; c <= layers.last; ++c)
+        for (int a = rows.first; a <= rows.last; ++a)
+            for (int b = rest.is_2d ? 0 : columns.first; b <= (rest.is_2d ? 0 : columns.last); ++b)
+            {
+                p.counts = {a, b, c};
+                p.steps = {2 * lengths[0] / a, rest.is_2d ? 1 : 2 * lengths[1] / b, lengths[2] / c};
+                const double excess = 1 - p.steps[0] * p.steps[1] * p.steps[2] / cell;
+                if (excess < -1e-6) continue;
+                const double cost = strain(p.steps[0], along) +
+                                    (rest.is_2d ? 0 : strain(p.steps[1], along)) +
+                                    strain(p.steps[2], ratio * along) + cost_of_excess * excess +
+                                    cost_of_excess_squared * excess * excess;
+                if (cost >= least) continue;
+                least = cost;
+                best = p;
+            }
+    return best;
+}
+
+/// How much of a body of fluid, as it was, is around a place: 1 in its midst, a half at its border.
+class Cover
+{
+public:
+    Cover(const FluidAtRest& rest, const std::vector<std::uint32_t>& body)
+        : reach_(reach_of_cover * rest.dp), body_(body), grid_(reach_, body.size())
+    {
+        for (const std::uint32_t i : body) grid_.add(rest.positions[i]);
+        const int n = static_cast<int>(reach_of_cover), across = rest.is_2d ? 0 : n;
+        for (int x = -n; x <= n; ++x)
+            for (int y = -across; y <= across; ++y)
+                for (int z = -n; z <= n; ++z)
+                    whole_ += weight(rest.dp * rest.dp * (x * x + y * y + z * z));
+    }
+
+    /// A sum over the particles that `counts` is true for.
+    ///
+    /// counts  bool(std::uint32_t), of an index in FluidAtRest
+    template <typename Counts>
+    double at(const Vec3& place, const Counts& counts) const
+    {
+        double sum = 0;
+        grid_.for_each_near(place, reach_,
+                            [&](std::uint32_t k, double squared)
+                            {
+                                if (counts(body_[k])) sum += weight(squared);
+                            });
+        return sum / whole_;
+    }
+
+    /// Of a place where the cover is above 0.
+    std::uint32_t nearest(const Vec3& place) const
+    {
+        std::uint32_t out = body_.front();
+        double least = std::numeric_limits<double>::infinity();
+        grid_.for_each_near(place, reach_,
+                            [&](std::uint32_t k, double squared)
+                            {
+                                if (squared >= least) return;
+                                least = squared;
+                                out = body_[k];
+                            });
+        return out;
+    }
+
+private:
+    double weight(double squared) const
+    {
+        const double x = std::max(0.0, 1 - squared / (reach_ * reach_));
+        return x * x * x;
+    }
+
+    double reach_;
+    const std::vector<std::uint32_t>& body_;
+    PointGrid grid_;
+    double whole_ = 0;
+};
+
+/// Takes out what is too much, evenly, from the highest rows.
+///
+/// places  sorted by x, then y, then z
+std::vector<Vec3> thin_out_top(std::vector<Vec3> places, const Packing& packing, std::size_t wanted)
+{
+    const int up = packing.axes[2];
+    std::stable_sort(places.begin(), places.end(),
+                     [&](const Vec3& a, const Vec3& b) { return a[up] > b[up]; });
+    std::size_t excess = places.size() - wanted;
+    std::vector<Vec3> out;
+    for (std::size_t from = 0; from < places.size();)
+    {
+        std::size_t to = from;
+        while (to < places.size() && places[to][up] > places[from][up] - packing.steps[2] / 2) ++to;
+        const std::size_t n = to - from;
+        const auto most =
+            static_cast<std::size_t>(std::ceil(most_thinned * static_cast<double>(n)));
+        const std::size_t less = std::min(excess, most);
+        for (std::size_t k = 0; k < n; ++k)
+            if ((k + 1) * less / n == k * less / n) out.push_back(places[from + k]);
+        excess -= less;
+        from = to;
+    }
+    return out;
+}
+
+bool is_before(const Vec3& a, const Vec3& b)
+{
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// One body of fluid.
+class BodyPacker
+{
+public:
+    /// body  indices of its particles, ascending
+    BodyPacker(FluidAtRest& rest, const std::vector<std::uint32_t>& body,
+               const CaseParticles& particles, int threads)
+        : rest_(rest), body_(body), particles_(particles), cover_(rest, body), threads_(threads)
+    {
+    }
+
+    /// False where the body stays as it is.
+    bool pack(int up, double least_distance, const ClosestWallPoint& closest)
+    {
+        Vec3 low = rest_.positions[body_.front()], high = low;
+        for (const std::uint32_t i : body_)
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                low[axis] = std::min(low[axis], rest_.positions[i][axis]);
+                high[axis] = std::max(high[axis], rest_.positions[i][axis]);
+            }
+        const Vec3 half{rest_.dp / 2, rest_.dp / 2, rest_.dp / 2};
+        low = low - half;
+        high = high + half;
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(rest_.is_2d && axis == 1) && high[axis] - low[axis] < least_size * rest_.dp)
+                return false;
+        double cell = cell_of(high - low);
+        Places best;
+        double least_off = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < most_trials && least_off > wanted_excess; ++k)
+        {
+            Places places =
+                choose(fit_packing(rest_, low, high, up, cell), least_distance, closest);
+            const double excess =
+                static_cast<double>(places.inside) / static_cast<double>(body_.size()) - 1;
+            const double off = excess < 0 ? -cost_of_crowding * excess : excess;
+            if (off < least_off && places.by_cover.size() >= body_.size())
+            {
+                least_off = off;
+                best = std::move(places);
+            }
+            cell *= (1 + excess) / (1 + wanted_excess / 4);
+        }
+        if (best.by_cover.empty()) return false;
+        take(fill(best));
+        return true;
+    }
+
+private:
+    struct Places
+    {
+        std::vector<Vec3> by_cover; ///< those that are covered at all, the most first
+        std::size_t inside = 0;     ///< of them, at least half covered
+        Packing packing;
+    };
+
+    /// What a particle has, m^3 or m^2.
+    double cell_of(const Vec3& size) const
+    {
+        const double dp = rest_.dp;
+        const double own = rest_.is_2d ? dp * dp : dp * dp * dp;
+        const double box = size.x * size.z * (rest_.is_2d ? 1 : size.y);
+        const auto n = static_cast<double>(body_.size());
+        return n * own > box_fill * box ? box / n : own;
+    }
+
+    /// The places of a lattice that are in the fluid as it was, moved off walls.
+    Places choose(const Packing& packing, double least_distance,
+                  const ClosestWallPoint& closest) const
+    {
+        const std::vector<Vec3> places = packing.places(rest_.positions[body_.front()].y);
+        struct Choice
+        {
+            double cover = 0;
+            std::size_t place = 0;
+            Vec3 at; ///< off walls
+        };
+        std::vector<Choice> choices(places.size());
+        parallel_for(
+            places.size(), threads_,
+            [&](std::size_t k)
+            {
+                const double cover = cover_.at(places[k], [](std::uint32_t) { return true; });
+                choices[k] = {cover, k, places[k]};
+                if (cover <= 0) return;
+                const Vec3 wall = closest(places[k], least_distance);
+                const Vec3 away = places[k] - wall;
+                const double distance = norm(away);
+                if (distance >= least_distance) return;
+                if (dot(away, rest_.positions[cover_.nearest(places[k])] - wall) <= 0)
+                    choices[k].cover = 0;
+                else
+                    choices[k].at = wall + (least_distance / distance) * away;
+            },
+            64);
+        parallel_sort(choices, threads_,
+                      [](const Choice& a, const Choice& b)
+                      { return std::tuple(-a.cover, a.place) < std::tuple(-b.cover, b.place); });
+        Places out;
+        out.packing = packing;
+        for (const Choice& choice : choices)
+        {
+            if (choice.cover <= 0) break;
+            out.by_cover.push_back(choice.at);
+            out.inside += choice.cover >= least_cover ? 1 : 0;
+        }
+        return out;
+    }
+
+    /// As many places as there are particles, by x, then y, then z within each row or layer.
+    std::vector<Vec3> fill(const Places& places) const
+    {
+        const std::size_t n = body_.size();
+        const auto most = n + static_cast<std::size_t>(most_excess * static_cast<double>(n));
+        std::size_t taken = std::max(places.inside, n);
+        if (taken > most) taken = n; // those at the border are left out, all around
+        std::vector<Vec3> out(places.by_cover.begin(),
+                              places.by_cover.begin() + static_cast<std::ptrdiff_t>(taken));
+        std::sort(out.begin(), out.end(), is_before);
+        return thin_out_top(std::move(out), places.packing, n);
+    }
+
+    const ParticleBlock* block_of(std::uint32_t i) const
+    {
+        for (const ParticleBlock& block : particles_.blocks)
+            if (rest_.ids[i] >= block.begin && rest_.ids[i] < block.begin + block.count)
+                return &block;
+        return nullptr;
+    }
+
+    /// Gives each mk the places that are most in its own fluid.
+    void take(std::vector<Vec3> places)
+    {
+        struct Place
+        {
+            Vec3 at;
+            std::uint64_t id;
+            double level;
+            RestRole role;
+        };
+        std::vector<Place> taken;
+        std::vector<std::uint32_t> left = body_;
+        while (!left.empty())
+        {
+            const ParticleBlock* block = block_of(left.front());
+            const auto is_own = [&](std::uint32_t i) { return block_of(i) == block; };
+            std::vector<std::uint64_t> ids;
+            for (const std::uint32_t i : left)
+                if (is_own(i)) ids.push_back(rest_.ids[i]);
+            std::sort(ids.begin(), ids.end());
+            std::erase_if(left, is_own);
+            if (!left.empty())
+            {
+                std::vector<std::pair<double, std::size_t>> shares;
+                for (std::size_t k = 0; k < places.size(); ++k)
+                    shares.emplace_back(
+                        -cover_.at(places[k], is_own) /
+                            cover_.at(places[k], [](std::uint32_t) { return true; }),
+                        k);
+                std::sort(shares.begin(), shares.end());
+                std::vector<Vec3> sorted;
+                for (const auto& [share, k] : shares) sorted.push_back(places[k]);
+                places = std::move(sorted);
+                std::sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(ids.size()),
+                          is_before);
+            }
+            for (std::size_t k = 0; k < ids.size(); ++k)
+            {
+                const std::uint32_t old = cover_.nearest(places[k]);
+                taken.push_back({places[k], ids[k], rest_.levels[old], rest_.roles[old]});
+            }
+            places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(ids.size()));
+        }
+        PointArrays points;
+        points.resize(taken.size());
+        rest_.set_in_dp([&](std::size_t k) { return taken[k].at; }, threads_, points);
+        const std::vector<std::uint32_t> order = morton_order(points, 2, threads_);
+        for (std::size_t k = 0; k < body_.size(); ++k)
+        {
+            const Place& place = taken[order[k]];
+            rest_.positions[body_[k]] = place.at;
+            rest_.ids[body_[k]] = place.id;
+            rest_.levels[body_[k]] = place.level;
+            rest_.roles[body_[k]] = place.role;
+        }
+    }
+
+    FluidAtRest& rest_;
+    const std::vector<std::uint32_t>& body_;
+    const CaseParticles& particles_;
+    Cover cover_;
+    int threads_;
+};
+
+/// Fluid that is linked, body by body; indices ascend.
+std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
+{
+    std::vector<std::uint32_t> fluid;
+    PointGrid grid(linked * rest.dp, rest.size());
+    for (std::uint32_t i = 0; i < rest.size(); ++i)
+    {
+        if (!rest.moves(i)) continue;
+        fluid.push_back(i);
+        grid.add(rest.positions[i]);
+    }
+    std::vector<std::vector<std::uint32_t>> out;
+    std::vector<char> is_seen(fluid.size(), 0);
+    for (std::uint32_t first = 0; first < fluid.size(); ++first)
+    {
+        if (is_seen[first] != 0) continue;
+        is_seen[first] = 1;
+        std::vector<std::uint32_t> body{first};
+        for (std::size_t k = 0; k < body.size(); ++k)
+            grid.for_each_near(grid.points()[body[k]], linked * rest.dp,
+                               [&](std::uint32_t other, double)
+                               {
+                                   if (is_seen[other] != 0) return;
+                                   is_seen[other] = 1;
+                                   body.push_back(other);
+                               });
+        for (std::uint32_t& k : body) k = fluid[k];
+        std::sort(body.begin(), body.end());
+        out.push_back(std::move(body));
+    }
+    return out;
+}
+
+} // namespace
+
+bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double least_distance,
+                  const ClosestWallPoint& closest, int threads)
+{
+    const std::optional<int> up = axis_of(rest.gravity);
+    if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0) return false;
+    bool is_any = false;
+    for (const std::vector<std::uint32_t>& body : bodies_of(rest))
+        is_any =
+            BodyPacker(rest, body, particles, threads).pack(*up, least_distance, closest) || is_any;
+    return is_any;
+}
+
+} // namespace fppg

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "fppg/particles.h"
+
+#include "balance/fluid_at_rest.h"
+
+namespace fppg
+{
+
+/// Lays fluid at rest on close packed lattices: hexagonal ones in 2D, face-centred cubic ones in
+/// 3D, each fitted to the bounds of a body of fluid, its layers level.
+///
+/// A square or cubic lattice is at rest under pressure, but not stable: its rows slide along one
+/// another, twice as fast every 0.05 s where it is 50 dp deep, and after a second it moves as much
+/// as GenCase's particles. A close packed one stays where it is. 2D, 40 x 50 dp, DBC, mean speed
+/// after 0.1, 0.5 and 1 s: 0.0004, 0.0005 and 0.0004 m/s, square 0.0004, 0.0068 and 0.0116. 3D, 20
+/// x 20 dp, 12 deep: 0.0009, 0.0013 and 0.0011 m/s, cubic 0.0020, 0.0025 and 0.0052, GenCase's
+/// particles 0.0224, 0.0079 and 0.0071. (Body-centred cubic lattices do not stay: 0.04 m/s.)
+///
+/// Each body of fluid keeps its number of particles, and so does each mk. Places are taken where
+/// fluid was: where the sum of a kernel over its particles is at least half of that in their midst.
+/// The lattice is made coarser or finer until it has up to 2 % more of them than there are
+/// particles (6 % where none has); these are left out of the highest rows, where pressures are
+/// lowest. Places nearer to walls than `least_distance` are moved off them. What is left to do near
+/// walls that do not fit the lattice, balancing does.
+///
+/// Bodies of fluid thinner than 3 dp stay as they are. Nothing is done, and false returned, where
+/// all are, where fluid is held, along which what is packed would slide, or where gravity is along
+/// no axis.
+///
+/// rest            all fluid that moves, and what is around; ids, levels and roles go along
+/// particles       whose blocks say which ids have which mk
+/// least_distance  to walls, metres
+/// closest         the nearest point of a wall
+/// source          trials in tools/solver-trials, "What they showed of close packing"
+bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double least_distance,
+                  const ClosestWallPoint& closest, int threads);
+
+} // namespace fppg

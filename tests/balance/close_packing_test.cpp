@@ -1,0 +1,228 @@
+// Still water beside fitted walls on close packed lattices, as a user finds it in Case.bi4.
+
+#include "fppg/read_particles.h"
+
+#include "helpers/case_text.h"
+#include "helpers/run_fppg.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace
+{
+
+using namespace fppg::test;
+using fppg::ParticleCloud;
+using fppg::Vec3;
+
+constexpr double dp = 0.1;
+constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
+
+/// A tank of solid walls 0.4 m thick round the space from 0 to `inside`, open above.
+///
+/// fluid  its commands
+CaseText tank(const Vec3& inside, const std::string& fluid, const std::string& band)
+{
+    const bool is_2d = inside.y == 0;
+    const double front = is_2d ? -1 : 0, deep = is_2d ? 2 : inside.y;
+    CaseText text;
+    text.pointmin = fmt::format(R"(<pointmin x="-0.6" y="{}" z="-0.6" />)", is_2d ? 0 : -0.6);
+    text.pointmax = fmt::format(R"(<pointmax x="{}" y="{}" z="{}" />)", inside.x + 0.6,
+                                is_2d ? 0 : inside.y + 0.6, inside.z + 0.6);
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+        box_command(
+            fmt::format(R"(x="-0.4" y="{}" z="-0.4")", front - 0.4),
+            fmt::format(R"(x="{}" y="{}" z="{}")", inside.x + 0.8, deep + 0.8, inside.z + 0.4)) +
+        "<setmkvoid />" +
+        box_command(fmt::format(R"(x="0" y="{}" z="0")", front),
+                    fmt::format(R"(x="{}" y="{}" z="{}")", inside.x, deep, inside.z + 1)) +
+        fluid;
+    text.after_geometry = "<fppg><bodyfitted />" + band + "</fppg>";
+    return text;
+}
+
+/// Fluid from z = `low` to `high` all over a tank.
+std::string water(int mk, const Vec3& inside, double low, double high)
+{
+    const bool is_2d = inside.y == 0;
+    return fmt::format(R"(<setmkfluid mk="{}" />)", mk) +
+           box_command(
+               fmt::format(R"(x="0" y="{}" z="{}")", is_2d ? -1 : 0, low),
+               fmt::format(R"(x="{}" y="{}" z="{}")", inside.x, is_2d ? 2 : inside.y, high - low));
+}
+
+struct Made
+{
+    std::string output;
+    ParticleCloud cloud;
+    std::string bytes;
+};
+
+Made make(const CaseText& text, const Arguments& more = {})
+{
+    const TemporaryFolder folder;
+    write_text(folder / "Case_Def.xml", text.text());
+    Arguments words{"Case_Def", "out/Case"};
+    words.insert(words.end(), more.begin(), more.end());
+    const RunResult done = run(folder, words);
+    EXPECT_EQ(done.code, 0) << done.output;
+    return {done.output, fppg::read_particles(folder / "out/Case", false, 1),
+            read_text(folder / "out/Case.bi4")};
+}
+
+std::vector<Vec3> fluid_of(const ParticleCloud& cloud)
+{
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        if (cloud.mk[i] < first_bound) out.push_back(cloud.positions[i]);
+    return out;
+}
+
+/// Of particles farther than 4 dp from the bounds of the fluid and 11 below its surface, how many
+/// have how many others nearer than `reach`. (Near the surface, where pressures are low, balancing
+/// leaves rows of other lengths.)
+std::map<int, int> neighbours_in_the_midst(const std::vector<Vec3>& fluid, double reach)
+{
+    Vec3 low = fluid.front(), high = fluid.front();
+    for (const Vec3& p : fluid)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    const bool is_2d = low.y == high.y;
+    std::map<int, int> out;
+    for (const Vec3& p : fluid)
+    {
+        bool is_amid = true;
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(is_2d && axis == 1))
+                is_amid = is_amid && p[axis] > low[axis] + 4 * dp &&
+                          p[axis] < high[axis] - (axis == 2 ? 11 : 4) * dp;
+        if (!is_amid) continue;
+        int count = -1; // itself
+        for (const Vec3& other : fluid) count += norm(other - p) < reach ? 1 : 0;
+        ++out[count];
+    }
+    return out;
+}
+
+double nearest_pair(const std::vector<Vec3>& points)
+{
+    double out = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) out = std::min(out, norm(points[i] - points[j]));
+    return out;
+}
+
+const std::string cubic = R"(<fluidband packing="cubic" />)";
+
+} // namespace
+
+TEST(ClosePacking, HasSixNeighboursIn2D)
+{
+    const Vec3 inside{2.4, 0, 3};
+    const std::string fluid = water(0, inside, 0, 2.6);
+    const Made packed = make(tank(inside, fluid, ""));
+    const Made square = make(tank(inside, fluid, cubic));
+    EXPECT_TRUE(contains(packed.output, "all fluid is packed closely")) << packed.output;
+    EXPECT_FALSE(contains(square.output, "packed closely"));
+    const std::vector<Vec3> places = fluid_of(packed.cloud);
+    EXPECT_EQ(packed.cloud.mk, square.cloud.mk);
+    // A hexagon of dp^2 has its neighbours at 1.07 dp, the next ones at 1.86; a square at 1, 1.41.
+    const std::map<int, int> six = neighbours_in_the_midst(places, 1.4 * dp);
+    EXPECT_EQ(six.size(), 1U);
+    EXPECT_GT(six.at(6), 100);
+    EXPECT_EQ(neighbours_in_the_midst(fluid_of(square.cloud), 1.3 * dp).begin()->first, 4);
+    EXPECT_GT(nearest_pair(places), 0.65 * dp);
+    double highest = 0;
+    for (const Vec3& p : places) highest = std::max(highest, p.z);
+    EXPECT_NEAR(highest, 2.6 - dp / 2, dp / 2);
+}
+
+TEST(ClosePacking, HasTwelveNeighboursOrMoreIn3D)
+{
+    const Vec3 inside{1.6, 1.5, 2.4};
+    const Made packed = make(tank(inside, water(0, inside, 0, 2.1), ""));
+    EXPECT_TRUE(contains(packed.output, "all fluid is packed closely")) << packed.output;
+    const std::vector<Vec3> places = fluid_of(packed.cloud);
+    // The nearest are at 1.12 dp, the next ones at 1.59, of a cubic lattice at 1 and 1.41. Where
+    // the lattice is strained to fit, some of the next ones come nearer.
+    const std::map<int, int> counts = neighbours_in_the_midst(places, 1.35 * dp);
+    EXPECT_GE(counts.begin()->first, 12);
+    EXPECT_GT(counts.at(12), 50);
+    EXPECT_GT(nearest_pair(places), 0.55 * dp);
+}
+
+TEST(ClosePacking, KeepsEachFluidWithItsNumberInItsPlace)
+{
+    const Vec3 inside{2.4, 0, 3};
+    const std::string fluid = water(0, inside, 0, 1.2) + water(1, inside, 1.3, 2.4);
+    const Made packed = make(tank(inside, fluid, ""));
+    EXPECT_TRUE(contains(packed.output, "all fluid is packed closely")) << packed.output;
+    EXPECT_EQ(packed.cloud.mk, make(tank(inside, fluid, cubic)).cloud.mk);
+    for (std::size_t i = 0; i < packed.cloud.positions.size(); ++i)
+    {
+        const double z = packed.cloud.positions[i].z;
+        if (packed.cloud.mk[i] >= first_bound) continue;
+        const bool is_lower = packed.cloud.mk[i] == 1;
+        EXPECT_LT(is_lower ? z : 2.5 - z, 1.25 + dp) << "mk " << packed.cloud.mk[i];
+    }
+}
+
+TEST(ClosePacking, KeepsTheLevelsOfPartedWater)
+{
+    const Vec3 inside{4, 0, 3};
+    const std::string fluid =
+        R"(<setmkbound mk="1" />)" +
+        box_command(R"(x="1.8" y="-1" z="-0.1")", R"(x="0.4" y="2" z="3.2")") +
+        R"(<setmkfluid mk="0" />)" +
+        box_command(R"(x="0" y="-1" z="0")", R"(x="1.7" y="2" z="2.5")") +
+        box_command(R"(x="2.3" y="-1" z="0")", R"(x="1.7" y="2" z="1.2")");
+    const auto counts = [](const ParticleCloud& cloud)
+    {
+        std::map<bool, std::pair<int, double>> out; // number and highest
+        for (const Vec3& p : fluid_of(cloud))
+        {
+            auto& [number, highest] = out[p.x > 2];
+            ++number;
+            highest = std::max(highest, p.z);
+        }
+        return out;
+    };
+    const Made made = make(tank(inside, fluid, ""));
+    EXPECT_TRUE(contains(made.output, "all fluid is packed closely")) << made.output;
+    const auto packed = counts(made.cloud);
+    const auto square = counts(make(tank(inside, fluid, cubic)).cloud);
+    for (const bool side : {false, true})
+    {
+        EXPECT_EQ(packed.at(side).first, square.at(side).first);
+        EXPECT_NEAR(packed.at(side).second, square.at(side).second, dp / 2);
+    }
+}
+
+TEST(ClosePacking, IsNotDoneToWaterThatFallsOrIsShallow)
+{
+    const Vec3 inside{4, 0, 3};
+    const std::string column = R"(<setmkfluid mk="0" />)" +
+                               box_command(R"(x="0" y="-1" z="0")", R"(x="1.5" y="2" z="2.5")");
+    const Made falls = make(tank(inside, column, ""));
+    EXPECT_TRUE(contains(falls.output, "Balanced fluid"));
+    EXPECT_FALSE(contains(falls.output, "packed closely"));
+    const Made shallow = make(tank(inside, water(0, inside, 0, 0.25), ""));
+    EXPECT_FALSE(contains(shallow.output, "packed closely"));
+}
+
+TEST(ClosePacking, IsTheSameWithAnyNumberOfThreads)
+{
+    const Vec3 inside{1.6, 1.5, 1.9};
+    const CaseText text = tank(inside, water(0, inside, 0, 1.6), "");
+    EXPECT_EQ(make(text, {"-threads:1"}).bytes, make(text, {"-threads:3"}).bytes);
+}
