@@ -50,7 +50,7 @@ constexpr auto attribute_table = std::to_array<NameRow>({
 "bufferbox norgeometry normals vres"},
     {"active angle anglesunits mkbound mkfluid",
 "rotateaxis"},
-    {"active balance mass mkfluid width",
+    {"active balance mass mkfluid packing width",
 "fluidband"},
     {"active band h iterations snapshots tolerance",
 "relax"},

@@ -31,7 +31,7 @@ CaseText drawn_twice(double before_dp, bool is_2d = false)
             R"(<shapeout file="hdp" /><resetdraw /><setactive drawpoints="1" drawshapes="1" /><setnormalinvert invert="false" /><setmkbound mk="0" />)" +
             fmt::format(fmt::runtime(box), sides, y, "0,1,2") +
             R"(<setmkfluid mk="0" /><fillbox x="0.5" y="0.5" z="0.2"><modefill>void</modefill><point x="-0.1" y="-0.1" z="-0.1" /><size x="1.2" y="1.2" z="0.6" /></fillbox>)",
-        R"(<bodyfitted />)");
+        R"(<bodyfitted /><fluidband packing="cubic" />)"); // whose rows keep their level
     text.after_geometry +=
         R"(<normals><norgeometry><distanceh v="2" /><geometryfile file="[CaseName]_hdp_Actual.vtk" /></norgeometry></normals>)";
     text.execution =
