@@ -21,6 +21,10 @@ constexpr double least_cover = 0.5; ///< at the border of the fluid
 constexpr double least_size = 3;    ///< of a body, along each axis
 /// A body that fills more than this of its bounds is a box: its lattice has the box's volume.
 constexpr double box_fill = 0.97;
+/// Bounds may be so many times as large as a body; the places of a lattice in them are made.
+constexpr double most_box = 100;
+/// Of all fluid that moves; where less can be packed, none is.
+constexpr double least_packed = 0.95;
 /// Lattices are tried until one has no more than so many places too many, over the number of
 /// particles; the best is taken, by places that are too many, or too few times a cost.
 constexpr double wanted_excess = 0.02;
@@ -249,6 +253,8 @@ public:
         const Vec3 half{rest_.dp / 2, rest_.dp / 2, rest_.dp / 2};
         low = low - half;
         high = high + half;
+        if (box_of(high - low) > most_box * static_cast<double>(body_.size()) * own_cell())
+            return false;
         for (int axis = 0; axis < 3; ++axis)
             if (!(rest_.is_2d && axis == 1) && high[axis] - low[axis] < least_size * rest_.dp)
                 return false;
@@ -282,14 +288,15 @@ private:
         Packing packing;
     };
 
+    double own_cell() const { return std::pow(rest_.dp, rest_.is_2d ? 2 : 3); }
+    double box_of(const Vec3& size) const { return size.x * size.z * (rest_.is_2d ? 1 : size.y); }
+
     /// What a particle has, m^3 or m^2.
     double cell_of(const Vec3& size) const
     {
-        const double dp = rest_.dp;
-        const double own = rest_.is_2d ? dp * dp : dp * dp * dp;
-        const double box = size.x * size.z * (rest_.is_2d ? 1 : size.y);
         const auto n = static_cast<double>(body_.size());
-        return n * own > box_fill * box ? box / n : own;
+        const double box = box_of(size);
+        return n * own_cell() > box_fill * box ? box / n : own_cell();
     }
 
     /// The places of a lattice that are in the fluid as it was, moved off walls.
@@ -460,11 +467,14 @@ bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double leas
 {
     const std::optional<int> up = axis_of(rest.gravity);
     if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0) return false;
-    bool is_any = false;
+    std::size_t packed = 0, all = 0;
     for (const std::vector<std::uint32_t>& body : bodies_of(rest))
-        is_any =
-            BodyPacker(rest, body, particles, threads).pack(*up, least_distance, closest) || is_any;
-    return is_any;
+    {
+        all += body.size();
+        if (BodyPacker(rest, body, particles, threads).pack(*up, least_distance, closest))
+            packed += body.size();
+    }
+    return packed > 0 && static_cast<double>(packed) >= least_packed * static_cast<double>(all);
 }
 
 } // namespace fppg
