@@ -15,7 +15,6 @@ namespace
 {
 
 // Lengths in dp.
-constexpr double linked = 1.5; ///< particles of one body of fluid
 constexpr double reach_of_cover = 1.5;
 constexpr double least_cover = 0.5; ///< at the border of the fluid
 constexpr double least_size = 3;    ///< of a body, along each axis
@@ -43,13 +42,6 @@ constexpr double most_thinned = 1.0 / 3;
 double ideal_ratio(bool is_2d)
 {
     return is_2d ? std::sqrt(0.75) : std::sqrt(0.5);
-}
-
-std::optional<int> axis_of(const Vec3& gravity)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(gravity[axis]) > (1 - 1e-9) * norm(gravity)) return axis;
-    return std::nullopt;
 }
 
 /// Layers of rows between the bounds of a body of fluid.
@@ -427,11 +419,11 @@ private:
     int threads_;
 };
 
-/// Fluid that is linked, body by body; indices ascend.
+/// Fluid that is joined, body by body; indices ascend.
 std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
 {
     std::vector<std::uint32_t> fluid;
-    PointGrid grid(linked * rest.dp, rest.size());
+    PointGrid grid(joined_dp * rest.dp, rest.size());
     for (std::uint32_t i = 0; i < rest.size(); ++i)
     {
         if (!rest.moves(i)) continue;
@@ -446,7 +438,7 @@ std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
         is_seen[first] = 1;
         std::vector<std::uint32_t> body{first};
         for (std::size_t k = 0; k < body.size(); ++k)
-            grid.for_each_near(grid.points()[body[k]], linked * rest.dp,
+            grid.for_each_near(grid.points()[body[k]], joined_dp * rest.dp,
                                [&](std::uint32_t other, double)
                                {
                                    if (is_seen[other] != 0) return;
@@ -465,7 +457,7 @@ std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
 bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double least_distance,
                   const ClosestWallPoint& closest, int threads)
 {
-    const std::optional<int> up = axis_of(rest.gravity);
+    const std::optional<int> up = vertical_axis(rest);
     if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0) return false;
     std::size_t packed = 0, all = 0;
     for (const std::vector<std::uint32_t>& body : bodies_of(rest))

@@ -19,8 +19,6 @@ namespace
 {
 
 constexpr double list_skin_dp = 0.6;
-/// Neighbours on the lattice, over an edge too.
-constexpr double joined_dp = 1.5;
 constexpr std::uint32_t whole_lattice = 1U << 20U; ///< nodes a side of a block that holds all
 
 struct NearParticle
@@ -173,6 +171,13 @@ void hold_at_other_walls(const RawArray<NearParticle>& fluid, const RawArray<Nea
 }
 
 } // namespace
+
+std::optional<int> vertical_axis(const FluidAtRest& rest)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(rest.gravity[axis]) > (1 - 1e-9) * norm(rest.gravity)) return axis;
+    return std::nullopt;
+}
 
 std::vector<double> balanced_bands(const CaseDef& def)
 {

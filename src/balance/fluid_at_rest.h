@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace fppg
@@ -107,6 +108,12 @@ struct FluidAtRest
             1024);
     }
 };
+
+/// Fluid no farther apart is one body of it, in dp: neighbours on the lattice, over an edge too.
+inline constexpr double joined_dp = 1.5;
+
+/// The axis that gravity is along.
+std::optional<int> vertical_axis(const FluidAtRest& rest);
 
 /// Reach of the neighbour lists in dp without their skin.
 inline double rest_reach_dp(const FluidAtRest& rest)

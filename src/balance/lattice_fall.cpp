@@ -43,19 +43,11 @@ struct LatticePatch
     }
 };
 
-/// The axis of the lattice that gravity is along.
-std::optional<int> axis_along(const Vec3& gravity)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(gravity[axis]) > (1 - 1e-9) * norm(gravity)) return axis;
-    return std::nullopt;
-}
-
 } // namespace
 
 LatticeFall::LatticeFall(const FluidAtRest& rest, const LatticeGrid& grid, double mass,
                          double deepest)
-    : first_(2 * rest.h + rest.dp), step_(step_dp * rest.dp), axis_(axis_along(rest.gravity))
+    : first_(2 * rest.h + rest.dp), step_(step_dp * rest.dp), axis_(vertical_axis(rest))
 {
     if (axis_)
     {
