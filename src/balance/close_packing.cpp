@@ -78,13 +78,15 @@ std::vector<Vec3> Packing::places(double y_of_2d) const
     return out;
 }
 
-/// The counts to try for a length.
+/// The counts to try for a length; the last is at least the next above the ideal one, so that there
+/// is a lattice whose cells are no larger than those wanted.
 struct Counts
 {
     int first, last;
     Counts(double length, double step)
         : first(std::max(1, static_cast<int>(std::ceil(length / step * (1 - most_strain))))),
-          last(std::max(first, static_cast<int>(length / step * (1 + most_strain))))
+          last(static_cast<int>(
+              std::max(std::ceil(length / step), std::floor(length / step * (1 + most_strain)))))
     {
     }
 };
@@ -257,6 +259,7 @@ public:
         {
             Places places =
                 choose(fit_packing(rest_, low, high, up, cell), least_distance, closest);
+            if (places.inside == 0) break;
             const double excess =
                 static_cast<double>(places.inside) / static_cast<double>(body_.size()) - 1;
             const double off = excess < 0 ? -cost_of_crowding * excess : excess;
@@ -380,10 +383,10 @@ private:
             {
                 std::vector<std::pair<double, std::size_t>> shares;
                 for (std::size_t k = 0; k < places.size(); ++k)
-                    shares.emplace_back(
-                        -cover_.at(places[k], is_own) /
-                            cover_.at(places[k], [](std::uint32_t) { return true; }),
-                        k);
+                {
+                    const double all = cover_.at(places[k], [](std::uint32_t) { return true; });
+                    shares.emplace_back(all > 0 ? -cover_.at(places[k], is_own) / all : 0, k);
+                }
                 std::sort(shares.begin(), shares.end());
                 std::vector<Vec3> sorted;
                 for (const auto& [share, k] : shares) sorted.push_back(places[k]);

@@ -220,6 +220,19 @@ TEST(ClosePacking, IsNotDoneToWaterThatFallsOrIsShallow)
     EXPECT_FALSE(contains(shallow.output, "packed closely"));
 }
 
+TEST(ClosePacking, KeepsTheNumberOfSmallBodiesToo)
+{
+    for (const double width : {0.5, 0.6, 0.7, 0.8})
+        for (const double depth : {0.4, 0.5, 0.7})
+        {
+            const Vec3 inside{width, 0, 1};
+            const std::string fluid = water(0, inside, 0, depth);
+            const ParticleCloud packed = make(tank(inside, fluid, "")).cloud;
+            EXPECT_EQ(packed.mk, make(tank(inside, fluid, cubic)).cloud.mk);
+            EXPECT_GT(nearest_pair(fluid_of(packed)), 0.5 * dp) << width << ' ' << depth;
+        }
+}
+
 TEST(ClosePacking, IsTheSameWithAnyNumberOfThreads)
 {
     const Vec3 inside{1.6, 1.5, 1.9};
