@@ -21,7 +21,7 @@ constexpr double least_size = 3;    ///< of a body, along each axis
 /// A body that fills more than this of its bounds is a box: its lattice has the box's volume.
 constexpr double box_fill = 0.97;
 /// Bounds may be so many times as large as a body; the places of a lattice in them are made.
-constexpr double most_box = 100;
+constexpr double most_box = 20;
 /// Of all fluid that moves; where less can be packed, none is.
 constexpr double least_packed = 0.95;
 /// Lattices are tried until one has no more than so many places too many, over the number of

@@ -24,7 +24,7 @@ namespace fppg
 /// lowest. Places nearer to walls than `least_distance` are moved off them. What is left to do near
 /// walls that do not fit the lattice, balancing does.
 ///
-/// Bodies of fluid thinner than 3 dp, or spread over bounds a hundred times as large, stay as they
+/// Bodies of fluid thinner than 3 dp, or spread over bounds 20 times as large, stay as they
 /// are. False is returned, and `rest` is of no use any more, where less than 95 % of the fluid is
 /// packed, where fluid is held, along which what is packed would slide, or where gravity is along
 /// no axis.
