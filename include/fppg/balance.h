@@ -11,8 +11,8 @@
 namespace fppg
 {
 
-/// Accelerations of the particles that balance_fluid() moves, less those of a lattice at their
-/// depth, over that of gravity.
+/// Accelerations of the particles that balance_fluid() moves, over that of gravity; where they are
+/// not packed closely, less those of a lattice at their depth.
 struct Accelerations
 {
     double mean = 0;
@@ -88,8 +88,8 @@ struct BalanceReport
 ///            fluid that is only even, 0.019 balanced
 /// cost       at most 400 iterations, at most 100 where these are 10^8 times a particle, 20 where
 ///            walls do not hold the fluid; what is at rest costs nothing until the next check.
-///            About 0.1 milliseconds a particle on one core in all (cases of this repository: 0.05
-///            to 0.2)
+///            About 0.2 milliseconds a particle on one core in all (cases of this repository: 0.05
+///            to 0.3)
 BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const CaseConstants& constants, CaseParticles& particles, int threads,
                             const std::function<bool(const BalanceProgress&)>& on_iteration);

@@ -215,14 +215,11 @@ void log_balance(const BalanceReport& report, RunLog& log)
                     "{:.3f} dp, {:.2f} dp at most",
                     thousands(report.particles), held, report.iterations, report.mean_move_dp,
                     report.largest_move_dp));
-    if (report.is_packed)
-        log.line(
-            fmt::format("  all fluid is packed closely (<fluidband packing=\"cubic\"> keeps it "
-                        "on its lattice); accelerations: {}; before: {}",
-                        text(report.after), text(report.before)));
-    else
-        log.line(fmt::format("  accelerations beside those of a lattice at rest: {}; before: {}",
-                             text(report.after), text(report.before)));
+    const char* what =
+        report.is_packed ? "all fluid is packed closely (<fluidband packing=\"cubic\"> keeps it on "
+                           "its lattice); accelerations"
+                         : "accelerations beside those of a lattice at rest";
+    log.line(fmt::format("  {}: {}; before: {}", what, text(report.after), text(report.before)));
 }
 
 } // namespace fppg

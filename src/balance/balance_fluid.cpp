@@ -537,12 +537,6 @@ private:
     double momentum_ = 0;
 };
 
-bool packs(const CaseDef& def)
-{
-    return std::all_of(def.fluid_bands.begin(), def.fluid_bands.end(),
-                       [](const FluidBand& band) { return band.packs_closely; });
-}
-
 std::size_t near_walls(const FluidAtRest& rest)
 {
     return static_cast<std::size_t>(
@@ -570,17 +564,19 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     report.held = hold_free_faces(rest, threads);
     const RestBoundary boundary = boundary_of(def);
     const double least_distance = least_distance_dp(boundary) * rest.dp;
-    FluidAtRest packed = rest;
-    if (packs(def) && pack_closely(packed, particles, least_distance, reach.closest, threads))
+    std::optional<FluidAtRest> packed;
+    if (packs(def, particles))
+        packed = packed_closely(rest, particles, least_distance, reach.closest, threads);
+    if (packed)
     {
         BalanceReport of_packed = report;
         of_packed.is_packed = true;
-        of_packed.particles = near_walls(packed);
-        Balancer(packed, LatticeFall(), reach.closest, boundary, threads)
+        of_packed.particles = near_walls(*packed);
+        Balancer(*packed, LatticeFall(), reach.closest, boundary, threads)
             .run(of_packed, on_iteration);
         if (of_packed.after.mean <= calm_packed)
         {
-            take_over(def, packed, threads, particles);
+            take_over(def, *packed, threads, particles);
             return of_packed;
         }
     }

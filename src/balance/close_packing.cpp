@@ -237,16 +237,10 @@ public:
     /// False where the body stays as it is.
     bool pack(int up, double least_distance, const ClosestWallPoint& closest)
     {
-        Vec3 low = rest_.positions[body_.front()], high = low;
-        for (const std::uint32_t i : body_)
-            for (int axis = 0; axis < 3; ++axis)
-            {
-                low[axis] = std::min(low[axis], rest_.positions[i][axis]);
-                high[axis] = std::max(high[axis], rest_.positions[i][axis]);
-            }
+        Box3 bounds;
+        for (const std::uint32_t i : body_) bounds.add(rest_.positions[i]);
         const Vec3 half{rest_.dp / 2, rest_.dp / 2, rest_.dp / 2};
-        low = low - half;
-        high = high + half;
+        const Vec3 low = bounds.min - half, high = bounds.max + half;
         if (box_of(high - low) > most_box * static_cast<double>(body_.size()) * own_cell())
             return false;
         for (int axis = 0; axis < 3; ++axis)
@@ -457,19 +451,24 @@ std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
 
 } // namespace
 
-bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double least_distance,
-                  const ClosestWallPoint& closest, int threads)
+std::optional<FluidAtRest> packed_closely(const FluidAtRest& rest, const CaseParticles& particles,
+                                          double least_distance, const ClosestWallPoint& closest,
+                                          int threads)
 {
     const std::optional<int> up = vertical_axis(rest);
-    if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0) return false;
+    if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0)
+        return std::nullopt;
+    FluidAtRest out = rest;
     std::size_t packed = 0, all = 0;
     for (const std::vector<std::uint32_t>& body : bodies_of(rest))
     {
         all += body.size();
-        if (BodyPacker(rest, body, particles, threads).pack(*up, least_distance, closest))
+        if (BodyPacker(out, body, particles, threads).pack(*up, least_distance, closest))
             packed += body.size();
     }
-    return packed > 0 && static_cast<double>(packed) >= least_packed * static_cast<double>(all);
+    if (packed == 0 || static_cast<double>(packed) < least_packed * static_cast<double>(all))
+        return std::nullopt;
+    return out;
 }
 
 } // namespace fppg

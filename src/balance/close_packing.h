@@ -4,6 +4,8 @@
 
 #include "balance/fluid_at_rest.h"
 
+#include <optional>
+
 namespace fppg
 {
 
@@ -24,17 +26,17 @@ namespace fppg
 /// lowest. Places nearer to walls than `least_distance` are moved off them. What is left to do near
 /// walls that do not fit the lattice, balancing does.
 ///
-/// Bodies of fluid thinner than 3 dp, or spread over bounds 20 times as large, stay as they
-/// are. False is returned, and `rest` is of no use any more, where less than 95 % of the fluid is
-/// packed, where fluid is held, along which what is packed would slide, or where gravity is along
-/// no axis.
+/// Bodies of fluid thinner than 3 dp, or spread over bounds 20 times as large, stay as they are.
+/// Nothing is returned where less than 95 % of the fluid is packed, where fluid is held, along
+/// which what is packed would slide, or where gravity is along no axis.
 ///
 /// rest            all fluid that moves, and what is around; ids, levels and roles go along
 /// particles       whose blocks say which ids have which mk
 /// least_distance  to walls, metres
 /// closest         the nearest point of a wall
 /// source          trials in tools/solver-trials, "What they showed of close packing"
-bool pack_closely(FluidAtRest& rest, const CaseParticles& particles, double least_distance,
-                  const ClosestWallPoint& closest, int threads);
+std::optional<FluidAtRest> packed_closely(const FluidAtRest& rest, const CaseParticles& particles,
+                                          double least_distance, const ClosestWallPoint& closest,
+                                          int threads);
 
 } // namespace fppg

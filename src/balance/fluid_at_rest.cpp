@@ -190,6 +190,17 @@ std::vector<double> balanced_bands(const CaseDef& def)
     return out;
 }
 
+bool packs(const CaseDef& def, const CaseParticles& particles)
+{
+    return std::all_of(particles.blocks.begin(), particles.blocks.end(),
+                       [&](const ParticleBlock& block)
+                       {
+                           if (block.type != ParticleType::Fluid) return true;
+                           const FluidBand* band = fluid_band(def, block.mk);
+                           return band == nullptr || band->packs_closely;
+                       });
+}
+
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach)
 {

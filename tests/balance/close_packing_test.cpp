@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <set>
 
 namespace
 {
@@ -90,13 +89,9 @@ std::vector<Vec3> fluid_of(const ParticleCloud& cloud)
 /// leaves rows of other lengths.)
 std::map<int, int> neighbours_in_the_midst(const std::vector<Vec3>& fluid, double reach)
 {
-    Vec3 low = fluid.front(), high = fluid.front();
-    for (const Vec3& p : fluid)
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
+    fppg::Box3 bounds;
+    for (const Vec3& p : fluid) bounds.add(p);
+    const auto& [low, high] = bounds;
     const bool is_2d = low.y == high.y;
     std::map<int, int> out;
     for (const Vec3& p : fluid)
