@@ -12,7 +12,7 @@ namespace fppg
 {
 
 /// Accelerations of the particles that balance_fluid() moves, over that of gravity; where they are
-/// not packed closely, less those of a lattice at their depth.
+/// on the lattice of the case, less those of a lattice at their depth.
 struct Accelerations
 {
     double mean = 0;
@@ -40,7 +40,7 @@ struct BalanceReport
     std::size_t particles = 0; ///< near walls, that may move; all else here is of them
     std::size_t held = 0; ///< of the fluid near walls, as a free face that is not level is near
     int iterations = 0;
-    bool is_packed = false;   ///< all fluid is on close packed lattices now
+    bool is_packed = false;   ///< all fluid is on lattices that are more stable
     bool is_balanced = false; ///< false: accelerations stay too large, the fluid is left as it was
     Accelerations before, after;
     double mean_move_dp = 0;
@@ -68,8 +68,8 @@ struct BalanceReport
 /// fluid beside walls slid along the rest at 0.01 to 0.03 g (2D tanks of 50 dp: mean speed after
 /// 0.2 s 0.0066 m/s, now 0.0012).
 ///
-/// Where all fluid is moved and none held it is laid on close packed lattices first, which stay at
-/// rest, unlike cubic ones (balance/close_packing.h), and brought to rest for good, without a fall.
+/// Where all fluid is moved and none held it is laid on the most stable lattice first
+/// (balance/stable_packing.h), unless that is the cubic one, and brought to rest without a fall.
 /// It keeps its numbers and levels; ids of one mk go along x, then y, then z. Where more than 0.01
 /// g would be left in the mean, it is left on its lattice.
 ///

@@ -168,8 +168,9 @@ struct FluidBand
     double width_dp = 3;   ///< fluid this near to a fitted wall moves, in dp; above 0, finite
     bool is_active = true; ///< false: it stays on the lattice
     bool balances = true;  ///< it is brought to rest (balance.h)
-    /// `packing="close"`: still water all of which is brought to rest leaves the cubic lattice.
-    bool packs_closely = true;
+    /// `packing="stable"`: still water all of which is brought to rest leaves its lattice for one
+    /// that is more stable, where there is one.
+    bool packs = true;
     /// `mass="exact"`: all fluid particles together have the mass of the space between walls.
     bool has_exact_mass = false;
 };

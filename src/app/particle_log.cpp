@@ -215,10 +215,10 @@ void log_balance(const BalanceReport& report, RunLog& log)
                     "{:.3f} dp, {:.2f} dp at most",
                     thousands(report.particles), held, report.iterations, report.mean_move_dp,
                     report.largest_move_dp));
-    const char* what =
-        report.is_packed ? "all fluid is packed closely (<fluidband packing=\"cubic\"> keeps it on "
-                           "its lattice); accelerations"
-                         : "accelerations beside those of a lattice at rest";
+    const char* what = report.is_packed
+                           ? "all fluid stands on a lattice that stays at rest under pressure "
+                             "(<fluidband packing=\"cubic\"> keeps its own); accelerations"
+                           : "accelerations beside those of a lattice at rest";
     log.line(fmt::format("  {}: {}; before: {}", what, text(report.after), text(report.before)));
 }
 

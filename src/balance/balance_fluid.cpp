@@ -1,10 +1,10 @@
 #include "fppg/balance.h"
 
-#include "balance/close_packing.h"
 #include "balance/coarse_steps.h"
 #include "balance/fluid_at_rest.h"
 #include "balance/lattice_fall.h"
 #include "balance/pressure_sums.h"
+#include "balance/stable_packing.h"
 #include "balance/take_places.h"
 #include "balance/wall_pressure.h"
 #include "core/parallel.h"
@@ -65,8 +65,8 @@ constexpr double calm = 0.0005;
 constexpr double still = 0.0003;
 /// Where the mean is below this by this iteration, or later, the fluid keeps what it has: rows of
 /// the lattice that go on moving lose their order for 0.0005 g less (2D, 20 dp deep, after 0.1 s:
-/// 0.0029 instead of 0.0013 m/s). Close packed fluid goes on while that is cheap (2D, stairs, after
-/// 0.3 s: 0.0006 instead of 0.0010 m/s).
+/// 0.0029 instead of 0.0013 m/s). Fluid on a stable lattice goes on while that is cheap (2D,
+/// stairs, after 0.3 s: 0.0006 instead of 0.0010 m/s).
 constexpr double settled = 0.002;
 constexpr int first_settled = 80;
 /// Where the least mean has fallen by less than this share in so many iterations, more gain little;
@@ -89,7 +89,7 @@ constexpr double calm_mean = 0.1;
 /// And where it is above this at the first check: in all cases tried those that came to rest were
 /// below 0.09 then, the others above 0.4.
 constexpr double hopeless_mean = 0.25;
-/// Fluid that is packed closely and keeps more than this in the mean is left on its lattice.
+/// Fluid on a stable lattice that keeps more than this in the mean goes back to the cubic one.
 constexpr double calm_packed = 0.01;
 
 /// Why a case is not balanced; empty where it is.
@@ -566,7 +566,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     const double least_distance = least_distance_dp(boundary) * rest.dp;
     std::optional<FluidAtRest> packed;
     if (packs(def, particles))
-        packed = packed_closely(rest, particles, least_distance, reach.closest, threads);
+        packed = packed_stably(rest, particles, least_distance, reach.closest, threads);
     if (packed)
     {
         BalanceReport of_packed = report;

@@ -197,7 +197,7 @@ bool packs(const CaseDef& def, const CaseParticles& particles)
                        {
                            if (block.type != ParticleType::Fluid) return true;
                            const FluidBand* band = fluid_band(def, block.mk);
-                           return band == nullptr || band->packs_closely;
+                           return band == nullptr || band->packs;
                        });
 }
 

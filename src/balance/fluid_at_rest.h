@@ -124,7 +124,7 @@ inline double rest_reach_dp(const FluidAtRest& rest)
 /// The bands of RestReach, by the `<fluidband>` of a case.
 std::vector<double> balanced_bands(const CaseDef& def);
 
-/// Whether no fluid of the case is to stay on its lattice, `<fluidband packing="cubic">`.
+/// Whether no fluid of the case is to stay on its lattice by `<fluidband packing="cubic">`.
 bool packs(const CaseDef& def, const CaseParticles& particles);
 
 /// How far gather_fluid() looks.

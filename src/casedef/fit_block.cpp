@@ -445,12 +445,13 @@ private:
                        fmt::format("mass=\"{}\" is unknown, expected exact (the mass of the space "
                                    "between walls) or dp (rhop0 dp^3 each)",
                                    mass));
-        const std::string packing = read_.text_or(e, "packing", "close");
-        band.packs_closely = packing == "close";
-        if (packing != "close" && packing != "cubic")
-            read_.fail(e, fmt::format("packing=\"{}\" is unknown, expected close (hexagonal in 2D, "
-                                      "face-centred cubic in 3D) or cubic",
-                                      packing));
+        const std::string packing = read_.text_or(e, "packing", "stable");
+        band.packs = packing == "stable";
+        if (packing != "stable" && packing != "cubic")
+            read_.fail(e,
+                       fmt::format("packing=\"{}\" is unknown, expected stable (the lattice that "
+                                   "stays at rest under pressure) or cubic (the case's own)",
+                                   packing));
         def_.fluid_bands.push_back(std::move(band));
     }
 

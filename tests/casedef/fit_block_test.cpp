@@ -284,8 +284,8 @@ TEST(FitBlock, ReadsBandsOfFluid)
     ASSERT_EQ(def.fluid_bands.size(), 2u);
     EXPECT_TRUE(def.fluid_bands[0].mk.empty());
     EXPECT_EQ(def.fluid_bands[0].width_dp, 2.5);
-    EXPECT_FALSE(def.fluid_bands[0].packs_closely);
-    EXPECT_TRUE(def.fluid_bands[1].packs_closely);
+    EXPECT_FALSE(def.fluid_bands[0].packs);
+    EXPECT_TRUE(def.fluid_bands[1].packs);
     EXPECT_EQ(def.fluid_bands[1].mk, std::vector<std::uint16_t>{1});
     EXPECT_EQ(def.fluid_bands[1].width_dp, 3);
 }

@@ -1,5 +1,6 @@
-#include "balance/close_packing.h"
+#include "balance/stable_packing.h"
 
+#include "balance/lattice_stability.h"
 #include "core/parallel_sort.h"
 #include "meshes/point_grid.h"
 #include "relax/cell_rows.h"
@@ -37,12 +38,6 @@ constexpr double cost_of_excess = 0.02;
 constexpr double cost_of_excess_squared = 4;
 /// The most that a row of the highest ones gives up.
 constexpr double most_thinned = 1.0 / 3;
-
-/// Distance between layers over that in them; every second layer is half a step on.
-double ideal_ratio(bool is_2d)
-{
-    return is_2d ? std::sqrt(0.75) : std::sqrt(0.5);
-}
 
 /// Layers of rows between the bounds of a body of fluid.
 struct Packing
@@ -94,8 +89,9 @@ struct Counts
 /// The lattice whose cells are nearest to the ideal ones and, by volume, a little smaller than
 /// `cell`, so that there are a few places too many.
 ///
-/// cell  what a particle has, m^3 (2D: m^2)
-Packing fit_packing(const FluidAtRest& rest, const Vec3& low, const Vec3& high, int up, double cell)
+/// ratio  of the distance between layers to the step in them
+/// cell   what a particle has, m^3 (2D: m^2)
+Packing fit_packing(const FluidAtRest& rest, const Box3& bounds, int up, double ratio, double cell)
 {
     Packing p;
     p.axes = {up == 0 ? 1 : 0, up == 2 ? 1 : 2, up};
@@ -103,10 +99,9 @@ Packing fit_packing(const FluidAtRest& rest, const Vec3& low, const Vec3& high, 
     std::array<double, 3> lengths{};
     for (std::size_t k = 0; k < 3; ++k)
     {
-        p.low[k] = low[p.axes[k]];
-        lengths[k] = high[p.axes[k]] - low[p.axes[k]];
+        p.low[k] = bounds.min[p.axes[k]];
+        lengths[k] = bounds.max[p.axes[k]] - p.low[k];
     }
-    const double ratio = ideal_ratio(rest.is_2d);
     const double along = rest.is_2d ? std::sqrt(cell / ratio) : std::cbrt(cell / ratio);
     const auto strain = [](double step, double ideal)
     { return std::pow(std::log(step / ideal), 2); };
@@ -235,24 +230,23 @@ public:
     }
 
     /// False where the body stays as it is.
-    bool pack(int up, double least_distance, const ClosestWallPoint& closest)
+    bool pack(int up, double ratio, double least_distance, const ClosestWallPoint& closest)
     {
         Box3 bounds;
         for (const std::uint32_t i : body_) bounds.add(rest_.positions[i]);
         const Vec3 half{rest_.dp / 2, rest_.dp / 2, rest_.dp / 2};
-        const Vec3 low = bounds.min - half, high = bounds.max + half;
-        if (box_of(high - low) > most_box * static_cast<double>(body_.size()) * own_cell())
-            return false;
+        bounds = {bounds.min - half, bounds.max + half};
+        const Vec3 size = bounds.max - bounds.min;
+        if (box_of(size) > most_box * static_cast<double>(body_.size()) * own_cell()) return false;
         for (int axis = 0; axis < 3; ++axis)
-            if (!(rest_.is_2d && axis == 1) && high[axis] - low[axis] < least_size * rest_.dp)
-                return false;
-        double cell = cell_of(high - low);
+            if (!(rest_.is_2d && axis == 1) && size[axis] < least_size * rest_.dp) return false;
+        double cell = cell_of(size);
         Places best;
         double least_off = std::numeric_limits<double>::infinity();
         for (int k = 0; k < most_trials && least_off > wanted_excess; ++k)
         {
             Places places =
-                choose(fit_packing(rest_, low, high, up, cell), least_distance, closest);
+                choose(fit_packing(rest_, bounds, up, ratio, cell), least_distance, closest);
             if (places.inside == 0) break;
             const double excess =
                 static_cast<double>(places.inside) / static_cast<double>(body_.size()) - 1;
@@ -307,13 +301,13 @@ private:
                 const double cover = cover_.at(places[k], [](std::uint32_t) { return true; });
                 choices[k] = {cover, k, places[k]};
                 if (cover <= 0) return;
-                const Vec3 wall = closest(places[k], least_distance);
+                const Vec3 fluid = rest_.positions[cover_.nearest(places[k])];
+                const Vec3 wall = closest(places[k], reach_of_cover * rest_.dp);
                 const Vec3 away = places[k] - wall;
                 const double distance = norm(away);
-                if (distance >= least_distance) return;
-                if (dot(away, rest_.positions[cover_.nearest(places[k])] - wall) <= 0)
+                if (dot(away, fluid - wall) <= 0 || is_behind_wall_of(fluid, places[k], closest))
                     choices[k].cover = 0;
-                else
+                else if (distance < least_distance)
                     choices[k].at = wall + (least_distance / distance) * away;
             },
             64);
@@ -329,6 +323,15 @@ private:
             out.inside += choice.cover >= least_cover ? 1 : 0;
         }
         return out;
+    }
+
+    /// Whether a place lies behind the plane of the wall that is nearest to a particle: in a plate
+    /// with fluid on both sides it lies behind that of either.
+    bool is_behind_wall_of(const Vec3& fluid, const Vec3& place,
+                           const ClosestWallPoint& closest) const
+    {
+        const Vec3 wall = closest(fluid, reach_of_cover * rest_.dp);
+        return dot(fluid - wall, place - wall) < 0;
     }
 
     /// As many places as there are particles, by x, then y, then z within each row or layer.
@@ -451,19 +454,23 @@ std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
 
 } // namespace
 
-std::optional<FluidAtRest> packed_closely(const FluidAtRest& rest, const CaseParticles& particles,
-                                          double least_distance, const ClosestWallPoint& closest,
-                                          int threads)
+std::optional<FluidAtRest> packed_stably(const FluidAtRest& rest, const CaseParticles& particles,
+                                         double least_distance, const ClosestWallPoint& closest,
+                                         int threads)
 {
     const std::optional<int> up = vertical_axis(rest);
     if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0)
         return std::nullopt;
+    const std::optional<LayeredLattice> lattice =
+        most_stable_lattice({rest.h / rest.dp, rest.is_cubic, rest.is_2d});
+    if (!lattice) return std::nullopt;
     FluidAtRest out = rest;
     std::size_t packed = 0, all = 0;
     for (const std::vector<std::uint32_t>& body : bodies_of(rest))
     {
         all += body.size();
-        if (BodyPacker(out, body, particles, threads).pack(*up, least_distance, closest))
+        if (BodyPacker(out, body, particles, threads)
+                .pack(*up, lattice->ratio, least_distance, closest))
             packed += body.size();
     }
     if (packed == 0 || static_cast<double>(packed) < least_packed * static_cast<double>(all))
