@@ -2,6 +2,7 @@
 
 #include "balance/coarse_steps.h"
 #include "balance/fluid_at_rest.h"
+#include "balance/iterations.h"
 #include "balance/lattice_fall.h"
 #include "balance/pressure_sums.h"
 #include "balance/stable_packing.h"
@@ -54,27 +55,22 @@ constexpr double most_in_common = 0.05;
 /// The first of them with a short momentum, which brings even rows to rest; a longer one finds
 /// better places along curved walls.
 constexpr int even_iterations = 40;
-constexpr int most_iterations = 400;
-constexpr int least_most_iterations = 100; ///< of particles that would need more than most_work
-constexpr double most_work = 1e8;          ///< particles times iterations
-constexpr int iterations_per_look = 10;    ///< at mDBC's pressures
+constexpr int iterations_per_look = 10; ///< at mDBC's pressures
 constexpr int iterations_per_check = 10;
 /// Mean acceleration over gravity at which all is done, and below which a particle stands still
 /// until the next check.
 constexpr double calm = 0.0005;
 constexpr double still = 0.0003;
-/// Where the mean is below this by this iteration, or later, the fluid keeps what it has: rows of
+/// Where the mean is below this by first_settled, or later, the fluid keeps what it has: rows of
 /// the lattice that go on moving lose their order for 0.0005 g less (2D, 20 dp deep, after 0.1 s:
 /// 0.0029 instead of 0.0013 m/s). Fluid on a stable lattice goes on while that is cheap (2D,
 /// stairs, after 0.3 s: 0.0006 instead of 0.0010 m/s).
 constexpr double settled = 0.002;
-constexpr int first_settled = 80;
 /// Where the least mean has fallen by less than this share in so many iterations, more gain little;
 /// along curved walls it stays for as many before the fluid finds better places, so that those that
 /// cost little are made all the same.
 constexpr double slow_fall = 0.15;
 constexpr int iterations_of_fall = 80;
-constexpr double least_work = 5e6; ///< particles times iterations
 /// Where the mean has been below the first and risen to so much of the least one, rows of a lattice
 /// have lost their order, and the fluid keeps what it had before: with modified boundaries a tank
 /// 50 dp deep in 2D, 40.3 dp wide, is at 0.0010 m/s after 0.1 s, and at 0.0025 where it goes on to
@@ -215,12 +211,6 @@ private:
         constexpr std::size_t checks = iterations_of_fall / iterations_per_check;
         return least.size() > checks + even_iterations / iterations_per_check &&
                least.back() > (1 - slow_fall) * least[least.size() - 1 - checks];
-    }
-
-    static int last_iteration(std::size_t particles)
-    {
-        return std::clamp(static_cast<int>(most_work / static_cast<double>(particles)),
-                          least_most_iterations, most_iterations);
     }
 
     void start_at_rest()

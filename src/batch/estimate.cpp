@@ -311,6 +311,15 @@ private:
                share_near(fluid_, surfaces_, width * def_.grid.dp, options_.threads);
     }
 
+    /// Single sheets do not hold fluid at rest; lines of 2D cases are not counted.
+    bool holds_fluid() const
+    {
+        return def_.grid.is_2d ||
+               std::any_of(walls_.begin(), walls_.end(),
+                           [](const auto& wall)
+                           { return wall.second.inside > 0 || wall.second.in_layers > 0; });
+    }
+
     bool is_inside(const Vec3& p, const std::vector<ClipPlane>& clips) const
     {
         const LatticeGrid& grid = def_.grid;
@@ -434,9 +443,7 @@ private:
 
         const double near_walls = balanced();
         set_memory(bound, near_walls);
-        // Single sheets do not hold fluid at rest: that is found out, and it stays.
-        const double a_balanced = cut_area_ > 0 ? rates.seconds_a_balanced_particle
-                                                : rates.seconds_a_particle_not_balanced;
+        const double pairs = pairs_to_balance(def_, near_walls, holds_fluid());
         out_.seconds =
             rates.seconds_to_start + draw_seconds_ +
             read_machine_speed().factor *
@@ -445,7 +452,8 @@ private:
                  rates.seconds_a_band_particle * in_band_ + rates.seconds_a_cut_place * cut_area_ +
                  rates.seconds_a_cut_particle * cut_particles_ +
                  rates.seconds_a_layer_particle * in_layers_ +
-                 rates.seconds_a_layered_line * layered_lines_ + a_balanced * near_walls) /
+                 rates.seconds_a_layered_line * layered_lines_ +
+                 rates.seconds_a_balanced_pair * pairs) /
                 options_.threads +
             out_.output_bytes / rates.written_bytes_a_second;
     }

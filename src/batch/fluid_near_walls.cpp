@@ -1,8 +1,14 @@
 #include "batch/fluid_near_walls.h"
 
+#include "fppg/balance.h"
+
+#include "balance/iterations.h"
+#include "balance/lattice_stability.h"
 #include "meshes/mesh_query.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace fppg
 {
@@ -47,6 +53,24 @@ double share_near(const std::vector<Vec3>& places, const TriangleSoup& surface, 
                                     [&](const Vec3& p)
                                     { return query.closest_point(p, within).distance <= within; });
     return static_cast<double>(near) / static_cast<double>(places.size());
+}
+
+double pairs_to_balance(const CaseDef& def, double particles, bool holds)
+{
+    constexpr int iterations_to_find_out = 40;
+    constexpr double skin_dp = 0.5;
+    constexpr double awake = 0.65; ///< of fluid on the case's own lattice; what is at rest sleeps
+    if (particles == 0) return 0;
+    const bool is_2d = def.grid.is_2d;
+    const double h_dp = def.h / def.grid.dp, reach = 2 * h_dp + skin_dp;
+    const double neighbours = std::numbers::pi * reach * reach * (is_2d ? 1 : 4.0 / 3 * reach);
+    const bool is_packed = particles <= static_cast<double>(most_balanced_whole) &&
+                           std::all_of(def.fluid_bands.begin(), def.fluid_bands.end(),
+                                       [](const FluidBand& band) { return band.packs; }) &&
+                           most_stable_lattice({h_dp, def.solver.kernel == 1, is_2d});
+    const int iterations = holds ? usual_iterations(static_cast<std::size_t>(particles), is_packed)
+                                 : iterations_to_find_out;
+    return particles * iterations * neighbours * (is_packed ? 1 : awake);
 }
 
 } // namespace fppg

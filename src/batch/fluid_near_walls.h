@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/lattice.h"
 #include "fppg/mesh.h"
 
@@ -19,5 +20,11 @@ std::vector<Vec3> sample_fluid(const RunField& field, std::uint16_t first_bound)
 /// within  metres
 double share_near(const std::vector<Vec3>& places, const TriangleSoup& surface, double within,
                   int threads);
+
+/// What balancing fluid sums up (balance.h): particles times iterations times neighbours.
+///
+/// particles  that move
+/// holds      whether walls hold it at rest; else that is found out, and it stays
+double pairs_to_balance(const CaseDef& def, double particles, bool holds);
 
 } // namespace fppg

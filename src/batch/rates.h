@@ -21,7 +21,7 @@ struct Rates
     double bytes_to_fit = 6e6;               ///< where any wall is fitted
     double bytes_a_cut_place = 6000;         ///< of a surface with layers, dp^2: its distance field
     double bytes_a_cut_particle = 3100;      ///< the surface that those of layers are laid on
-    double bytes_a_balanced_particle = 1700; ///< fluid near walls, and what is around it
+    double bytes_a_balanced_particle = 1500; ///< fluid near walls, and what is around it
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
     double seconds_to_start = 0.01;
@@ -29,13 +29,12 @@ struct Rates
     double seconds_a_facet = 6e-6;           ///< of a body-fitted mesh: mended, searched
     double seconds_a_relaxed_particle = 6.7e-6;
     double seconds_a_band_particle = 17e-6;
-    double seconds_a_cut_place = 90e-6;             ///< of a surface with layers, dp^2
-    double seconds_a_cut_particle = 5e-6;           ///< the surface that it is laid on
-    double seconds_a_layer_particle = 18e-6;        ///< laid and relaxed
-    double seconds_a_layered_line = 50e-6;          ///< of creases of layers, dp of the edge
-    double seconds_a_balanced_particle = 190e-6;    ///< fluid near walls in layers
-    double seconds_a_particle_not_balanced = 53e-6; ///< near single sheets
-    double band_particles = 2.3;                    ///< of a solid, a particle on its surface
+    double seconds_a_cut_place = 90e-6;      ///< of a surface with layers, dp^2
+    double seconds_a_cut_particle = 5e-6;    ///< the surface that it is laid on
+    double seconds_a_layer_particle = 18e-6; ///< laid and relaxed
+    double seconds_a_layered_line = 50e-6;   ///< of creases of layers, dp of the edge
+    double seconds_a_balanced_pair = 3.9e-9; ///< of fluid in each iteration
+    double band_particles = 2.3;             ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;
 
     double bi4_bytes = 44;      ///< a particle: id, position, velocity, density

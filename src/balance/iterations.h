@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace fppg
+{
+
+// How many iterations balance_fluid() makes.
+
+inline constexpr int most_iterations = 400;
+inline constexpr int least_most_iterations =
+    100;                                 ///< of particles that would need more than most_work
+inline constexpr double most_work = 1e8; ///< particles times iterations
+/// Less is made all the same, however little it gains.
+inline constexpr double least_work = 5e6;
+/// Fluid of the case's own lattice that has settled by then keeps what it has.
+inline constexpr int first_settled = 80;
+
+/// The most that are made.
+inline int last_iteration(std::size_t particles)
+{
+    return std::clamp(static_cast<int>(most_work / static_cast<double>(particles)),
+                      least_most_iterations, most_iterations);
+}
+
+/// Those that most cases take; where walls are hard to fit it is up to twice as many.
+///
+/// is_packed  all is laid on another lattice first
+inline int usual_iterations(std::size_t particles, bool is_packed)
+{
+    if (!is_packed) return first_settled;
+    return std::clamp(static_cast<int>(least_work / static_cast<double>(particles)), first_settled,
+                      most_iterations);
+}
+
+} // namespace fppg
