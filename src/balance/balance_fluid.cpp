@@ -75,7 +75,8 @@ constexpr int iterations_of_fall = 80;
 /// have lost their order, and the fluid keeps what it had before: with modified boundaries a tank
 /// 50 dp deep in 2D, 40.3 dp wide, is at 0.0010 m/s after 0.1 s, and at 0.0025 where it goes on to
 /// new places at rest. Along curved walls, and where parts of one tank do not fit the lattice,
-/// going on gains as much or more.
+/// going on gains as much or more; so does fluid on a stable lattice (3D, 10 dp deep, after 0.3 s:
+/// 0.0003 instead of 0.0006 m/s).
 constexpr double nearly_settled = 0.004;
 constexpr double loses_order = 1.25;
 constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
@@ -168,9 +169,9 @@ public:
             if (mean < best.mean) best = state(mean);
             least.push_back(best.mean);
             const bool is_cheap = static_cast<double>(report.particles) * it < least_work;
-            if (mean < calm ||
-                (best.mean < settled && it >= first_settled && !(report.is_packed && is_cheap)) ||
-                (best.mean < nearly_settled && mean > loses_order * best.mean) ||
+            const bool is_over = (best.mean < settled && it >= first_settled) ||
+                                 (best.mean < nearly_settled && mean > loses_order * best.mean);
+            if (mean < calm || (is_over && !(report.is_packed && is_cheap)) ||
                 (is_slow(least) && !is_cheap))
                 break;
         }
