@@ -498,7 +498,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NegativeBand", R"(<fppg><bodyfitted><relax band="-1" /></bodyfitted></fppg>)",
                 "band=\"-1\" is -1, expected all or a width from 0 on"},
         Mistake{"UnknownPacking", R"(<fppg><fluidband packing="square" /></fppg>)",
-                "<fluidband>: packing=\"square\" is unknown, expected close"},
+                "<fluidband>: packing=\"square\" is unknown, expected stable"},
         Mistake{"NoWidth", R"(<fppg><fluidband width="0" /></fppg>)",
                 "<fluidband>: attribute width=\"0\" is 0, expected a width above 0"},
         Mistake{"BadList", R"(<fppg><bodyfitted mkbound="3-1" /></fppg>)",

@@ -320,7 +320,8 @@ TEST(FluidSpace, WaterBetweenLayersHasTheVolumeThatIsDrawn)
             for (const std::string& drawn :
                  {water + walls, walls + water, walls + fill, walls + limited})
             {
-                const Result r = make(case_of(drawn, R"(<bodyfitted boundary="mdbc" />)"));
+                const Result r = make(case_of(
+                    drawn, R"(<bodyfitted boundary="mdbc" /><fluidband packing="cubic" />)"));
                 ASSERT_EQ(r.code, 0) << r.output;
                 const double volume = static_cast<double>(r.fluid().size()) * dp * dp * dp;
                 EXPECT_NEAR(volume, width * 0.6 * 0.4, 0.0015 * volume) << drawn;

@@ -39,7 +39,7 @@ set(render_may_see files particles shapes meshes core)
 # What differs in Case.xml is found in its tree, which casedef reads.
 set(compare_may_see report files casedef particles shapes meshes core)
 # Cases beforehand and many at a time.
-set(batch_may_see report walls lattice scene files casedef shapes meshes particles nodes core)
+set(batch_may_see report balance walls lattice scene files casedef shapes meshes particles nodes core)
 # What the solver made of a case, against the true shapes of its draws.
 set(leak_may_see walls lattice scene files casedef shapes meshes particles nodes core)
 # A written case, judged as the solver would.
