@@ -216,7 +216,7 @@ void log_balance(const BalanceReport& report, RunLog& log)
                     thousands(report.particles), held, report.iterations, report.mean_move_dp,
                     report.largest_move_dp));
     const char* what = report.is_packed
-                           ? "all fluid stands on a lattice that stays at rest under pressure "
+                           ? "all fluid stands on the lattice that is most stable under pressure "
                              "(<fluidband packing=\"cubic\"> keeps its own); accelerations"
                            : "accelerations beside those of a lattice at rest";
     log.line(fmt::format("  {}: {}; before: {}", what, text(report.after), text(report.before)));

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -84,8 +83,7 @@ struct FluidAtRest
     /// The factor of the kernel, W = alpha times the shape that pressure_sums.h sums up.
     double alpha() const
     {
-        if (is_cubic)
-            return is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
+        if (is_cubic) return is_2d ? cubic_spline_alpha_2d(h) : cubic_spline_alpha_3d(h);
         return is_2d ? wendland_alpha_2d(h) : wendland_alpha_3d(h);
     }
     /// From sums of the kernel's slope in dp and dp^3 (2D: dp^2) to those in metres.

@@ -4,6 +4,7 @@
 #include "relax/kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -37,8 +38,7 @@ Slopes slopes_of(const LatticeKernel& kernel, double r)
     const double h = kernel.h_dp, q = r / h;
     if (kernel.is_cubic)
     {
-        const double alpha =
-            kernel.is_2d ? 10 / (7 * std::numbers::pi * h * h) : 1 / (std::numbers::pi * h * h * h);
+        const double alpha = kernel.is_2d ? cubic_spline_alpha_2d(h) : cubic_spline_alpha_3d(h);
         if (q > 1) return {-0.75 * alpha / h * (2 - q) * (2 - q), 1.5 * alpha / (h * h) * (2 - q)};
         return {alpha / h * (2.25 * q - 3) * q, alpha / (h * h) * (4.5 * q - 3)};
     }

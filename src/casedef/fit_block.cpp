@@ -450,7 +450,7 @@ private:
         if (packing != "stable" && packing != "cubic")
             read_.fail(e,
                        fmt::format("packing=\"{}\" is unknown, expected stable (the lattice that "
-                                   "stays at rest under pressure) or cubic (the case's own)",
+                                   "is most stable under pressure) or cubic (the case's own)",
                                    packing));
         def_.fluid_bands.push_back(std::move(band));
     }

@@ -41,4 +41,16 @@ constexpr double wendland_alpha_3d(double h)
     return 21 / (16 * std::numbers::pi * h * h * h);
 }
 
+/// The same for the cubic spline of Monaghan, W = alpha_d (1 - 3/2 q^2 + 3/4 q^3) up to q = 1 and
+/// alpha_d / 4 (2 - q)^3 up to 2.
+constexpr double cubic_spline_alpha_2d(double h)
+{
+    return 10 / (7 * std::numbers::pi * h * h);
+}
+
+constexpr double cubic_spline_alpha_3d(double h)
+{
+    return 1 / (std::numbers::pi * h * h * h);
+}
+
 } // namespace fppg
