@@ -7,6 +7,7 @@
 
 #include <array>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -45,7 +46,7 @@ struct Packing
     std::array<int, 3> axes{}; ///< of two directions along layers, in 2D one, and across
     std::array<double, 3> low{};
     std::array<double, 3> steps{}; ///< metres
-    /// Half steps between the bounds along layers; of layers across. In 2D the second is 0.
+    /// Rows between the bounds; the last of layers. In 2D the second is 0.
     std::array<int, 3> counts{};
 
     std::vector<Vec3> places(double y_of_2d) const;
@@ -55,21 +56,19 @@ std::vector<Vec3> Packing::places(double y_of_2d) const
 {
     std::vector<Vec3> out;
     const bool is_2d = counts[1] == 0;
-    // Nested because a lattice has three directions.
+    // Nested because a lattice has three directions. Every second place of a row is taken, by
+    // turns: the nets of layers lie diagonally, so that rows are straight along the bounds of a
+    // box.
     for (int k = 0; k < counts[2]; ++k)
-    {
-        // Ends of rows are a quarter and three quarters of a step off the bounds by turns.
-        const double first = 0.25 + 0.5 * (k % 2);
-        for (int j = 0; j == 0 || (!is_2d && j + first < 0.5 * counts[1]); ++j)
-            for (int i = 0; i + first < 0.5 * counts[0]; ++i)
+        for (int j = 0; j < std::max(counts[1], 1); ++j)
+            for (int i = (j + k) % 2; i < counts[0]; i += 2)
             {
                 Vec3 at{0, y_of_2d, 0};
-                at[axes[0]] = low[0] + (i + first) * steps[0];
-                if (!is_2d) at[axes[1]] = low[1] + (j + first) * steps[1];
+                at[axes[0]] = low[0] + (i + 0.5) * steps[0];
+                if (!is_2d) at[axes[1]] = low[1] + (j + 0.5) * steps[1];
                 at[axes[2]] = low[2] + (k + 0.5) * steps[2];
                 out.push_back(at);
             }
-    }
     return out;
 }
 
@@ -102,11 +101,12 @@ Packing fit_packing(const FluidAtRest& rest, const Box3& bounds, int up, double 
         p.low[k] = bounds.min[p.axes[k]];
         lengths[k] = bounds.max[p.axes[k]] - p.low[k];
     }
-    const double along = rest.is_2d ? std::sqrt(cell / ratio) : std::cbrt(cell / ratio);
+    const double step = rest.is_2d ? std::sqrt(cell / ratio) : std::cbrt(cell / ratio);
+    const double along = step / (rest.is_2d ? 2 : std::numbers::sqrt2); // of straight rows
     const auto strain = [](double step, double ideal)
     { return std::pow(std::log(step / ideal), 2); };
-    const Counts rows(lengths[0], along / 2), columns(lengths[1], along / 2),
-        layers(lengths[2], ratio * along);
+    const Counts rows(lengths[0], along), columns(lengths[1], along),
+        layers(lengths[2], ratio * step);
     Packing best = p;
     double least = std::numeric_limits<double>::infinity();
     // Nested because a lattice has three counts.
@@ -115,12 +115,12 @@ Packing fit_packing(const FluidAtRest& rest, const Box3& bounds, int up, double 
             for (int b = rest.is_2d ? 0 : columns.first; b <= (rest.is_2d ? 0 : columns.last); ++b)
             {
                 p.counts = {a, b, c};
-                p.steps = {2 * lengths[0] / a, rest.is_2d ? 1 : 2 * lengths[1] / b, lengths[2] / c};
-                const double excess = 1 - p.steps[0] * p.steps[1] * p.steps[2] / cell;
+                p.steps = {lengths[0] / a, rest.is_2d ? 1 : lengths[1] / b, lengths[2] / c};
+                const double excess = 1 - 2 * p.steps[0] * p.steps[1] * p.steps[2] / cell;
                 if (excess < -1e-6) continue;
                 const double cost = strain(p.steps[0], along) +
                                     (rest.is_2d ? 0 : strain(p.steps[1], along)) +
-                                    strain(p.steps[2], ratio * along) + cost_of_excess * excess +
+                                    strain(p.steps[2], ratio * step) + cost_of_excess * excess +
                                     cost_of_excess_squared * excess * excess;
                 if (cost >= least) continue;
                 least = cost;

@@ -57,6 +57,11 @@ CaseText with_coefh(CaseText text, const std::string& coefh)
     return text;
 }
 
+const std::string modified_boundaries = R"(<parameters><parameter key="Boundary" value="2" />)"
+                                        R"(<parameter key="SlipMode" value="2" />)"
+                                        R"(<parameter key="NoPenetration" value="1" />)"
+                                        R"(</parameters>)";
+
 /// Fluid from z = `low` to `high` all over a tank.
 std::string water(int mk, const Vec3& inside, double low, double high)
 {
@@ -65,6 +70,29 @@ std::string water(int mk, const Vec3& inside, double low, double high)
            box_command(
                fmt::format(R"(x="0" y="{}" z="{}")", is_2d ? -1 : 0, low),
                fmt::format(R"(x="{}" y="{}" z="{}")", inside.x, is_2d ? 2 : inside.y, high - low));
+}
+
+/// A ball half full of water, with modified boundaries.
+///
+/// y  of both ends of the domain; 0: in 2D
+CaseText half_full_ball(double y)
+{
+    CaseText text;
+    text.pointmin = fmt::format(R"(<pointmin x="-1.59" y="{}" z="-1.59" />)", -y);
+    text.pointmax = fmt::format(R"(<pointmax x="1.59" y="{}" z="1.59" />)", y);
+    const auto ball = [](double radius)
+    {
+        return fmt::format(R"(<drawsphere radius="{}"><point x="0" y="0" z="0" /></drawsphere>)",
+                           radius);
+    };
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" + ball(1.39) +
+                    "<setmkvoid />" + ball(0.99) +
+                    R"(<setmkfluid mk="0" /><fillbox x="0" y="0" z="-0.2">)"
+                    R"(<modefill>void</modefill><point x="-1.59" y="-1.59" z="-1.59" />)"
+                    R"(<size x="3.18" y="3.18" z="1.59" /></fillbox>)";
+    text.after_geometry = R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
+    text.execution = modified_boundaries;
+    return text;
 }
 
 struct Made
@@ -119,6 +147,14 @@ std::map<int, int> neighbours_in_the_midst(const std::vector<Vec3>& fluid, doubl
     return out;
 }
 
+/// The number that follows `words` in a text; NaN where they are not in it.
+double number_after(const std::string& text, const std::string& words)
+{
+    const std::size_t at = text.find(words);
+    if (at == std::string::npos) return std::numeric_limits<double>::quiet_NaN();
+    return std::stod(text.substr(at + words.size()));
+}
+
 double nearest_pair(const std::vector<Vec3>& points)
 {
     double out = std::numeric_limits<double>::infinity();
@@ -162,28 +198,11 @@ TEST(StablePacking, KeepsASquareLatticeThatIsStable)
     EXPECT_EQ(neighbours_in_the_midst(fluid_of(made.cloud), 1.3 * dp).begin()->first, 4);
 }
 
-// Half a pipe of water, whose particles may be as near to the wall as 0.2 dp; one stood as far
+// Half a circle of water, whose particles may be as near to the wall as 0.2 dp; one stood as far
 // behind it.
 TEST(StablePacking, PutsNoFluidBehindWalls)
 {
-    CaseText text;
-    text.pointmin = R"(<pointmin x="-1.59" y="0" z="-1.59" />)";
-    text.pointmax = R"(<pointmax x="1.59" y="0" z="1.59" />)";
-    const auto ball = [](double radius)
-    {
-        return fmt::format(R"(<drawsphere radius="{}"><point x="0" y="0" z="0" /></drawsphere>)",
-                           radius);
-    };
-    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" + ball(1.39) +
-                    "<setmkvoid />" + ball(0.99) +
-                    R"(<setmkfluid mk="0" /><fillbox x="0" y="0" z="-0.2">)"
-                    R"(<modefill>void</modefill><point x="-1.59" y="-1.59" z="-1.59" />)"
-                    R"(<size x="3.18" y="3.18" z="1.59" /></fillbox>)";
-    text.after_geometry = R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
-    text.execution = R"(<parameters><parameter key="Boundary" value="2" />)"
-                     R"(<parameter key="SlipMode" value="2" />)"
-                     R"(<parameter key="NoPenetration" value="1" /></parameters>)";
-    const Made made = make(with_coefh(text, "1.3"));
+    const Made made = make(with_coefh(half_full_ball(0), "1.3"));
     EXPECT_TRUE(contains(made.output, "most stable under pressure")) << made.output;
     double farthest = 0;
     for (const Vec3& p : fluid_of(made.cloud)) farthest = std::max(farthest, norm(p));
@@ -202,6 +221,44 @@ TEST(StablePacking, HasTwelveNeighboursOrMoreIn3D)
     EXPECT_GE(counts.begin()->first, 12);
     EXPECT_GT(counts.at(12), 50);
     EXPECT_GT(nearest_pair(places), 0.55 * dp);
+}
+
+// Every second row of a net stood a quarter of a step from the wall, and was pressed against it.
+TEST(StablePacking, HasStraightRowsAlongUprightWalls)
+{
+    const Vec3 inside{1.6, 1.6, 2.4};
+    CaseText text = tank(inside, water(0, inside, 0, 2.1), "");
+    text.execution = modified_boundaries;
+    const Made packed = make(text);
+    EXPECT_TRUE(contains(packed.output, "most stable under pressure")) << packed.output;
+    int in_first_row = 0, between = 0;
+    for (const Vec3& p : fluid_of(packed.cloud))
+    {
+        if (std::abs(p.z - 0.8) > 0.5 || std::abs(p.y - 0.8) > 0.4) continue;
+        const double off = std::min(p.x, inside.x - p.x);
+        in_first_row += off > 0.3 * dp && off < 0.6 * dp ? 1 : 0;
+        between += off < 0.3 * dp || (off > 0.6 * dp && off < 0.95 * dp) ? 1 : 0;
+    }
+    EXPECT_GT(in_first_row, 80);
+    EXPECT_LT(between, 8);
+}
+
+// Modified boundaries take their pressures from the fluid, which had those of its places before.
+TEST(StablePacking, IsPushedByWallsFromTheFirstStepOn)
+{
+    const Vec3 inside{1.6, 1.6, 2.4};
+    CaseText text = tank(inside, water(0, inside, 0, 2.1), "");
+    text.execution = modified_boundaries;
+    const Made packed = make(text);
+    EXPECT_LT(number_after(packed.output, "before: mean "), 0.35) << packed.output; // was 0.52
+}
+
+// With no more than 1 dp from the lattice, particles kept 0.03 g along the border of the surface.
+TEST(StablePacking, ComesToRestInAHalfFullBall)
+{
+    const Made made = make(half_full_ball(1.59));
+    EXPECT_TRUE(contains(made.output, "most stable under pressure")) << made.output;
+    EXPECT_LT(number_after(made.output, "accelerations: mean "), 0.001) << made.output;
 }
 
 TEST(StablePacking, KeepsEachFluidWithItsNumberInItsPlace)
