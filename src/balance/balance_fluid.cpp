@@ -33,7 +33,7 @@ constexpr double longest_step = 0.05;
 constexpr double farthest_of_case = 1.0;
 /// On another lattice, whose nodes are nobody's choice: with 1 dp, particles along the border of
 /// the surface in round vessels kept 0.03 g, and the mean 0.0028 g instead of 0.0012.
-constexpr double farthest_packed = 2.0;
+constexpr double farthest_packed = 4.0;
 /// To walls whose particles stand on the surface; nearer, fluid is squeezed between these where it
 /// is crowded, as at the inside of a bend.
 constexpr double least_distance_dbc = 0.5;

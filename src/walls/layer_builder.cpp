@@ -228,6 +228,7 @@ MergedSheetOptions LayerBuilder::sheet_options() const
     MergedSheetOptions options;
     options.dp = grid_.dp;
     options.least_depth_dp = plan_.middle_dp;
+    options.gaps = plan_.gaps;
     options.parts = plan_.parts;
     options.evens_out = !is_trial_;
     options.off_edges_dp = plan_.off_edges_dp;
@@ -248,7 +249,8 @@ void LayerBuilder::look_for_thin_parts(const WallDepth& wall)
                            grid_.is_2d ? bends_of(nullptr) : bends_of(out_.body.cad));
     thin_ = find_thin_parts(wall, sharp_, sheet_options(), threads_);
     near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, thin_.middle.size());
-    for (const MiddlePoint& p : thin_.middle) near_middle_->add(p.position);
+    for (const MiddlePoint& p : thin_.middle)
+        if (!p.is_in_gap) near_middle_->add(p.position);
 }
 
 void LayerBuilder::merge_sides()
@@ -256,6 +258,7 @@ void LayerBuilder::merge_sides()
     if (thin_.middle.empty()) return;
     SurfaceParticles sheet = merged_sheet(*wall_, sharp_, thin_.middle, out_.particles.positions,
                                           sheet_options(), threads_);
+    if (sheet.positions.empty()) return;
     FittedBody body;
     body.name = "shared layer";
     body.is_solid = out_.body.is_solid;
@@ -295,7 +298,7 @@ void LayerBuilder::drop_crowded(const std::vector<char>& is_out, SurfaceParticle
     const auto may_stay = [&](std::size_t i, std::size_t j)
     {
         const auto is_of_other_side = [&](std::size_t k) { return k < own && is_out[k] != 0; };
-        return (i >= own && (j >= own || is_of_other_side(j))) || (j >= own && is_of_other_side(i));
+        return (i >= own || is_of_other_side(i)) && (j >= own || is_of_other_side(j));
     };
     goes = find_crowded(points, rank, least_pair_dp * grid_.dp, may_stay, threads_);
     goes.resize(own);

@@ -32,6 +32,7 @@ struct LayerPlan
     /// Where the middle of a part is less deep than this, one sheet on it serves both sides, dp; 0:
     /// nowhere.
     double middle_dp = 0;
+    std::vector<SheetGap> gaps{};    ///< where one on it is between layers of both sides
     double cell_dp = offset_cell_dp; ///< of the grid that the surfaces of layers are cut from
     int parts = 0;                   ///< MergedSheetOptions::parts
     double off_edges_dp = 0.45;      ///< the sheet keeps so far from sharp edges, dp
@@ -40,6 +41,8 @@ struct LayerPlan
 
 /// Layers of two sides that would be nearer than this merge, dp.
 inline constexpr double merge_dp = 0.6;
+/// Layers of two sides that are farther apart have a sheet between them, dp.
+inline constexpr double least_gap_dp = 1.2;
 
 /// Builds the layers of one draw on one side of its surface.
 class LayerBuilder

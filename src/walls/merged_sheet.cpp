@@ -26,6 +26,8 @@ constexpr double sample_of_line_dp = 0.02;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
+/// Particles of sheets filled so, over the number that is asked for, between layers.
+constexpr double too_many = 1.12;
 /// Reach of the forces that even the sheet out, dp, and their step.
 constexpr double reach_dp = 1.6;
 constexpr double step_dp = 0.25;
@@ -71,7 +73,7 @@ public:
     /// normal  of the facet, unit
     std::optional<InnerBall> ball_under(const Vec3& foot, const Vec3& normal) const
     {
-        const auto ball = touching_ball(wall_, foot, normal, options_.least_depth_dp * options_.dp);
+        const auto ball = touching_ball(wall_, foot, normal, deepest() * options_.dp);
         if (!ball || (has_rims_ && is_at_rim(ball->centre, ball->radius))) return std::nullopt;
         return ball;
     }
@@ -89,10 +91,15 @@ public:
     /// The middle at the centre of a ball, if it is one.
     std::optional<MiddlePoint> at(const InnerBall& ball, std::uint32_t facet) const
     {
-        if (!ball.is_across ||
+        const double depth_dp = ball.radius / options_.dp;
+        const SheetGap* gap = gap_at(depth_dp);
+        if (!ball.is_across || (depth_dp > options_.least_depth_dp && gap == nullptr) ||
             (options_.off_edges_dp > 0 &&
              edges_.has_nearer(ball.centre, options_.off_edges_dp * options_.dp)))
             return std::nullopt;
+        if (gap != nullptr)
+            return MiddlePoint{ball.centre, facet,
+                               spacing_for(too_many / (2 * depth_dp - gap->layers)), true};
         return MiddlePoint{ball.centre, facet, spacing_at(2 * ball.radius)};
     }
 
@@ -103,7 +110,22 @@ public:
         return under(place.nearest, wall_.mesh().normals[place.facet], place.facet);
     }
 
+    /// How deep the middle may be, dp.
+    double deepest() const
+    {
+        double out = options_.least_depth_dp;
+        for (const SheetGap& gap : options_.gaps) out = std::max(out, gap.to_dp);
+        return out;
+    }
+
 private:
+    const SheetGap* gap_at(double depth_dp) const
+    {
+        for (const SheetGap& gap : options_.gaps)
+            if (depth_dp >= gap.from_dp && depth_dp < gap.to_dp) return &gap;
+        return nullptr;
+    }
+
     /// Whether a ball touches an open edge instead of another side.
     bool is_at_rim(const Vec3& centre, double radius) const
     {
@@ -114,7 +136,12 @@ private:
     double spacing_at(double thickness) const
     {
         if (options_.parts == 0) return 1;
-        const double area = options_.parts * options_.dp / thickness;
+        return spacing_for(options_.parts * options_.dp / thickness);
+    }
+
+    /// area  that a particle has, dp^2
+    double spacing_for(double area) const
+    {
         return std::clamp(options_.plane_y ? area : std::sqrt(area), closest_spacing,
                           widest_spacing);
     }
@@ -210,7 +237,8 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
 }
 
 /// Takes candidates that are at least `spacing` from all that is taken, dp, up to a number; at
-/// least least_pair_dp from what keeps its place, for the others are evened out.
+/// least least_pair_dp from what keeps its place, for the others are evened out, and between layers
+/// no more than that.
 void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
           double spacing, double dp, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
@@ -223,7 +251,8 @@ void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& t
         if (sheet.size() >= most) break;
         const double apart = spacing * p.spacing;
         if (grid.has_nearer(p.position, apart * dp) ||
-            held.has_nearer(p.position, std::max(apart, least_pair_dp) * dp))
+            held.has_nearer(p.position,
+                            (p.is_in_gap ? least_pair_dp : std::max(apart, least_pair_dp)) * dp))
             continue;
         grid.add(p.position);
         sheet.push_back(p);
@@ -326,7 +355,7 @@ ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
         out.volume += facet.volume;
     }
     if (out.middle.empty()) return out;
-    const double reach = rim_reach * options.least_depth_dp * options.dp;
+    const double reach = rim_reach * middle.deepest() * options.dp;
     PointGrid grid(reach, out.middle.size());
     for (const MiddlePoint& p : out.middle) grid.add(p.position);
     for (const ThinFacet& facet : of_facet)

@@ -10,12 +10,21 @@
 namespace fppg
 {
 
+/// Where the innermost layers of both sides have room for one more sheet between them, but not for
+/// two.
+struct SheetGap
+{
+    double from_dp = 0, to_dp = 0; ///< depth of the middle
+    int layers = 0;                ///< of both sides; its particles stand for what these do not
+};
+
 struct MergedSheetOptions
 {
     double dp = 0;
     /// Where the middle is nearer to the surface than this, the layers of both sides are one, dp.
     double least_depth_dp = 0.8;
-    double off_edges_dp = 0.45; ///< no point of the middle is nearer to a sharp edge
+    std::vector<SheetGap> gaps{}; ///< where there is one too
+    double off_edges_dp = 0.45;   ///< no point of the middle is nearer to a sharp edge
     /// Of so many sheets through the thickness it is one, and each of its particles stands for
     /// dp^3: where the body is thin they are farther apart. 0: they are dp apart everywhere.
     int parts = 0;
@@ -31,6 +40,7 @@ struct MiddlePoint
     Vec3 position;
     std::uint32_t facet = 0; ///< of the wall, at its foot
     double spacing = 1;      ///< to the next of the sheet there, of what the sheet asks for
+    bool is_in_gap = false;  ///< between layers, which stay
 };
 
 /// The thin parts of a body.
@@ -44,9 +54,10 @@ struct ThinParts
 /// Finds the middle of the thin parts of a body, and their volume.
 ///
 /// Points of the surface, 0.3 dp apart, are sunk to the centre of their inner_ball(). Those
-/// less deep than least_depth whose other side faces away by more than 120 degrees are taken, half
-/// a dp off sharp edges; none of a body that is thick everywhere. The volume nearest to a piece of
-/// the surface is its area times the radius there, beside right-angled rims too.
+/// less deep than least_depth or in a gap, whose other side faces away by more than 120 degrees,
+/// are taken, half a dp off sharp edges; none of a body that is thick everywhere. The volume
+/// nearest to a piece of the surface is its area times the radius there, beside right-angled rims
+/// too.
 ///
 /// cost  about 15 distances per dp^2 of surface
 ThinParts find_thin_parts(const WallDepth& wall, const Features& features,

@@ -129,6 +129,33 @@ TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShareOrTheTwoOfAThickerOne)
     }
 }
 
+/// A third sheet was missing where the nodes of the lattice were not midway, as in the bottom of
+/// cases/rest; fluid on a wall that lacks particles is pressed against it.
+TEST(WallLayers, OfPlatesHaveOneMoreBetweenThemWhereThereIsRoomForOne)
+{
+    for (const double thickness : {2.7, 3.2, 3.5, 4.7, 5.2})
+    {
+        const Vec3 low{-0.93, -0.77, -0.13};
+        const Vec3 size{1.8, 1.5, thickness * dp};
+        Drawing drawing = layered();
+        drawing.box(low, size);
+        const std::vector<Vec3> all = normals_of(drawing, relaxed(drawing)).positions;
+        EXPECT_NEAR(static_cast<double>(all.size()) * std::pow(dp, 3) / (size.x * size.y * size.z),
+                    1, 0.05)
+            << thickness;
+        std::vector<double> heights;
+        for (const Vec3& p : all)
+            if (std::abs(p.x) < 0.4 && std::abs(p.y) < 0.4) heights.push_back((p.z - low.z) / dp);
+        std::sort(heights.begin(), heights.end());
+        double widest = 0;
+        for (std::size_t i = 1; i < heights.size(); ++i)
+            widest = std::max(widest, heights[i] - heights[i - 1]);
+        EXPECT_LT(widest, 1.3) << thickness;
+        EXPECT_NEAR(heights.front(), 0.5, 1e-6);
+        EXPECT_NEAR(heights.back(), thickness - 0.5, 1e-6);
+    }
+}
+
 /// However thin they are, and rods, of which nothing was left. Plates with room for two layers stay
 /// as they are.
 TEST(WallLayers, OfPlatesAndRodsWithRoomForOneAreThickened)
