@@ -34,7 +34,8 @@ constexpr double many_on_edges = 0.25;
 
 std::string percent(double share)
 {
-    return fmt::format("{:+.3g} %", 100 * share);
+    constexpr double nothing = 1e-9;
+    return fmt::format("{:+.3g} %", std::abs(share) < nothing ? 0 : 100 * share);
 }
 
 class FitCheck

@@ -103,8 +103,8 @@ Packing fit_packing(const FluidAtRest& rest, const Box3& bounds, int up, double 
     }
     const double step = rest.is_2d ? std::sqrt(cell / ratio) : std::cbrt(cell / ratio);
     const double along = step / (rest.is_2d ? 2 : std::numbers::sqrt2); // of straight rows
-    const auto strain = [](double step, double ideal)
-    { return std::pow(std::log(step / ideal), 2); };
+    const auto strain = [](double taken, double ideal)
+    { return std::pow(std::log(taken / ideal), 2); };
     const Counts rows(lengths[0], along), columns(lengths[1], along),
         layers(lengths[2], ratio * step);
     Packing best = p;

@@ -164,7 +164,7 @@ void LayerBuilder::lay_again(double spacing_dp, bool is_trial)
     out_.particles = {};
     out_.second_sheet = {};
     out_.body.left_out = {};
-    if (!out_.layers.empty() && out_.layers.back().mesh.facets.empty()) out_.layers.pop_back();
+    while (!out_.layers.empty() && out_.layers.back().mesh.facets.empty()) out_.layers.pop_back();
     for (std::size_t l = 0; l < out_.layers.size(); ++l)
     {
         out_.layers[l].spacing_dp = spacing_dp;
@@ -258,20 +258,41 @@ void LayerBuilder::merge_sides()
     if (thin_.middle.empty()) return;
     SurfaceParticles sheet = merged_sheet(*wall_, sharp_, thin_.middle, out_.particles.positions,
                                           sheet_options(), threads_);
-    if (sheet.positions.empty()) return;
+    // Between layers it is the next of both sides.
+    std::vector<std::size_t> numbers;
+    std::vector<double> depths;
+    for (Vec3& p : sheet.positions)
+    {
+        if (grid_.is_2d) p.y = grid_.origin.y;
+        depths.push_back(wall_->at(p).depth);
+        const double depth_dp = depths.back() / grid_.dp;
+        numbers.push_back(static_cast<std::size_t>(std::count_if(
+            plan_.gaps.begin(), plan_.gaps.end(),
+            [&](const SheetGap& gap) { return depth_dp > gap.from_dp - 0.25 * least_gap_dp; })));
+    }
+    for (std::size_t number = 0; number <= plan_.gaps.size(); ++number)
+        add_shared(number, numbers, depths, sheet);
+}
+
+/// Those of a sheet on the middle that have a number as their layer.
+void LayerBuilder::add_shared(std::size_t number, const std::vector<std::size_t>& numbers,
+                              const std::vector<double>& depths, const SurfaceParticles& sheet)
+{
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) return;
     FittedBody body;
     body.name = "shared layer";
     body.is_solid = out_.body.is_solid;
     body.is_inside = out_.body.is_inside;
     body.spacing_dp = plan_.spacing_dp;
     body.owner = 0;
+    body.layer = static_cast<int>(number);
     body.wall = wall_;
     if (!grid_.is_2d) body.facet_mk = out_.body.facet_mk;
     const auto index = static_cast<std::uint32_t>(out_.layers.size() + 1);
     for (std::size_t i = 0; i < sheet.positions.size(); ++i)
     {
-        if (grid_.is_2d) sheet.positions[i].y = grid_.origin.y;
-        body.depth = std::max(body.depth, body.wall->at(sheet.positions[i]).depth);
+        if (numbers[i] != number) continue;
+        body.depth = std::max(body.depth, depths[i]);
         out_.particles.positions.push_back(sheet.positions[i]);
         out_.particles.kinds.push_back(FitKind::Surface);
         out_.particles.bodies.push_back(index);

@@ -87,6 +87,8 @@ private:
     bool meets_other_side(const FittedBody& body, const Vec3& p) const;
     MergedSheetOptions sheet_options() const;
     void look_for_thin_parts(const WallDepth& wall);
+    void add_shared(std::size_t number, const std::vector<std::size_t>& numbers,
+                    const std::vector<double>& depths, const SurfaceParticles& sheet);
     void drop_crowded(const std::vector<char>& is_out, SurfaceParticles& particles,
                       std::vector<char>& goes);
     void add_particles(FittedBody& layer, std::uint32_t index);
