@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -26,8 +27,6 @@ constexpr double sample_of_line_dp = 0.02;
 /// Between candidates that are taken at first, and from one that is put into a hole, dp.
 constexpr double first_spacing_dp = 0.92;
 constexpr double hole_dp = 0.83;
-/// Particles of sheets filled so, over the number that is asked for, between layers.
-constexpr double too_many = 1.12;
 /// Reach of the forces that even the sheet out, dp, and their step.
 constexpr double reach_dp = 1.6;
 constexpr double step_dp = 0.25;
@@ -98,8 +97,10 @@ public:
              edges_.has_nearer(ball.centre, options_.off_edges_dp * options_.dp)))
             return std::nullopt;
         if (gap != nullptr)
-            return MiddlePoint{ball.centre, facet,
-                               spacing_for(too_many / (2 * depth_dp - gap->layers)), true};
+        {
+            const double number = 2 * depth_dp - gap->layers;
+            return MiddlePoint{ball.centre, facet, spacing_for(1 / number), true, number};
+        }
         return MiddlePoint{ball.centre, facet, spacing_at(2 * ball.radius)};
     }
 
@@ -313,6 +314,8 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
                                [&](std::uint32_t j, double squared)
                                {
                                    if (j == i || !(squared > 0)) return;
+                                   // Layers on both sides of a gap would draw it into clumps.
+                                   if (sheet[i].is_in_gap && j >= sheet.size()) return;
                                    const double r = std::sqrt(squared);
                                    const double s = 1 - r / own;
                                    force = force +
@@ -328,6 +331,50 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
         },
         64);
     sheet = std::move(moved);
+}
+
+/// Particles spread evenly over points of the middle.
+///
+/// wanted  their number; empty: as many as there is room for
+std::vector<MiddlePoint> fill_sheet(const Middle& middle, const std::vector<MiddlePoint>& points,
+                                    const std::vector<Vec3>& taken,
+                                    std::optional<std::size_t> wanted,
+                                    const MergedSheetOptions& options, int threads)
+{
+    constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+    std::vector<MiddlePoint> sheet;
+    if (wanted)
+        take_number(points, taken, options.dp, *wanted, sheet);
+    else
+        take(points, taken, first_spacing_dp, options.dp, no_limit, sheet);
+    for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
+    {
+        for (int step = 0; step < steps_a_round; ++step)
+            even_out(middle, taken, options.dp, threads, sheet);
+        if (!wanted) take(points, taken, hole_dp, options.dp, no_limit, sheet);
+    }
+    return sheet;
+}
+
+/// How many particles the gaps between layers lack, where layers are far enough for one. A point
+/// stands for an even share of a disk around it (2D: of a piece of the line).
+std::size_t room_in_gaps(const std::vector<MiddlePoint>& points, const std::vector<Vec3>& taken,
+                         double dp, bool is_2d)
+{
+    constexpr double disk_dp = 0.45;
+    const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
+    PointGrid held(least_pair_dp * dp, taken.size()), all(disk_dp * dp, points.size());
+    for (const Vec3& p : taken) held.add(p);
+    for (const MiddlePoint& p : points) all.add(p.position);
+    double number = 0;
+    for (const MiddlePoint& p : points)
+    {
+        if (held.has_nearer(p.position, least_pair_dp * dp)) continue;
+        int in_disk = 0;
+        all.for_each_near(p.position, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk; });
+        number += p.number * room / in_disk;
+    }
+    return static_cast<std::size_t>(std::lround(number));
 }
 
 } // namespace
@@ -405,17 +452,18 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
                               int threads)
 {
     const Middle middle(wall, features, options);
-    constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
-    std::vector<MiddlePoint> sheet;
-    if (options.wanted)
-        take_number(points, taken, options.dp, *options.wanted, sheet);
-    else
-        take(points, taken, first_spacing_dp, options.dp, no_limit, sheet);
-    for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
+    std::vector<MiddlePoint> of_both, in_gaps;
+    for (const MiddlePoint& p : points) (p.is_in_gap ? in_gaps : of_both).push_back(p);
+    std::vector<MiddlePoint> sheet =
+        fill_sheet(middle, of_both, taken, options.wanted, options, threads);
+    if (!in_gaps.empty())
     {
-        for (int step = 0; step < steps_a_round; ++step)
-            even_out(middle, taken, options.dp, threads, sheet);
-        if (!options.wanted) take(points, taken, hole_dp, options.dp, no_limit, sheet);
+        std::vector<Vec3> all = taken;
+        for (const MiddlePoint& p : sheet) all.push_back(p.position);
+        const std::vector<MiddlePoint> between = fill_sheet(
+            middle, in_gaps, all,
+            room_in_gaps(in_gaps, all, options.dp, options.plane_y.has_value()), options, threads);
+        sheet.insert(sheet.end(), between.begin(), between.end());
     }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)

@@ -156,6 +156,17 @@ TEST(WallLayers, OfPlatesHaveOneMoreBetweenThemWhereThereIsRoomForOne)
     }
 }
 
+TEST(WallLayers, OfPlatesIn2DHaveOneMoreBetweenThemToo)
+{
+    for (const double thickness : {2.6, 3.2, 3.5})
+    {
+        Drawing drawing = layered(true);
+        drawing.box({-0.93, -1, -0.13}, {1.8, 2, thickness * dp});
+        const std::vector<Vec3> all = normals_of(drawing, relaxed(drawing)).positions;
+        EXPECT_NEAR(static_cast<double>(all.size()) * dp / (1.8 * thickness), 1, 0.05) << thickness;
+    }
+}
+
 /// However thin they are, and rods, of which nothing was left. Plates with room for two layers stay
 /// as they are.
 TEST(WallLayers, OfPlatesAndRodsWithRoomForOneAreThickened)
