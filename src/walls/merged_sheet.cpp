@@ -463,7 +463,15 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
         const std::vector<MiddlePoint> between = fill_sheet(
             middle, in_gaps, all,
             room_in_gaps(in_gaps, all, options.dp, options.plane_y.has_value()), options, threads);
-        sheet.insert(sheet.end(), between.begin(), between.end());
+        // Where the number has no room, and where two came near to one another in one step.
+        PointGrid kept(least_pair_dp * options.dp, all.size() + between.size());
+        for (const Vec3& p : all) kept.add(p);
+        for (const MiddlePoint& p : between)
+        {
+            if (kept.has_nearer(p.position, least_pair_dp * options.dp)) continue;
+            kept.add(p.position);
+            sheet.push_back(p);
+        }
     }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)
