@@ -250,7 +250,7 @@ void LayerBuilder::look_for_thin_parts(const WallDepth& wall)
     thin_ = find_thin_parts(wall, sharp_, sheet_options(), threads_);
     near_middle_ = std::make_unique<PointGrid>(off_middle_dp * grid_.dp, thin_.middle.size());
     for (const MiddlePoint& p : thin_.middle)
-        if (!p.is_in_gap) near_middle_->add(p.position);
+        if (!p.is_in_gap()) near_middle_->add(p.position);
 }
 
 void LayerBuilder::merge_sides()

@@ -99,7 +99,7 @@ public:
         if (gap != nullptr)
         {
             const double number = 2 * depth_dp - gap->layers;
-            return MiddlePoint{ball.centre, facet, spacing_for(1 / number), true, number};
+            return MiddlePoint{ball.centre, facet, spacing_for(1 / number), number};
         }
         return MiddlePoint{ball.centre, facet, spacing_at(2 * ball.radius)};
     }
@@ -253,7 +253,7 @@ void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& t
         const double apart = spacing * p.spacing;
         if (grid.has_nearer(p.position, apart * dp) ||
             held.has_nearer(p.position,
-                            (p.is_in_gap ? least_pair_dp : std::max(apart, least_pair_dp)) * dp))
+                            (p.is_in_gap() ? least_pair_dp : std::max(apart, least_pair_dp)) * dp))
             continue;
         grid.add(p.position);
         sheet.push_back(p);
@@ -315,7 +315,7 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
                                {
                                    if (j == i || !(squared > 0)) return;
                                    // Layers on both sides of a gap would draw it into clumps.
-                                   if (sheet[i].is_in_gap && j >= sheet.size()) return;
+                                   if (sheet[i].is_in_gap() && j >= sheet.size()) return;
                                    const double r = std::sqrt(squared);
                                    const double s = 1 - r / own;
                                    force = force +
@@ -453,7 +453,7 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
 {
     const Middle middle(wall, features, options);
     std::vector<MiddlePoint> of_both, in_gaps;
-    for (const MiddlePoint& p : points) (p.is_in_gap ? in_gaps : of_both).push_back(p);
+    for (const MiddlePoint& p : points) (p.is_in_gap() ? in_gaps : of_both).push_back(p);
     std::vector<MiddlePoint> sheet =
         fill_sheet(middle, of_both, taken, options.wanted, options, threads);
     if (!in_gaps.empty())

@@ -40,8 +40,9 @@ struct MiddlePoint
     Vec3 position;
     std::uint32_t facet = 0; ///< of the wall, at its foot
     double spacing = 1;      ///< to the next of the sheet there, of what the sheet asks for
-    bool is_in_gap = false;  ///< between layers, which stay
-    double number = 0;       ///< of particles that the gap lacks there, a dp^2
+    double number = 0; ///< of particles that the layers around a gap lack, a dp^2; 0: not in one
+
+    bool is_in_gap() const { return number > 0; }
 };
 
 /// The thin parts of a body.

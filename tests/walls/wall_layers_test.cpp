@@ -129,8 +129,8 @@ TEST(WallLayers, OfAThinPlateAreOneThatBothSidesShareOrTheTwoOfAThickerOne)
     }
 }
 
-/// A third sheet was missing where the nodes of the lattice were not midway, as in the bottom of
-/// cases/rest; fluid on a wall that lacks particles is pressed against it.
+/// Nodes of the lattice filled the gap between layers, where there were any midway; fluid on a wall
+/// that lacks particles is pressed against it.
 TEST(WallLayers, OfPlatesHaveOneMoreBetweenThemWhereThereIsRoomForOne)
 {
     for (const double thickness : {2.7, 3.2, 3.5, 4.7, 5.2})
