@@ -59,9 +59,10 @@ struct BalanceReport
 /// half a dp above its highest particle; rho by the equation of state. Boundary particles have the
 /// pressure of their depth (DBC), 0 above the level; or what mDBC gives them at each step from the
 /// fluid around their ghost nodes (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with
-/// h^2 rho / p, with momentum (heavy ball, factor 0.85, then 0.95); none is longer than 0.05 dp, no
-/// particle moves farther than one dp in all, none comes nearer to a wall than 0.5 dp (mDBC: 0.2
-/// dp) or than it was, none higher than 0.25 dp below its level.
+/// h^2 rho / p, by turns with Anderson's mixing (balance/anderson_mixing.h) and with momentum
+/// (heavy ball, factor 0.95); none is longer than 0.05 dp, no particle moves farther than one dp in
+/// all (4 dp on another lattice), none comes nearer to a wall than 0.5 dp (mDBC: 0.2 dp) or than it
+/// was, none higher than 0.25 dp below its level.
 ///
 /// On a lattice a_i is not quite zero: it falls by 0.004 to 0.03 g. Fluid that stays there
 /// has that acceleration, and so has all that is moved: where it was brought to zero,
@@ -87,9 +88,8 @@ struct BalanceReport
 ///            0.2 s: DBC 0.080 m/s on the lattice, 0.013 balanced; mDBC in layers 0.114 m/s with
 ///            fluid that is only even, 0.019 balanced
 /// cost       at most 400 iterations, at most 100 where these are 10^8 times a particle, 20 where
-///            walls do not hold the fluid; what is at rest costs nothing until the next check.
-///            About 0.2 milliseconds a particle on one core in all (cases of this repository: 0.05
-///            to 0.3)
+///            walls do not hold the fluid. On one core 0.07 to 0.25 milliseconds a particle near
+///            walls (cases of this repository; 0.6 for a few thousand particles)
 BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const CaseConstants& constants, CaseParticles& particles, int threads,
                             const std::function<bool(const BalanceProgress&)>& on_iteration);

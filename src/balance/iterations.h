@@ -15,7 +15,7 @@ inline constexpr double most_work = 1e8; ///< particles times iterations
 /// Less is made all the same, however little it gains.
 inline constexpr double least_work = 5e6;
 /// Fluid of the case's own lattice that has settled by then keeps what it has.
-inline constexpr int first_settled = 80;
+inline constexpr int first_settled = 30;
 
 /// The most that are made.
 inline int last_iteration(std::size_t particles)

@@ -59,7 +59,6 @@ double pairs_to_balance(const CaseDef& def, double particles, bool holds)
 {
     constexpr int iterations_to_find_out = 40;
     constexpr double skin_dp = 0.5;
-    constexpr double awake = 0.65; ///< of fluid on the case's own lattice; what is at rest sleeps
     if (particles == 0) return 0;
     const bool is_2d = def.grid.is_2d;
     const double h_dp = def.h / def.grid.dp, reach = 2 * h_dp + skin_dp;
@@ -70,7 +69,7 @@ double pairs_to_balance(const CaseDef& def, double particles, bool holds)
                            most_stable_lattice({h_dp, def.solver.kernel == 1, is_2d});
     const int iterations = holds ? usual_iterations(static_cast<std::size_t>(particles), is_packed)
                                  : iterations_to_find_out;
-    return particles * iterations * neighbours * (is_packed ? 1 : awake);
+    return particles * iterations * neighbours;
 }
 
 } // namespace fppg

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fppg/vec.h"
@@ -135,5 +136,13 @@ private:
     std::vector<Vec3> points_;
     std::vector<std::uint32_t> next_; ///< the next point of the same cell
 };
+
+/// A grid of points, in their order.
+inline PointGrid grid_of(std::span<const Vec3> points, double cell)
+{
+    PointGrid out(cell, points.size());
+    for (const Vec3& p : points) out.add(p);
+    return out;
+}
 
 } // namespace fppg

@@ -50,11 +50,20 @@ std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, con
     return ball && ball->is_across ? ball : std::nullopt;
 }
 
+std::optional<InnerBall> ball_through(const WallDepth& wall, const DepthPlace& place, const Vec3& p,
+                                      double most)
+{
+    const Vec3 down = p - place.nearest;
+    const bool has_line = place.depth > least_height * most && norm(down) > least_height * most;
+    return touching_ball(
+        wall, place.nearest,
+        has_line ? (-wall.sign() / norm(down)) * down : wall.mesh().normals[place.facet], most);
+}
+
 Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most)
 {
-    const DepthPlace place = wall.at(p);
-    const auto ball = inner_ball(wall, place.nearest, wall.mesh().normals[place.facet], most);
-    return ball && norm(ball->centre - p) < most ? ball->centre : p;
+    const auto ball = ball_through(wall, wall.at(p), p, most);
+    return ball && ball->is_across && norm(ball->centre - p) < most ? ball->centre : p;
 }
 
 } // namespace fppg

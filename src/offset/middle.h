@@ -28,6 +28,13 @@ std::optional<InnerBall> touching_ball(const WallDepth& wall, const Vec3& foot, 
 std::optional<InnerBall> inner_ball(const WallDepth& wall, const Vec3& foot, const Vec3& normal,
                                     double most);
 
+/// The ball that touches the surface at the place nearest to a point inside, and has its centre on
+/// the line from there to the point: over an edge too, where the normals of its facets lead away.
+///
+/// place  of p
+std::optional<InnerBall> ball_through(const WallDepth& wall, const DepthPlace& place, const Vec3& p,
+                                      double most);
+
 /// The point of the middle over the surface that is nearest to p; p itself where there is no middle
 /// less deep than `most`, metres.
 Vec3 on_middle(const WallDepth& wall, const Vec3& p, double most);

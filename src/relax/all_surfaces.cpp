@@ -46,13 +46,6 @@ const std::vector<Vec3>& positions_of_both(const WallParticles& particles,
     return joined;
 }
 
-PointGrid grid_of(const std::vector<Vec3>& points, double cell)
-{
-    PointGrid out(cell, points.size());
-    for (const Vec3& p : points) out.add(p);
-    return out;
-}
-
 class AllSurfaces
 {
 public:

@@ -2,6 +2,7 @@
 
 #include "fppg/features.h"
 
+#include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 #include "offset/middle.h"
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -36,6 +38,9 @@ constexpr double widest_spacing = 2.5;
 /// Rims of thin parts are so near to their middle, of the depth up to which they are thin: the
 /// diagonal of their corners.
 constexpr double rim_reach = 1.5;
+/// Points of gaps between layers that are no farther apart are of one patch, which has its own
+/// number of particles.
+constexpr double patch_dp = 1;
 constexpr int rounds = 4;
 constexpr int steps_a_round = 12;
 
@@ -72,9 +77,7 @@ public:
     /// normal  of the facet, unit
     std::optional<InnerBall> ball_under(const Vec3& foot, const Vec3& normal) const
     {
-        const auto ball = touching_ball(wall_, foot, normal, deepest() * options_.dp);
-        if (!ball || (has_rims_ && is_at_rim(ball->centre, ball->radius))) return std::nullopt;
-        return ball;
+        return off_rims(touching_ball(wall_, foot, normal, deepest() * options_.dp));
     }
 
     /// The middle under a point of the surface, if the part is thin there.
@@ -108,7 +111,8 @@ public:
     std::optional<MiddlePoint> back(const Vec3& p) const
     {
         const DepthPlace place = wall_.at(p);
-        return under(place.nearest, wall_.mesh().normals[place.facet], place.facet);
+        const auto ball = off_rims(ball_through(wall_, place, p, deepest() * options_.dp));
+        return ball ? at(*ball, place.facet) : std::nullopt;
     }
 
     /// How deep the middle may be, dp.
@@ -120,6 +124,11 @@ public:
     }
 
 private:
+    std::optional<InnerBall> off_rims(std::optional<InnerBall> ball) const
+    {
+        return ball && has_rims_ && is_at_rim(ball->centre, ball->radius) ? std::nullopt : ball;
+    }
+
     const SheetGap* gap_at(double depth_dp) const
     {
         for (const SheetGap& gap : options_.gaps)
@@ -240,11 +249,9 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
 /// Takes candidates that are at least `spacing` from all that is taken, dp, up to a number; at
 /// least least_pair_dp from what keeps its place, for the others are evened out, and between layers
 /// no more than that.
-void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
-          double spacing, double dp, std::size_t most, std::vector<MiddlePoint>& sheet)
+void take(const std::vector<MiddlePoint>& candidates, const PointGrid& held, double spacing,
+          double dp, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
-    PointGrid held(std::max(spacing, least_pair_dp) * dp, taken.size());
-    for (const Vec3& p : taken) held.add(p);
     PointGrid grid(spacing * dp, sheet.size());
     for (const MiddlePoint& p : sheet) grid.add(p.position);
     for (const MiddlePoint& p : candidates)
@@ -261,8 +268,8 @@ void take(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& t
 }
 
 /// Takes a number of candidates as far from one another as may be.
-void take_number(const std::vector<MiddlePoint>& candidates, const std::vector<Vec3>& taken,
-                 double dp, std::size_t wanted, std::vector<MiddlePoint>& sheet)
+void take_number(const std::vector<MiddlePoint>& candidates, const PointGrid& taken, double dp,
+                 std::size_t wanted, std::vector<MiddlePoint>& sheet)
 {
     double near = 0.3, far = 2;
     for (int step = 0; step < 12; ++step)
@@ -314,8 +321,6 @@ void even_out(const Middle& middle, const std::vector<Vec3>& taken, double dp, i
                                [&](std::uint32_t j, double squared)
                                {
                                    if (j == i || !(squared > 0)) return;
-                                   // Layers on both sides of a gap would draw it into clumps.
-                                   if (sheet[i].is_in_gap() && j >= sheet.size()) return;
                                    const double r = std::sqrt(squared);
                                    const double s = 1 - r / own;
                                    force = force +
@@ -342,39 +347,123 @@ std::vector<MiddlePoint> fill_sheet(const Middle& middle, const std::vector<Midd
                                     const MergedSheetOptions& options, int threads)
 {
     constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+    const PointGrid held = grid_of(taken, options.dp);
     std::vector<MiddlePoint> sheet;
     if (wanted)
-        take_number(points, taken, options.dp, *wanted, sheet);
+        take_number(points, held, options.dp, *wanted, sheet);
     else
-        take(points, taken, first_spacing_dp, options.dp, no_limit, sheet);
+        take(points, held, first_spacing_dp, options.dp, no_limit, sheet);
     for (int round = 0; round < (options.evens_out ? rounds : 0); ++round)
     {
         for (int step = 0; step < steps_a_round; ++step)
             even_out(middle, taken, options.dp, threads, sheet);
-        if (!wanted) take(points, taken, hole_dp, options.dp, no_limit, sheet);
+        if (!wanted) take(points, held, hole_dp, options.dp, no_limit, sheet);
     }
     return sheet;
 }
 
-/// How many particles the gaps between layers lack, where layers are far enough for one. A point
-/// stands for an even share of a disk around it (2D: of a piece of the line).
-std::size_t room_in_gaps(const std::vector<MiddlePoint>& points, const std::vector<Vec3>& taken,
-                         double dp, bool is_2d)
+/// How many particles each point of a gap stands for: of what layers lack there, where they are far
+/// enough for one. A point has an even share of a disk around it (2D: of a piece of the line).
+std::vector<double> numbers_in_gap(const std::vector<MiddlePoint>& points, const PointGrid& taken,
+                                   double dp, bool is_2d)
 {
     constexpr double disk_dp = 0.45;
     const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
-    PointGrid held(least_pair_dp * dp, taken.size()), all(disk_dp * dp, points.size());
-    for (const Vec3& p : taken) held.add(p);
+    PointGrid all(disk_dp * dp, points.size());
     for (const MiddlePoint& p : points) all.add(p.position);
-    double number = 0;
+    std::vector<double> out;
     for (const MiddlePoint& p : points)
     {
-        if (held.has_nearer(p.position, least_pair_dp * dp)) continue;
         int in_disk = 0;
         all.for_each_near(p.position, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk; });
-        number += p.number * room / in_disk;
+        out.push_back(taken.has_nearer(p.position, least_pair_dp * dp) ? 0
+                                                                       : p.number * room / in_disk);
     }
-    return static_cast<std::size_t>(std::lround(number));
+    return out;
+}
+
+/// Moves each particle of a sheet in a gap to the middle of the points that are nearest to it, as
+/// by Lloyd. Weights by the square of what a point lacks make particles as dense as they are
+/// wanted; with forces between them they leave the middle of the patch for its ends.
+///
+/// numbers  of numbers_in_gap()
+void centre(const Middle& middle, const std::vector<MiddlePoint>& points,
+            const std::vector<double>& numbers, const PointGrid& taken, double dp,
+            std::vector<MiddlePoint>& sheet)
+{
+    struct Sum
+    {
+        Vec3 places;
+        double weights = 0;
+    };
+    std::vector<Sum> sums(sheet.size());
+    const double reach = widest_spacing * dp;
+    PointGrid grid(reach, sheet.size());
+    for (const MiddlePoint& p : sheet) grid.add(p.position);
+    for (std::size_t k = 0; k < points.size(); ++k)
+    {
+        double least = std::numeric_limits<double>::infinity();
+        std::uint32_t nearest = no_index;
+        grid.for_each_near(points[k].position, reach,
+                           [&](std::uint32_t i, double squared)
+                           {
+                               if (squared >= least) return;
+                               least = squared;
+                               nearest = i;
+                           });
+        if (nearest == no_index) continue;
+        const double weight = points[k].number * numbers[k];
+        sums[nearest].places = sums[nearest].places + weight * points[k].position;
+        sums[nearest].weights += weight;
+    }
+    for (std::size_t i = 0; i < sheet.size(); ++i)
+    {
+        if (!(sums[i].weights > 0)) continue;
+        const auto at = middle.back(sums[i].places / sums[i].weights);
+        if (at && !comes_near(taken, 0, sheet[i].position, at->position, least_pair_dp * dp))
+            sheet[i] = *at;
+    }
+}
+
+/// As many particles in a patch of a gap as it lacks.
+std::vector<MiddlePoint> fill_gap(const Middle& middle, const std::vector<MiddlePoint>& points,
+                                  const PointGrid& taken, const MergedSheetOptions& options)
+{
+    const std::vector<double> numbers =
+        numbers_in_gap(points, taken, options.dp, options.plane_y.has_value());
+    const auto wanted =
+        static_cast<std::size_t>(std::lround(std::accumulate(numbers.begin(), numbers.end(), 0.0)));
+    std::vector<MiddlePoint> sheet;
+    if (wanted == 0) return sheet;
+    take_number(points, taken, options.dp, wanted, sheet);
+    for (int step = 0; step < steps_a_round; ++step)
+        centre(middle, points, numbers, taken, options.dp, sheet);
+    return sheet;
+}
+
+/// The points of gaps, patch by patch: those of a large one must not lose their number to many that
+/// are too small for a particle.
+std::vector<std::vector<MiddlePoint>> patches_of(const std::vector<MiddlePoint>& points, double dp)
+{
+    PointGrid all(patch_dp * dp, points.size());
+    for (const MiddlePoint& p : points) all.add(p.position);
+    DisjointSet sets(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        all.for_each_near(points[i].position, patch_dp * dp,
+                          [&](std::uint32_t j, double) { sets.join(i, j); });
+    std::vector<std::vector<MiddlePoint>> out;
+    std::vector<std::size_t> patch_of(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+    {
+        const std::uint32_t first = sets.find(i);
+        if (first == i)
+        {
+            patch_of[i] = out.size();
+            out.emplace_back();
+        }
+        out[patch_of[first]].push_back(points[i]);
+    }
+    return out;
 }
 
 } // namespace
@@ -456,23 +545,16 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
     for (const MiddlePoint& p : points) (p.is_in_gap() ? in_gaps : of_both).push_back(p);
     std::vector<MiddlePoint> sheet =
         fill_sheet(middle, of_both, taken, options.wanted, options, threads);
-    if (!in_gaps.empty())
-    {
-        std::vector<Vec3> all = taken;
-        for (const MiddlePoint& p : sheet) all.push_back(p.position);
-        const std::vector<MiddlePoint> between = fill_sheet(
-            middle, in_gaps, all,
-            room_in_gaps(in_gaps, all, options.dp, options.plane_y.has_value()), options, threads);
-        // Where the number has no room, and where two came near to one another in one step.
-        PointGrid kept(least_pair_dp * options.dp, all.size() + between.size());
-        for (const Vec3& p : all) kept.add(p);
-        for (const MiddlePoint& p : between)
+    PointGrid all = grid_of(taken, options.dp);
+    for (const MiddlePoint& p : sheet) all.add(p.position);
+    for (const std::vector<MiddlePoint>& patch : patches_of(in_gaps, options.dp))
+        for (const MiddlePoint& p : fill_gap(middle, patch, all, options))
         {
-            if (kept.has_nearer(p.position, least_pair_dp * options.dp)) continue;
-            kept.add(p.position);
+            // Where the number has no room, and where two came near to one another in one step.
+            if (all.has_nearer(p.position, least_pair_dp * options.dp)) continue;
+            all.add(p.position);
             sheet.push_back(p);
         }
-    }
     SurfaceParticles out;
     for (const MiddlePoint& p : sheet)
     {

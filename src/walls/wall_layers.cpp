@@ -32,13 +32,6 @@ void unite_with(std::vector<Spans>& slabs, const std::vector<Spans>& more, int t
                  [&](std::size_t x) { slabs[x] = unite(slabs[x], more[x]); });
 }
 
-PointGrid grid_of(const std::vector<Vec3>& points, double cell)
-{
-    PointGrid grid(cell, points.size());
-    for (const Vec3& p : points) grid.add(p);
-    return grid;
-}
-
 /// The nodes in parts too thin for all layers that have no particle near: between layers of both
 /// sides that are the innermost there.
 Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const LatticeGrid& grid,
