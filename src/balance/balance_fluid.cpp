@@ -163,7 +163,7 @@ public:
             if (it == first_judged && mean > hopeless_mean) break;
             if (mean < best.mean) best = state(mean);
             least.push_back(best.mean);
-            const bool is_cheap = static_cast<double>(report.particles) * it < least_work;
+            const bool is_cheap = static_cast<double>(moving) * it < least_work;
             const bool is_over = best.mean < settled && it >= first_settled;
             if (mean < calm || (is_over && !(report.is_packed && is_cheap)) ||
                 (is_slow(least) && !is_cheap))
