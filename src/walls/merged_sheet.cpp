@@ -382,68 +382,83 @@ std::vector<double> numbers_in_gap(const std::vector<MiddlePoint>& points, const
     return out;
 }
 
+/// Points of a gap that are joined.
+struct GapPatch
+{
+    std::vector<MiddlePoint> points;
+    std::vector<double> numbers; ///< of numbers_in_gap()
+};
+
 /// Moves each particle of a sheet in a gap to the middle of the points that are nearest to it, as
 /// by Lloyd. Weights by the square of what a point lacks make particles as dense as they are
 /// wanted; with forces between them they leave the middle of the patch for its ends.
-///
-/// numbers  of numbers_in_gap()
-void centre(const Middle& middle, const std::vector<MiddlePoint>& points,
-            const std::vector<double>& numbers, const PointGrid& taken, double dp,
-            std::vector<MiddlePoint>& sheet)
+void centre(const Middle& middle, const GapPatch& patch, const PointGrid& taken,
+            const MergedSheetOptions& options, int threads, std::vector<MiddlePoint>& sheet)
 {
+    const std::vector<MiddlePoint>& points = patch.points;
+    const double reach = widest_spacing * options.dp;
+    PointGrid grid(reach, sheet.size());
+    for (const MiddlePoint& p : sheet) grid.add(p.position);
+    std::vector<std::uint32_t> nearest(points.size(), no_index);
+    parallel_for(
+        points.size(), threads,
+        [&](std::size_t k)
+        {
+            double least = std::numeric_limits<double>::infinity();
+            grid.for_each_near(points[k].position, reach,
+                               [&](std::uint32_t i, double squared)
+                               {
+                                   if (squared >= least) return;
+                                   least = squared;
+                                   nearest[k] = i;
+                               });
+        },
+        256);
     struct Sum
     {
         Vec3 places;
         double weights = 0;
     };
     std::vector<Sum> sums(sheet.size());
-    const double reach = widest_spacing * dp;
-    PointGrid grid(reach, sheet.size());
-    for (const MiddlePoint& p : sheet) grid.add(p.position);
     for (std::size_t k = 0; k < points.size(); ++k)
     {
-        double least = std::numeric_limits<double>::infinity();
-        std::uint32_t nearest = no_index;
-        grid.for_each_near(points[k].position, reach,
-                           [&](std::uint32_t i, double squared)
-                           {
-                               if (squared >= least) return;
-                               least = squared;
-                               nearest = i;
-                           });
-        if (nearest == no_index) continue;
-        const double weight = points[k].number * numbers[k];
-        sums[nearest].places = sums[nearest].places + weight * points[k].position;
-        sums[nearest].weights += weight;
+        if (nearest[k] == no_index) continue;
+        Sum& sum = sums[nearest[k]];
+        const double weight = points[k].number * patch.numbers[k];
+        sum.places = sum.places + weight * points[k].position;
+        sum.weights += weight;
     }
-    for (std::size_t i = 0; i < sheet.size(); ++i)
-    {
-        if (!(sums[i].weights > 0)) continue;
-        const auto at = middle.back(sums[i].places / sums[i].weights);
-        if (at && !comes_near(taken, 0, sheet[i].position, at->position, least_pair_dp * dp))
-            sheet[i] = *at;
-    }
+    const double least_pair = least_pair_dp * options.dp;
+    parallel_for(
+        sheet.size(), threads,
+        [&](std::size_t i)
+        {
+            if (!(sums[i].weights > 0)) return;
+            const auto at = middle.back(sums[i].places / sums[i].weights);
+            if (at && !comes_near(taken, 0, sheet[i].position, at->position, least_pair))
+                sheet[i] = *at;
+        },
+        64);
 }
 
 /// As many particles in a patch of a gap as it lacks.
-std::vector<MiddlePoint> fill_gap(const Middle& middle, const std::vector<MiddlePoint>& points,
-                                  const PointGrid& taken, const MergedSheetOptions& options)
+std::vector<MiddlePoint> fill_gap(const Middle& middle, GapPatch& patch, const PointGrid& taken,
+                                  const MergedSheetOptions& options, int threads)
 {
-    const std::vector<double> numbers =
-        numbers_in_gap(points, taken, options.dp, options.plane_y.has_value());
-    const auto wanted =
-        static_cast<std::size_t>(std::lround(std::accumulate(numbers.begin(), numbers.end(), 0.0)));
+    patch.numbers = numbers_in_gap(patch.points, taken, options.dp, options.plane_y.has_value());
+    const auto wanted = static_cast<std::size_t>(
+        std::lround(std::accumulate(patch.numbers.begin(), patch.numbers.end(), 0.0)));
     std::vector<MiddlePoint> sheet;
     if (wanted == 0) return sheet;
-    take_number(points, taken, options.dp, wanted, sheet);
+    take_number(patch.points, taken, options.dp, wanted, sheet);
     for (int step = 0; step < steps_a_round; ++step)
-        centre(middle, points, numbers, taken, options.dp, sheet);
+        centre(middle, patch, taken, options, threads, sheet);
     return sheet;
 }
 
 /// The points of gaps, patch by patch: those of a large one must not lose their number to many that
 /// are too small for a particle.
-std::vector<std::vector<MiddlePoint>> patches_of(const std::vector<MiddlePoint>& points, double dp)
+std::vector<GapPatch> patches_of(const std::vector<MiddlePoint>& points, double dp)
 {
     PointGrid all(patch_dp * dp, points.size());
     for (const MiddlePoint& p : points) all.add(p.position);
@@ -451,7 +466,7 @@ std::vector<std::vector<MiddlePoint>> patches_of(const std::vector<MiddlePoint>&
     for (std::uint32_t i = 0; i < points.size(); ++i)
         all.for_each_near(points[i].position, patch_dp * dp,
                           [&](std::uint32_t j, double) { sets.join(i, j); });
-    std::vector<std::vector<MiddlePoint>> out;
+    std::vector<GapPatch> out;
     std::vector<std::size_t> patch_of(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i)
     {
@@ -461,7 +476,7 @@ std::vector<std::vector<MiddlePoint>> patches_of(const std::vector<MiddlePoint>&
             patch_of[i] = out.size();
             out.emplace_back();
         }
-        out[patch_of[first]].push_back(points[i]);
+        out[patch_of[first]].points.push_back(points[i]);
     }
     return out;
 }
@@ -547,8 +562,8 @@ SurfaceParticles merged_sheet(const WallDepth& wall, const Features& features,
         fill_sheet(middle, of_both, taken, options.wanted, options, threads);
     PointGrid all = grid_of(taken, options.dp);
     for (const MiddlePoint& p : sheet) all.add(p.position);
-    for (const std::vector<MiddlePoint>& patch : patches_of(in_gaps, options.dp))
-        for (const MiddlePoint& p : fill_gap(middle, patch, all, options))
+    for (GapPatch& patch : patches_of(in_gaps, options.dp))
+        for (const MiddlePoint& p : fill_gap(middle, patch, all, options, threads))
         {
             // Where the number has no room, and where two came near to one another in one step.
             if (all.has_nearer(p.position, least_pair_dp * options.dp)) continue;
