@@ -29,7 +29,7 @@ Vec3 vec_of(const std::array<float, 3>& v)
 AndersonMixing::AndersonMixing(std::size_t n, int threads)
     : threads_(threads), places_(n), forces_(n)
 {
-    static_assert(window <= most_rows);
+    static_assert(window <= SmallMatrix::most_rows);
     for (auto& change : changes_) change.resize(n);
 }
 

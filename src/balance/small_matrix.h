@@ -9,11 +9,11 @@
 namespace fppg
 {
 
-inline constexpr int most_rows = 4; ///< of SmallMatrix
-
 /// A square matrix of up to four rows.
 struct SmallMatrix
 {
+    static constexpr int most_rows = 4;
+
     int n = most_rows;
     std::array<std::array<double, most_rows>, most_rows> a{};
 

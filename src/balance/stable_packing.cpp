@@ -162,16 +162,7 @@ public:
     /// Of a place where the cover is above 0.
     std::uint32_t nearest(const Vec3& place) const
     {
-        std::uint32_t out = body_.front();
-        double least = std::numeric_limits<double>::infinity();
-        grid_.for_each_near(place, reach_,
-                            [&](std::uint32_t k, double squared)
-                            {
-                                if (squared >= least) return;
-                                least = squared;
-                                out = body_[k];
-                            });
-        return out;
+        return body_[grid_.nearest(place, reach_).value_or(0)];
     }
 
 private:

@@ -4,9 +4,6 @@
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
 
-#include <limits>
-#include <utility>
-
 namespace fppg
 {
 namespace
@@ -33,15 +30,9 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
         {
             // Fluid above the highest nodes says nothing of the level.
             if (rest.roles[i] != RestRole::Bound && rest.pressures[i] > 0) return;
-            double nearest = std::numeric_limits<double>::infinity();
-            rest.levels[i] = rest.height(rest.positions[i]);
-            fluid.for_each_near(rest.positions[i], reach,
-                                [&](std::uint32_t at, double squared)
-                                {
-                                    if (squared >= nearest) return;
-                                    nearest = squared;
-                                    rest.levels[i] = rest.levels[of_point[at]];
-                                });
+            const auto nearest = fluid.nearest(rest.positions[i], reach);
+            rest.levels[i] =
+                nearest ? rest.levels[of_point[*nearest]] : rest.height(rest.positions[i]);
             rest.pressures[i] = rest.pressure(rest.levels[i] - rest.height(rest.positions[i]));
             rest.densities[i] = rest.density(rest.pressures[i]);
         },
@@ -54,7 +45,7 @@ void set_depth_pressures(FluidAtRest& rest, int threads)
 struct GhostPressures::Sums
 {
     SmallMatrix matrix;
-    std::array<double, most_rows> densities{};
+    std::array<double, SmallMatrix::most_rows> densities{};
     bool has_fluid = false;
 };
 
@@ -145,7 +136,7 @@ void GhostPressures::set_one(FluidAtRest& rest, std::uint32_t point,
     }
     const double shepard = rest.rhop0 + sums.densities[0] / sums.matrix.at(0, 0);
     double density = shepard;
-    std::array<double, most_rows> fit{};
+    std::array<double, SmallMatrix::most_rows> fit{};
     bool has_fit = false;
     SmallMatrix inverse;
     if (is_new && sums.matrix.at(0, 0) < least_sum)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +61,21 @@ public:
     {
         return find_near(p, radius,
                          [&](std::uint32_t, double squared) { return squared < radius * radius; });
+    }
+
+    /// The nearest point, if one is within `radius`.
+    std::optional<std::uint32_t> nearest(const Vec3& p, double radius) const
+    {
+        std::optional<std::uint32_t> out;
+        double least = std::numeric_limits<double>::infinity();
+        for_each_near(p, radius,
+                      [&](std::uint32_t at, double squared)
+                      {
+                          if (squared >= least) return;
+                          least = squared;
+                          out = at;
+                      });
+        return out;
     }
 
     const std::vector<Vec3>& points() const { return points_; }

@@ -191,6 +191,13 @@ void for_each_sample(const SurfaceMesh& mesh, std::size_t f, double apart, const
         }
 }
 
+PointGrid grid_of(const std::vector<MiddlePoint>& points, double cell)
+{
+    PointGrid out(cell, points.size());
+    for (const MiddlePoint& p : points) out.add(p.position);
+    return out;
+}
+
 /// What lies under a facet where the part is thin.
 struct ThinFacet
 {
@@ -369,8 +376,7 @@ std::vector<double> numbers_in_gap(const std::vector<MiddlePoint>& points, const
 {
     constexpr double disk_dp = 0.45;
     const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
-    PointGrid all(disk_dp * dp, points.size());
-    for (const MiddlePoint& p : points) all.add(p.position);
+    const PointGrid all = grid_of(points, disk_dp * dp);
     std::vector<double> out;
     for (const MiddlePoint& p : points)
     {
@@ -397,22 +403,12 @@ void centre(const Middle& middle, const GapPatch& patch, const PointGrid& taken,
 {
     const std::vector<MiddlePoint>& points = patch.points;
     const double reach = widest_spacing * options.dp;
-    PointGrid grid(reach, sheet.size());
-    for (const MiddlePoint& p : sheet) grid.add(p.position);
-    std::vector<std::uint32_t> nearest(points.size(), no_index);
+    const PointGrid grid = grid_of(sheet, reach);
+    std::vector<std::uint32_t> nearest(points.size());
     parallel_for(
         points.size(), threads,
         [&](std::size_t k)
-        {
-            double least = std::numeric_limits<double>::infinity();
-            grid.for_each_near(points[k].position, reach,
-                               [&](std::uint32_t i, double squared)
-                               {
-                                   if (squared >= least) return;
-                                   least = squared;
-                                   nearest[k] = i;
-                               });
-        },
+        { nearest[k] = grid.nearest(points[k].position, reach).value_or(no_index); },
         256);
     struct Sum
     {
@@ -460,8 +456,7 @@ std::vector<MiddlePoint> fill_gap(const Middle& middle, GapPatch& patch, const P
 /// are too small for a particle.
 std::vector<GapPatch> patches_of(const std::vector<MiddlePoint>& points, double dp)
 {
-    PointGrid all(patch_dp * dp, points.size());
-    for (const MiddlePoint& p : points) all.add(p.position);
+    const PointGrid all = grid_of(points, patch_dp * dp);
     DisjointSet sets(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i)
         all.for_each_near(points[i].position, patch_dp * dp,
@@ -507,8 +502,7 @@ ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
     }
     if (out.middle.empty()) return out;
     const double reach = rim_reach * middle.deepest() * options.dp;
-    PointGrid grid(reach, out.middle.size());
-    for (const MiddlePoint& p : out.middle) grid.add(p.position);
+    const PointGrid grid = grid_of(out.middle, reach);
     for (const ThinFacet& facet : of_facet)
         for (const auto& [centre, volume] : facet.ends)
             if (grid.has_nearer(centre, reach)) out.volume += volume;
