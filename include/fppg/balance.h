@@ -33,7 +33,7 @@ struct BalanceProgress
 /// slides along the rest if that stays (2D, 30 dp deep, stairs off the lattice, DBC, after 0.3 and
 /// 1 s: mean 0.0093 and 0.0123 m/s; all balanced 0.0019, and 0.0033 after 1 s; GenCase's particles
 /// 0.0056 and 0.0122).
-inline constexpr std::size_t most_balanced_whole = 500000;
+inline constexpr std::size_t most_balanced_whole = 1000000;
 
 struct BalanceReport
 {
@@ -59,10 +59,9 @@ struct BalanceReport
 /// half a dp above its highest particle; rho by the equation of state. Boundary particles have the
 /// pressure of their depth (DBC), 0 above the level; or what mDBC gives them at each step from the
 /// fluid around their ghost nodes (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with
-/// h^2 rho / p, by turns with Anderson's mixing (balance/anderson_mixing.h) and with momentum
-/// (heavy ball, factor 0.95); none is longer than 0.05 dp, no particle moves farther than one dp in
-/// all (4 dp on another lattice), none comes nearer to a wall than 0.5 dp (mDBC: 0.2 dp) or than it
-/// was, none higher than 0.25 dp below its level.
+/// h^2 rho / p, with momentum (heavy ball, factors 0.3 and 0.9); none is longer than 0.05 dp, no
+/// particle moves farther than one dp in all (4 dp on another lattice), none comes nearer to a wall
+/// than 0.5 dp (mDBC: 0.2 dp) or than it was, none higher than 0.25 dp below its level.
 ///
 /// On a lattice a_i is not quite zero: it falls by 0.004 to 0.03 g. Fluid that stays there
 /// has that acceleration, and so has all that is moved: where it was brought to zero,
@@ -72,7 +71,7 @@ struct BalanceReport
 /// Where all fluid is moved and none held it is laid on the most stable lattice first
 /// (balance/stable_packing.h), unless that is the cubic one, and brought to rest without a fall.
 /// It keeps its numbers and levels; ids of one mk go along x, then y, then z. Where more than 0.01
-/// g would be left in the mean, it is left on its lattice.
+/// g is left in the mean, its own lattice is tried too, and the one that leaves less is taken.
 ///
 /// Fluid of a free face that is not level stays, with all within 2h of it: it is meant to fall, as
 /// in a dam break. So does fluid across a border of the case. Where accelerations stay above 0.1 g
@@ -87,9 +86,9 @@ struct BalanceReport
 /// source     trials in tools/solver-trials; a tank of still water at dp 0.0125 m, largest speed in
 ///            0.2 s: DBC 0.080 m/s on the lattice, 0.013 balanced; mDBC in layers 0.114 m/s with
 ///            fluid that is only even, 0.019 balanced
-/// cost       at most 400 iterations, at most 100 where these are 10^8 times a particle, 20 where
-///            walls do not hold the fluid. On one core 0.07 to 0.25 milliseconds a particle near
-///            walls (cases of this repository; 0.6 for a few thousand particles)
+/// cost       see balance/iterations.h; 20 iterations where walls do not hold the fluid. On one
+/// core
+///            0.1 milliseconds a particle where there are 480,000, 1 for a few thousand
 BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const CaseConstants& constants, CaseParticles& particles, int threads,
                             const std::function<bool(const BalanceProgress&)>& on_iteration);

@@ -61,13 +61,6 @@ void AndersonMixing::add(std::span<const Vec3> places, std::span<const Vec3> for
     has_last_ = true;
 }
 
-void AndersonMixing::forget()
-{
-    count_ = 0;
-    shares_ = {};
-    has_last_ = false;
-}
-
 std::array<AndersonMixing::Products, 2> AndersonMixing::products() const
 {
     const std::size_t n = forces_.size();

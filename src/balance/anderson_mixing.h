@@ -30,8 +30,6 @@ public:
     /// Takes the places of all particles and the forces there, n each, once an iteration. Those
     /// that stay have no force.
     void add(std::span<const Vec3> places, std::span<const Vec3> forces);
-    /// The next add() is a first one.
-    void forget();
 
     /// The step from the places of the last add().
     ///

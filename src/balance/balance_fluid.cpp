@@ -1,90 +1,26 @@
 #include "fppg/balance.h"
 
-#include "balance/anderson_mixing.h"
+#include "balance/balancer.h"
 #include "balance/fluid_at_rest.h"
-#include "balance/iterations.h"
 #include "balance/lattice_fall.h"
-#include "balance/pressure_sums.h"
 #include "balance/stable_packing.h"
 #include "balance/take_places.h"
 #include "balance/wall_pressure.h"
-#include "core/parallel.h"
 #include "particles/initials.h"
 #include "relax/all_walls.h"
-#include "relax/group_list.h"
-#include "relax/wall_planes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 namespace fppg
 {
 namespace
 {
 
-// Lengths in dp.
-constexpr double list_skin = 0.5;
-constexpr double longest_step = 0.05;
-/// From where a particle starts, on the lattice of the case.
-constexpr double farthest_of_case = 1.0;
-/// On another lattice, whose nodes are nobody's choice: with 1 dp, particles along the border of
-/// the surface in round vessels kept 0.03 g, and the mean 0.0028 g instead of 0.0012.
-constexpr double farthest_packed = 4.0;
-/// To walls whose particles stand on the surface; nearer, fluid is squeezed between these where it
-/// is crowded, as at the inside of a bend.
-constexpr double least_distance_dbc = 0.5;
-/// To walls whose first particles stand half a dp behind the surface.
-constexpr double least_distance_mdbc = 0.2;
-constexpr double reach_of_walls = 2.5;
-/// Nearer particles are pushed apart: high up, where pressures do not, and where they press what
-/// moves against fluid that is held. The push grows with the depth from here on, in dp.
-constexpr float least_pair = 0.6F;
-constexpr double depth_of_pushes = 2;
-/// Walls are looked for again where a particle has moved so far, when lists are made anew.
-constexpr double look_again = 0.1;
-/// Below the level of its column; the highest particles start half a dp below it.
-constexpr double least_depth = 0.25;
-constexpr double touching = 1e-3; ///< from what is allowed of a wall
-/// Rows of the lattice that start nearer to their level keep their height, so that the surface
-/// stays flat.
-constexpr double surface_depth = 2;
-/// Iterations by turns: with mixing, which comes near to rest in few, but ends at the least force
-/// in sight, and with momentum, which finds its way on from there. Mean after 400 in spheres under
-/// DBC and mDBC: 0.0003 and 0.0006 g, with mixing alone 0.0006 and 0.0005, with momentum alone
-/// 0.0003 and 0.0007.
-constexpr int mixed_iterations = 40;
-constexpr int iterations_of_momentum = 100;
-constexpr double momentum = 0.95;
-/// Of the momentum that leads against the force.
-constexpr double momentum_against = 0.5;
-/// What a particle moves for a force, over h^2 rho / p, by momentum and with mixing.
-constexpr double step_factor = 0.08;
-constexpr double mobility = 0.64;
-constexpr int iterations_per_look = 10; ///< at mDBC's pressures; each time gains nothing
-constexpr int iterations_per_check = 10;
-/// Mean acceleration over gravity at which all is done.
-constexpr double calm = 0.0003;
-/// Where the mean is below this by first_settled, or later, the fluid keeps what it has: rows of
-/// the lattice that go on moving lose their order for 0.0005 g less (2D, 20 dp deep, after 0.1 s:
-/// 0.0029 instead of 0.0013 m/s). Fluid on a stable lattice goes on while that is cheap (2D,
-/// stairs, after 0.3 s: 0.0006 instead of 0.0010 m/s).
-constexpr double settled = 0.002;
-/// Where the least mean has fallen by less than this share in so many iterations, more gain little;
-/// those that cost little are made all the same.
-constexpr double slow_fall = 0.15;
-constexpr int iterations_of_fall = 30;
-constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
-constexpr std::size_t chunk_of_sums = 4096;
-/// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
-constexpr double calm_mean = 0.1;
-/// And where it is above this at the first check: in all cases tried those that came to rest were
-/// below 0.09 then, the others above 0.4.
-constexpr double hopeless_mean = 0.25;
-/// Fluid on a stable lattice that keeps more than this in the mean goes back to the cubic one.
+/// Where fluid on a stable lattice keeps more than this in the mean, the cubic one is tried too.
 constexpr double calm_packed = 0.01;
 
 /// Why a case is not balanced; empty where it is.
@@ -109,426 +45,53 @@ RestBoundary boundary_of(const CaseDef& def)
     return def.solver.slip_mode == 1 ? RestBoundary::Mdbc : RestBoundary::Mdbc2;
 }
 
-double least_distance_dp(RestBoundary boundary)
-{
-    return boundary == RestBoundary::Dbc ? least_distance_dbc : least_distance_mdbc;
-}
-
-/// Moves particles along their accelerations until these are small.
-class Balancer
-{
-public:
-    Balancer(FluidAtRest& rest, const LatticeFall& fall, const ClosestWallPoint& closest,
-             RestBoundary boundary, int threads)
-        : rest_(rest),
-          fall_(fall),
-          closest_(closest),
-          threads_(threads),
-          list_(static_cast<float>(rest_reach_dp(rest)), static_cast<float>(list_skin)),
-          ghosts_(rest, boundary),
-          has_ghosts_(boundary != RestBoundary::Dbc),
-          least_distance_(least_distance_dp(boundary)),
-          mixing_(rest.size(), threads)
-    {
-    }
-
-    void run(BalanceReport& report, const std::function<bool(const BalanceProgress&)>& on_iteration)
-    {
-        farthest_ = (report.is_packed ? farthest_packed : farthest_of_case) * rest_.dp;
-        set_depth_pressures(rest_, threads_);
-        start_at_rest();
-        set_points();
-        renew_lists(true);
-        renew_pressures();
-        accelerate();
-        report.before = judge();
-        const State even = state(report.before.mean);
-        State best = state(report.before.mean);
-        std::vector<double> least; // mean, up to each check
-        std::size_t moving = 0;
-        for (std::size_t i = 0; i < rest_.size(); ++i) moving += moves(i) ? 1 : 0;
-        const int last = last_iteration(moving);
-        for (int it = 1; it <= last && report.particles > report.held; ++it)
-        {
-            is_mixed_ = (it - 1) % (mixed_iterations + iterations_of_momentum) < mixed_iterations;
-            step();
-            set_points();
-            if (list_.is_outdated(field_.points, threads_)) renew_lists(false);
-            if (it % iterations_per_look == 0) renew_pressures();
-            accelerate();
-            report.iterations = it;
-            const double mean = mean_acceleration();
-            if (on_iteration && !on_iteration({it, last, mean})) break;
-            if (it % iterations_per_check != 0) continue;
-            if (it == first_judged && mean > hopeless_mean) break;
-            if (mean < best.mean) best = state(mean);
-            least.push_back(best.mean);
-            const bool is_cheap = static_cast<double>(moving) * it < least_work;
-            const bool is_over = best.mean < settled && it >= first_settled;
-            if (mean < calm || (is_over && !(report.is_packed && is_cheap)) ||
-                (is_slow(least) && !is_cheap))
-                break;
-        }
-        report.is_balanced = best.mean <= calm_mean;
-        return_to(report.is_balanced ? best : even);
-        report.after = judge();
-        sum_up_moves(report);
-    }
-
-private:
-    struct State
-    {
-        RawArray<Vec3> positions;
-        RawArray<double> pressures;
-        double mean = 0; ///< acceleration
-    };
-
-    State state(double mean) const
-    {
-        State out;
-        out.positions.resize(rest_.size());
-        out.pressures.resize(rest_.size());
-        out.mean = mean;
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                out.positions[i] = rest_.positions[i];
-                out.pressures[i] = rest_.pressures[i];
-            },
-            4096);
-        return out;
-    }
-
-    /// least  mean acceleration up to each check
-    static bool is_slow(const std::vector<double>& least)
-    {
-        constexpr std::size_t checks = iterations_of_fall / iterations_per_check;
-        return least.size() > checks &&
-               least.back() > (1 - slow_fall) * least[least.size() - 1 - checks];
-    }
-
-    void start_at_rest()
-    {
-        start_.resize(rest_.size());
-        looked_at_.resize(rest_.size());
-        forces_.resize(rest_.size());
-        accelerations_.resize(rest_.size());
-        allowed_.resize(rest_.size());
-        walls_.resize(rest_.size());
-        velocities_.resize(rest_.size());
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                start_[i] = looked_at_[i] = rest_.positions[i];
-                velocities_[i] = forces_[i] = accelerations_[i] = {};
-                allowed_[i] = least_distance_ * rest_.dp;
-            },
-            4096);
-    }
-
-    void return_to(const State& state)
-    {
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                rest_.positions[i] = state.positions[i];
-                rest_.pressures[i] = state.pressures[i];
-                rest_.densities[i] = rest_.density(rest_.pressures[i]);
-            },
-            1024);
-        keep_off_walls();
-        set_points();
-        renew_lists(false);
-        renew_pressures();
-        accelerate();
-    }
-
-    /// Exactly: curved walls bend away from the planes that stand for them.
-    void keep_off_walls()
-    {
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (!moves(i) || walls_[i].distance > allowed_[i] + farthest_) return;
-                for (const WallPlane& plane :
-                     find_nearest_wall(rest_.positions[i], allowed_[i], closest_))
-                    rest_.positions[i] =
-                        rest_.positions[i] - (allowed_[i] - plane.distance) * plane.normal;
-            },
-            64);
-    }
-
-    bool moves(std::size_t i) const { return rest_.moves(i); }
-    bool is_judged(std::size_t i) const { return rest_.roles[i] == RestRole::Moving; }
-
-    void renew_lists(bool is_first)
-    {
-        list_.build(
-            field_.points, threads_, [&](std::size_t i) { return moves(i); },
-            [](std::size_t) { return true; });
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (moves(i)) look_for_walls(i, is_first);
-            },
-            64);
-    }
-
-    /// Looks for the walls around a particle again where it may have come near to others.
-    void look_for_walls(std::size_t i, bool is_first)
-    {
-        const double reach = reach_of_walls * rest_.dp;
-        double within = std::numeric_limits<double>::infinity();
-        if (!is_first)
-        {
-            const double moved = norm(rest_.positions[i] - looked_at_[i]);
-            if (moved < look_again * rest_.dp || walls_[i].distance - moved > reach) return;
-            within = (walls_[i].distance + moved) * (1 + 1e-9);
-        }
-        looked_at_[i] = rest_.positions[i];
-        walls_[i] = find_nearest_wall(rest_.positions[i], reach, closest_, within);
-        add_further_walls(walls_[i], rest_.positions[i], reach, closest_);
-        if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
-    }
-
-    /// Of walls, from the fluid where it is now.
-    void renew_pressures()
-    {
-        if (!has_ghosts_) return;
-        set_field();
-        ghosts_.set(rest_, threads_);
-    }
-
-    /// Pressures of their depth, then accelerations.
-    void accelerate()
-    {
-        set_field();
-        const double scale = rest_.slope_scale();
-        PairShape shape{static_cast<float>(rest_.h / rest_.dp), rest_.is_cubic};
-        shape.least_pair = least_pair;
-        const double g = norm(rest_.gravity);
-        const double deep = rest_.pressure(depth_of_pushes * rest_.dp);
-        list_.for_each_group(
-            threads_,
-            [&](const PointGroup& group)
-            {
-                const PressureSums sums = pressure_sums(field_, group, shape);
-                for (std::size_t l = 0; l < group.count; ++l)
-                {
-                    const std::uint32_t i = group.points[l];
-                    if (!moves(i)) continue;
-                    const double depth = rest_.levels[i] - rest_.height(rest_.positions[i]);
-                    accelerations_[i] =
-                        at_surface(i, rest_.gravity - scale / rest_.densities[i] * sums.of(l) -
-                                          fall_.at(depth));
-                    forces_[i] = accelerations_[i] +
-                                 at_surface(i, g * std::max(1.0, rest_.pressures[i] / deep) *
-                                                   sums.push_of(l));
-                }
-            });
-    }
-
-    /// Of what moves a particle, all but the height of a row at the surface.
-    Vec3 at_surface(std::size_t i, const Vec3& force) const
-    {
-        if (rest_.levels[i] - rest_.height(start_[i]) > surface_depth * rest_.dp ||
-            !fall_.is_on_row(start_[i]))
-            return force;
-        const Vec3 up = rest_.gravity / -norm(rest_.gravity);
-        return force - dot(force, up) * up;
-    }
-
-    /// Where the particles are, as the lists and the sums take them.
-    void set_points()
-    {
-        field_.resize(rest_.size());
-        rest_.set_in_dp([&](std::size_t i) { return rest_.positions[i]; }, threads_, field_.points);
-    }
-
-    /// Of all particles, those that move at the pressures of their depth.
-    void set_field()
-    {
-        const double dp = rest_.dp;
-        const double unit = rest_.is_2d ? dp * dp : dp * dp * dp;
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (moves(i))
-                {
-                    rest_.pressures[i] =
-                        rest_.pressure(rest_.levels[i] - rest_.height(rest_.positions[i]));
-                    rest_.densities[i] = rest_.density(rest_.pressures[i]);
-                }
-                const double volume = rest_.masses[i] / rest_.densities[i] / unit;
-                field_.packed[i] = PackedPoint{field_.points.x[i], field_.points.y[i],
-                                               field_.points.z[i], static_cast<float>(volume)};
-                field_.pressures[i] = static_cast<float>(rest_.pressures[i]);
-            },
-            1024);
-    }
-
-    void step()
-    {
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (moves(i)) forces_[i] = without_pressing(i, forces_[i]);
-            },
-            1024);
-        if (is_mixed_)
-            mixing_.add(rest_.positions, forces_);
-        else
-            mixing_.forget();
-        const double soft = rest_.rhop0 * norm(rest_.gravity) * rest_.dp;
-        parallel_for(
-            rest_.size(), threads_,
-            [&](std::size_t i)
-            {
-                if (!moves(i)) return;
-                const double scale = rest_.h * rest_.h * rest_.rhop0 /
-                                     (std::max(rest_.pressures[i], soft / 2) + soft);
-                Vec3 v = is_mixed_ ? mixing_.step(i, mobility * scale) : with_momentum(i, scale);
-                const double length = norm(v);
-                if (length > longest_step * rest_.dp) v = v * (longest_step * rest_.dp / length);
-                velocities_[i] = v;
-                rest_.positions[i] = allowed_place(i, rest_.positions[i] + v);
-            },
-            256);
-    }
-
-    Vec3 with_momentum(std::size_t i, double scale) const
-    {
-        const Vec3& v = velocities_[i];
-        const double kept = momentum * (dot(v, forces_[i]) < 0 ? momentum_against : 1.0);
-        return kept * v + step_factor * scale * forces_[i];
-    }
-
-    /// Of a force, all but what presses a particle against a wall that it may not come nearer to.
-    Vec3 without_pressing(std::size_t i, Vec3 force) const
-    {
-        for (const WallPlane& plane : walls_[i])
-        {
-            const double room = plane.distance - std::min(allowed_[i], plane.distance) -
-                                dot(rest_.positions[i] - looked_at_[i], plane.normal);
-            const double into = dot(force, plane.normal);
-            if (room < touching * rest_.dp && into > 0) force = force - into * plane.normal;
-        }
-        return force;
-    }
-
-    /// The place nearest to `to` that keeps its distance from walls, start and surface.
-    Vec3 allowed_place(std::size_t i, Vec3 to) const
-    {
-        for (const WallPlane& plane : walls_[i])
-        {
-            const double distance = plane.distance - dot(to - looked_at_[i], plane.normal);
-            const double allowed = std::min(allowed_[i], plane.distance);
-            if (distance < allowed) to = to - (allowed - distance) * plane.normal;
-        }
-        const Vec3 moved = to - start_[i];
-        const double length = norm(moved);
-        if (length > farthest_) to = start_[i] + moved * (farthest_ / length);
-        const double above = rest_.height(to) - rest_.levels[i] + least_depth * rest_.dp;
-        if (above > 0) to = to + rest_.gravity * (above / norm(rest_.gravity));
-        return to;
-    }
-
-    double mean_acceleration() const
-    {
-        struct Sum
-        {
-            double sizes = 0;
-            std::size_t count = 0;
-        };
-        std::vector<Sum> chunks((rest_.size() + chunk_of_sums - 1) / chunk_of_sums);
-        parallel_for(chunks.size(), threads_,
-                     [&](std::size_t c)
-                     {
-                         const std::size_t end = std::min(rest_.size(), (c + 1) * chunk_of_sums);
-                         for (std::size_t i = c * chunk_of_sums; i < end; ++i)
-                         {
-                             if (!is_judged(i)) continue;
-                             chunks[c].sizes += norm(accelerations_[i]);
-                             ++chunks[c].count;
-                         }
-                     });
-        Sum all;
-        for (const Sum& chunk : chunks)
-        {
-            all.sizes += chunk.sizes;
-            all.count += chunk.count;
-        }
-        return all.sizes / norm(rest_.gravity) /
-               static_cast<double>(std::max<std::size_t>(all.count, 1));
-    }
-
-    Accelerations judge() const
-    {
-        const double g = norm(rest_.gravity);
-        std::vector<double> sizes;
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-            if (is_judged(i)) sizes.push_back(norm(accelerations_[i]) / g);
-        Accelerations out;
-        if (sizes.empty()) return out;
-        const auto n = static_cast<double>(sizes.size());
-        out.mean = std::accumulate(sizes.begin(), sizes.end(), 0.0) / n;
-        out.above_5 = static_cast<double>(std::count_if(sizes.begin(), sizes.end(),
-                                                        [](double a) { return a > 0.05; })) /
-                      n;
-        const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * (n - 1));
-        std::nth_element(sizes.begin(), at, sizes.end());
-        out.of_99 = *at;
-        out.largest = *std::max_element(at, sizes.end());
-        return out;
-    }
-
-    void sum_up_moves(BalanceReport& report) const
-    {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-        {
-            if (!is_judged(i)) continue;
-            const double moved = norm(rest_.positions[i] - start_[i]) / rest_.dp;
-            report.mean_move_dp += moved;
-            report.largest_move_dp = std::max(report.largest_move_dp, moved);
-            ++count;
-        }
-        if (count > 0) report.mean_move_dp /= static_cast<double>(count);
-    }
-
-    FluidAtRest& rest_;
-    const LatticeFall& fall_;
-    const ClosestWallPoint& closest_;
-    int threads_;
-    GroupList list_;
-    GhostPressures ghosts_;
-    bool has_ghosts_;
-    double least_distance_; ///< to a wall, dp
-    double farthest_ = 0;   ///< metres from the start
-    RawArray<Vec3> accelerations_;
-    RawArray<Vec3> forces_; ///< these and pushes, which are only there while particles move
-    AndersonMixing mixing_;
-    bool is_mixed_ = false;
-    RawArray<Vec3> velocities_; ///< metres an iteration
-    PressureField field_;
-    RawArray<Vec3> start_;
-    RawArray<Vec3> looked_at_;   ///< places when walls were looked for
-    RawArray<WallPlanes> walls_; ///< of those that move
-    RawArray<double> allowed_;   ///< metres to a wall
-};
-
 std::size_t near_walls(const FluidAtRest& rest)
 {
     return static_cast<std::size_t>(
         std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
 }
+
+struct AtRest
+{
+    FluidAtRest fluid;
+    BalanceReport report;
+};
+
+struct Balancing
+{
+    const CaseParticles& particles;
+    RestWalls walls;
+    int threads = 1;
+    const std::function<bool(const BalanceProgress&)>& on_iteration;
+
+    /// On the most stable lattice; nothing where it stays on its own.
+    std::optional<AtRest> packed(const FluidAtRest& rest, const BalanceReport& report) const
+    {
+        const double gap = walls.boundary == RestBoundary::Dbc ? rest.dp / 2 : 0;
+        std::optional<FluidAtRest> fluid = packed_stably(
+            rest, particles, {walls.closest, least_distance_dp(walls.boundary) * rest.dp, gap},
+            threads);
+        if (!fluid) return std::nullopt;
+        AtRest out{std::move(*fluid), report};
+        out.report.is_packed = true;
+        out.report.particles = near_walls(out.fluid);
+        bring_to_rest(out.fluid, LatticeFall(), walls, threads, on_iteration, out.report);
+        return out;
+    }
+
+    AtRest on_lattice(FluidAtRest rest, const BalanceReport& report, const LatticeGrid& grid,
+                      double mass_fluid) const
+    {
+        double deepest = 0;
+        for (std::size_t i = 0; i < rest.size(); ++i)
+            if (rest.moves(i))
+                deepest = std::max(deepest, rest.levels[i] - rest.height(rest.positions[i]));
+        const LatticeFall fall(rest, grid, mass_fluid, deepest);
+        AtRest out{std::move(rest), report};
+        bring_to_rest(out.fluid, fall, walls, threads, on_iteration, out.report);
+        return out;
+    }
+};
 
 } // namespace
 
@@ -549,32 +112,17 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     report.particles = near_walls(rest);
     if (report.particles == 0) return report;
     report.held = hold_free_faces(rest, threads);
-    const RestBoundary boundary = boundary_of(def);
-    const double least_distance = least_distance_dp(boundary) * rest.dp;
-    std::optional<FluidAtRest> packed;
-    if (packs(def, particles))
-        packed = packed_stably(rest, particles, least_distance, reach.closest, threads);
-    if (packed)
+    const Balancing balancing{particles, {reach.closest, boundary_of(def)}, threads, on_iteration};
+    std::optional<AtRest> out;
+    if (packs(def, particles)) out = balancing.packed(rest, report);
+    if (!out || out->report.after.mean > calm_packed)
     {
-        BalanceReport of_packed = report;
-        of_packed.is_packed = true;
-        of_packed.particles = near_walls(*packed);
-        Balancer(*packed, LatticeFall(), reach.closest, boundary, threads)
-            .run(of_packed, on_iteration);
-        if (of_packed.after.mean <= calm_packed)
-        {
-            take_over(def, *packed, threads, particles);
-            return of_packed;
-        }
+        AtRest other =
+            balancing.on_lattice(std::move(rest), report, field.grid, constants.mass_fluid);
+        if (!out || other.report.after.mean < out->report.after.mean) out = std::move(other);
     }
-    double deepest = 0;
-    for (std::size_t i = 0; i < rest.size(); ++i)
-        if (rest.moves(i))
-            deepest = std::max(deepest, rest.levels[i] - rest.height(rest.positions[i]));
-    const LatticeFall fall(rest, field.grid, constants.mass_fluid, deepest);
-    Balancer(rest, fall, reach.closest, boundary, threads).run(report, on_iteration);
-    take_over(def, rest, threads, particles);
-    return report;
+    take_over(def, out->fluid, threads, particles);
+    return out->report;
 }
 
 } // namespace fppg

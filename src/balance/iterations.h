@@ -8,7 +8,9 @@ namespace fppg
 
 // How many iterations balance_fluid() makes.
 
-inline constexpr int most_iterations = 400;
+/// Rows that do not fit a curved wall slide into better places for hundreds (cases/rest in layers
+/// at dp 0.0125 m, mean speed after 0.3 s: 0.0007 m/s with 400, 0.0006 with 1000).
+inline constexpr int most_iterations = 1000;
 inline constexpr int least_most_iterations =
     100;                                 ///< of particles that would need more than most_work
 inline constexpr double most_work = 1e8; ///< particles times iterations
@@ -30,7 +32,8 @@ inline int last_iteration(std::size_t particles)
 inline int usual_iterations(std::size_t particles, bool is_packed)
 {
     if (!is_packed) return first_settled;
-    return std::clamp(static_cast<int>(least_work / static_cast<double>(particles)), first_settled,
+    constexpr int of_many = 60;
+    return std::clamp(static_cast<int>(least_work / static_cast<double>(particles)), of_many,
                       most_iterations);
 }
 

@@ -3,10 +3,20 @@
 #include "balance/fluid_at_rest.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace fppg
 {
+
+/// What the solver's sums leave of gravity in the midst of a lattice at each of some depths, whose
+/// nodes have the pressures of their depths. Metres a second squared.
+///
+/// offsets  from a node to those within 2h, metres; the node itself first
+/// mass     of a particle, kg (2D: a metre of width)
+/// depths   of the node below the level, metres
+std::vector<Vec3> lattice_falls(const FluidAtRest& rest, const std::vector<Vec3>& offsets,
+                                double mass, std::span<const double> depths);
 
 /// What the solver's sums leave of gravity in the midst of a lattice whose nodes have the pressure
 /// of their depth: 0.004 to 0.03 g downwards.

@@ -1,5 +1,6 @@
 #include "balance/stable_packing.h"
 
+#include "balance/lattice_fall.h"
 #include "balance/lattice_stability.h"
 #include "core/parallel_sort.h"
 #include "meshes/point_grid.h"
@@ -19,7 +20,7 @@ namespace
 // Lengths in dp.
 constexpr double reach_of_cover = 1.5;
 constexpr double least_cover = 0.5; ///< at the border of the fluid
-constexpr double least_size = 3;    ///< of a body, along each axis
+constexpr double least_size = 3.01; ///< of a body, along each axis: more than three rows
 /// A body that fills more than this of its bounds is a box: its lattice has the box's volume.
 constexpr double box_fill = 0.97;
 /// Bounds may be so many times as large as a body; the places of a lattice in them are made.
@@ -37,6 +38,11 @@ constexpr double most_strain = 0.07;
 /// Places that are too many, over the number of particles, against the square of a strain.
 constexpr double cost_of_excess = 0.02;
 constexpr double cost_of_excess_squared = 4;
+/// Of the last row of a body, beside walls: places along the axis that are the same; the cosine
+/// between the axis and the way to a flat wall; how many are enough to know.
+constexpr double same_row = 0.1;
+constexpr double flat = 0.99;
+constexpr std::size_t most_looked_at = 1000;
 /// The most that a row of the highest ones gives up.
 constexpr double most_thinned = 1.0 / 3;
 
@@ -50,6 +56,8 @@ struct Packing
     std::array<int, 3> counts{};
 
     std::vector<Vec3> places(double y_of_2d) const;
+    /// From a place to those within a reach, metres; itself first.
+    std::vector<Vec3> offsets(double reach) const;
 };
 
 std::vector<Vec3> Packing::places(double y_of_2d) const
@@ -71,6 +79,62 @@ std::vector<Vec3> Packing::places(double y_of_2d) const
             }
     return out;
 }
+
+std::vector<Vec3> Packing::offsets(double reach) const
+{
+    std::vector<Vec3> out{{}};
+    std::array<int, 3> n{};
+    for (std::size_t d = 0; d < 3; ++d)
+        n[d] = counts[1] == 0 && d == 1 ? 0 : static_cast<int>(reach / steps[d]);
+    // Nested because a lattice has three directions.
+    for (int k = -n[2]; k <= n[2]; ++k)
+        for (int j = -n[1]; j <= n[1]; ++j)
+            for (int i = -n[0]; i <= n[0]; ++i)
+            {
+                if ((i + j + k) % 2 != 0) continue;
+                Vec3 at;
+                at[axes[0]] = i * steps[0];
+                if (n[1] > 0) at[axes[1]] = j * steps[1];
+                at[axes[2]] = k * steps[2];
+                if (norm(at) > 0 && norm(at) < reach) out.push_back(at);
+            }
+    return out;
+}
+
+/// How far places of a lattice sink until its midst is at rest under the pressures of its depth.
+///
+/// With a share d of particles too many, of the depth D, what is left of gravity is the fall F of
+/// the lattice less 2 D d' + d. F is a + b D (by lattice_falls(): a by what the kernel's sums miss,
+/// b by the fluid's compression, which lessens the volumes of particles), so d is a + b D / 3.
+class Sinking
+{
+public:
+    /// level, bottom  heights of the surface and of the lowest places, metres
+    Sinking(const FluidAtRest& rest, const Packing& packing, double mass, double level,
+            double bottom)
+        : deepest_(level - bottom), level_(level)
+    {
+        const double first = 2 * rest.h + rest.dp; // from there on kernels do not reach the surface
+        const std::array<double, 2> depths{first, std::max(deepest_, first + rest.dp)};
+        const auto falls = lattice_falls(rest, packing.offsets(2 * rest.h), mass, depths);
+        const double g2 = dot(rest.gravity, rest.gravity);
+        const double of_first = dot(falls[0], rest.gravity) / g2;
+        slope_ = (dot(falls[1], rest.gravity) / g2 - of_first) / (depths[1] - depths[0]);
+        at_level_ = of_first - slope_ * first;
+    }
+
+    /// Metres.
+    double at(double height) const
+    {
+        const double depth = std::clamp(level_ - height, 0.0, deepest_);
+        return at_level_ * (deepest_ - depth) + slope_ / 6 * (deepest_ * deepest_ - depth * depth);
+    }
+
+private:
+    double deepest_, level_;
+    double at_level_ = 0; ///< over gravity
+    double slope_ = 0;    ///< over gravity and metres
+};
 
 /// The counts to try for a length; the last is at least the next above the ideal one, so that there
 /// is a lattice whose cells are no larger than those wanted.
@@ -215,18 +279,20 @@ class BodyPacker
 public:
     /// body  indices of its particles, ascending
     BodyPacker(FluidAtRest& rest, const std::vector<std::uint32_t>& body,
-               const CaseParticles& particles, int threads)
-        : rest_(rest), body_(body), particles_(particles), cover_(rest, body), threads_(threads)
+               const CaseParticles& particles, const PackedWalls& walls, int threads)
+        : rest_(rest),
+          body_(body),
+          particles_(particles),
+          walls_(walls),
+          cover_(rest, body),
+          threads_(threads)
     {
     }
 
     /// False where the body stays as it is.
-    bool pack(int up, double ratio, double least_distance, const ClosestWallPoint& closest)
+    bool pack(int up, double ratio)
     {
-        Box3 bounds;
-        for (const std::uint32_t i : body_) bounds.add(rest_.positions[i]);
-        const Vec3 half{rest_.dp / 2, rest_.dp / 2, rest_.dp / 2};
-        bounds = {bounds.min - half, bounds.max + half};
+        const Box3 bounds = own_bounds();
         const Vec3 size = bounds.max - bounds.min;
         if (box_of(size) > most_box * static_cast<double>(body_.size()) * own_cell()) return false;
         for (int axis = 0; axis < 3; ++axis)
@@ -236,8 +302,7 @@ public:
         double least_off = std::numeric_limits<double>::infinity();
         for (int k = 0; k < most_trials && least_off > wanted_excess; ++k)
         {
-            Places places =
-                choose(fit_packing(rest_, bounds, up, ratio, cell), least_distance, closest);
+            Places places = choose(fit_packing(rest_, bounds, up, ratio, cell));
             if (places.inside == 0) break;
             const double excess =
                 static_cast<double>(places.inside) / static_cast<double>(body_.size()) - 1;
@@ -262,6 +327,51 @@ private:
         Packing packing;
     };
 
+    /// Of the space that the body fills.
+    Box3 own_bounds() const
+    {
+        Box3 nodes;
+        for (const std::uint32_t i : body_) nodes.add(rest_.positions[i]);
+        Box3 out = nodes;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const double half = rest_.dp / 2;
+            out.min[axis] = wall_beside(nodes, axis, -1).value_or(nodes.min[axis] - half);
+            out.max[axis] = wall_beside(nodes, axis, 1).value_or(nodes.max[axis] + half);
+        }
+        return out;
+    }
+
+    /// Where the space of the body ends at a flat wall across an axis, if most of its last row is
+    /// beside one.
+    ///
+    /// side  1, or -1: below
+    std::optional<double> wall_beside(const Box3& nodes, int axis, int side) const
+    {
+        if (rest_.is_2d && axis == 1) return std::nullopt;
+        const double last = side > 0 ? nodes.max[axis] : nodes.min[axis];
+        std::vector<std::uint32_t> row;
+        for (const std::uint32_t i : body_)
+            if (std::abs(rest_.positions[i][axis] - last) < same_row * rest_.dp) row.push_back(i);
+        const std::size_t stride = 1 + row.size() / most_looked_at;
+        std::vector<double> walls;
+        std::size_t looked_at = 0;
+        for (std::size_t k = 0; k < row.size(); k += stride, ++looked_at)
+        {
+            const Vec3& p = rest_.positions[row[k]];
+            const Vec3 away = walls_.closest(p, reach_of_cover * rest_.dp) - p;
+            const double distance = norm(away);
+            if (distance <= reach_of_cover * rest_.dp && side * away[axis] > flat * distance)
+                walls.push_back(p[axis] + away[axis]);
+        }
+        if (2 * walls.size() <= looked_at) return std::nullopt;
+        std::sort(walls.begin(), walls.end());
+        const std::size_t tenth = walls.size() / 10;
+        if (walls[walls.size() - 1 - tenth] - walls[tenth] > same_row * rest_.dp)
+            return std::nullopt;
+        return walls[walls.size() / 2] - side * walls_.gap;
+    }
+
     double own_cell() const { return std::pow(rest_.dp, rest_.is_2d ? 2 : 3); }
     double box_of(const Vec3& size) const { return size.x * size.z * (rest_.is_2d ? 1 : size.y); }
 
@@ -273,11 +383,23 @@ private:
         return n * own_cell() > box_fill * box ? box / n : own_cell();
     }
 
-    /// The places of a lattice that are in the fluid as it was, moved off walls.
-    Places choose(const Packing& packing, double least_distance,
-                  const ClosestWallPoint& closest) const
+    std::vector<Vec3> sunk_places(const Packing& packing) const
     {
-        const std::vector<Vec3> places = packing.places(rest_.positions[body_.front()].y);
+        const std::uint32_t first = body_.front();
+        std::vector<Vec3> places = packing.places(rest_.positions[first].y);
+        double level = rest_.levels[first], bottom = level;
+        for (const std::uint32_t i : body_) level = std::max(level, rest_.levels[i]);
+        for (const Vec3& p : places) bottom = std::min(bottom, rest_.height(p));
+        const Sinking sinking(rest_, packing, rest_.masses[first], level, bottom);
+        const Vec3 down = rest_.gravity / norm(rest_.gravity);
+        for (Vec3& p : places) p = p + sinking.at(rest_.height(p)) * down;
+        return places;
+    }
+
+    /// The places of a lattice that are in the fluid as it was, moved off walls.
+    Places choose(const Packing& packing) const
+    {
+        const std::vector<Vec3> places = sunk_places(packing);
         struct Choice
         {
             double cover = 0;
@@ -293,13 +415,13 @@ private:
                 choices[k] = {cover, k, places[k]};
                 if (cover <= 0) return;
                 const Vec3 fluid = rest_.positions[cover_.nearest(places[k])];
-                const Vec3 wall = closest(places[k], reach_of_cover * rest_.dp);
+                const Vec3 wall = walls_.closest(places[k], reach_of_cover * rest_.dp);
                 const Vec3 away = places[k] - wall;
                 const double distance = norm(away);
-                if (dot(away, fluid - wall) <= 0 || is_behind_wall_of(fluid, places[k], closest))
+                if (dot(away, fluid - wall) <= 0 || is_behind_wall_of(fluid, places[k]))
                     choices[k].cover = 0;
-                else if (distance < least_distance)
-                    choices[k].at = wall + (least_distance / distance) * away;
+                else if (distance < walls_.least_distance)
+                    choices[k].at = wall + (walls_.least_distance / distance) * away;
             },
             64);
         parallel_sort(choices, threads_,
@@ -318,10 +440,9 @@ private:
 
     /// Whether a place lies behind the plane of the wall that is nearest to a particle: in a plate
     /// with fluid on both sides it lies behind that of either.
-    bool is_behind_wall_of(const Vec3& fluid, const Vec3& place,
-                           const ClosestWallPoint& closest) const
+    bool is_behind_wall_of(const Vec3& fluid, const Vec3& place) const
     {
-        const Vec3 wall = closest(fluid, reach_of_cover * rest_.dp);
+        const Vec3 wall = walls_.closest(fluid, reach_of_cover * rest_.dp);
         return dot(fluid - wall, place - wall) < 0;
     }
 
@@ -406,6 +527,7 @@ private:
     FluidAtRest& rest_;
     const std::vector<std::uint32_t>& body_;
     const CaseParticles& particles_;
+    const PackedWalls& walls_;
     Cover cover_;
     int threads_;
 };
@@ -446,8 +568,7 @@ std::vector<std::vector<std::uint32_t>> bodies_of(const FluidAtRest& rest)
 } // namespace
 
 std::optional<FluidAtRest> packed_stably(const FluidAtRest& rest, const CaseParticles& particles,
-                                         double least_distance, const ClosestWallPoint& closest,
-                                         int threads)
+                                         const PackedWalls& walls, int threads)
 {
     const std::optional<int> up = vertical_axis(rest);
     if (!up || std::count(rest.roles.begin(), rest.roles.end(), RestRole::Held) > 0)
@@ -460,8 +581,7 @@ std::optional<FluidAtRest> packed_stably(const FluidAtRest& rest, const CasePart
     for (const std::vector<std::uint32_t>& body : bodies_of(rest))
     {
         all += body.size();
-        if (BodyPacker(out, body, particles, threads)
-                .pack(*up, lattice->ratio, least_distance, closest))
+        if (BodyPacker(out, body, particles, walls, threads).pack(*up, lattice->ratio))
             packed += body.size();
     }
     if (packed == 0 || static_cast<double>(packed) < least_packed * static_cast<double>(all))

@@ -9,8 +9,18 @@
 namespace fppg
 {
 
+/// What packed_stably() has to know of walls.
+struct PackedWalls
+{
+    const ClosestWallPoint& closest;
+    double least_distance = 0; ///< of particles of fluid, metres
+    double gap = 0;            ///< between a wall and the volume of the fluid, metres
+};
+
 /// Lays fluid at rest on the lattice that is the most stable under pressure (lattice_stability.h),
-/// fitted to the bounds of each body of fluid, its layers level.
+/// fitted to the bounds of each body of fluid, its layers level. Bounds are flat walls where fluid
+/// ends at these, else half a dp beyond its nodes. Layers are a little lower than on a lattice of
+/// equal steps, so that their midst is at rest.
 ///
 /// A square or cubic lattice is at rest under pressure, but not stable for most smoothing lengths:
 /// its rows slide along one another, twice as fast every 0.05 s where it is 50 dp deep, and after a
@@ -24,21 +34,18 @@ namespace fppg
 /// fluid was: where the sum of a kernel over its particles is at least half of that in their midst.
 /// The lattice is made coarser or finer until it has up to 2 % more of them than there are
 /// particles (6 % where none has); these are left out of the highest rows, where pressures are
-/// lowest. Places nearer to walls than `least_distance` are moved off them. What is left to do near
-/// walls that do not fit the lattice, balancing does.
+/// lowest. Places nearer to walls than their `least_distance` are moved off them. What is left to
+/// do near walls that do not fit the lattice, balancing does.
 ///
-/// Bodies of fluid thinner than 3 dp, or spread over bounds 20 times as large, stay as they are.
+/// Bodies of fluid no thicker than 3 dp, or spread over bounds 20 times as large, stay as they are.
 /// Nothing is returned where no lattice is more stable than the cubic one, where less than 95 % of
 /// the fluid is packed, where fluid is held, along which what is packed would slide, or where
 /// gravity is along no axis.
 ///
-/// rest            all fluid that moves, and what is around; ids, levels and roles go along
-/// particles       whose blocks say which ids have which mk
-/// least_distance  to walls, metres
-/// closest         the nearest point of a wall
-/// source          trials in tools/solver-trials, "What they showed of stable lattices"
+/// rest       all fluid that moves, and what is around; ids, levels and roles go along
+/// particles  whose blocks say which ids have which mk
+/// source     trials in tools/solver-trials, "What they showed of stable lattices"
 std::optional<FluidAtRest> packed_stably(const FluidAtRest& rest, const CaseParticles& particles,
-                                         double least_distance, const ClosestWallPoint& closest,
-                                         int threads);
+                                         const PackedWalls& walls, int threads);
 
 } // namespace fppg

@@ -179,8 +179,11 @@ TEST(StablePacking, HasSixNeighboursIn2DAt17Dp)
     EXPECT_EQ(packed.cloud.mk, square.cloud.mk);
     // A hexagon of dp^2 has its neighbours at 1.07 dp, the next ones at 1.86; a square at 1, 1.41.
     const std::map<int, int> six = neighbours_in_the_midst(places, 1.4 * dp);
-    EXPECT_EQ(six.size(), 1U);
+    // A row that ends amid others leaves one place with five and one with seven.
+    std::size_t all = 0;
+    for (const auto& [neighbours, count] : six) all += static_cast<std::size_t>(count);
     EXPECT_GT(six.at(6), 100);
+    EXPECT_LE(all - static_cast<std::size_t>(six.at(6)), 6U);
     EXPECT_EQ(neighbours_in_the_midst(fluid_of(square.cloud), 1.3 * dp).begin()->first, 4);
     EXPECT_GT(nearest_pair(places), 0.6 * dp); // in the highest row
     double highest = 0;
@@ -251,6 +254,26 @@ TEST(StablePacking, IsPushedByWallsFromTheFirstStepOn)
     text.execution = modified_boundaries;
     const Made packed = make(text);
     EXPECT_LT(number_after(packed.output, "before: mean "), 0.35) << packed.output; // was 0.52
+}
+
+// The space of the fluid ended half a dp beyond its nodes, not at the walls, and its midst fell:
+// what was left of gravity before the first step was 0.25 g on average, and 0.48 g around a column.
+TEST(StablePacking, FillsTheSpaceBetweenFlatWalls)
+{
+    for (const bool has_column : {false, true})
+    {
+        const Vec3 inside = has_column ? Vec3{1.64, 1.57, 2.4} : Vec3{1.6, 1.6, 2.4};
+        CaseText text = tank(inside, water(0, inside, 0, 2.1), "");
+        if (has_column)
+            text.mainlist += R"(<setmkbound mk="1" /><drawcylinder radius="0.4">)"
+                             R"(<point x="0.82" y="0.785" z="-0.2" />)"
+                             R"(<point x="0.82" y="0.785" z="2.4" /></drawcylinder>)";
+        text.execution = modified_boundaries;
+        const Made packed = make(text);
+        EXPECT_TRUE(contains(packed.output, "most stable under pressure")) << packed.output;
+        EXPECT_LT(number_after(packed.output, "before: mean "), has_column ? 0.32 : 0.15)
+            << packed.output;
+    }
 }
 
 // With no more than 1 dp from the lattice, particles kept 0.03 g along the border of the surface.
