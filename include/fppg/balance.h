@@ -59,9 +59,10 @@ struct BalanceReport
 /// half a dp above its highest particle; rho by the equation of state. Boundary particles have the
 /// pressure of their depth (DBC), 0 above the level; or what mDBC gives them at each step from the
 /// fluid around their ghost nodes (JSphCpu_mdbc.cpp). Steps follow the acceleration, scaled with
-/// h^2 rho / p, with momentum (heavy ball, factors 0.3 and 0.9); none is longer than 0.05 dp, no
-/// particle moves farther than one dp in all (4 dp on another lattice), none comes nearer to a wall
-/// than 0.5 dp (mDBC: 0.2 dp) or than it was, none higher than 0.25 dp below its level.
+/// h^2 rho / p, the first 40 with Anderson's mixing (balance/anderson_mixing.h), all others with
+/// momentum (heavy ball, factors 0.3 and 0.9); none is longer than 0.05 dp, no particle moves
+/// farther than one dp in all (4 dp on another lattice), none comes nearer to a wall than 0.5 dp
+/// (mDBC: 0.2 dp) or than it was, none higher than 0.25 dp below its level.
 ///
 /// On a lattice a_i is not quite zero: it falls by 0.004 to 0.03 g. Fluid that stays there
 /// has that acceleration, and so has all that is moved: where it was brought to zero,
@@ -86,9 +87,8 @@ struct BalanceReport
 /// source     trials in tools/solver-trials; a tank of still water at dp 0.0125 m, largest speed in
 ///            0.2 s: DBC 0.080 m/s on the lattice, 0.013 balanced; mDBC in layers 0.114 m/s with
 ///            fluid that is only even, 0.019 balanced
-/// cost       see balance/iterations.h; 20 iterations where walls do not hold the fluid. On one
-/// core
-///            0.1 milliseconds a particle where there are 480,000, 1 for a few thousand
+/// cost       at most 1000 iterations (balance/iterations.h), 20 where walls do not hold the fluid.
+///            On one core 0.1 milliseconds a particle where there are 480,000, 1 for a few thousand
 BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
                             const CaseConstants& constants, CaseParticles& particles, int threads,
                             const std::function<bool(const BalanceProgress&)>& on_iteration);
