@@ -33,7 +33,7 @@ struct BalanceProgress
 /// slides along the rest if that stays (2D, 30 dp deep, stairs off the lattice, DBC, after 0.3 and
 /// 1 s: mean 0.0093 and 0.0123 m/s; all balanced 0.0019, and 0.0033 after 1 s; GenCase's particles
 /// 0.0056 and 0.0122).
-inline constexpr std::size_t most_balanced_whole = 1000000;
+inline constexpr std::size_t most_balanced_whole = 500000;
 
 struct BalanceReport
 {

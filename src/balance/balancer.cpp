@@ -65,7 +65,6 @@ constexpr double settled = 0.002;
 constexpr double slow_fall = 0.15;
 constexpr int iterations_of_fall = 30;
 constexpr int first_judged = 20; ///< iteration at which hopeless_mean decides
-constexpr int last_sunk = 60;    ///< iteration at which rows sink for the last time
 constexpr std::size_t chunk_of_sums = 4096;
 /// Where the mean acceleration stays above this, over gravity, walls do not hold the fluid at rest.
 constexpr double calm_mean = 0.1;
