@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace fppg
@@ -23,10 +24,17 @@ constexpr std::uint32_t is_leaf = 1u << 31;
 /// Below so many parts one thread halves on.
 constexpr std::size_t parts_per_task = 4096;
 
-/// Eight boxes in a unit cube and where they lead.
+/// Boxes over more parts than this have no slab: facets turn too much within them.
+constexpr std::size_t parts_in_slab = 512;
+
+/// Eight boxes in a unit cube and where they lead. What is in a box lies between two planes across
+/// the mean normal, too. From inside a ball of small facets all boxes within some distance are
+/// about as near as the nearest facet; most of their slabs are not.
 struct alignas(32) TreeNode
 {
     std::array<Lanes, 3> low, high;
+    std::array<Lanes, 3> normal{};                 ///< of the slab; 0: none
+    Lanes slab_begin{}, slab_end{};                ///< of dot(normal, point)
     std::array<std::uint32_t, lane_count> child{}; ///< a node, or a leaf with is_leaf
     std::uint32_t count = 0;
 };
@@ -248,6 +256,7 @@ private:
             {
                 node.child[node.count++] =
                     part.size() == 1 ? is_leaf | static_cast<std::uint32_t>(part.begin) : next;
+                set_slab(node, node.count - 1, part);
                 if (part.size() == 1) return;
                 const Subtree below{next, part};
                 next += nodes_over(part);
@@ -292,10 +301,8 @@ private:
                 const std::uint32_t begin = f == 0 ? 0 : end[f - 1];
                 const auto n = static_cast<int>(end[f] - begin);
                 for (int k = 0; k < n; ++k)
-                {
                     parts_[begin + static_cast<std::uint32_t>(k)] = {
                         box_of_part(&soup_.vertices[3 * f], k, n), static_cast<std::uint32_t>(f)};
-                }
             },
             1024);
     }
@@ -341,8 +348,7 @@ private:
             box.add(part.box.min);
             box.add(part.box.max);
             std::array<Vec3, 3> corners;
-            for (std::size_t k = 0; k < 3; ++k)
-                corners[k] = (soup_.vertices[3 * std::size_t{part.facet} + k] - centre_) / scale_;
+            for (std::size_t k = 0; k < 3; ++k) corners[k] = in_cube(part.facet, k);
             const auto planes = planes_around(corners);
             for (std::size_t p = 0; p < planes_of_facet; ++p)
             {
@@ -353,6 +359,45 @@ private:
             }
         }
         return box;
+    }
+
+    Vec3 in_cube(std::uint32_t facet, std::size_t corner) const
+    {
+        return (soup_.vertices[3 * std::size_t{facet} + corner] - centre_) / scale_;
+    }
+
+    void set_slab(TreeNode& node, std::uint32_t c, const LeafRange& range) const
+    {
+        const std::size_t begin = lane_count * range.begin;
+        const std::size_t end = std::min(lane_count * range.end, n_parts_);
+        if (end - begin > parts_in_slab) return;
+        Vec3 sum;
+        for (std::size_t p = begin; p < end; ++p)
+        {
+            const Vec3 corner = in_cube(parts_[p].facet, 0);
+            sum = sum +
+                  cross(in_cube(parts_[p].facet, 1) - corner, in_cube(parts_[p].facet, 2) - corner);
+        }
+        const double size = norm(sum);
+        if (!(size > 0)) return;
+        // As they are asked: rounded to float.
+        std::array<float, 3> normal{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            normal[axis] = static_cast<float>(sum[static_cast<int>(axis)] / size);
+            node.normal[axis][c] = normal[axis];
+        }
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t p = begin; p < end; ++p)
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                const double at =
+                    dot(Vec3{normal[0], normal[1], normal[2]}, in_cube(parts_[p].facet, k));
+                low = std::min(low, at);
+                high = std::max(high, at);
+            }
+        node.slab_begin[c] = static_cast<float>(low - float_room);
+        node.slab_end[c] = static_cast<float>(high + float_room);
     }
 
     void set_box(TreeNode& node, std::uint32_t c, const Box3& box) const
@@ -460,6 +505,10 @@ FPPG_LANES std::size_t push_children(const TreeNode& node, const NearSearch& sea
                                  search.at[axis] - node.high[axis]);
         squared += off * off;
     }
+    const Lanes along = node.normal[0] * search.at[0] + node.normal[1] * search.at[1] +
+                        node.normal[2] * search.at[2];
+    const Lanes off_slab = larger(larger(node.slab_begin - along, Lanes{}), along - node.slab_end);
+    squared = larger(squared, off_slab * off_slab);
     const std::size_t bottom = depth;
     for (unsigned set = lanes_within(squared, search.limit, node.count); set != 0; set &= set - 1)
     {

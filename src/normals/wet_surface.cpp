@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "meshes/small_pieces.h"
 #include "offset/wall_depth.h"
 
 #include <algorithm>
@@ -22,6 +23,8 @@ constexpr double higher_way_dp = 10;
 constexpr double longest_piece_dp = 3;
 /// Those that another wall covers in part are cut down to this length, dp.
 constexpr double least_piece_dp = 0.25;
+/// Of facets smaller than this, dp, one in each cube of that edge is compared with its other side.
+constexpr double small_piece_dp = 0.5;
 /// Where another wall that covers a facet is looked for before it, dp, and how far from its corners
 /// to its middle.
 constexpr double cover_dp = 0.3;
@@ -280,14 +283,7 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
                          if (is_closed(piece) && piece.mk == mk && !piece.way.is_free)
                              piece.way = alone.to(before(piece));
                  });
-    parallel_for(
-        pieces_.size(), threads,
-        [&](std::size_t i)
-        {
-            Piece& piece = pieces_[i];
-            if (is_closed(piece) && piece.state != is_dry) compare_sides(piece, way);
-        },
-        64);
+    compare_all_sides(way, threads);
     const auto is_reached = [](const Piece& p)
     { return p.state != is_dry && std::isfinite(p.way.length); };
     if (std::any_of(pieces_.begin(), pieces_.end(), is_reached))
@@ -295,6 +291,44 @@ void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)
             if (!std::isfinite(piece.way.length)) piece.state = is_dry;
     dry_to_the_rims();
     dry_beside_dry(threads);
+}
+
+/// Small pieces beside one another have the same sides.
+void WetSurface::compare_all_sides(const FluidWay& way, int threads)
+{
+    const auto is_asked = [&](const Piece& piece)
+    { return is_closed(piece) && piece.state != is_dry; };
+    const double small = small_piece_dp * dp_;
+    std::vector<SmallPiece> places(pieces_.size());
+    parallel_for(
+        pieces_.size(), threads,
+        [&](std::size_t i)
+        {
+            const Piece& piece = pieces_[i];
+            places[i] = {piece.middle(), piece.normal, piece.wall << 16 | piece.mk,
+                         is_asked(piece) && piece.length() < small};
+        },
+        256);
+    const PiecesToAsk asked = pieces_to_ask(places, small, threads);
+    parallel_for(
+        asked.order.size(), threads,
+        [&](std::size_t i)
+        {
+            Piece& piece = pieces_[asked.order[i]];
+            if (is_asked(piece)) compare_sides(piece, way);
+        },
+        64);
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+    {
+        if (asked.for_each[i] == i) continue;
+        Piece& piece = pieces_[i];
+        const Piece& like = pieces_[asked.for_each[i]];
+        piece.state = like.state;
+        piece.thickness = like.thickness;
+        piece.is_straight = like.is_straight;
+        piece.is_other_covered = like.is_other_covered;
+        piece.other_way = like.other_way;
+    }
 }
 
 /// Whether another wall begins right before a place of a piece: a closed one, or the layers of a

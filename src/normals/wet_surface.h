@@ -103,6 +103,7 @@ private:
     bool is_covered(const Piece& piece, const Vec3& at) const;
     bool is_closed(const Piece& piece) const { return walls_[piece.wall].is_closed; }
     void judge(const RunField& field, const FluidWay& way, int threads);
+    void compare_all_sides(const FluidWay& way, int threads);
     void compare_sides(Piece& piece, const FluidWay& way) const;
     void dry_to_the_rims();
     void dry_beside_dry(int threads);

@@ -5,6 +5,7 @@
 #include "meshes/measure_facets.h"
 #include "offset/creases.h"
 #include "offset/dual_cells.h"
+#include "offset/flat_patches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,14 +199,19 @@ OffsetSurface offset_surface(const WallDepth& wall, const OffsetOptions& options
                      bricks[b].nodes = {};
                  });
     const FacetMaker maker(bricks, duals);
-    std::vector<std::vector<std::array<std::uint32_t, 3>>> facets(bricks.size());
-    parallel_for(bricks.size(), threads, [&](std::size_t b) { facets[b] = maker.facets_of(b); });
+    PatchedMesh patched;
+    patched.patches.resize(bricks.size());
+    parallel_for(bricks.size(), threads,
+                 [&](std::size_t b) { patched.patches[b] = maker.facets_of(b); });
+    patched.vertices.reserve(maker.vertices());
+    for (const DualBrick& dual : duals)
+        for (const DualVertex& v : dual.vertices) patched.vertices.push_back(v.position);
+    if (!options.plane_y && !options.keeps_facets)
+        merge_flat_facets(options.cell, threads, patched);
     OffsetSurface out;
     SurfaceMesh& mesh = out.mesh;
-    mesh.vertices.reserve(maker.vertices());
-    for (const DualBrick& dual : duals)
-        for (const DualVertex& v : dual.vertices) mesh.vertices.push_back(v.position);
-    for (const auto& of_brick : facets)
+    mesh.vertices = std::move(patched.vertices);
+    for (const auto& of_brick : patched.patches)
         mesh.facets.insert(mesh.facets.end(), of_brick.begin(), of_brick.end());
     const std::size_t cut = mesh.facets.size();
     if (cut == 0) return out;

@@ -19,6 +19,8 @@ struct OffsetOptions
     double cell = 0; ///< metres, of the grid that the surface is cut from; about dp / 2
     /// Of 2D cases: only a strip along the plane y = this is made, two cells wide.
     std::optional<double> plane_y;
+    /// Flat parts keep facets as small as cells, each of which has one owner.
+    bool keeps_facets = false;
 };
 
 /// A surface at a given depth behind a wall.

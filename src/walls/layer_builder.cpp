@@ -103,6 +103,7 @@ OffsetSurface LayerBuilder::surface_at(double depth, double cell_dp, WallSide si
     options.dp = grid_.dp;
     options.cell = cell_dp * grid_.dp;
     options.feature_angle_deg = settings_.feature_angle_deg;
+    options.keeps_facets = !out_.body.facet_mk.empty();
     if (grid_.is_2d) options.plane_y = grid_.origin.y;
     OffsetSurface surface = offset_surface(*wall, options, threads_);
     // Where faces beyond come nearer than the tip of a mitre its depth jumps, and the

@@ -5,6 +5,7 @@
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "meshes/small_pieces.h"
 #include "offset/middle.h"
 
 #include <algorithm>
@@ -208,7 +209,9 @@ struct ThinFacet
     std::vector<std::pair<Vec3, double>> ends;
 };
 
-ThinFacet sample_facet(std::uint32_t f, const Middle& middle, const SurfaceMesh& mesh, double dp)
+/// area  metres squared, that the facet stands for
+ThinFacet sample_facet(std::uint32_t f, double area, const Middle& middle, const SurfaceMesh& mesh,
+                       double dp)
 {
     ThinFacet out;
     std::size_t samples = 0;
@@ -227,7 +230,7 @@ ThinFacet sample_facet(std::uint32_t f, const Middle& middle, const SurfaceMesh&
                             out.ends.emplace_back(ball->centre, ball->radius);
                     });
     if (samples == 0) return out;
-    const double area = mesh.areas[f] / static_cast<double>(samples);
+    area /= static_cast<double>(samples);
     out.volume *= area;
     for (auto& [centre, volume] : out.ends) volume *= area;
     return out;
@@ -484,16 +487,22 @@ ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
     const Middle middle(wall, features, options);
     const SurfaceMesh& mesh = wall.mesh();
     std::vector<ThinFacet> of_facet(mesh.facets.size());
-    parallel_for(
-        mesh.facets.size(), threads,
-        [&](std::size_t f)
-        {
-            if (options.plane_y)
-                sample_line(f, middle, mesh, options, of_facet[f].middle);
-            else
-                of_facet[f] = sample_facet(static_cast<std::uint32_t>(f), middle, mesh, options.dp);
-        },
-        16);
+    if (options.plane_y)
+        parallel_for(
+            of_facet.size(), threads,
+            [&](std::size_t f) { sample_line(f, middle, mesh, options, of_facet[f].middle); }, 16);
+    else
+    {
+        const std::vector<AskedFacet> asked = facets_to_ask(mesh, sample_dp * options.dp, threads);
+        parallel_for(
+            asked.size(), threads,
+            [&](std::size_t i)
+            {
+                const auto& [facet, area] = asked[i];
+                of_facet[facet] = sample_facet(facet, area, middle, mesh, options.dp);
+            },
+            16);
+    }
     ThinParts out;
     for (const ThinFacet& facet : of_facet)
     {

@@ -84,6 +84,14 @@ TEST(ClosestPoint, AgreesWithAPlainSearch)
     expect_nearest(sphere(2), random_points(100, 100), 1e-12);
 }
 
+/// From inside, many facets of a ball are about as near as the nearest one.
+TEST(ClosestPoint, AgreesWithAPlainSearchInsideABallOfSmallFacets)
+{
+    std::vector<Vec3> points = random_points(60, 0.55);
+    points.push_back({0, 0, 0});
+    expect_nearest(sphere(5), points, 1e-13);
+}
+
 TEST(ClosestPoint, AgreesWithAPlainSearchFarFromTheOrigin)
 {
     const Vec3 offset{1e6, -1e6, 1e5};

@@ -27,9 +27,9 @@ struct Wall
     }
 };
 
-OffsetSurface at_depth(const WallDepth& wall, double depth, int threads = 1)
+OffsetSurface at_depth(const WallDepth& wall, double depth, int threads = 1,
+                       OffsetOptions options = {})
 {
-    OffsetOptions options;
     options.depth = depth;
     options.dp = dp;
     options.cell = 0.5 * dp;
@@ -64,6 +64,32 @@ TEST(OffsetSurface, OfABoxIsASmallerBoxWithItsEdgesAndCorners)
         EXPECT_EQ(features.lines.size(), 12);
         EXPECT_EQ(features.singular.size(), 8);
         EXPECT_NEAR(crease_length(surface), 12 * side, 1e-9);
+    }
+}
+
+/// What is made of them costs by facets.
+TEST(OffsetSurface, OfLargeFlatSidesHasFewFacetsWithoutCracks)
+{
+    const TriangleSoup upright = test::box({0, 0, 0}, {8, 6, 4});
+    TriangleSoup turned = upright;
+    for (Vec3& v : turned.vertices)
+        v = {0.8 * v.x - 0.6 * v.y, 0.48 * v.x + 0.64 * v.y - 0.6 * v.z,
+             0.36 * v.x + 0.48 * v.y + 0.8 * v.z};
+    const double all = 2 * (7.7 * 5.7 + 5.7 * 3.7 + 3.7 * 7.7);
+    for (const TriangleSoup& soup : {upright, turned})
+    {
+        const Wall wall(soup);
+        const WallDepth depth = wall.depth(true);
+        const OffsetSurface surface = at_depth(depth, 0.15);
+        EXPECT_EQ(surface.report.open_edges, 0);
+        EXPECT_NEAR(surface.report.area / all, 1, 1e-3);
+        EXPECT_NEAR(surface.report.volume / (7.7 * 5.7 * 3.7), 1, 1e-3);
+        OffsetOptions fine;
+        fine.keeps_facets = true;
+        const OffsetSurface cut = at_depth(depth, 0.15, 1, fine);
+        EXPECT_LT(3 * surface.mesh.facets.size(), cut.mesh.facets.size());
+        EXPECT_NEAR(crease_length(surface), crease_length(cut), 1e-9);
+        for (const Vec3& normal : surface.mesh.normals) EXPECT_NEAR(norm(normal), 1, 1e-9);
     }
 }
 
