@@ -14,8 +14,10 @@
 namespace fppg
 {
 
-CreaseMesh::CreaseMesh(const WallDepth& of, const OffsetOptions& given, int n, SurfaceMesh& surface)
+CreaseMesh::CreaseMesh(const WallDepth& of, const DepthMemo& by_point, const OffsetOptions& given,
+                       int n, SurfaceMesh& surface)
     : wall(of),
+      depths(by_point),
       options(given),
       threads(n),
       mesh(surface),
@@ -129,7 +131,7 @@ public:
         for (const std::uint32_t f : facets)
         {
             middles.push_back(on_.middle_of(f));
-            const DepthPlace place = on_.wall.at(middles.back());
+            const DepthSlope place = on_.depths.at(middles.back());
             directions.push_back(place.direction);
             const double at_vertex =
                 place.depth + dot(place.direction, on_.mesh.vertices[v] - middles.back());
@@ -153,7 +155,7 @@ public:
             const double size = norm(m - out);
             if (!(size > 0)) continue;
             const double share = std::min(beside_edge * on_.options.dp / size, 1.0);
-            const DepthPlace place = on_.wall.at(out + share * (m - out));
+            const DepthSlope place = on_.depths.at(out + share * (m - out));
             if (std::fabs(place.depth + dot(place.direction, share * (out - m)) -
                           on_.options.depth) < along_crease * on_.options.cell)
                 directions.push_back(place.direction);
@@ -235,7 +237,7 @@ private:
         if (std::binary_search(on_.mesh.edges.begin(), on_.mesh.edges.end(), diagonal))
             return false;
         const Vec3 middle = 0.5 * (on_.mesh.vertices[c] + on_.mesh.vertices[d]);
-        if (std::fabs(on_.wall.at(middle).depth - on_.options.depth) >
+        if (std::fabs(on_.depths.at(middle).depth - on_.options.depth) >
             along_crease * on_.options.cell)
             return false;
         std::array<Vec3, 2> directions;
@@ -246,7 +248,7 @@ private:
             const double size = norm(way);
             if (!(size > 0)) return false;
             directions[s] =
-                on_.wall.at(middle + std::min(beside_edge * on_.options.dp / size, 1.0) * way)
+                on_.depths.at(middle + std::min(beside_edge * on_.options.dp / size, 1.0) * way)
                     .direction;
         }
         return dot(directions[0], directions[1]) < on_.turn;

@@ -3,6 +3,7 @@
 #include "fppg/surface_mesh.h"
 
 #include "core/row_lists.h"
+#include "offset/depth_memo.h"
 #include "offset/offset_surface.h"
 
 #include <cstdint>
@@ -20,7 +21,9 @@ inline constexpr double longest_pull = 1.5;
 /// An offset surface whose vertices are put onto its creases.
 struct CreaseMesh
 {
-    CreaseMesh(const WallDepth& wall, const OffsetOptions& options, int threads, SurfaceMesh& mesh);
+    /// depths  of the wall
+    CreaseMesh(const WallDepth& wall, const DepthMemo& depths, const OffsetOptions& options,
+               int threads, SurfaceMesh& mesh);
 
     Vec3 normal_of(std::uint32_t facet) const;
     Vec3 middle_of(std::uint32_t facet) const;
@@ -32,6 +35,7 @@ struct CreaseMesh
     }
 
     const WallDepth& wall;
+    const DepthMemo& depths;
     const OffsetOptions& options;
     int threads;
     SurfaceMesh& mesh;

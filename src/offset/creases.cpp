@@ -105,7 +105,7 @@ private:
         std::array<Vec3, 2> directions;
         for (std::size_t s = 0; s < 2; ++s)
             directions[s] =
-                on_.wall.at(middle + (beside_edge * on_.options.dp) * into_facet(e, facets[s]))
+                on_.depths.at(middle + (beside_edge * on_.options.dp) * into_facet(e, facets[s]))
                     .direction;
         return dot(directions[0], directions[1]) < on_.turn;
     }
@@ -180,7 +180,7 @@ private:
     DepthPlane plane_under(std::uint32_t facet) const
     {
         const Vec3 p = on_.middle_of(facet);
-        const DepthPlace place = on_.wall.at(p);
+        const DepthSlope place = on_.depths.at(p);
         return {p, place.direction, place.depth};
     }
 
@@ -207,7 +207,7 @@ private:
 
     /// Whether the depths at two vertices are measured from two faces that meet between them: by
     /// halves, whether the direction of the depth turns within as little as at a crease.
-    bool has_crease_between(const DepthPlace& a, const DepthPlace& b, Vec3 from, Vec3 to) const
+    bool has_crease_between(const DepthSlope& a, const DepthSlope& b, Vec3 from, Vec3 to) const
     {
         Vec3 near = a.direction;
         Vec3 far = b.direction;
@@ -215,7 +215,7 @@ private:
         {
             if (!(norm(to - from) > 2 * beside_edge * on_.options.dp)) return true;
             const Vec3 middle = 0.5 * (from + to);
-            const Vec3 direction = on_.wall.at(middle).direction;
+            const Vec3 direction = on_.depths.at(middle).direction;
             const bool is_before = dot(near, direction) < dot(direction, far);
             (is_before ? to : from) = middle;
             (is_before ? far : near) = direction;
@@ -243,10 +243,10 @@ private:
                         near.push_back(v);
                     }
         }
-        std::vector<DepthPlace> places(near.size());
+        std::vector<DepthSlope> places(near.size());
         parallel_for(
             near.size(), on_.threads,
-            [&](std::size_t i) { places[i] = on_.wall.at(on_.mesh.vertices[near[i]]); }, 64);
+            [&](std::size_t i) { places[i] = on_.depths.at(on_.mesh.vertices[near[i]]); }, 64);
         const std::vector<std::uint32_t> cut = edges_with_creases(place_of, places);
         std::vector<std::uint32_t> ends;
         for (const std::uint32_t e : cut)
@@ -272,7 +272,7 @@ private:
     ///
     /// place_of  per vertex, or no_index
     std::vector<std::uint32_t> edges_with_creases(const std::vector<std::uint32_t>& place_of,
-                                                  const std::vector<DepthPlace>& places) const
+                                                  const std::vector<DepthSlope>& places) const
     {
         const std::vector<std::array<std::uint32_t, 2>>& edges = on_.mesh.edges;
         std::vector<char> is_cut(edges.size(), 0);
@@ -495,10 +495,11 @@ private:
 void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int threads,
                      OffsetSurface& offset)
 {
+    const DepthMemo depths(wall);
     std::vector<char> on_creases;
     for (int round = 0; round < crease_rounds; ++round)
     {
-        const CreaseMesh on(wall, options, threads, offset.mesh);
+        const CreaseMesh on(wall, depths, options, threads, offset.mesh);
         CreaseFinder finder(on, std::move(on_creases));
         if (!finder.place_vertices()) return;
         on_creases = finder.on_creases();
@@ -506,7 +507,7 @@ void sharpen_creases(const WallDepth& wall, const OffsetOptions& options, int th
             connect_facets(offset.mesh, high_where_exact * options.cell, threads);
         remove_slivers(offset.mesh, options.cell, on_creases, threads);
     }
-    const CreaseMesh on(wall, options, threads, offset.mesh);
+    const CreaseMesh on(wall, depths, options, threads, offset.mesh);
     offset.creases = CreaseFinder(on, std::move(on_creases)).run();
 }
 

@@ -22,6 +22,9 @@ namespace
 {
 
 constexpr double sample_dp = 0.3;
+/// Of smaller facets, one in each cube of this edge is taken, dp. With 0.3, a fifth of the
+/// particles between the sides of thin parts of a motorbike of 330,000 facets was missing.
+constexpr double sampled_facet_dp = 0.15;
 /// Cosine of what faces turn by at the rims of thin parts; at edges that turn by less, as those
 /// that facets of a twisted blade make, it goes on.
 constexpr double turn_at_rim = 0.5;
@@ -493,7 +496,8 @@ ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
             [&](std::size_t f) { sample_line(f, middle, mesh, options, of_facet[f].middle); }, 16);
     else
     {
-        const std::vector<AskedFacet> asked = facets_to_ask(mesh, sample_dp * options.dp, threads);
+        const std::vector<AskedFacet> asked =
+            facets_to_ask(mesh, sampled_facet_dp * options.dp, threads);
         parallel_for(
             asked.size(), threads,
             [&](std::size_t i)
