@@ -8,6 +8,7 @@
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
+#include "batch/layer_counts.h"
 #include "batch/machine_speed.h"
 #include "batch/particle_limit.h"
 #include "batch/rates.h"
@@ -20,6 +21,7 @@
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
 #include "walls/true_surfaces.h"
+#include "walls/wall_probe.h"
 
 #include <fmt/format.h>
 
@@ -49,10 +51,11 @@ struct WallCount
 {
     double on_surface = 0;
     double on_lines = 0;
-    double in_layers = 0;     ///< behind them
-    double layered_lines = 0; ///< of those on lines, on surfaces with layers
-    double cut_area = 0;      ///< a dp^2 of surfaces with layers, less where cells are coarse
-    double cut_particles = 0; ///< of those in layers, likewise
+    double in_layers = 0;      ///< behind them
+    double layered_lines = 0;  ///< of those on lines, on surfaces with layers
+    double cut_area = 0;       ///< a dp^2 of surfaces with layers, less where cells are coarse
+    double cut_particles = 0;  ///< of those in layers, likewise
+    double search_seconds = 0; ///< to lay layers, on one thread
     double inside = 0;
     double relaxed = 0; ///< of those on surfaces
     double in_band = 0; ///< of those inside, that are relaxed too
@@ -167,6 +170,7 @@ private:
                 wall.layered_lines += share * count.layered_lines;
                 wall.cut_area += share * count.cut_area;
                 wall.cut_particles += share * count.cut_particles;
+                wall.search_seconds += share * count.search_seconds;
                 wall.inside += share * count.inside;
                 wall.relaxed += share * count.relaxed;
                 wall.in_band += share * count.in_band;
@@ -229,6 +233,8 @@ private:
                 offset_cell_dp /
                 (settings.place == Placement::Inside ? offset_cell_dp : layer_cell_dp(mesh, dp));
             count.layered_lines = count.on_lines;
+            count.search_seconds =
+                share * search_seconds(mesh, report, settings, shape.is_solid, count);
             count.cut_area = finer * finer * on_area;
             count.cut_particles = finer * finer * count.in_layers;
         }
@@ -244,60 +250,20 @@ private:
         return count;
     }
 
-    /// The layers behind a surface, each counted by its area: it shrinks as that of a ball with
-    /// the same volume for its surface.
-    static double layers_of(const std::vector<double>& depths_dp, const MeshReport& report,
-                            double dp)
+    /// What the searches among the facets take while layers are laid, on one thread.
+    double search_seconds(const SurfaceMesh& mesh, const MeshReport& report,
+                          const FitSettings& settings, bool is_solid, const WallCount& count) const
     {
-        const double radius =
-            report.is_watertight && report.area > 0 ? 3 * std::abs(report.volume) / report.area : 0;
-        double out = 0;
-        for (const double depth_dp : depths_dp)
-        {
-            if (depth_dp == 0) continue;
-            const double left = radius > 0 ? std::max(0.0, 1 - depth_dp * dp / radius) : 1;
-            out += left * left;
-        }
-        return out;
-    }
-
-    /// The layers of a sheet, each counted by its area: they stand outside of the vessel that it
-    /// bounds, and grow with the distance by its bends, sharp or smooth.
-    static double layers_outside(const std::vector<double>& depths_dp, const SurfaceMesh& mesh,
-                                 double dp)
-    {
-        double area = 0;
-        for (const double a : mesh.areas) area += a;
-        double bends = 0; // length times bend, inwards or outwards
-        for (std::size_t e = 0; e < mesh.edges.size(); ++e)
-        {
-            const auto [f, g] = mesh.edge_facets[e];
-            if (g == no_index || mesh.is_manifold[e] == 0) continue;
-            const Vec3& a = mesh.vertices[mesh.edges[e][0]];
-            const Vec3& b = mesh.vertices[mesh.edges[e][1]];
-            const Vec3 turn = cross(mesh.normals[f], mesh.normals[g]);
-            const double cosine = dot(mesh.normals[f], mesh.normals[g]);
-            // 2 tan(bend / 2), of a bend of at most 150 degrees.
-            const double bend = 2 * norm(turn) / std::max(1 + cosine, 0.13);
-            bends += norm(b - a) * bend * bend_sign(mesh, e);
-        }
-        double out = 0;
-        for (const double depth_dp : depths_dp)
-            if (depth_dp > 0) out += 1 + depth_dp * dp * std::abs(bends) / area;
-        return out;
-    }
-
-    /// 1 where the surface bends away from its normals at an edge of two facets, else -1.
-    static double bend_sign(const SurfaceMesh& mesh, std::size_t e)
-    {
-        const auto [f, g] = mesh.edge_facets[e];
-        const auto middle = [&](std::uint32_t facet)
-        {
-            Vec3 sum;
-            for (const std::uint32_t v : mesh.facets[facet]) sum = sum + mesh.vertices[v];
-            return sum / 3;
-        };
-        return dot(middle(g) - middle(f), mesh.normals[f]) < 0 ? 1 : -1;
+        WallProbeOptions options;
+        options.depths_dp =
+            settings.depths_dp.empty() ? settings.sheet_depths_dp : settings.depths_dp;
+        options.dp = def_.grid.dp;
+        options.feature_angle_deg = settings.feature_angle_deg;
+        options.is_closed = is_solid && report.is_watertight;
+        const WallProbe probe = probe_wall(mesh, report, options, options_.threads);
+        return probe.seconds_a_depth * count.in_layers *
+                   (rates.depths_a_layer_particle + rates.depths_where_rough * probe.rough) +
+               probe.seconds_a_ball * probe.balls;
     }
 
     /// Fluid near walls that is balanced (balance.h).
@@ -396,6 +362,7 @@ private:
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
             on_surfaces_ += wall.on_surface;
             in_layers_ += wall.in_layers;
+            search_seconds_ += wall.search_seconds;
             layered_lines_ += wall.layered_lines;
             cut_area_ += wall.cut_area;
             cut_particles_ += wall.cut_particles;
@@ -445,7 +412,7 @@ private:
         set_memory(bound, near_walls);
         const double pairs = pairs_to_balance(def_, near_walls, holds_fluid());
         out_.seconds =
-            rates.seconds_to_start + draw_seconds_ +
+            rates.seconds_to_start + draw_seconds_ + search_seconds_ / options_.threads +
             read_machine_speed().factor *
                 (rates.seconds_a_facet * facets_ + rates.seconds_a_wall_particle * on_surfaces_ +
                  rates.seconds_a_relaxed_particle * relaxed_ +
@@ -493,6 +460,7 @@ private:
     double facets_ = 0;       ///< of body-fitted draws
     double on_surfaces_ = 0;
     double in_layers_ = 0;
+    double search_seconds_ = 0;
     double layered_lines_ = 0;
     double cut_area_ = 0;
     double cut_particles_ = 0;

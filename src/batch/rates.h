@@ -29,9 +29,11 @@ struct Rates
     double seconds_a_facet = 6e-6;           ///< of a body-fitted mesh: mended, searched
     double seconds_a_relaxed_particle = 6.7e-6;
     double seconds_a_band_particle = 17e-6;
-    double seconds_a_cut_place = 90e-6;      ///< of a surface with layers, dp^2
+    double seconds_a_cut_place = 20e-6;      ///< of a surface with layers, dp^2
     double seconds_a_cut_particle = 5e-6;    ///< the surface that it is laid on
     double seconds_a_layer_particle = 18e-6; ///< laid and relaxed
+    double depths_a_layer_particle = 30;     ///< asked for while it is laid
+    double depths_where_rough = 80;          ///< besides, a particle where walls are rough
     double seconds_a_layered_line = 50e-6;   ///< of creases of layers, dp of the edge
     double seconds_a_balanced_pair = 3.9e-9; ///< of fluid in each iteration
     double band_particles = 2.3;             ///< of a solid, a particle on its surface

@@ -526,34 +526,26 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
                                      std::optional<double> plane_y, int threads)
 {
     const SurfaceMesh& mesh = wall.mesh();
-    double area = 0;
-    std::vector<double> up_to(mesh.facets.size());
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
+    const std::vector<SurfacePoint> points = points_on(mesh, count);
     std::vector<double> out(count, 0);
     parallel_for(
-        count, threads,
+        points.size(), threads,
         [&](std::size_t i)
         {
-            const double n = static_cast<double>(i) + 0.5;
-            const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1,
-                                             n / static_cast<double>(count) * area);
-            const auto f = static_cast<std::uint32_t>(at - up_to.begin());
-            // Spread over large facets by the plastic number, as two coordinates of a triangle.
-            double u = std::fmod(0.7548776662466927 * n, 1.0);
-            double v = std::fmod(0.5698402909980532 * n, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            const Vec3& a = mesh.vertices[mesh.facets[f][0]];
-            Vec3 p = a + u * (mesh.vertices[mesh.facets[f][1]] - a) +
-                     v * (mesh.vertices[mesh.facets[f][2]] - a);
+            Vec3 p = points[i].position;
             if (plane_y) p.y = *plane_y;
-            if (const auto ball = inner_ball(wall, p, mesh.normals[f], 0.5 * most))
+            if (const auto ball = inner_ball(wall, p, mesh.normals[points[i].facet], 0.5 * most))
                 out[i] = 2 * ball->radius;
         },
         16);
+    return out;
+}
+
+double samples_of_thin_parts(const SurfaceMesh& mesh, double dp, int threads)
+{
+    double out = 0;
+    for (const AskedFacet& asked : facets_to_ask(mesh, sampled_facet_dp * dp, threads))
+        for_each_sample(mesh, asked.facet, sample_dp * dp, [&](const Vec3&) { ++out; });
     return out;
 }
 

@@ -65,6 +65,9 @@ struct ThinParts
 ThinParts find_thin_parts(const WallDepth& wall, const Features& features,
                           const MergedSheetOptions& options, int threads);
 
+/// How many points of a surface find_thin_parts() sinks in 3D.
+double samples_of_thin_parts(const SurfaceMesh& mesh, double dp, int threads);
+
 /// How thick a body is under points spread evenly over its surface: twice the radius of the ball of
 /// find_thin_parts(), metres; 0 where that is more than `most` or the other side does not face
 /// away.
