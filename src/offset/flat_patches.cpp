@@ -108,7 +108,7 @@ FlatPatch flat_patch(const std::vector<Vec3>& at, const Facets& facets, double c
     return out;
 }
 
-/// Finds the patches beyond the edges of each.
+/// Finds the patches beyond the edges of each; edges that more than two have stay as they are.
 void find_neighbours(std::vector<FlatPatch>& flats)
 {
     struct Side
@@ -132,11 +132,14 @@ void find_neighbours(std::vector<FlatPatch>& flats)
     std::sort(sides.begin(), sides.end(),
               [](const Side& a, const Side& b)
               { return std::tie(a.low, a.high, a.patch) < std::tie(b.low, b.high, b.patch); });
+    const auto is_same = [&](std::size_t s, std::size_t t)
+    { return sides[s].low == sides[t].low && sides[s].high == sides[t].high; };
     for (std::size_t s = 0; s + 1 < sides.size(); ++s)
     {
+        const bool is_third = s > 0 && is_same(s - 1, s);
+        if (is_third || !is_same(s, s + 1) || (s + 2 < sides.size() && is_same(s, s + 2))) continue;
         const Side& a = sides[s];
         const Side& b = sides[s + 1];
-        if (a.low != b.low || a.high != b.high) continue;
         FlatPatch& one = flats[a.patch];
         FlatPatch& other = flats[b.patch];
         if (norm(one.normal - other.normal) > same_normal) continue;

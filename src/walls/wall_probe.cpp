@@ -5,8 +5,8 @@
 #include "offset/wall_depth.h"
 #include "walls/merged_sheet.h"
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace fppg
 {
@@ -21,9 +21,10 @@ constexpr double rough_step_dp = 0.5;
 /// A layer is where the depth is right to this, dp.
 constexpr double at_depth_dp = 1e-3;
 
-double seconds_since(std::chrono::steady_clock::time_point start)
+/// Of the processor, which other programs take no part of.
+double seconds_since(std::clock_t start)
 {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 } // namespace
@@ -41,7 +42,7 @@ WallProbe probe_wall(const SurfaceMesh& mesh, const MeshReport& report,
     const std::vector<SurfacePoint> points = points_on(mesh, places);
     wall.at(points[0].position); // makes the tree
     std::size_t in_layer = 0, turned = 0;
-    auto start = std::chrono::steady_clock::now();
+    std::clock_t start = std::clock();
     for (std::size_t i = 0; i < points.size(); ++i)
     {
         const Vec3& normal = mesh.normals[points[i].facet];
@@ -59,7 +60,7 @@ WallProbe probe_wall(const SurfaceMesh& mesh, const MeshReport& report,
     out.seconds_a_depth = seconds_since(start) / static_cast<double>(2 * points.size());
     if (in_layer > 0) out.rough = static_cast<double>(turned) / static_cast<double>(in_layer);
     if (!options.is_closed) return out;
-    start = std::chrono::steady_clock::now();
+    start = std::clock();
     for (const SurfacePoint& point : points)
         touching_ball(wall, point.position, mesh.normals[point.facet], depths.back());
     out.seconds_a_ball = seconds_since(start) / static_cast<double>(points.size());
