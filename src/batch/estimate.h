@@ -62,7 +62,8 @@ struct Estimate
 /// length / dp on its edges, in each layer as many as a ball with its area and volume would have,
 /// and in a solid volume / dp^3 less half of the surface's and the layers'; what later draws cut
 /// off, and what parts share, is not taken off. In 2D it counts its nodes. Memory and
-/// time follow from counts by the rates of src/batch/rates.h and from the time that drawing takes.
+/// time follow from counts by the rates of src/batch/rates.h, from the time that drawing takes, and
+/// of layers from searches tried on their walls (walls/wall_probe.h).
 ///
 /// path    the definition, with its extension
 /// throws  as read_case() and draw_on_lattice()
