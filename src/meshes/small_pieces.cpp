@@ -3,7 +3,6 @@
 #include "core/morton.h"
 #include "core/parallel_sort.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <tuple>
@@ -81,34 +80,6 @@ PiecesToAsk pieces_to_ask(const std::vector<SmallPiece>& pieces, double cell, in
         if (is_new) out.order.push_back(entry.piece);
         if (is_new && is_small) asked = &entry;
         out.for_each[entry.piece] = is_small ? asked->piece : entry.piece;
-    }
-    return out;
-}
-
-std::vector<SurfacePoint> points_on(const SurfaceMesh& mesh, std::size_t count)
-{
-    double area = 0;
-    std::vector<double> up_to(mesh.facets.size());
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) up_to[f] = area += mesh.areas[f];
-    std::vector<SurfacePoint> out(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        const double n = static_cast<double>(i) + 0.5;
-        const auto at =
-            std::upper_bound(up_to.begin(), up_to.end() - 1, n / static_cast<double>(count) * area);
-        out[i].facet = static_cast<std::uint32_t>(at - up_to.begin());
-        // Spread over large facets by the plastic number, as two coordinates of a triangle.
-        double u = std::fmod(0.7548776662466927 * n, 1.0);
-        double v = std::fmod(0.5698402909980532 * n, 1.0);
-        if (u + v > 1)
-        {
-            u = 1 - u;
-            v = 1 - v;
-        }
-        const auto& corners = mesh.facets[out[i].facet];
-        const Vec3& a = mesh.vertices[corners[0]];
-        out[i].position =
-            a + u * (mesh.vertices[corners[1]] - a) + v * (mesh.vertices[corners[2]] - a);
     }
     return out;
 }

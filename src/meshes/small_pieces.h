@@ -34,15 +34,6 @@ struct PiecesToAsk
 /// cost  O(n log n)
 PiecesToAsk pieces_to_ask(const std::vector<SmallPiece>& pieces, double cell, int threads);
 
-struct SurfacePoint
-{
-    Vec3 position;
-    std::uint32_t facet = 0;
-};
-
-/// Points spread evenly over the area of a mesh that has one.
-std::vector<SurfacePoint> points_on(const SurfaceMesh& mesh, std::size_t count);
-
 /// A facet that is asked for itself and others.
 struct AskedFacet
 {

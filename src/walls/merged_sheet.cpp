@@ -4,6 +4,7 @@
 
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
+#include "meshes/facing_distance.h"
 #include "meshes/point_grid.h"
 #include "meshes/small_pieces.h"
 #include "offset/middle.h"
@@ -526,13 +527,13 @@ std::vector<double> sample_thickness(const WallDepth& wall, double most, std::si
                                      std::optional<double> plane_y, int threads)
 {
     const SurfaceMesh& mesh = wall.mesh();
-    const std::vector<SurfacePoint> points = points_on(mesh, count);
+    const std::vector<FacetSpot> points = even_places(mesh, count);
     std::vector<double> out(count, 0);
     parallel_for(
         points.size(), threads,
         [&](std::size_t i)
         {
-            Vec3 p = points[i].position;
+            Vec3 p = points[i].place;
             if (plane_y) p.y = *plane_y;
             if (const auto ball = inner_ball(wall, p, mesh.normals[points[i].facet], 0.5 * most))
                 out[i] = 2 * ball->radius;

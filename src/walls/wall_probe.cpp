@@ -1,6 +1,6 @@
 #include "walls/wall_probe.h"
 
-#include "meshes/small_pieces.h"
+#include "meshes/facing_distance.h"
 #include "offset/middle.h"
 #include "offset/wall_depth.h"
 #include "walls/merged_sheet.h"
@@ -39,15 +39,15 @@ WallProbe probe_wall(const SurfaceMesh& mesh, const MeshReport& report,
     if (depths.empty() || mesh.facets.empty()) return out;
     const WallDepth wall(mesh, report, options.is_closed, WallSide::Behind,
                          options.feature_angle_deg, threads);
-    const std::vector<SurfacePoint> points = points_on(mesh, places);
-    wall.at(points[0].position); // makes the tree
+    const std::vector<FacetSpot> points = even_places(mesh, places);
+    wall.at(points[0].place); // makes the tree
     std::size_t in_layer = 0, turned = 0;
     std::clock_t start = std::clock();
     for (std::size_t i = 0; i < points.size(); ++i)
     {
         const Vec3& normal = mesh.normals[points[i].facet];
         const double depth = depths[i % depths.size()];
-        const Vec3 p = points[i].position - depth * normal;
+        const Vec3 p = points[i].place - depth * normal;
         const Vec3& a = mesh.vertices[mesh.facets[points[i].facet][0]];
         const Vec3 along = mesh.vertices[mesh.facets[points[i].facet][1]] - a;
         const DepthPlace here = wall.at(p);
@@ -61,8 +61,8 @@ WallProbe probe_wall(const SurfaceMesh& mesh, const MeshReport& report,
     if (in_layer > 0) out.rough = static_cast<double>(turned) / static_cast<double>(in_layer);
     if (!options.is_closed) return out;
     start = std::clock();
-    for (const SurfacePoint& point : points)
-        touching_ball(wall, point.position, mesh.normals[point.facet], depths.back());
+    for (const FacetSpot& point : points)
+        touching_ball(wall, point.place, mesh.normals[point.facet], depths.back());
     out.seconds_a_ball = seconds_since(start) / static_cast<double>(points.size());
     out.balls = samples_of_thin_parts(mesh, options.dp, threads);
     return out;

@@ -48,6 +48,22 @@ TriangleSoup tapered_wall_and_blocks()
     return soup;
 }
 
+/// Every facet cut into four.
+TriangleSoup quartered(const TriangleSoup& soup)
+{
+    TriangleSoup out;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const Vec3* const p = &soup.vertices[3 * f];
+        const Vec3 ab = 0.5 * (p[0] + p[1]), bc = 0.5 * (p[1] + p[2]), ca = 0.5 * (p[2] + p[0]);
+        test::add_facet(out, p[0], ab, ca);
+        test::add_facet(out, ab, p[1], bc);
+        test::add_facet(out, ca, bc, p[2]);
+        test::add_facet(out, ab, bc, ca);
+    }
+    return out;
+}
+
 struct Part
 {
     MeshReport report;
@@ -93,6 +109,31 @@ TEST(MergedSheet, HasTheNumberThatEachPlaceBetweenLayersLacks)
         wanted_of_all += wanted;
     }
     EXPECT_NEAR(static_cast<double>(all), wanted_of_all, 0.08 * wanted_of_all);
+}
+
+/// Of small facets one stands for those around it.
+TEST(MergedSheet, ItsMiddleIsTheSameUnderSmallFacets)
+{
+    TriangleSoup plate = test::box({0, 0, 0}, {length, 1.2 * dp, height});
+    const auto middle_of = [](const TriangleSoup& soup)
+    {
+        const Part part(soup);
+        MergedSheetOptions options;
+        options.dp = dp;
+        return find_thin_parts(part.wall, find_features(part.mesh, {}), options, 1);
+    };
+    const ThinParts coarse = middle_of(plate);
+    for (int level = 0; level < 7; ++level) plate = quartered(plate);
+    const ThinParts fine = middle_of(plate);
+    EXPECT_NEAR(fine.volume / coarse.volume, 1, 0.01);
+    ASSERT_FALSE(coarse.middle.empty());
+    for (const MiddlePoint& p : coarse.middle)
+    {
+        double nearest = length;
+        for (const MiddlePoint& q : fine.middle)
+            nearest = std::min(nearest, norm(p.position - q.position));
+        EXPECT_LT(nearest, 0.25 * dp);
+    }
 }
 
 /// Over the edge where two walls of a tank meet, which runs into the solid.
