@@ -18,6 +18,7 @@
 #include "scene/near_domain.h"
 #include "walls/fluid_boxes.h"
 #include "walls/layer_builder.h"
+#include "walls/part_in_domain.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
 #include "walls/true_surfaces.h"
@@ -52,9 +53,10 @@ struct WallCount
     double on_surface = 0;
     double on_lines = 0;
     double in_layers = 0;      ///< behind them
-    double layered_lines = 0;  ///< of those on lines, on surfaces with layers
+    double laid_layers = 0;    ///< of all that is laid, beyond the domain too
+    double layered_lines = 0;  ///< likewise: those on lines, on surfaces with layers
     double cut_area = 0;       ///< a dp^2 of surfaces with layers, less where cells are coarse
-    double cut_particles = 0;  ///< of those in layers, likewise
+    double cut_particles = 0;  ///< of laid_layers, likewise
     double search_seconds = 0; ///< to lay layers, on one thread
     double inside = 0;
     double relaxed = 0; ///< of those on surfaces
@@ -167,6 +169,7 @@ private:
                 wall.on_surface += share * count.on_surface;
                 wall.on_lines += share * count.on_lines;
                 wall.in_layers += share * count.in_layers;
+                wall.laid_layers += share * count.laid_layers;
                 wall.layered_lines += share * count.layered_lines;
                 wall.cut_area += share * count.cut_area;
                 wall.cut_particles += share * count.cut_particles;
@@ -175,7 +178,9 @@ private:
                 wall.relaxed += share * count.relaxed;
                 wall.in_band += share * count.in_band;
             }
-            facets_ += static_cast<double>(surface.shape.soup.size());
+            const auto facets = static_cast<double>(surface.shape.soup.size());
+            facets_ += facets;
+            if (count.in_layers > 0) layered_facets_ += facets;
             const std::vector<Vec3>& corners = surface.shape.soup.vertices;
             surfaces_.vertices.insert(surfaces_.vertices.end(), corners.begin(), corners.end());
         }
@@ -212,6 +217,9 @@ private:
         double length = 0;
         for (const FeatureLine& line : features.lines) length += line.length;
         const double share = share_inside(mesh, clips);
+        const double laid =
+            share_laid(mesh, shape.round != nullptr, settings, def_.grid, options_.threads);
+        const double beyond = share > 0 ? laid / share : 0; // of what the domain has
         const double density = settings.density == FitDensity::Cell ? cell_density : 1;
         const double on_area = share * density * report.area / (dp * dp);
         count.on_lines = share * (length / dp + static_cast<double>(features.singular.size()));
@@ -232,13 +240,14 @@ private:
             const double finer =
                 offset_cell_dp /
                 (settings.place == Placement::Inside ? offset_cell_dp : layer_cell_dp(mesh, dp));
-            count.layered_lines = count.on_lines;
+            count.laid_layers = beyond * count.in_layers;
+            count.layered_lines = beyond * count.on_lines;
             count.search_seconds =
-                share * search_seconds(mesh, report, settings, shape.is_solid, count);
-            count.cut_area = finer * finer * on_area;
-            count.cut_particles = finer * finer * count.in_layers;
+                search_seconds(mesh, report, settings, shape.is_solid, count.laid_layers, laid);
+            count.cut_area = finer * finer * beyond * on_area;
+            count.cut_particles = finer * finer * count.laid_layers;
         }
-        if (settings.relax.is_active) count.relaxed = count.on_surface;
+        if (settings.relax.is_active) count.relaxed = beyond * count.on_surface;
         if (shape.is_solid)
             count.inside = std::max(0.0, volume - count.on_surface / 2 - count.in_layers);
         if (settings.relax.is_active)
@@ -251,8 +260,12 @@ private:
     }
 
     /// What the searches among the facets take while layers are laid, on one thread.
+    ///
+    /// particles  of the layers
+    /// laid       share of the mesh that has them
     double search_seconds(const SurfaceMesh& mesh, const MeshReport& report,
-                          const FitSettings& settings, bool is_solid, const WallCount& count) const
+                          const FitSettings& settings, bool is_solid, double particles,
+                          double laid) const
     {
         WallProbeOptions options;
         options.depths_dp =
@@ -261,9 +274,9 @@ private:
         options.feature_angle_deg = settings.feature_angle_deg;
         options.is_closed = is_solid && report.is_watertight;
         const WallProbe probe = probe_wall(mesh, report, options, options_.threads);
-        return probe.seconds_a_depth * count.in_layers *
+        return probe.seconds_a_depth * particles *
                    (rates.depths_a_layer_particle + rates.depths_where_rough * probe.rough) +
-               probe.seconds_a_ball * probe.balls;
+               probe.seconds_a_ball * probe.balls * laid;
     }
 
     /// Fluid near walls that is balanced (balance.h).
@@ -361,7 +374,7 @@ private:
             out_.n_wall += static_cast<std::uint64_t>(wall.on_surface + wall.in_layers);
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
             on_surfaces_ += wall.on_surface;
-            in_layers_ += wall.in_layers;
+            laid_layers_ += wall.laid_layers;
             search_seconds_ += wall.search_seconds;
             layered_lines_ += wall.layered_lines;
             cut_area_ += wall.cut_area;
@@ -418,7 +431,7 @@ private:
                  rates.seconds_a_relaxed_particle * relaxed_ +
                  rates.seconds_a_band_particle * in_band_ + rates.seconds_a_cut_place * cut_area_ +
                  rates.seconds_a_cut_particle * cut_particles_ +
-                 rates.seconds_a_layer_particle * in_layers_ +
+                 rates.seconds_a_layer_particle * laid_layers_ +
                  rates.seconds_a_layered_line * layered_lines_ +
                  rates.seconds_a_balanced_pair * pairs) /
                 options_.threads +
@@ -439,12 +452,13 @@ private:
         out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
                             rates.bytes_per_run * static_cast<double>(runs_) +
                             rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
-                            rates.bytes_a_wall_particle * (on_surfaces_ + in_layers_);
+                            rates.bytes_a_wall_particle * (on_surfaces_ + laid_layers_);
         if (!walls_.empty()) out_.memory_bytes += rates.bytes_to_fit;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
         out_.memory_bytes += std::max(
             {rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
-             bytes_to_relax(relaxed_ + in_layers_) + rates.bytes_a_band_particle * in_band_,
+             bytes_to_relax(relaxed_ + laid_layers_) + rates.bytes_a_band_particle * in_band_,
+             rates.bytes_a_layered_facet * layered_facets_,
              rates.bytes_a_balanced_particle * near_walls});
     }
 
@@ -455,11 +469,12 @@ private:
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
     std::uint64_t runs_ = 0;
-    std::vector<Vec3> fluid_; ///< some of its nodes
-    TriangleSoup surfaces_;   ///< of all fitted walls
-    double facets_ = 0;       ///< of body-fitted draws
+    std::vector<Vec3> fluid_;   ///< some of its nodes
+    TriangleSoup surfaces_;     ///< of all fitted walls
+    double facets_ = 0;         ///< of body-fitted draws
+    double layered_facets_ = 0; ///< of them, of those with layers
     double on_surfaces_ = 0;
-    double in_layers_ = 0;
+    double laid_layers_ = 0;
     double search_seconds_ = 0;
     double layered_lines_ = 0;
     double cut_area_ = 0;

@@ -12,15 +12,16 @@ struct Rates
     double base_bytes = 8e6;                 ///< of the program itself
     double bytes_per_thread = 2e6;           ///< pieces of files being filled
     double bytes_per_run = 100;              ///< of nodes in a column: while drawn, as particles
-    double bytes_per_triangle = 600;         ///< of mesh files, with the trees to search them
+    double bytes_per_triangle = 660;         ///< of mesh files, with the trees to search them
     double bytes_a_wall_particle = 46;       ///< off the lattice, placed
     double bytes_a_relaxed_particle = 240;   ///< besides, of those relaxed together
     double relaxed_together = 2e6;           ///< RelaxSurfaceOptions::together
     double bytes_a_piece_particle = 16;      ///< of all that are relaxed in pieces
     double bytes_a_band_particle = 460;      ///< of a volume that is relaxed
     double bytes_to_fit = 6e6;               ///< where any wall is fitted
-    double bytes_a_cut_place = 6000;         ///< of a surface with layers, dp^2: its distance field
-    double bytes_a_cut_particle = 3100;      ///< the surface that those of layers are laid on
+    double bytes_a_cut_place = 4200;         ///< of a surface with layers, dp^2: its distance field
+    double bytes_a_cut_particle = 2100;      ///< the surface that those of layers are laid on
+    double bytes_a_layered_facet = 520;      ///< of the wet surface, for normals
     double bytes_a_balanced_particle = 1500; ///< fluid near walls, and what is around it
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 

@@ -271,14 +271,6 @@ void for_each_near_node(const std::vector<NearNode>& nodes, const std::vector<Sp
     }
 }
 
-void append_node(std::vector<Span>& spans, std::uint32_t y, std::uint32_t z)
-{
-    if (!spans.empty() && spans.back().y == y && spans.back().z_end == z)
-        ++spans.back().z_end;
-    else
-        spans.push_back({y, z, z + 1});
-}
-
 std::uint64_t count_nodes(const std::vector<Span>& spans)
 {
     std::uint64_t count = 0;

@@ -74,15 +74,6 @@ struct RowCrossing
     bool is_entry = false;
 };
 
-/// Behind all nodes that the spans hold, by y and then z.
-void append_node(Spans& spans, std::uint32_t y, std::uint32_t z)
-{
-    if (!spans.empty() && spans.back().y == y && spans.back().z_end == z)
-        ++spans.back().z_end;
-    else
-        spans.push_back({y, z, z + 1});
-}
-
 class DepthFinder
 {
 public:

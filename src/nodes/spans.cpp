@@ -118,6 +118,14 @@ Spans subtract(const Spans& a, const Spans& b)
     return out;
 }
 
+void append_node(Spans& spans, std::uint32_t y, std::uint32_t z)
+{
+    if (!spans.empty() && spans.back().y == y && spans.back().z_end == z)
+        ++spans.back().z_end;
+    else
+        spans.push_back({y, z, z + 1});
+}
+
 void trim(SpanSet& set)
 {
     std::size_t begin = 0;

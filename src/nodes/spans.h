@@ -33,6 +33,8 @@ void sort_and_join(Spans& spans);
 Spans unite(const Spans& a, const Spans& b);
 Spans intersect(const Spans& a, const Spans& b);
 Spans subtract(const Spans& a, const Spans& b);
+/// Adds a node behind all that the spans hold, by y and then z.
+void append_node(Spans& spans, std::uint32_t y, std::uint32_t z);
 /// Takes the empty slabs at both ends away.
 void trim(SpanSet& set);
 /// The part inside the y and z limits of a box.

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
 #include "lattice/paint_mesh.h"
+#include "meshes/mesh_query.h"
 #include "meshes/open_edges.h"
 #include "scene/near_domain.h"
 #include "scene/surfaces.h"
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -38,6 +40,9 @@ std::pair<double, double> heights_over_plane(const std::vector<ShapeMesh>& shape
     return {(bounds.min.y - grid.origin.y) / grid.step(1),
             (bounds.max.y - grid.origin.y) / grid.step(1)};
 }
+
+/// Limits of depths are met to rounding: nodes stand on the lattice, faces often too.
+constexpr double depth_slack_dp = 1e-9;
 
 /// Rounding of the place of a shape, dp.
 constexpr double plane_tolerance = 1e-9;
@@ -59,23 +64,60 @@ bool lacks_section(const std::vector<ShapeMesh>& shapes, const std::vector<Fitte
     return is_empty && (is_beside || touches);
 }
 
-/// `advanced`: of the inside, the nodes whose depth is asked for.
-void keep_depth(const Scene& scene, const DrawOp& draw, int threads, FittedDraw& fitted)
+/// Of the inside, the nodes that GenCase takes at the depth that is asked for. Rows in the plane of
+/// a facet miss some by rounding.
+void keep_depth_of_rows(const MeshFileOp& file, const TriangleSoup& soup, const LatticeGrid& grid,
+                        int threads, FittedDraw& fitted)
 {
-    const auto* file = shape_as<MeshFileOp>(draw);
-    if (file == nullptr || !file->advanced) return;
-    const LatticeGrid& grid = scene.def->grid;
-    TriangleSoup moved = moved_soup(mesh_of(scene, draw, threads)->soup, file->transform, threads);
-    if (draw.state->normal_invert) turn_over(moved);
-    if (!file->any_depth) fitted.body.measures.filled = 0; // only a layer of it is
-    const SlabRegion region = depth_region(moved, *file, grid, threads);
+    fitted.body.measures.filled = 0; // only a layer of it is
+    const SlabRegion region = depth_region(soup, file, grid, threads);
     parallel_for(fitted.volume.size(), threads,
                  [&](std::size_t x)
                  {
                      fitted.volume[x] = intersect(
-                         fitted.volume[x],
-                         listed(region, static_cast<std::uint32_t>(x), draw.state->clips, grid));
+                         fitted.volume[x], listed(region, static_cast<std::uint32_t>(x), {}, grid));
                  });
+}
+
+/// Of the inside, the nodes whose distance from the surface is within [depth_min, depth_max].
+void keep_depth_by_distance(const MeshFileOp& file, TriangleSoup soup, const LatticeGrid& grid,
+                            int threads, FittedDraw& fitted)
+{
+    const double least = file.depth_min - depth_slack_dp * grid.dp;
+    const double most = file.depth_max + depth_slack_dp * grid.dp;
+    if (least <= 0 && std::isinf(most)) return;
+    fitted.body.measures.filled = 0; // only a layer of it is
+    const MeshQuery surface(std::move(soup), threads);
+    surface.prepare_nearest();
+    parallel_for(fitted.volume.size(), threads,
+                 [&](std::size_t x)
+                 {
+                     Spans kept;
+                     for (const Span& s : fitted.volume[x])
+                         for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
+                         {
+                             const Vec3 node = grid.place(static_cast<double>(x), s.y, z);
+                             const double depth = surface.closest_point(node, most).distance;
+                             if (depth >= least && depth <= most) append_node(kept, s.y, z);
+                         }
+                     fitted.volume[x] = std::move(kept);
+                 });
+}
+
+/// `advanced`: of the inside, the nodes whose depth is asked for.
+void keep_depth(const Scene& scene, const DrawOp& draw, int threads, FittedDraw& fitted)
+{
+    const auto* file = shape_as<MeshFileOp>(draw);
+    if (file == nullptr || !file->advanced || file->any_depth) return;
+    const LatticeGrid& grid = scene.def->grid;
+    TriangleSoup moved = moved_soup(mesh_of(scene, draw, threads)->soup, file->transform, threads);
+    if (draw.state->normal_invert || file->reverse)
+    {
+        if (draw.state->normal_invert) turn_over(moved);
+        keep_depth_of_rows(*file, moved, grid, threads, fitted);
+    }
+    else
+        keep_depth_by_distance(*file, std::move(moved), grid, threads, fitted);
 }
 
 /// Completes the warnings of a fitted draw: each names its place.

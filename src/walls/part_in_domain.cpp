@@ -29,12 +29,13 @@ struct CutRule
 /// fewer particles (a ball of 120 dp): only where the whole would take minutes.
 constexpr CutRule rule_of_round{times_beyond_of_round, 5e6};
 
-bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, const CutRule& rule, double dp,
-                      int threads)
+/// How much of the area of a mesh is left where it is cut by a rule; 1 where it is not.
+double share_left(const SurfaceMesh& mesh, const Box3& box, const CutRule& rule, double dp,
+                  int threads)
 {
     const double least = rule.least_dp2 * dp * dp;
     const double all = std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0);
-    if (all < least) return false;
+    if (all < least) return 1;
     std::vector<double> within(mesh.facets.size());
     parallel_for(
         mesh.facets.size(), threads,
@@ -46,7 +47,7 @@ bool is_mostly_beyond(const SurfaceMesh& mesh, const Box3& box, const CutRule& r
         },
         1024);
     const double inside = std::accumulate(within.begin(), within.end(), 0.0);
-    return all - inside > std::max(rule.times * inside, least);
+    return all - inside > std::max(rule.times * inside, least) ? inside / all : 1;
 }
 
 bool is_apart(const Box3& a, const Box3& b)
@@ -78,7 +79,28 @@ TriangleSoup soup_of_box(const Box3& box)
     return soup;
 }
 
+/// The domain with its margin; in 2D all of the body's width.
+Box3 box_to_lay(const Box3& bounds, const LatticeGrid& grid)
+{
+    Box3 box = box_near_domain(grid);
+    if (!grid.is_2d) return box;
+    box.min.y = std::min(box.min.y, bounds.min.y - grid.dp);
+    box.max.y = std::max(box.max.y, bounds.max.y + grid.dp);
+    return box;
+}
+
 } // namespace
+
+double share_laid(const SurfaceMesh& mesh, bool is_round, const FitSettings& settings,
+                  const LatticeGrid& grid, int threads)
+{
+    if (settings.place == Placement::Inside) return 1;
+    Box3 bounds;
+    for (const Vec3& v : mesh.vertices) bounds.add(v);
+    if (is_apart(bounds, box_near_domain(grid))) return 0;
+    return share_left(mesh, box_to_lay(bounds, grid), is_round ? rule_of_round : CutRule{}, grid.dp,
+                      threads);
+}
 
 std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& settings,
                                          const LatticeGrid& grid, int threads)
@@ -86,20 +108,14 @@ std::vector<std::uint32_t> cut_to_domain(FittedBody& body, const FitSettings& se
     if (settings.place == Placement::Inside) return {};
     Box3 bounds;
     for (const Vec3& v : body.mesh.vertices) bounds.add(v);
-    Box3 box = box_near_domain(grid);
-    if (is_apart(bounds, box))
+    if (is_apart(bounds, box_near_domain(grid)))
     {
         body.mesh = {};
         body.round = nullptr;
         return {};
     }
-    if (grid.is_2d)
-    {
-        box.min.y = std::min(box.min.y, bounds.min.y - grid.dp);
-        box.max.y = std::max(box.max.y, bounds.max.y + grid.dp);
-    }
-    const CutRule rule = body.round != nullptr ? rule_of_round : CutRule{};
-    if (!is_mostly_beyond(body.mesh, box, rule, grid.dp, threads)) return {};
+    if (share_laid(body.mesh, body.round != nullptr, settings, grid, threads) == 1) return {};
+    const Box3 box = box_to_lay(bounds, grid);
     body.round = nullptr;
     MeshReport of_box;
     const SurfaceMesh around = repair_mesh(soup_of_box(box), {}, threads, of_box);

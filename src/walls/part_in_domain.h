@@ -16,6 +16,13 @@ enum class BodyExtent : std::uint8_t
     Whole,      ///< all of it, for its mass
 };
 
+/// How much of its area cut_to_domain() leaves of a body: 1 where it stays whole.
+///
+/// mesh      of the body
+/// is_round  it is laid on an exact surface (FittedBody::round)
+double share_laid(const SurfaceMesh& mesh, bool is_round, const FitSettings& settings,
+                  const LatticeGrid& grid, int threads);
+
 /// Cuts off what a body has far beyond the domain: its particles would be taken out again.
 ///
 /// Only where more of its surface lies beyond the domain and a margin of 12 dp than within, and at

@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -243,6 +245,72 @@ TEST(DeepInside, StaysOnTheLattice)
     const ParticleCloud lattice = read_particles(folder / "Lattice", true, 1);
     EXPECT_GT(lattice.positions.size(), 0U);
     EXPECT_EQ(read_particles(folder / "Fitted", true, 1).positions, lattice.positions);
+}
+
+/// A frame around two chambers, which a slanted block parts; upright, 10 high.
+TriangleSoup two_chambers()
+{
+    constexpr std::array<double, 6> across{-4, 0, 11, 15, 27, 31};
+    constexpr std::array<double, 4> along{-8, -4, 4, 8};
+    constexpr double height = 10, slant = 0.05;
+    const auto is_full = [&](std::size_t i, std::size_t j)
+    { return i < 5 && j < 3 && !(j == 1 && (i == 1 || i == 3)); };
+    const auto at = [&](std::size_t i, std::size_t j, double z)
+    {
+        const double moved = (i == 2 ? slant : i == 3 ? -slant : 0) * (along[j] - along[0]);
+        return Vec3{across[i] + moved, along[j], z};
+    };
+    TriangleSoup soup;
+    const auto side = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l)
+    { add_quad(soup, at(i, j, 0), at(k, l, 0), at(k, l, height), at(i, j, height)); };
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+        {
+            if (!is_full(i, j)) continue;
+            for (const bool is_top : {true, false})
+            {
+                const double z = is_top ? height : 0;
+                const std::size_t l = is_top ? 1 : 0;
+                add_quad(soup, at(i, j, z), at(i + l, j + 1 - l, z), at(i + 1, j + 1, z),
+                         at(i + 1 - l, j + l, z));
+            }
+            // Beyond the first and last, numbers wrap around to large ones, which are not full.
+            if (!is_full(i, j - 1)) side(i, j, i + 1, j);
+            if (!is_full(i + 1, j)) side(i + 1, j, i + 1, j + 1);
+            if (!is_full(i, j + 1)) side(i + 1, j + 1, i, j + 1);
+            if (!is_full(i - 1, j)) side(i, j + 1, i, j);
+        }
+    return soup;
+}
+
+/// Rows of nodes along x in the plane of the chambers' walls pass through edges of the block, and
+/// by GenCase's rounding not through all of them: a row of the wall was missing beside the fluid.
+TEST(DeepInside, HasTheNodesInThePlaneOfAWall)
+{
+    const TemporaryFolder folder;
+    write_text(folder / "shape.stl", stl_of(two_chambers()));
+    CaseText text;
+    text.dp = "1";
+    text.pointmin = R"(<pointmin x="-8" y="-12" z="-3" />)";
+    text.pointmax = R"(<pointmax x="36" y="12" z="14" />)";
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />
+<drawfilestl file="shape.stl" advanced="true"><depth depthmin="0" depthmax="3" /></drawfilestl>)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const RunResult made = run(folder, {"Case_Def", "Case", "-fit:raw"});
+    ASSERT_EQ(made.code, 0) << made.output;
+    const ParticleCloud cloud = read_particles(folder / "Case", true, 1);
+    const auto count = [&](double x, double y)
+    {
+        return std::count_if(cloud.positions.begin(), cloud.positions.end(),
+                             [&](const Vec3& p) {
+                                 return norm(p - Vec3{x, y, p.z}) < 1e-6 && p.z > 0.5 && p.z < 9.5;
+                             });
+    };
+    for (const double x : {12, 13, 14}) EXPECT_EQ(count(x, -4), 9) << x;
+    EXPECT_EQ(count(13, 4), 9) << "the others are too near to the block's faces";
+    EXPECT_EQ(count(13, 6), 9) << "2 below the outside";
+    EXPECT_EQ(count(30, 0), 9);
+    EXPECT_EQ(count(-1, 0), 9);
 }
 
 } // namespace

@@ -92,6 +92,23 @@ TEST(Estimate, CountsLayersAndTakesTheirTimeIn)
         << "4 pi of (0.29, 0.27 and 0.25 m) / dp, squared";
 }
 
+/// Half of a ball is beyond the domain, but all of it is laid: memory was that of the half.
+TEST(Estimate, TakesInWhatIsLaidBeyondTheDomain)
+{
+    const TemporaryFolder folder;
+    CaseText text = layered_ball();
+    text.mainlist.resize(text.mainlist.find("<setmkfluid"));
+    write_text(folder / "Case_Def.xml", text.text());
+    const json whole = estimate(folder);
+    text.pointmin = R"(<pointmin x="0.5" y="-0.5" z="-0.5" />)";
+    write_text(folder / "Case_Def.xml", text.text());
+    const json half = estimate(folder);
+    const auto ratio = [&](const char* of)
+    { return half.at(of).get<double>() / whole.at(of).get<double>(); };
+    EXPECT_NEAR(ratio("wall_particles"), 0.5, 0.03);
+    EXPECT_GT(ratio("memory_bytes"), 0.85);
+}
+
 /// Layers outside of a vessel of faces grow with the distance from it: each was counted by the area
 /// of the vessel, and of two round ones a third was missing.
 TEST(Estimate, CountsTheLayersOutsideOfVessels)

@@ -94,7 +94,9 @@ def draws(trial, variant, as_surface=False):
     for mk, name in enumerate(trial.meshes):
         name = "wet_" + name if as_surface and variant.normals == "wet" else name
         shell = f'<drawfilestl file="{name}" />'
-        inside = f'<drawfilestl file="{name}" advanced="true"><depth depthmin="0" /></drawfilestl>'
+        # GenCase's particles go 2 dp deep, without the surface that is drawn besides; fitted walls fill the solid.
+        how = ' fppg:fill="inside" />' if variant.is_fitted else ' advanced="true"><depth depthmin="0" /></drawfilestl>'
+        inside = f'<drawfilestl file="{name}"{how}'
         both = shell if trial.is_sheet or as_surface else inside + (shell if variant.shell else "")
         lines.append(f'<setmkbound mk="{mk}" />{both}')
     return "\n".join(lines)
