@@ -12,6 +12,7 @@
 #include "batch/machine_speed.h"
 #include "batch/particle_limit.h"
 #include "batch/rates.h"
+#include "core/even_places.h"
 #include "core/json.h"
 #include "lattice/mesh_units.h"
 #include "meshes/outline.h"
@@ -324,31 +325,17 @@ private:
         double inside = 0;
         for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         {
+            const auto& [a, b, c] = mesh.facets[f];
+            const std::array<Vec3, 3> corners{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
             if (clips.empty())
             {
-                const auto& [a, b, c] = mesh.facets[f];
-                const Vec3 corners[3] = {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
-                inside += area_in_box(domain, corners);
+                inside += area_in_box(domain, corners.data());
                 continue;
             }
             const int samples = std::max(1, static_cast<int>(area_samples * mesh.areas[f] / area));
-            const auto& c = mesh.facets[f];
-            const Vec3& a = mesh.vertices[c[0]];
             int found = 0;
-            for (int i = 0; i < samples; ++i)
-            {
-                // The additive sequence of the plastic number fills a square evenly; its first
-                // point is taken to the middle of the facet.
-                double u = std::fmod(1.0 / 3 + i * 0.7548776662466927, 1.0);
-                double v = std::fmod(1.0 / 3 + i * 0.5698402909980532, 1.0);
-                if (u + v > 1)
-                {
-                    u = 1 - u;
-                    v = 1 - v;
-                }
-                const Vec3 p = a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a);
-                found += static_cast<int>(is_inside(p, clips));
-            }
+            for (int i = 0; i < samples; ++i) // from the middle of the facet
+                found += static_cast<int>(is_inside(even_on_facet(corners, i, 1.0 / 3), clips));
             inside += mesh.areas[f] * found / samples;
         }
         return area > 0 ? inside / area : 1;

@@ -1,5 +1,6 @@
 #include "fit/chart_filler.h"
 
+#include "core/even_places.h"
 #include "core/parallel.h"
 #include "fit/chart_grid.h"
 #include "fppg/error.h"
@@ -397,17 +398,8 @@ struct ChartFiller::Work
             due += mesh.area(f) / (area_of_sample * dp * dp);
             for (; due >= 1 || count == 0; due -= 1)
             {
-                // The plastic number's sequence spreads points evenly for any count.
                 ++count;
-                double u = std::fmod(0.5 + 0.7548776662466927 * count, 1.0);
-                double v = std::fmod(0.5 + 0.5698402909980532 * count, 1.0);
-                if (u + v > 1)
-                {
-                    u = 1 - u;
-                    v = 1 - v;
-                }
-                const auto& c = mesh.facets[f].corners;
-                const Vec3 point = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
+                const Vec3 point = even_on_facet(mesh.facets[f].corners, count, 0.5);
                 if (is_alone(point, mesh.facets[f].normal))
                     climb({point, f, any_direction(mesh.facets[f])});
             }

@@ -1,5 +1,6 @@
 #include "fppg/exclusion_band.h"
 
+#include "core/even_places.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "fit/closed_part.h"
@@ -128,15 +129,7 @@ double share_inside(const Wall& wall, const TriangleSoup& body, double dp, int t
         [&](std::size_t i)
         {
             const Vec3* p = &wall.soup.vertices[3 * facet_of[i]];
-            // Spread over large facets by the plastic number, as two coordinates of a triangle.
-            double u = std::fmod(0.7548776662466927 * static_cast<double>(i), 1.0);
-            double v = std::fmod(0.5698402909980532 * static_cast<double>(i), 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            const Vec3 at = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
+            const Vec3 at = even_on_facet({p[0], p[1], p[2]}, static_cast<double>(i));
             for (const double way : {-1e-4, 1e-4})
                 if (test.is_inside(at + way * dp * wall.normals[facet_of[i]])) ++sides[i];
         },
@@ -161,9 +154,8 @@ double measure_overlap(const TriangleSoup& body, int threads)
         samples, threads,
         [&](std::size_t i)
         {
-            const auto n = static_cast<double>(i);
-            const Vec3 at{box.min.x + size.x * std::fmod(0.5 + 0.7548776662466927 * n, 1.0),
-                          box.min.y + size.y * std::fmod(0.5 + 0.5698402909980532 * n, 1.0),
+            const auto [u, v] = even_in_square(static_cast<double>(i), 0.5);
+            const Vec3 at{box.min.x + size.x * u, box.min.y + size.y * v,
                           box.min.z - 0.01 * size.z};
             int sum = 0;
             double before = at.z;

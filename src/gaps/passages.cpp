@@ -1,5 +1,6 @@
 #include "gaps/passages.h"
 
+#include "core/even_places.h"
 #include "core/parallel.h"
 #include "fppg/scene.h"
 #include "meshes/facing_distance.h"
@@ -151,15 +152,8 @@ std::vector<FacetSpot> spread_places(const BoundaryFacets& facets, double area_o
         left += facets.areas[f];
         for (std::size_t i = out.size(); left >= area_of_each; ++i, left -= area_of_each)
         {
-            double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
-            double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
             const Vec3* c = &facets.soup.vertices[3 * std::size_t{f}];
-            out.push_back({f, c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0])});
+            out.push_back({f, even_on_facet({c[0], c[1], c[2]}, static_cast<double>(i))});
         }
     }
     return out;

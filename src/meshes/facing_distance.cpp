@@ -1,4 +1,5 @@
 #include "meshes/facing_distance.h"
+#include "core/even_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,16 +19,9 @@ std::vector<FacetSpot> even_places(const SurfaceMesh& mesh, std::size_t count)
         const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
         const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, share * area);
         const auto f = static_cast<std::uint32_t>(at - up_to.begin());
-        double u = std::fmod(static_cast<double>(i) * 0.7548776662466927, 1.0);
-        double v = std::fmod(static_cast<double>(i) * 0.5698402909980532, 1.0);
-        if (u + v > 1)
-        {
-            u = 1 - u;
-            v = 1 - v;
-        }
-        const auto& c = mesh.facets[f];
-        const Vec3& a = mesh.vertices[c[0]];
-        out[i] = {f, a + u * (mesh.vertices[c[1]] - a) + v * (mesh.vertices[c[2]] - a)};
+        const auto& [a, b, c] = mesh.facets[f];
+        out[i] = {f, even_on_facet({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]},
+                                   static_cast<double>(i))};
     }
     return out;
 }

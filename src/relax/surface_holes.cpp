@@ -1,5 +1,6 @@
 #include "relax/surface_holes.h"
 
+#include "core/even_places.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "fit/walk.h"
@@ -389,16 +390,8 @@ std::vector<SlidePlace> HoleFinder::sample_facets(bool at_edges) const
         for (due += layer_.work_.area(f) / (area_of_sample * layer_.dp_ * layer_.dp_); due >= 1;
              due -= 1)
         {
-            // The plastic number's sequence spreads points evenly for any count.
             ++count;
-            double u = std::fmod(0.5 + 0.7548776662466927 * count, 1.0);
-            double v = std::fmod(0.5 + 0.5698402909980532 * count, 1.0);
-            if (u + v > 1)
-            {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            const Vec3 place = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
+            const Vec3 place = even_on_facet(c, count, 0.5);
             if (!at_edges || lines.has_nearer(place, reach)) samples.push_back({place, f});
         }
     }
