@@ -126,7 +126,7 @@ void LayerBuilder::build(WallSide side, bool is_closed, const LayerPlan& plan)
     const double deepest = plan.depths_dp.empty() ? 0 : plan.depths_dp.back();
     wall_ = wall_of(side, is_closed, settings_.feature_angle_deg, deepest);
     if (wall_ == nullptr) return;
-    if (plan.middle_dp > 0) look_for_thin_parts(*wall_);
+    if (plan.middle_dp > 0 || !plan.gaps.empty()) look_for_thin_parts(*wall_);
     // The number of particles inside a body is measured by its layers' facets.
     const double cell_dp =
         grid_.is_2d || out_.body.is_inside ? plan.cell_dp : layer_cell_dp(wall_->mesh(), grid_.dp);

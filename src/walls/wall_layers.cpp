@@ -187,12 +187,14 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
     // Middles are looked for behind facets.
     if (side == LayerSide::Behind && plan.depths_dp[0] > 0)
         plan.middle_dp = plan.depths_dp[0] + 0.5 * merge_dp;
-    // Under all layers, nodes fill what is left.
-    if (is_closed && plan.depths_dp[0] > 0)
+    // Under all layers, nodes fill what is left. Layers that begin on the surface stand for half a
+    // dp before it on either side.
+    const int beyond = plan.depths_dp[0] > 0 ? 0 : 1;
+    if (is_closed)
         for (std::size_t k = 0; k + 1 < plan.depths_dp.size(); ++k)
             plan.gaps.push_back({plan.depths_dp[k] + 0.5 * least_gap_dp,
                                  plan.depths_dp[k + 1] + 0.5 * merge_dp,
-                                 2 * static_cast<int>(k + 1)});
+                                 2 * static_cast<int>(k + 1) - beyond});
     if (side != LayerSide::Front) builder.build(WallSide::Behind, is_closed, plan);
     if (side != LayerSide::Behind) builder.build(WallSide::Front, is_closed, plan);
     if (is_closed)

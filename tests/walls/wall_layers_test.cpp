@@ -167,6 +167,29 @@ TEST(WallLayers, OfPlatesIn2DHaveOneMoreBetweenThemToo)
     }
 }
 
+/// Those of DBC begin on the surface and stand for half a dp before it.
+TEST(WallLayers, OfPlatesForDbcHaveOneMoreBetweenThemToo)
+{
+    for (const double thickness : {1.7, 2.2, 3.6, 4.0})
+    {
+        const Vec3 low{-0.93, -0.77, -0.13};
+        Drawing drawing = layered();
+        drawing.def.fit.all->boundary = WallBoundary::Dbc;
+        drawing.def.fit.all->depths_dp = {0, 1, 2};
+        drawing.box(low, {1.8, 1.5, thickness * dp});
+        std::vector<double> heights;
+        for (const Vec3& p : normals_of(drawing, relaxed(drawing)).positions)
+            if (std::abs(p.x) < 0.4 && std::abs(p.y) < 0.4) heights.push_back((p.z - low.z) / dp);
+        EXPECT_NEAR(static_cast<double>(heights.size()) * dp * dp / (0.8 * 0.8), thickness + 1, 0.3)
+            << thickness;
+        std::sort(heights.begin(), heights.end());
+        double widest = 0;
+        for (std::size_t i = 1; i < heights.size(); ++i)
+            widest = std::max(widest, heights[i] - heights[i - 1]);
+        EXPECT_LT(widest, 1.3) << thickness;
+    }
+}
+
 /// However thin they are, and rods, of which nothing was left. Plates with room for two layers stay
 /// as they are.
 TEST(WallLayers, OfPlatesAndRodsWithRoomForOneAreThickened)
