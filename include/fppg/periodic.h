@@ -25,7 +25,7 @@ struct SeamsClosed
 /// Cuts one period out of the particles off the lattice, from half a step before the first node to
 /// half a step behind the last: those of walls beyond it go, those of the volume move by a period.
 /// Of two of walls, or two of the volume, that are nearer than 0.5 dp across the end of the period
-/// the one at its end goes.
+/// the one at its end goes. The others keep 1e-4 dp off both ends, where the solver looks for them.
 ///
 /// cost  O(n) for n particles
 SeamsClosed close_seams(const CaseDef& def, RunField& field);

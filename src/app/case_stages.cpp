@@ -26,6 +26,7 @@
 #include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
 #include "walls/lattice_shift.h"
+#include "walls/periodic_ends.h"
 #include "walls/true_surfaces.h"
 
 #include <fmt/format.h>
@@ -199,6 +200,15 @@ void read_definition(CaseRunState& run, std::size_t zone, const VresDef* vres, M
 /// Where walls stand and fluid ends, before they are drawn.
 void settle_walls(CaseRunState& run, MadeCase& made)
 {
+    if (const auto period = lattice_of_period(made.scene, run.threads))
+    {
+        made.def.grid = *period;
+        const Vec3& from = period->origin;
+        run.log.line(
+            fmt::format("Period: as far as the case is drawn, from ({:g}, {:g}, {:g}) m, "
+                        "{} x {} x {} nodes",
+                        from.x, from.y, from.z, period->n[0], period->n[1], period->n[2]));
+    }
     for (std::string& w : draw_shells_around_fluid(made.scene, run.threads, made.def))
         made.def.hints.push_back(std::move(w));
     for (const std::string& line : draw_true_surfaces(made.scene, run.threads, made.def))

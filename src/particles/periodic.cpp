@@ -16,6 +16,8 @@ namespace
 
 /// Of a pair nearer than this across the end of a period one goes, dp.
 constexpr double least_gap_dp = 0.5;
+/// The solver takes no particle just at the end of a period: rounding puts it out of the domain.
+constexpr double off_end_dp = 1e-4;
 /// Particles this near to the first or last node reach to it, dp.
 constexpr double reach_dp = 0.75;
 
@@ -81,6 +83,10 @@ SeamsClosed close_seams(const CaseDef& def, RunField& field)
         take_out(volume.positions, is_out);
         take_out(volume.mk, is_out);
         take_out(volume.distances, is_out);
+        for (auto* positions : {&walls.positions, &volume.positions})
+            for (Vec3& p : *positions)
+                p[axis] = std::clamp(p[axis], low + off_end_dp * grid.dp,
+                                     low + next[axis] - off_end_dp * grid.dp);
     }
     done.left_out = before - walls.size() - volume.size();
     return done;

@@ -14,6 +14,7 @@
 #include "walls/fit_shape.h"
 #include "walls/fluid_boxes.h"
 #include "walls/lost_layers.h"
+#include "walls/periodic_ends.h"
 #include "walls/stacked_shells.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
@@ -153,6 +154,8 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
+    if (extent == BodyExtent::NearDomain && shape.cad == nullptr)
+        continue_over_periods(grid, shape.soup);
     FittedDraw out = fit_shape(shape, settings, grid, draw.state->clips, extent, threads);
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
     out.body.line = draw.source.line;
@@ -249,8 +252,10 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     const BooleanDef& boolean = *combination.boolean;
     const DrawState& state = *combination.whole.state;
     const bool is_sheet = boolean.parts[0].is_surface;
-    const std::vector<BooleanWallPart> parts =
-        boolean_parts(scene, combination, PartsAs::Drawn, threads);
+    std::vector<BooleanWallPart> parts = boolean_parts(scene, combination, PartsAs::Drawn, threads);
+    for (BooleanWallPart& part : parts)
+        if (part.cad == nullptr && !is_laid_whole(*scene.def, part.mk))
+            continue_over_periods(scene.def->grid, part.soup);
     FittedStep out;
     out.is_fitted = true;
     if (!state.draw_points) return out;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -348,6 +349,50 @@ TEST(FluidBeforeAPiston, DoesNotComeBehindItThroughAGapOfAStep)
         if (is_fluid(made.cloud, i)) ++(made.cloud.positions[i].x < 0.2 ? behind : before);
     EXPECT_EQ(behind, 0u);
     EXPECT_GT(before, 1500u);
+}
+
+/// A channel that is drawn shorter than its domain, as in public Poiseuille flows. Its walls bent
+/// around their ends, and fluid went into the gaps where copies of the case meet.
+TEST(WallsOfAPeriod, GoOnOverItsEnds)
+{
+    CaseText text;
+    text.dp = fmt::format("{}", dp);
+    text.pointmin = R"(<pointmin x="-0.2" y="0" z="-1" />)";
+    text.pointmax = R"(<pointmax x="3" y="0" z="1" />)";
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="-0.45" /><size x="1" y="0" z="0.9" /></drawbox>
+<setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0.5" /><size x="1" y="0" z="0.2" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="-0.7" /><size x="1" y="0" z="0.2" /></drawbox>)";
+    for (const char* boundary : {"1", "2"})
+    {
+        text.execution = fmt::format(
+            R"(<parameters><parameter key="Boundary" value="{}" /><parameter key="XPeriodicIncZ" value="0" /></parameters>)",
+            boundary);
+        text.after_geometry = "<fppg><bodyfitted /></fppg>";
+        const Made made = make(text);
+        EXPECT_NE(made.output.find("Period: as far as the case is drawn, from (0, 0, -1) m"),
+                  std::string::npos)
+            << made.output;
+        // Of DBC those on the surface: nodes under it make room for its ends.
+        const double deepest = boundary[0] == '1' ? 0.501 : 1;
+        std::map<int, std::vector<double>> rows; // by their height, mm
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+        {
+            const Vec3& p = made.cloud.positions[i];
+            if (!is_fluid(made.cloud, i) && std::abs(p.z) < deepest)
+                rows[static_cast<int>(std::lround(1000 * p.z))].push_back(p.x);
+        }
+        EXPECT_EQ(rows.size(), boundary[0] == '1' ? 2U : 8U);
+        for (auto& [height, row] : rows)
+        {
+            EXPECT_EQ(row.size(), 21U) << height;
+            std::sort(row.begin(), row.end());
+            double widest = row.front() + 21 * dp - row.back();
+            for (std::size_t i = 1; i < row.size(); ++i)
+                widest = std::max(widest, row[i] - row[i - 1]);
+            EXPECT_LT(widest / dp, 1.2) << height;
+        }
+    }
 }
 
 } // namespace

@@ -67,6 +67,20 @@ TEST(CloseSeams, TakesTheParticleAtTheEndThatIsTooNearToTheNextCopy)
     EXPECT_EQ(field.walls.volume.distances.size(), 3U);
 }
 
+/// The solver stopped: "Found new particles out".
+TEST(CloseSeams, KeepsParticlesOffTheVeryEnds)
+{
+    const CaseDef def = tilted_case();
+    RunField field = field_of(def, {{-0.5, 5, 2}, {10.5 - 1e-5, 8, 5}}, {});
+    close_seams(def, field);
+    ASSERT_EQ(field.walls.particles.size(), 2U);
+    for (const Vec3& p : field.walls.particles.positions)
+    {
+        EXPECT_GT(p.x, -0.5 + 5e-5);
+        EXPECT_LT(p.x, 10.5 - 5e-5);
+    }
+}
+
 TEST(CloseSeams, LeavesACaseThatIsNotPeriodic)
 {
     CaseDef def = tilted_case();
