@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -243,17 +244,55 @@ bool stands_on(const std::vector<MovedWall>& moved, const Scene& scene, const Dr
                        });
 }
 
-} // namespace
-
-std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, CaseDef& def)
+/// Moves the outermost corners of a wall onto the plane that `<norplane>` has for its normals: up
+/// to a dp before the nodes that the case draws.
+///
+/// returns  how far, dp; 0: nothing moved
+double move_to_plane(const PlaneNormals& plane, double dp, DrawOp& wall)
 {
-    if (!def.normals.geometry || def.fit.is_empty()) return {};
+    const auto* drawn = shape_as<PolyhedronOp>(wall);
+    const double length = norm(plane.normal);
+    if (drawn == nullptr || drawn->vertices.empty() || !(length > 0)) return 0;
+    const Vec3 outward = plane.normal / length;
+    double outermost = -std::numeric_limits<double>::infinity();
+    for (const Vec3& v : drawn->vertices) outermost = std::max(outermost, dot(v, outward));
+    const double way = plane.point ? dot(*plane.point, outward) - outermost : plane.limit_dp * dp;
+    if (way <= one_surface_dp * dp || way > before_nodes_dp * dp) return 0;
+    PolyhedronOp shape = *drawn;
+    for (Vec3& v : shape.vertices)
+        if (dot(v, outward) > outermost - one_surface_dp * dp) v = v + way * outward;
+    wall.what = Shape(std::move(shape));
+    return way / dp;
+}
+
+/// The same by all planes of the case.
+void move_to_planes(CaseDef& def, const std::set<const DrawOp*>& walls,
+                    std::vector<std::string>& said)
+{
+    for (DrawOp& op : def.ops)
+    {
+        if (!walls.contains(&op)) continue;
+        for (const NormalOp& normals : def.normals.ops)
+        {
+            const auto* plane = std::get_if<PlaneNormals>(&normals.what);
+            const std::vector<std::uint16_t>& mk = normals.mk;
+            if (plane == nullptr || std::find(mk.begin(), mk.end(), op.state->mk.mk) == mk.end())
+                continue;
+            if (const double moved = move_to_plane(*plane, def.grid.dp, op); moved > 0)
+                said.push_back(
+                    fmt::format("{}: its surface is the plane of <norplane> in line {}, "
+                                "{:.2g} dp from where it is drawn",
+                                place_of(def, op.source), normals.line, moved));
+        }
+    }
+}
+
+/// Gives walls the surfaces of the file for normals, and takes them out of `walls`.
+void move_to_geometry(const Scene& scene, int threads, CaseDef& def, std::set<const DrawOp*>& walls,
+                      std::vector<std::string>& out)
+{
     const std::vector<const DrawOp*> shapes = draws_of_surfaces(scene);
-    std::set<const DrawOp*> walls;
-    for (const SceneStep& step : scene.steps)
-        if (is_in_layers(step, def)) walls.insert(step.draw);
     for (const DrawOp* shape : shapes) walls.erase(shape);
-    std::vector<std::string> out;
     std::vector<MovedWall> moved;
     for (DrawOp& op : def.ops)
     {
@@ -285,6 +324,19 @@ std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, Cas
                             "too.",
                             place_of(def, op.source)));
     }
+}
+
+} // namespace
+
+std::vector<std::string> draw_true_surfaces(const Scene& scene, int threads, CaseDef& def)
+{
+    std::vector<std::string> out;
+    if (!def.normals.is_active || def.fit.is_empty()) return out;
+    std::set<const DrawOp*> walls;
+    for (const SceneStep& step : scene.steps)
+        if (is_in_layers(step, def)) walls.insert(step.draw);
+    if (def.normals.geometry) move_to_geometry(scene, threads, def, walls, out);
+    move_to_planes(def, walls, out);
     return out;
 }
 
