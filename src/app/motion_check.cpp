@@ -95,7 +95,10 @@ private:
                            (corner & 4U) != 0 ? box.max.z : box.min.z}));
         for (int axis = 0; axis < 3; ++axis)
         {
-            if (def_.grid.is_2d && axis == 1) continue;
+            // The solver takes what leaves a period in at its other end.
+            if ((def_.grid.is_2d && axis == 1) ||
+                def_.grid.is_periodic[static_cast<std::size_t>(axis)])
+                continue;
             const double room = def_.grid.dp;
             const double low = def_.case_pos_min[axis];
             const double high = def_.case_pos_max[axis];

@@ -11,7 +11,8 @@ namespace fppg
 
 /// Moving parts that leave the domain: every moving block's box is followed through the movements
 /// of `<motion>` up to TimeMax (10 s without it) in 2000 steps. Movements that files give are not
-/// followed, nor is a case whose `<simulationdomain>` gives limits of its own.
+/// followed, nor is a case whose `<simulationdomain>` gives limits of its own. Nothing leaves along
+/// a periodic axis.
 ///
 /// returns  a sentence a moving block that leaves, with file, line, time and place
 std::vector<std::string> check_motion(const CaseDef& def, const CaseParticles& particles);

@@ -167,6 +167,11 @@ TEST(Diagnostic, AMovingPartThatLeavesTheDomainIsTold)
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="-1"><vel x="2" y="0" z="0" /></mvrect></objreal></motion>)";
     expect_diagnostic(scene, R"(<objreal ref="0">: by t = 0.65)");
+    const std::string usual = scene.text.execution;
+    scene.text.execution =
+        R"(<parameters><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
+    EXPECT_FALSE(contains(scene.run().output, "<objreal")) << "it comes back at the other end";
+    scene.text.execution = usual;
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrectsinu id="1" duration="5"><freq x="1" y="0" z="0" /><ampl x="0.4" y="0" z="0" /></mvrectsinu></objreal></motion>)";
     EXPECT_FALSE(contains(scene.run().output, "<objreal"));
