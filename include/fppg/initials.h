@@ -26,6 +26,7 @@ struct PositionFilter
         return min.x <= p.x && p.x <= max.x && min.y <= p.y && p.y <= max.y && min.z <= p.z &&
                p.z <= max.z;
     }
+    bool operator==(const PositionFilter&) const = default;
 };
 
 /// `<velocity>`: the same velocity everywhere, m/s.

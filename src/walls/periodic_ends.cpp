@@ -13,7 +13,8 @@ namespace fppg
 namespace
 {
 
-constexpr double at_end_dp = 0.75;
+constexpr double at_end_dp = 0.75; ///< of a period
+/// More than walls are laid beyond a period and layers reach behind their ends together.
 constexpr double goes_on_dp = 8;
 /// Of the cosine between a normal and the axis.
 constexpr double off_axis = 1e-6;
@@ -102,7 +103,8 @@ private:
 std::optional<LatticeGrid> lattice_of_period(const Scene& scene, int threads)
 {
     const CaseDef& def = *scene.def;
-    if (def.fit.is_empty() || def.vres.is_active() || def.grid.is_periodic == std::array<bool, 3>{})
+    if (def.fit.is_empty() || def.vres.is_active() || !def.point_files.empty() ||
+        def.grid.is_periodic == std::array<bool, 3>{})
         return std::nullopt;
     LatticeGrid grid = def.grid;
     try

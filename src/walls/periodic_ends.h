@@ -11,7 +11,7 @@ namespace fppg
 /// The lattice of a periodic case with body-fitted walls, from the first to the last node that
 /// anything is drawn on along its periodic axes: the solver's period is the extent of the particles
 /// and dp, however far `<definition>` reaches (JSph.cpp v5.4). Empty where that is the lattice of
-/// the case already, and for cases with `<vres>`.
+/// the case already, and for cases with `<vres>` or with points from files.
 std::optional<LatticeGrid> lattice_of_period(const Scene& scene, int threads);
 
 /// Lets a shape go on over both ends of a period that it is drawn up to, within 0.75 dp, as the

@@ -244,45 +244,62 @@ bool stands_on(const std::vector<MovedWall>& moved, const Scene& scene, const Dr
                        });
 }
 
-/// Moves the outermost corners of a wall onto the plane that `<norplane>` has for its normals: up
-/// to a dp before the nodes that the case draws.
-///
-/// returns  how far, dp; 0: nothing moved
-double move_to_plane(const PlaneNormals& plane, double dp, DrawOp& wall)
+/// How far a wall reaches along a direction, metres; empty where it has no plane faces.
+std::optional<double> outermost_of(const DrawOp& wall, const Vec3& outward)
 {
     const auto* drawn = shape_as<PolyhedronOp>(wall);
-    const double length = norm(plane.normal);
-    if (drawn == nullptr || drawn->vertices.empty() || !(length > 0)) return 0;
-    const Vec3 outward = plane.normal / length;
-    double outermost = -std::numeric_limits<double>::infinity();
-    for (const Vec3& v : drawn->vertices) outermost = std::max(outermost, dot(v, outward));
-    const double way = plane.point ? dot(*plane.point, outward) - outermost : plane.limit_dp * dp;
-    if (way <= one_surface_dp * dp || way > before_nodes_dp * dp) return 0;
-    PolyhedronOp shape = *drawn;
+    if (drawn == nullptr || drawn->vertices.empty()) return std::nullopt;
+    double out = -std::numeric_limits<double>::infinity();
+    for (const Vec3& v : drawn->vertices) out = std::max(out, dot(v, outward));
+    return out;
+}
+
+/// Moves the outermost corners of a wall along a direction, metres.
+void move_outermost(const Vec3& outward, double way, double dp, DrawOp& wall)
+{
+    PolyhedronOp shape = *shape_as<PolyhedronOp>(wall);
+    const double outermost = *outermost_of(wall, outward);
     for (Vec3& v : shape.vertices)
         if (dot(v, outward) > outermost - one_surface_dp * dp) v = v + way * outward;
     wall.what = Shape(std::move(shape));
-    return way / dp;
 }
 
-/// The same by all planes of the case.
+/// Moves walls onto the planes that `<norplane>` has for their normals: up to a dp before the nodes
+/// that the case draws. A plane without a point lies before the outermost wall of its mk, if all of
+/// them have plane faces.
 void move_to_planes(CaseDef& def, const std::set<const DrawOp*>& walls,
                     std::vector<std::string>& said)
 {
-    for (DrawOp& op : def.ops)
+    const double dp = def.grid.dp;
+    for (const NormalOp& normals : def.normals.ops)
     {
-        if (!walls.contains(&op)) continue;
-        for (const NormalOp& normals : def.normals.ops)
+        const auto* plane = std::get_if<PlaneNormals>(&normals.what);
+        if (plane == nullptr || !(norm(plane->normal) > 0) || normals.only != PositionFilter{})
+            continue;
+        const Vec3 outward = plane->normal / norm(plane->normal);
+        for (const std::uint16_t mk : normals.mk)
         {
-            const auto* plane = std::get_if<PlaneNormals>(&normals.what);
-            const std::vector<std::uint16_t>& mk = normals.mk;
-            if (plane == nullptr || std::find(mk.begin(), mk.end(), op.state->mk.mk) == mk.end())
-                continue;
-            if (const double moved = move_to_plane(*plane, def.grid.dp, op); moved > 0)
+            std::vector<DrawOp*> of_mk;
+            for (DrawOp& op : def.ops)
+                if (walls.contains(&op) && op.state->mk.mk == mk) of_mk.push_back(&op);
+            double outermost = -std::numeric_limits<double>::infinity();
+            for (const DrawOp* op : of_mk)
+                outermost = std::max(
+                    outermost,
+                    outermost_of(*op, outward).value_or(std::numeric_limits<double>::infinity()));
+            const double place =
+                plane->point ? dot(*plane->point, outward) : outermost + plane->limit_dp * dp;
+            for (DrawOp* op : of_mk)
+            {
+                const std::optional<double> own = outermost_of(*op, outward);
+                const double way = own ? place - *own : 0;
+                if (way <= one_surface_dp * dp || way > before_nodes_dp * dp) continue;
+                move_outermost(outward, way, dp, *op);
                 said.push_back(
                     fmt::format("{}: its surface is the plane of <norplane> in line {}, "
                                 "{:.2g} dp from where it is drawn",
-                                place_of(def, op.source), normals.line, moved));
+                                place_of(def, op->source), normals.line, way / dp));
+            }
         }
     }
 }

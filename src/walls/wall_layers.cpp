@@ -53,10 +53,7 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
             if (here.depth < gap_depth_dp * grid.dp) continue;
             // Thick enough for all layers and nodes under them: they are the ones to fill it.
             if (wall.at(here.foot + enough * here.direction).depth > enough * (1 - 1e-6)) continue;
-            if (!found.empty() && found.back().y == span.y && found.back().z_end == z)
-                ++found.back().z_end;
-            else
-                found.push_back({span.y, z, z + 1});
+            append_node(found, span.y, z);
         }
     return found;
 }

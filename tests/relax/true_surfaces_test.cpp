@@ -173,10 +173,11 @@ TEST(TrueSurfaces, AreThePlanesThatNormalsLeadTo)
     CaseText text = case_of(
         R"(<setdrawmode mode="full" /><setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0.1" /><size x="1.5" y="0" z="0.8" /></drawbox>
 <setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="-0.3" /><size x="1.5" y="0" z="0.3" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="0" y="0" z="-1" /><size x="1.5" y="0" z="0.4" /></drawbox>
 <setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="1" /><size x="1.5" y="0" z="0.3" /></drawbox>)",
         R"(<bodyfitted />)");
     text.dp = "0.1";
-    text.pointmin = R"(<pointmin x="0" y="0" z="-0.4" />)";
+    text.pointmin = R"(<pointmin x="0" y="0" z="-1.1" />)";
     text.pointmax = R"(<pointmax x="1.5" y="0" z="1.5" />)";
     text.after_geometry +=
         R"(<normals><norplane mkbound="0"><point auto="true" /><normal x="0" y="0" z="1" /></norplane><norplane mkbound="1"><point x="0" y="0" z="0.95" /><normal x="0" y="0" z="-1" /></norplane></normals>)";
@@ -185,12 +186,18 @@ TEST(TrueSurfaces, AreThePlanesThatNormalsLeadTo)
     const Result made = make(text);
     ASSERT_EQ(made.code, 0) << made.output;
     EXPECT_TRUE(contains(made.log, "its surface is the plane of <norplane>")) << made.log;
-    fppg::Box3 fluid, lower, upper;
+    fppg::Box3 fluid, lower, lowest, upper;
     for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
-        (made.cloud.mk[i] < first_bound    ? fluid
-         : made.cloud.mk[i] == first_bound ? lower
-                                           : upper)
-            .add(made.cloud.positions[i]);
+    {
+        const fppg::Vec3& p = made.cloud.positions[i];
+        const auto mk = made.cloud.mk[i];
+        (mk < first_bound    ? fluid
+         : mk != first_bound ? upper
+         : p.z < -0.45       ? lowest
+                             : lower)
+            .add(p);
+    }
+    EXPECT_NEAR(lowest.max.z, -0.65, 1e-6) << "the plane lies before the outermost wall";
     EXPECT_NEAR(lower.max.z, 0.0, 1e-6) << "half a dp behind the plane";
     EXPECT_NEAR(upper.min.z, 1.0, 1e-6);
     EXPECT_NEAR(fluid.min.z, 0.1, 0.02);
