@@ -14,9 +14,12 @@ namespace fppg
 struct ExclusionBandOptions
 {
     /// Lattice nodes nearer to the surface than this are left out, in dp, 0.5 to 1.0. Empty: chosen
-    /// for each side so that nodes and half of the wall's particles make up its volume.
+    /// for each side so that nodes and what is inside of the wall's particles make up its volume.
     std::optional<double> clearance_dp;
     std::uint64_t wall_particles = 0; ///< on this surface, one dp^2 each
+    /// How much of what they stand for is inside, the mean, where every facet has the body on one
+    /// side: less than one half where edges are convex (fit/inside_angles.h).
+    double share_inside = 0.5;
     /// The nodes of `volume` will be drawn: they stop fills themselves, and may stay from 0.4 dp on
     /// where the volume asks for them.
     bool is_solid = false;
@@ -41,8 +44,9 @@ struct ExclusionBand
     double area = 0;         ///< of all facets, metres squared (2D: length of the section times dp)
     double sheet_area = 0;   ///< of facets that bound no volume, likewise
     std::uint64_t nodes = 0; ///< that `volume` would have if the lattice held all of the body
-    /// How much of the wall's particles lies in the body: one half where every facet has the body
-    /// on one side, more where parts run through one another, less where sheets stand out of it.
+    /// How much of the wall's particles lies in the body: the given share_inside where every facet
+    /// has the body on one side, more where parts run through one another, less where sheets stand
+    /// out of it.
     double wall_share_inside = 0.5;
     /// (nodes of `volume` + wall_particles * wall_share_inside) dp^3 / body_volume - 1, over all of
     /// the body, be it in the lattice or not; 0 without an inside
@@ -63,7 +67,7 @@ struct ExclusionBand
 ///   outside: nodes inside or in the zone = volume / dp^3 + wall_particles * (1 - share)
 /// or the limits 0.5 and 1.0 dp are reached. (No node is ever kept nearer than 0.5 dp: a plane wall
 /// whose nearest nodes inside stand at t < 0.5 dp lacks t dp of thickness, so the volume error of
-/// a body whose walls all lie so is down to -t dp area / volume.) The share is one half but for
+/// a body whose walls all lie so is down to -t dp area / volume.) The share is that given, but for
 /// parts that run through one another and sheets that stand out (wall_share_inside). A mesh without
 /// an inside has the clearance 0.5 on both sides.
 ///

@@ -56,6 +56,11 @@ inline double norm(const Vec3& a)
 {
     return std::sqrt(dot(a, a));
 }
+/// Radians between two directions, 0 to pi, exact near both ends.
+inline double angle_between(const Vec3& a, const Vec3& b)
+{
+    return std::atan2(norm(cross(a, b)), dot(a, b));
+}
 inline bool is_finite(const Vec3& a)
 {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -108,7 +109,10 @@ private:
         const double expected = measures.area / (dp_ * dp_);
         if (!(expected > 0) || has_layers(b)) return {};
         const double share = measures.wall_particles / expected - 1;
-        if (std::abs(share) > largest_of_count && !body.is_inside)
+        // A strip that is left of a layer in a corner is no wall of its own.
+        const double off =
+            (measures.wall_particles - expected) / std::max(expected, mean_of_layers(b));
+        if (std::abs(off) > largest_of_count && !body.is_inside)
             counts_[why_count(b, expected, share)].add(
                 body.mk, share,
                 fmt::format("<{}> of line {} has {:.0f} particles on {:.4g} {}, {:.0f} would be "
@@ -129,6 +133,22 @@ private:
         count_of(l);
         return fmt::format("{} ({})", count,
                            percent(walls_.bodies[l].measures.wall_particles / expected - 1));
+    }
+
+    /// The particles that a layer of the wall of a layer should have, the mean; 0 of other bodies.
+    double mean_of_layers(std::size_t b) const
+    {
+        if (!walls_.bodies[b].is_layer()) return 0;
+        const std::uint32_t owner = walls_.bodies[b].owner;
+        double area = 0;
+        std::size_t n = 0;
+        for (std::size_t l = owner + std::size_t{1}; l < walls_.bodies.size(); ++l)
+        {
+            if (walls_.bodies[l].owner != owner) break;
+            area += walls_.bodies[l].measures.area;
+            ++n;
+        }
+        return area / (static_cast<double>(n) * dp_ * dp_);
     }
 
     /// Its layers follow it.

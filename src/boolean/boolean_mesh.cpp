@@ -533,9 +533,7 @@ private:
                 continue;
             }
             if (out.parts[f] == out.parts[g]) continue;
-            const double angle = std::atan2(norm(cross(mesh.normals[f], mesh.normals[g])),
-                                            dot(mesh.normals[f], mesh.normals[g]));
-            if (angle > limit) out.seams.push_back(e);
+            if (angle_between(mesh.normals[f], mesh.normals[g]) > limit) out.seams.push_back(e);
         }
     }
 

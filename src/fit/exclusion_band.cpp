@@ -376,6 +376,7 @@ private:
         }
         zone_.body_volume = grid_.is_2d ? wall.section_area * grid_.dp : part_.volume;
         zone_.has_inside = part_.volume > 0 && zone_.body_volume > 0;
+        zone_.wall_share_inside = options_.share_inside;
     }
 
     void find_inside(const Wall& wall)
@@ -397,7 +398,7 @@ private:
             overlap_ = measure_overlap(part_.soup, threads_);
         zone_.body_volume -= overlap_;
         if (overlap_ != 0 || zone_.sheet_facets > 0)
-            zone_.wall_share_inside = share_inside(wall, part_.soup, grid_.dp, threads_);
+            zone_.wall_share_inside *= 2 * share_inside(wall, part_.soup, grid_.dp, threads_);
         inside_ = std::move(vote.inside);
     }
 

@@ -28,11 +28,6 @@ struct Chain
     const Vec3& end_of(std::size_t segment) const { return points[(segment + 1) % points.size()]; }
 };
 
-double angle_between_deg(const Vec3& a, const Vec3& b)
-{
-    return std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
-}
-
 /// For every piece the one that follows it and the one before, or no_index. Where an edge has more
 /// than two facets, pieces are paired in the order of their facets.
 struct Links
@@ -180,10 +175,10 @@ private:
     /// surface must turn as well.
     bool is_corner(const Chain& chain, std::size_t before, std::size_t after) const
     {
-        const double limit = options_.feature_angle_deg + 0.01;
-        return angle_between_deg(normal_of(chain, before), normal_of(chain, after)) > limit &&
-               angle_between_deg(mesh_.normals[chain.facets[before]],
-                                 mesh_.normals[chain.facets[after]]) > limit;
+        const double limit = (options_.feature_angle_deg + 0.01) * std::numbers::pi / 180;
+        return angle_between(normal_of(chain, before), normal_of(chain, after)) > limit &&
+               angle_between(mesh_.normals[chain.facets[before]],
+                             mesh_.normals[chain.facets[after]]) > limit;
     }
 
     /// Indices of the points that are corners and keep their distance along the chain.

@@ -25,11 +25,6 @@ Vec3 turned(const Transform& place, const Vec3& v)
     return {dot(place.linear[0], v), dot(place.linear[1], v), dot(place.linear[2], v)};
 }
 
-double angle_of(const Vec3& a, const Vec3& b)
-{
-    return std::atan2(norm(cross(a, b)), dot(a, b));
-}
-
 /// One step of Newton's method towards the place nearest to p, in parameters; false where the face
 /// is degenerate there.
 bool newton_step(const FacePoint& at, const Vec3& p, double& du, double& dv)
@@ -212,7 +207,7 @@ double CadSurface::bend_at(const SurfaceMesh& mesh, std::uint32_t edge) const
     // As the facets look: those of a mended mesh may be turned.
     const auto facing = [&](const FaceFoot& foot, std::uint32_t facet)
     { return dot(foot.normal, mesh.normals[facet]) < 0 ? -foot.normal : foot.normal; };
-    return angle_of(facing(*of_a, f), facing(*of_b, g));
+    return angle_between(facing(*of_a, f), facing(*of_b, g));
 }
 
 void CadSurface::measure_chord(const SurfaceMesh& mesh, int threads)

@@ -21,12 +21,6 @@ constexpr double spare_deg = 0.01;
 /// would be up to twice as many particles as elsewhere.
 constexpr double line_reach_dp = 0.7;
 
-/// Radians between two directions, exact near 0 and pi as well.
-double angle_between(const Vec3& a, const Vec3& b)
-{
-    return std::atan2(norm(cross(a, b)), dot(a, b));
-}
-
 bool is_feature(const SurfaceMesh& mesh, std::size_t e, double limit)
 {
     const auto [f, g] = mesh.edge_facets[e];

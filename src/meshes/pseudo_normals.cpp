@@ -27,7 +27,7 @@ double angle_at(const SurfaceMesh& mesh, std::uint32_t facet, std::uint32_t v)
     const Vec3& origin = mesh.vertices[corners[at]];
     const Vec3 a = mesh.vertices[corners[(at + 1) % 3]] - origin;
     const Vec3 b = mesh.vertices[corners[(at + 2) % 3]] - origin;
-    return std::atan2(norm(cross(a, b)), dot(a, b));
+    return angle_between(a, b);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "fppg/section.h"
 
 #include "core/parallel.h"
+#include "fit/inside_angles.h"
 #include "meshes/cad_surface.h"
 #include "meshes/crowded_points.h"
 #include "meshes/round_surface.h"
@@ -63,13 +64,15 @@ void take_measures(const ExclusionBand& zone, const ExclusionBandOptions& option
 }
 
 /// The nodes inside a body and around its surface, and the clearances.
-void find_nodes(const FitSettings& settings, const LatticeGrid& grid, std::size_t wall_particles,
-                int threads, FittedDraw& out)
+void find_nodes(const FitSettings& settings, const LatticeGrid& grid, int threads, FittedDraw& out)
 {
     FittedBody& body = out.body;
     ExclusionBandOptions options;
     options.clearance_dp = settings.clearance_dp;
-    options.wall_particles = wall_particles;
+    options.wall_particles = out.particles.size();
+    options.share_inside = mean_share_inside(
+        body.mesh, {out.particles.positions, out.particles.kinds, out.particles.facets},
+        grid.is_2d);
     options.is_solid = body.is_solid;
     options.is_before_layers = !settings.depths_dp.empty() && settings.depths_dp[0] > 0;
     ExclusionBand zone = exclusion_band(body.mesh, body.report, grid, options, threads);
@@ -328,7 +331,7 @@ FittedDraw fit_body(FittedBody&& given, const FitSettings& settings, const Latti
     out.body = std::move(given);
     out.warnings = out.body.report.warnings;
     add_surface(settings, grid, threads, out);
-    find_nodes(settings, grid, out.particles.size(), threads, out);
+    find_nodes(settings, grid, threads, out);
     if (settings.may_be_open && !has_room_inside(out.body, grid.dp))
         return fit_body(std::move(out.body), of_open_body(settings), grid, clips, threads);
     if (settings.place == Placement::Inside)

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -177,6 +179,23 @@ TEST(Diagnostic, AMovingPartThatLeavesTheDomainIsTold)
     EXPECT_FALSE(contains(scene.run().output, "<objreal"));
     scene.text.after_geometry =
         R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="1.2" y="0" z="0" /><axisp2 x="1.2" y="1" z="0" /></mvrot></objreal></motion>)";
+    expect_diagnostic(scene, R"(<objreal ref="0">: by t =)");
+}
+
+TEST(Diagnostic, AWheelThatTurnsInTheDomainDoesNotLeaveIt)
+{
+    // The corners of its box would.
+    Scene scene(
+        R"(<drawcylinder radius="0.9"><point x="0.5" y="0" z="0.5" /><point x="0.5" y="0.3" z="0.5" /></drawcylinder>)");
+    const auto turn_about = [](double x)
+    {
+        return fmt::format(
+            R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="{0}" y="0" z="0.5" /><axisp2 x="{0}" y="1" z="0.5" /></mvrot></objreal></motion>)",
+            x);
+    };
+    scene.text.after_geometry = turn_about(0.5);
+    EXPECT_FALSE(contains(scene.run().output, "<objreal"));
+    scene.text.after_geometry = turn_about(0.75);
     expect_diagnostic(scene, R"(<objreal ref="0">: by t =)");
 }
 

@@ -66,7 +66,7 @@ TEST(ExclusionBand, HoldsTheNodesOfThePlainSearch)
     }
 }
 
-TEST(ExclusionBand, NodesAndHalfOfTheWallMakeUpTheVolume)
+TEST(ExclusionBand, NodesAndWhatIsInsideOfTheWallMakeUpTheVolume)
 {
     for (const double shift : {0.0, 0.2, 0.5, 0.7})
         EXPECT_NEAR(fit_soup(sphere(4), 0.04, shift).zone.volume_error, 0, 0.005);
@@ -79,6 +79,14 @@ TEST(ExclusionBand, FillsAnAlignedCubeThoughItsNodesAllStandEquallyFar)
     const FittedMesh fitted = fit_soup(box({0, 0, 0}, {2, 2, 2}), 0.05, 0);
     EXPECT_NEAR(fitted.volume(), 8, 0.02);
     EXPECT_NEAR(fit_soup(box({0, 0, 0}, {2, 2, 2}), 0.05, 0.5).volume(), 8, 0.02);
+}
+
+TEST(ExclusionBand, LeavesNoNodeOutBehindFacesOnNodes)
+{
+    // Particles on edges stand for a quarter of a cell inside, those on corners for an eighth.
+    const FittedMesh fitted = fit_soup(box({0, 0, 0}, {2, 1.5, 1}), 0.05, 0);
+    EXPECT_EQ(fitted.volume_nodes(), 39u * 29 * 19);
+    EXPECT_EQ(count_nodes(fitted.zone.zone), 41u * 31 * 21 - 39u * 29 * 19);
 }
 
 TEST(ExclusionBand, LeavesRoomOutsideForTheOtherHalfOfTheWall)

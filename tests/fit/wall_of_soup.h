@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fit/inside_angles.h"
 #include "fppg/exclusion_band.h"
 #include "fppg/features.h"
 #include "fppg/fit.h"
@@ -63,13 +64,15 @@ inline FittedMesh fit_soup(const TriangleSoup& soup, double dp = 0, double shift
     const Features features = find_features(mesh, feature_options);
     FitOptions fit_options;
     fit_options.dp = dp;
-    result.wall_particles =
+    const SurfaceParticles particles =
         fit_surface(mesh, features, place_feature_particles(mesh, features, feature_options),
-                    fit_options, threads)
-            .positions.size();
+                    fit_options, threads);
+    result.wall_particles = particles.positions.size();
     result.grid = lattice_around(result.report.bounds, dp, shift);
     ExclusionBandOptions options;
     options.wall_particles = result.wall_particles;
+    options.share_inside =
+        mean_share_inside(mesh, {particles.positions, particles.kinds, particles.facets}, false);
     result.zone = exclusion_band(mesh, result.report, result.grid, options, threads);
     result.warnings = result.report.warnings;
     result.warnings.insert(result.warnings.end(), result.zone.warnings.begin(),

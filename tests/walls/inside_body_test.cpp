@@ -300,8 +300,11 @@ TEST_P(VolumeKept, WhileAPlateIsRelaxed)
     drawing.box({-0.91, -0.73, -0.037}, size);
     const RunField field = relaxed(drawing);
     const double volume = size.x * size.y * size.z;
-    const double walls = 0.5 * static_cast<double>(field.walls.particles.size());
-    const double nodes = static_cast<double>(particles_of(field).size()) - 2 * walls;
+    double walls = 0; // on faces one half is inside, on edges a quarter, on corners an eighth
+    for (const FitKind kind : field.walls.particles.kinds)
+        walls += kind == FitKind::Surface ? 0.5 : kind == FitKind::Edge ? 0.25 : 0.125;
+    const double nodes = static_cast<double>(particles_of(field).size()) -
+                         static_cast<double>(field.walls.particles.size());
     EXPECT_NEAR((walls + nodes) * std::pow(dp, 3) / volume, 1, 0.005);
     EXPECT_NEAR(
         (field.walls.bodies[0].measures.node_volume + field.walls.bodies[0].measures.wall_volume) /

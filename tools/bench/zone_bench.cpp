@@ -5,6 +5,7 @@
 //
 // The lattice stands on whole multiples of dp, moved by `shift` dp.
 
+#include "fit/inside_angles.h"
 #include "fit/near_nodes.h"
 #include "fppg/exclusion_band.h"
 #include "fppg/features.h"
@@ -75,6 +76,8 @@ int main(int argc, char** argv)
     }
     fppg::ExclusionBandOptions options;
     options.wall_particles = particles.positions.size();
+    options.share_inside = fppg::mean_share_inside(
+        mesh, {particles.positions, particles.kinds, particles.facets}, is_2d);
     fppg::TriangleSoup soup;
     for (const auto& facet : mesh.facets)
         for (const std::uint32_t v : facet) soup.vertices.push_back(mesh.vertices[v]);
