@@ -67,6 +67,7 @@ struct FittedBody
     /// Of a combination of parts, per facet the mk of the part that it belongs to; else empty.
     std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
+    std::string continued_along; ///< axes along which it goes on over the period, such as "x"
     std::shared_ptr<const RoundSurface> round; ///< null: the triangles are the shape
     std::shared_ptr<const CadSurface> cad;     ///< the same of CAD models
     SurfaceMesh mesh;

@@ -151,6 +151,9 @@ void log_fitted_walls(const RunField& field, RunLog& log)
         log.line(fmt::format("  {} (xml row:{}, mk:{}): {} corner, {} edge, {} surface particles{}",
                              body.name, body.line, body.mk, all[0], all[1], all[2],
                              layers.empty() ? "" : ", in layers of " + layers));
+        if (!body.continued_along.empty())
+            log.line(fmt::format("    goes on over the period along {}",
+                                 fmt::join(body.continued_along, " and ")));
         if (body.sheets > 0)
             log.line(fmt::format(
                 "    {} through its thickness of {:.4g} dp: {:.4g} dp apart across ({:+.3g} %), "

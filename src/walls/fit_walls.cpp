@@ -154,10 +154,12 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
+    std::string axes;
     if (extent == BodyExtent::NearDomain && shape.cad == nullptr)
-        continue_over_periods(grid, shape.soup);
+        axes = continue_over_periods(grid, shape.soup);
     FittedDraw out = fit_shape(shape, settings, grid, draw.state->clips, extent, threads);
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
+    out.body.continued_along = std::move(axes);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
@@ -253,9 +255,12 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
     const DrawState& state = *combination.whole.state;
     const bool is_sheet = boolean.parts[0].is_surface;
     std::vector<BooleanWallPart> parts = boolean_parts(scene, combination, PartsAs::Drawn, threads);
+    std::string axes; // of the part that goes on along most of them
     for (BooleanWallPart& part : parts)
         if (part.cad == nullptr && !is_laid_whole(*scene.def, part.mk))
-            continue_over_periods(scene.def->grid, part.soup);
+            if (std::string of_part = continue_over_periods(scene.def->grid, part.soup);
+                of_part.size() > axes.size())
+                axes = std::move(of_part);
     FittedStep out;
     out.is_fitted = true;
     if (!state.draw_points) return out;
@@ -264,6 +269,7 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
         FittedDraw draw =
             fit_boolean(parts, boolean.tree, settings, scene.def->grid, state.clips, threads);
         const SourceRef& source = combination.whole.source;
+        draw.body.continued_along = axes;
         draw.body.line = boolean.line;
         draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
         if (combination.hollowed != nullptr && !is_sheet)

@@ -127,15 +127,18 @@ std::optional<LatticeGrid> lattice_of_period(const Scene& scene, int threads)
     return grid;
 }
 
-void continue_over_periods(const LatticeGrid& grid, TriangleSoup& soup)
+std::string continue_over_periods(const LatticeGrid& grid, TriangleSoup& soup)
 {
+    std::string axes;
     for (int axis = 0; axis < 3; ++axis)
     {
         if (!grid.is_periodic[static_cast<std::size_t>(axis)] || soup.size() == 0) continue;
         const Ends ends(grid, axis, soup);
         if (!ends.are_met() || !ends.are_plane(soup)) continue;
         for (Vec3& v : soup.vertices) v[axis] += ends.end_of(v) * goes_on_dp * grid.dp;
+        axes += "xyz"[axis];
     }
+    return axes;
 }
 
 } // namespace fppg

@@ -4,6 +4,7 @@
 #include "fppg/scene.h"
 
 #include <optional>
+#include <string>
 
 namespace fppg
 {
@@ -19,6 +20,8 @@ std::optional<LatticeGrid> lattice_of_period(const Scene& scene, int threads);
 /// two steps or more in each layer where copies meet (public mDBC Poiseuille flow: fluid went 3.5
 /// dp into the walls). Nothing is done where its ends are not plane and across the axis, or its
 /// sides there not along it.
-void continue_over_periods(const LatticeGrid& grid, TriangleSoup& soup);
+///
+/// returns  the axes along which it goes on, such as "x"
+std::string continue_over_periods(const LatticeGrid& grid, TriangleSoup& soup);
 
 } // namespace fppg

@@ -373,6 +373,7 @@ TEST(WallsOfAPeriod, GoOnOverItsEnds)
         EXPECT_NE(made.output.find("Period: as far as the case is drawn, from (0, 0, -1) m"),
                   std::string::npos)
             << made.output;
+        EXPECT_NE(made.output.find("goes on over the period along x"), std::string::npos);
         // Of DBC those on the surface: nodes under it make room for its ends.
         const double deepest = boundary[0] == '1' ? 0.501 : 1;
         std::map<int, std::vector<double>> rows; // by their height, mm
