@@ -112,7 +112,13 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     report.particles = near_walls(rest);
     if (report.particles == 0) return report;
     report.held = hold_free_faces(rest, threads);
-    const Balancing balancing{particles, {reach.closest, boundary_of(def)}, threads, on_iteration};
+    RestWalls walls{reach.closest, boundary_of(def)};
+    const std::vector<FittedBody>& bodies = field.walls.bodies;
+    if (walls.boundary == RestBoundary::Dbc &&
+        std::any_of(bodies.begin(), bodies.end(), [](const FittedBody& b) { return b.is_inside; }))
+        walls.is_behind = [&](const Vec3& p, double within)
+        { return bodies[all.closest(p, within).body].is_inside; };
+    const Balancing balancing{particles, walls, threads, on_iteration};
     std::optional<AtRest> out;
     if (packs(def, particles)) out = balancing.packed(rest, report);
     if (!out || out->report.after.mean > calm_packed)

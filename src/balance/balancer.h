@@ -16,6 +16,9 @@ struct RestWalls
 {
     const ClosestWallPoint& closest;
     RestBoundary boundary{};
+    /// Whether the first particles of the wall nearest to a place stand half a dp behind its
+    /// surface though those of others do not (Placement::Inside); empty: nowhere.
+    std::function<bool(const Vec3& place, double within)> is_behind{};
 };
 
 /// To walls, that fluid is moved off, in dp.

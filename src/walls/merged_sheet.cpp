@@ -261,8 +261,8 @@ void sample_line(std::size_t facet, const Middle& middle, const SurfaceMesh& mes
 }
 
 /// Takes candidates that are at least `spacing` from all that is taken, dp, up to a number; at
-/// least least_pair_dp from what keeps its place, for the others are evened out, and between layers
-/// no more than that.
+/// least least_pair_dp from what keeps its place, for the others are evened out. Candidates between
+/// layers are so far from it already.
 void take(const std::vector<MiddlePoint>& candidates, const PointGrid& held, double spacing,
           double dp, std::size_t most, std::vector<MiddlePoint>& sheet)
 {
@@ -273,8 +273,7 @@ void take(const std::vector<MiddlePoint>& candidates, const PointGrid& held, dou
         if (sheet.size() >= most) break;
         const double apart = spacing * p.spacing;
         if (grid.has_nearer(p.position, apart * dp) ||
-            held.has_nearer(p.position,
-                            (p.is_in_gap() ? least_pair_dp : std::max(apart, least_pair_dp)) * dp))
+            (!p.is_in_gap() && held.has_nearer(p.position, std::max(apart, least_pair_dp) * dp)))
             continue;
         grid.add(p.position);
         sheet.push_back(p);
@@ -376,46 +375,58 @@ std::vector<MiddlePoint> fill_sheet(const Middle& middle, const std::vector<Midd
     return sheet;
 }
 
-/// How many particles each point of a gap stands for: of what layers lack there, where they are far
-/// enough for one. A point has an even share of a disk around it (2D: of a piece of the line).
-std::vector<double> numbers_in_gap(const std::vector<MiddlePoint>& points, const PointGrid& taken,
-                                   double dp, bool is_2d)
-{
-    constexpr double disk_dp = 0.45;
-    const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
-    const PointGrid all = grid_of(points, disk_dp * dp);
-    std::vector<double> out;
-    for (const MiddlePoint& p : points)
-    {
-        int in_disk = 0;
-        all.for_each_near(p.position, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk; });
-        out.push_back(taken.has_nearer(p.position, least_pair_dp * dp) ? 0
-                                                                       : p.number * room / in_disk);
-    }
-    return out;
-}
-
 /// Points of a gap that are joined.
 struct GapPatch
 {
     std::vector<MiddlePoint> points;
-    std::vector<double> numbers; ///< of numbers_in_gap()
+    std::vector<double> numbers; ///< of settle_numbers()
+    /// Of the sheet, the particle that was nearest to each point; no_index: it is not known.
+    std::vector<std::uint32_t> nearest;
 };
+
+/// How many particles each point of a gap stands for: of what layers lack there. A point has an
+/// even share of a disk around it (2D: of a piece of the line). Points too near to a layer for a
+/// particle go.
+void settle_numbers(const PointGrid& taken, double dp, bool is_2d, GapPatch& patch)
+{
+    constexpr double disk_dp = 0.45;
+    const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
+    const PointGrid all = grid_of(patch.points, disk_dp * dp);
+    std::vector<MiddlePoint> free;
+    for (const MiddlePoint& p : patch.points)
+    {
+        if (taken.has_nearer(p.position, least_pair_dp * dp)) continue;
+        int in_disk = 0;
+        all.for_each_near(p.position, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk; });
+        free.push_back(p);
+        patch.numbers.push_back(p.number * room / in_disk);
+    }
+    patch.points = std::move(free);
+}
 
 /// Moves each particle of a sheet in a gap to the middle of the points that are nearest to it, as
 /// by Lloyd. Weights by the square of what a point lacks make particles as dense as they are
 /// wanted; with forces between them they leave the middle of the patch for its ends.
-void centre(const Middle& middle, const GapPatch& patch, const PointGrid& taken,
+void centre(const Middle& middle, GapPatch& patch, const PointGrid& taken,
             const MergedSheetOptions& options, int threads, std::vector<MiddlePoint>& sheet)
 {
     const std::vector<MiddlePoint>& points = patch.points;
-    const double reach = widest_spacing * options.dp;
-    const PointGrid grid = grid_of(sheet, reach);
-    std::vector<std::uint32_t> nearest(points.size());
+    const double near = first_spacing_dp * options.dp; // most points have one so near
+    const PointGrid grid = grid_of(sheet, near);
+    patch.nearest.resize(points.size(), no_index);
+    std::vector<std::uint32_t>& nearest = patch.nearest;
     parallel_for(
         points.size(), threads,
         [&](std::size_t k)
-        { nearest[k] = grid.nearest(points[k].position, reach).value_or(no_index); },
+        {
+            const Vec3& p = points[k].position;
+            double reach = near;
+            if (nearest[k] != no_index) // it has hardly moved
+                reach = std::min(reach, norm(p - sheet[nearest[k]].position) * (1 + 1e-9));
+            auto found = grid.nearest(p, reach);
+            if (!found) found = grid.nearest(p, widest_spacing * options.dp);
+            nearest[k] = found.value_or(no_index);
+        },
         256);
     struct Sum
     {
@@ -448,7 +459,7 @@ void centre(const Middle& middle, const GapPatch& patch, const PointGrid& taken,
 std::vector<MiddlePoint> fill_gap(const Middle& middle, GapPatch& patch, const PointGrid& taken,
                                   const MergedSheetOptions& options, int threads)
 {
-    patch.numbers = numbers_in_gap(patch.points, taken, options.dp, options.plane_y.has_value());
+    settle_numbers(taken, options.dp, options.plane_y.has_value(), patch);
     const auto wanted = static_cast<std::size_t>(
         std::lround(std::accumulate(patch.numbers.begin(), patch.numbers.end(), 0.0)));
     std::vector<MiddlePoint> sheet;
@@ -467,7 +478,10 @@ std::vector<GapPatch> patches_of(const std::vector<MiddlePoint>& points, double 
     DisjointSet sets(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i)
         all.for_each_near(points[i].position, patch_dp * dp,
-                          [&](std::uint32_t j, double) { sets.join(i, j); });
+                          [&](std::uint32_t j, double)
+                          {
+                              if (j < i) sets.join(i, j);
+                          });
     std::vector<GapPatch> out;
     std::vector<std::size_t> patch_of(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i)

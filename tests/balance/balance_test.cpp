@@ -440,6 +440,36 @@ TEST(Balance, WaterBelowAFloatingBodyHasThePressureOfTheOpenSurface)
     EXPECT_GT(below, 20u);
 }
 
+/// The first particles of floating bodies stand half a dp inside; held half a dp off the surface as
+/// well, water was pressed towards them.
+TEST(Balance, DeepWaterBesideAFloatingBodyStartsAtRest)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.pointmin = R"(<pointmin x="-0.5" y="0" z="-0.5" />)";
+    text.pointmax = R"(<pointmax x="3.5" y="0" z="5" />)";
+    text.mainlist = R"(<setdrawmode mode="full" />
+<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="-1" z="0" /><size x="3" y="2" z="4" /></drawbox>
+<setmkbound mk="0" /><drawbox><boxfill>all ^ top</boxfill><point x="0" y="-1" z="0" /><size x="3" y="2" z="4.5" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="1.13" y="-1" z="0.97" /><size x="0.8" y="2" z="0.6" /></drawbox>)";
+    text.after_geometry =
+        R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings><fppg><bodyfitted /></fppg>)";
+    const Result r = make(folder, text);
+    ASSERT_TRUE(contains(r.output, "Balanced fluid")) << r.output;
+    const double b = b_of(folder);
+    std::vector<double> near;
+    for (std::size_t i = 0; i < r.cloud.positions.size(); ++i)
+    {
+        const Vec3& p = r.cloud.positions[i];
+        const double off = std::max(std::abs(p.x - 1.53) - 0.4, std::abs(p.z - 1.27) - 0.3);
+        if (r.cloud.mk[i] < first_bound && off < 1.5 * dp)
+            near.push_back(norm(acceleration_2d(r, b, i)) / g);
+    }
+    ASSERT_GT(near.size(), 30u);
+    EXPECT_LT(mean_of(near), 0.02);
+    EXPECT_LT(*std::max_element(near.begin(), near.end()), 0.1);
+}
+
 TEST(Balance, NumberOfFluidThatFitsIsWarnedOfWithABandOrWithout)
 {
     const TemporaryFolder folder;
