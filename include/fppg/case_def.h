@@ -127,8 +127,8 @@ struct FitSettings
     RelaxSettings relax;
     std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
     /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for
-    /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc one less, at least
-    /// two, for sheets with fluid on one side, else none but the surface.
+    /// Mdbc as many as fill the kernel of fluid at the wall, for Dbc those within 0.92 of it, at
+    /// least two, for sheets with fluid on one side, else none but the surface.
     std::optional<int> layers;
     /// Of sheets; empty: away from the fluid, and behind where there is none.
     std::optional<LayerSide> side;

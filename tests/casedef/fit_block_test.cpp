@@ -121,7 +121,7 @@ TEST(FitBlock, TakesTheWordsForItsDefaultsToo)
     FitSettings plain;
     plain.line = settings(def, 0).line;
     plain.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
-    plain.sheet_depths_dp = {0, 1};
+    plain.sheet_depths_dp = {0, 1, 2};
     EXPECT_EQ(settings(def, 0), plain);
 }
 
@@ -171,7 +171,11 @@ TEST(FitBlock, PutsLayersAsDeepAsTheKernelWhereTheCaseAsksForMdbc)
     EXPECT_THAT(settings(dbc, 0).depths_dp, ElementsAre(0, 1, 2));
     EXPECT_FALSE(dbc.normals.is_active);
     EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).depths_dp, IsEmpty());
-    EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).sheet_depths_dp, ElementsAre(0, 1));
+    EXPECT_THAT(settings(read_block("<bodyfitted />"), 0).sheet_depths_dp, ElementsAre(0, 1, 2));
+    // What is farther than 0.92 of the kernel's reach is not felt.
+    CaseText wider = tank_with("<fppg><bodyfitted /></fppg>");
+    wider.constants.replace(wider.constants.find("coefh value=\"1\""), 15, "coefh value=\"1.2\"");
+    EXPECT_THAT(settings(read(wider), 0).sheet_depths_dp, ElementsAre(0, 1, 2));
     EXPECT_THAT(settings(dbc, 0).sheet_depths_dp, IsEmpty());
     EXPECT_THAT(settings(mdbc, 0).sheet_depths_dp, IsEmpty());
 }

@@ -148,7 +148,8 @@ TEST(SheetLayers, StandOnTheDrySideOfTanks)
     const std::array<int, 4> layers = layers_of_tank(wet);
     EXPECT_GT(layers[0], 300);
     EXPECT_GT(layers[1], layers[0]);
-    EXPECT_EQ(layers[2] + layers[3], 0);
+    EXPECT_GT(layers[2], layers[1]);
+    EXPECT_EQ(layers[3], 0);
     EXPECT_TRUE(contains(wet.log, "Balanced fluid")) << wet.log;
     for (const auto& [mainlist, fitted] :
          {std::pair{tank, "<bodyfitted />"}, {tank + water, R"(<bodyfitted layers="1" />)"}})
