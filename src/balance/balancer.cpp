@@ -31,6 +31,9 @@ constexpr double least_distance_dbc = 0.5;
 /// floating bodies was held off them (public SteppedTank: 0.009 g left, 0.002 so).
 constexpr double least_distance_behind = 0.2;
 constexpr double reach_of_walls = 2.5;
+/// Between walls that face each other; nearer ones are pockets, which stay empty (fluid_space.cpp).
+constexpr double narrow = 1.5;
+constexpr double face_to_face = -0.8; ///< cosine between their normals
 /// Nearer particles are pushed apart: high up, where pressures do not, and where they press what
 /// moves against fluid that is held. The push grows with the depth from here on, in dp.
 constexpr float least_pair = 0.6F;
@@ -261,14 +264,32 @@ private:
             if (moved < look_again * rest_.dp || walls_[i].distance - moved > reach) return;
             within = (walls_[i].distance + moved) * (1 + 1e-9);
         }
+        WallPlanes found = find_nearest_wall(rest_.positions[i], reach, closest_, within);
+        add_further_walls(found, rest_.positions[i], reach, closest_);
+        if (!is_first && is_in_pocket(found) && !is_in_pocket(walls_[i]))
+        {
+            rest_.positions[i] = looked_at_[i];
+            velocities_[i] = {};
+            return;
+        }
         looked_at_[i] = rest_.positions[i];
-        walls_[i] = find_nearest_wall(rest_.positions[i], reach, closest_, within);
-        add_further_walls(walls_[i], rest_.positions[i], reach, closest_);
+        walls_[i] = found;
         if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
         const double behind = least_distance_behind * rest_.dp;
         if (is_behind_ && allowed_[i] > behind && walls_[i].distance < reach &&
             is_behind_(rest_.positions[i], walls_[i].distance * (1 + 1e-9)))
             allowed_[i] = behind;
+    }
+
+    /// Whether a place is between walls that are too near to one another for fluid.
+    bool is_in_pocket(const WallPlanes& walls) const
+    {
+        for (const WallPlane& a : walls)
+            for (const WallPlane& b : walls)
+                if (dot(a.normal, b.normal) < face_to_face &&
+                    a.distance + b.distance < narrow * rest_.dp)
+                    return true;
+        return false;
     }
 
     /// Of walls, from the fluid where it is now.

@@ -494,6 +494,24 @@ TEST(FitCheck, IsContentWithABoxOfManyParticles)
     }
 }
 
+/// Closing holes leaves 2 to 5 % too many on it.
+TEST(FitCheck, IsContentWithAFewParticlesTooManyOnABall)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.dp = "0.05";
+    text.mainlist = R"(<setdrawmode mode="face" /><setmkbound mk="0" />)"
+                    R"(<drawsphere radius="0.45"><point x="0.51" y="0.48" z="0.5" /></drawsphere>)";
+    const RunResult result = run_case(folder, text, {"-fit"});
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::size_t at = result.output.find("% of one per dp^2");
+    ASSERT_NE(at, std::string::npos) << result.output;
+    const std::size_t sign = result.output.rfind('+', at);
+    ASSERT_LT(at - sign, 10U) << "it has too few";
+    EXPECT_GT(std::stod(result.output.substr(sign)), 2);
+    EXPECT_FALSE(contains(result.output, "particles on fitted surfaces")) << result.output;
+}
+
 /// The public Dynamic_Crack_Branching: a plate one dp thick that a block drawn later takes half of.
 TEST(FitCheck, NamesABodyThatGaveWayToAnother)
 {

@@ -330,7 +330,7 @@ TEST(FitChoice, OnAddsTheDefaultsToWhatTheBlockNames)
     const CaseDef plain = read(test::tank(), FitChoice::On);
     FitSettings defaults;
     defaults.boundary = WallBoundary::Dbc; // as the case has no parameter Boundary
-    defaults.sheet_depths_dp = {0, 1};
+    defaults.sheet_depths_dp = {0, 1, 2};
     EXPECT_EQ(settings(plain, 5), defaults);
     const CaseDef named =
         read_block(R"(<bodyfitted mkbound="0" featureangle="20" />)", FitChoice::On);
