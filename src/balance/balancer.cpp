@@ -31,9 +31,7 @@ constexpr double least_distance_dbc = 0.5;
 /// floating bodies was held off them (public SteppedTank: 0.009 g left, 0.002 so).
 constexpr double least_distance_behind = 0.2;
 constexpr double reach_of_walls = 2.5;
-/// Between walls that face each other; nearer ones are pockets, which stay empty (fluid_space.cpp).
-constexpr double narrow = 1.5;
-constexpr double face_to_face = -0.8; ///< cosine between their normals
+constexpr double face_to_face = -0.8; ///< cosine between the normals of walls beside a pocket
 /// Nearer particles are pushed apart: high up, where pressures do not, and where they press what
 /// moves against fluid that is held. The push grows with the depth from here on, in dp.
 constexpr float least_pair = 0.6F;
@@ -281,13 +279,14 @@ private:
             allowed_[i] = behind;
     }
 
-    /// Whether a place is between walls that are too near to one another for fluid.
+    /// Whether a place is between walls that are too near to one another for fluid. Gaps up to 2 dp
+    /// beside walls that move are not looked for.
     bool is_in_pocket(const WallPlanes& walls) const
     {
         for (const WallPlane& a : walls)
             for (const WallPlane& b : walls)
                 if (dot(a.normal, b.normal) < face_to_face &&
-                    a.distance + b.distance < narrow * rest_.dp)
+                    a.distance + b.distance < pocket_dp * rest_.dp)
                     return true;
         return false;
     }

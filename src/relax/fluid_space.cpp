@@ -9,6 +9,7 @@
 #include "relax/cube_share.h"
 #include "relax/regions.h"
 #include "relax/wall_ball.h"
+#include "relax/wall_planes.h"
 
 #include <algorithm>
 #include <array>
@@ -22,8 +23,7 @@ namespace
 {
 
 // Lengths in dp.
-constexpr double narrow = 1.5;      ///< between walls: a pocket
-constexpr double narrow_moving = 2; ///< the same where one of two moves past the other
+constexpr double pocket_moving = 2; ///< where one of two walls moves past the other
 constexpr double touching = 0.05;   ///< between walls: none
 constexpr double off_the_wall = 2;  ///< where the fluid is looked for that a place belongs to
 constexpr double reach_of_cell = 0.87;
@@ -107,7 +107,7 @@ struct CellSpace
     double owned = 0;        ///< dp^3
     double pocket = 0;       ///< dp^3
     Vec3 pocket_moment;      ///< its volume times its middle
-    double narrowest_dp = narrow_moving;
+    double narrowest_dp = pocket_moving;
     bool is_in_pocket = false; ///< its middle
 };
 
@@ -325,10 +325,10 @@ private:
     /// Below which width a place between a wall and that at the other side of a ball is a pocket.
     double width_of_pockets(std::uint16_t mk, const WallBall& ball) const
     {
-        if (moving_.empty()) return narrow;
+        if (moving_.empty()) return pocket_dp;
         const std::uint16_t other = all_.closest(ball.other).mk;
-        return other != mk && (moving_.contains(mk) || moving_.contains(other)) ? narrow_moving
-                                                                                : narrow;
+        return other != mk && (moving_.contains(mk) || moving_.contains(other)) ? pocket_moving
+                                                                                : pocket_dp;
     }
 
     void add(const WallFront& front, const Vec3& middle, double volume, CellSpace& out) const

@@ -9,6 +9,9 @@
 namespace fppg
 {
 
+/// Places between walls that are nearer to one another than this are pockets, which stay empty, dp.
+inline constexpr double pocket_dp = 1.5;
+
 /// A wall near a point, as a plane.
 struct WallPlane
 {
