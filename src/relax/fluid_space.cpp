@@ -7,6 +7,7 @@
 #include "fit/near_nodes.h"
 #include "nodes/run_at.h"
 #include "relax/cube_share.h"
+#include "relax/open_levels.h"
 #include "relax/regions.h"
 #include "relax/wall_ball.h"
 #include "relax/wall_planes.h"
@@ -138,6 +139,9 @@ public:
     FluidSpace run()
     {
         if (near_.is_empty()) return {};
+        const Vec3& gravity = def_.constants.gravity;
+        if (gravity.x == 0 && gravity.y == 0 && gravity.z < 0)
+            levels_ = OpenLevels(field_, def_.mk_bound_first, closest_, threads_);
         const std::vector<std::vector<NearNode>> found =
             find_near_nodes(all_.soup(), field_.grid, threads_);
         std::vector<NodeIndex> nodes;
@@ -192,9 +196,15 @@ private:
         return {std::round(at.x), std::round(at.y), std::round(at.z)};
     }
 
+    static Node nearest(const Vec3& at)
+    {
+        return {std::llround(at.x), std::llround(at.y), std::llround(at.z)};
+    }
+
     std::uint16_t fluid_of(const Vec3& node) const
     {
-        return fluid_at(std::llround(node.x), std::llround(node.y), std::llround(node.z));
+        const Node at = nearest(node);
+        return fluid_at(at.x, at.y, at.z);
     }
 
     /// A cell beside a wall whose fluid is looked for.
@@ -246,7 +256,10 @@ private:
             {
                 const std::uint16_t mk = fluid_of(node);
                 const bool is_deeper = dot(node - cell.node, down_) > 0.5;
-                return mk != 0 && (!is_deeper || is_under_roof(cell)) ? mk : std::uint16_t{};
+                const bool is_its =
+                    !is_deeper ||
+                    (!levels_.is_above(nearest(cell.node), nearest(node)) && is_under_roof(cell));
+                return mk != 0 && is_its ? mk : std::uint16_t{};
             };
             std::uint16_t mk = take({std::round(at.x), std::round(at.y), std::round(at.z)});
             for (int i = 0; i < 8 && ball != nullptr && mk == 0; ++i)
@@ -261,7 +274,7 @@ private:
         return 0;
     }
 
-    /// Whether a cell above fluid is not above its free surface: on the level way from the wall
+    /// Whether a cell above fluid is under a roof: on the level way from the wall
     /// there is fluid, or a wall is above, before a node comes that is empty and far from all
     /// walls.
     bool is_under_roof(const CellAtWall& cell) const
@@ -544,6 +557,7 @@ private:
     bool adds_nodes_;
     int threads_;
     FluidNear near_;
+    OpenLevels levels_;
     ClosestWallPoint closest_;
     std::set<std::uint16_t> moving_; ///< mks
     bool has_several_bodies_ = false;

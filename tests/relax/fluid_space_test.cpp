@@ -272,6 +272,18 @@ TEST(FluidSpace, UnderAFreeSurfaceEndsAtItBesideLeaningWallsToo)
     }
 }
 
+TEST(FluidSpace, BesideAFreeSurfaceThereIsNoneUnderARoofAboveIt)
+{
+    // One edge of the plate is 0.9 dp above the surface, the other one more.
+    const Result r = make(case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.23" y="1.04" z="1" /></drawbox>
+<setmkbound mk="1" /><move x="0.3" y="0.22" z="0.47" /><rotate ang="5" x="0" y="1" z="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="0.75" y="0.6" z="0.2" /></drawbox><matrixreset />)" +
+            filled_from({0.2, 0.1, 0.2}),
+        R"(<bodyfitted boundary="mdbc" /><fluidband balance="false" />)"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    for (const Vec3& p : r.fluid()) EXPECT_LT(p.z, r.level()) << p.x << ' ' << p.y;
+}
+
 TEST(FluidSpace, WhereASolidRunsThroughTheWallsOfATankItHasNone)
 {
     const Result r = make(case_of(
