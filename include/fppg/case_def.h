@@ -133,6 +133,7 @@ struct FitSettings
     /// Of sheets; empty: away from the fluid, and behind where there is none.
     std::optional<LayerSide> side;
     bool thickens = false; ///< plates with room for one layer of mDBC; set where walls are fitted
+    bool has_fluid_behind = false; ///< layers of a sheet would stand in fluid; set there too
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;

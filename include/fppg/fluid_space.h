@@ -27,8 +27,9 @@ struct FluidSpace
     std::map<std::uint16_t, double> missing;
     std::map<std::uint16_t, std::size_t> nodes;    ///< by mk of the fluid, those that stay
     std::map<std::uint16_t, std::size_t> left_out; ///< by mk of the fluid: in pockets
-    std::vector<FluidPocket> pockets;              ///< the largest first
-    std::vector<Vec3> pocket_places; ///< of the nodes that were in pockets, ascending x, y, z
+    double pocket_dp = 0; ///< walls nearer to one another have a pocket between them, if none moves
+    std::vector<FluidPocket> pockets; ///< the largest first
+    std::vector<Vec3> pocket_places;  ///< of the nodes that were in pockets, ascending x, y, z
 };
 
 } // namespace fppg

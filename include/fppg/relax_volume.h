@@ -92,6 +92,7 @@ struct RelaxVolumeOptions
     /// where it stands for all of the wall and surroundings.walls is empty. At least 0.
     double behind_wall_dp = 0.5;
     bool has_free_surface = true; ///< a lattice may end in the open, where it is held
+    bool is_solid = false;        ///< the inside of a body: it ends where its walls leave no room
     double clearance_dp = 1.0;    ///< nodes nearer to a wall than this may be missing because of it
     /// Particles are removed where they are too many for the space that the walls leave, and
     /// inserted where they are too few.

@@ -88,6 +88,7 @@ public:
           ghosts_(rest, walls.boundary),
           has_ghosts_(walls.boundary != RestBoundary::Dbc),
           least_distance_(least_distance_dp(walls.boundary)),
+          pocket_((has_ghosts_ ? pocket_of_layers_dp : pocket_dp) * rest.dp),
           mixing_(rest.size(), threads)
     {
     }
@@ -285,8 +286,7 @@ private:
     {
         for (const WallPlane& a : walls)
             for (const WallPlane& b : walls)
-                if (dot(a.normal, b.normal) < face_to_face &&
-                    a.distance + b.distance < pocket_dp * rest_.dp)
+                if (dot(a.normal, b.normal) < face_to_face && a.distance + b.distance < pocket_)
                     return true;
         return false;
     }
@@ -490,6 +490,7 @@ private:
     GhostPressures ghosts_;
     bool has_ghosts_;
     double least_distance_; ///< to a wall, dp
+    double pocket_;         ///< metres between walls with a pocket between them
     double farthest_ = 0;   ///< metres from the start
     RawArray<Vec3> accelerations_;
     RawArray<Vec3> forces_; ///< these and pushes, which are only there while particles move

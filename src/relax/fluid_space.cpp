@@ -121,6 +121,7 @@ public:
           field_(field),
           all_(all),
           adds_nodes_(is_before_layers && !def.fills_litres()),
+          pocket_(is_before_layers ? pocket_of_layers_dp : pocket_dp),
           threads_(threads),
           near_(field, def.mk_bound_first),
           moving_(mks_that_move(def))
@@ -153,6 +154,7 @@ public:
             nodes.size(), threads_, [&](std::size_t i) { cells[i] = measure(nodes[i]); },
             nodes_per_chunk);
         FluidSpace out;
+        out.pocket_dp = pocket_;
         count_nodes(out);
         if (adds_nodes_) add_nodes(cells, out);
         const double dp = field_.grid.dp;
@@ -338,10 +340,10 @@ private:
     /// Below which width a place between a wall and that at the other side of a ball is a pocket.
     double width_of_pockets(std::uint16_t mk, const WallBall& ball) const
     {
-        if (moving_.empty()) return pocket_dp;
+        if (moving_.empty()) return pocket_;
         const std::uint16_t other = all_.closest(ball.other).mk;
         return other != mk && (moving_.contains(mk) || moving_.contains(other)) ? pocket_moving
-                                                                                : pocket_dp;
+                                                                                : pocket_;
     }
 
     void add(const WallFront& front, const Vec3& middle, double volume, CellSpace& out) const
@@ -555,6 +557,7 @@ private:
     RunField& field_;
     const AllWalls& all_;
     bool adds_nodes_;
+    double pocket_; ///< width below which places between walls are pockets, dp
     int threads_;
     FluidNear near_;
     OpenLevels levels_;

@@ -1,12 +1,15 @@
 #include "relax/free_surface.h"
 
 #include "core/parallel.h"
+#include "relax/wall_planes.h"
 
 namespace fppg
 {
 
 namespace
 {
+
+constexpr double least_nearer = 0.05; ///< to a wall, dp
 
 /// Which of the six neighbours along the axes a particle has, as bits.
 unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)
@@ -84,10 +87,21 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
     const auto is_explained = [&](std::size_t i, unsigned side)
     {
         if (!around.closest) return false;
-        Vec3 node = band.place(i);
-        node[static_cast<int>(side / 2)] += side % 2 == 1 ? band.dp : -band.dp;
+        Vec3 way;
+        way[static_cast<int>(side / 2)] = side % 2 == 1 ? band.dp : -band.dp;
+        const Vec3 place = band.place(i);
         const double within = (options.clearance_dp + 1e-4) * band.dp;
-        return norm(around.closest(node, within) - node) <= within;
+        if (!(norm(around.closest(place + way, within) - place - way) <= within)) return false;
+        if (options.is_solid) return true;
+        // A wall that the node is no nearer to than the particle, as one beside it, is no cause.
+        const WallPlanes walls = find_wall_planes(place, within + band.dp, around.closest);
+        return walls.count == 0 || std::any_of(walls.begin(), walls.end(),
+                                               [&](const WallPlane& wall)
+                                               {
+                                                   const double nearer = dot(way, wall.normal);
+                                                   return nearer > least_nearer * band.dp &&
+                                                          wall.distance - nearer <= within;
+                                               });
     };
     parallel_for(
         list.rows(), threads,

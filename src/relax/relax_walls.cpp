@@ -422,6 +422,7 @@ private:
         if (is_of_inside || (!region.is_solid && are_layered())) options.behind_wall_dp = 0;
         if (is_of_inside) options.min_wall_distance_dp = 0.5;
         options.has_free_surface = !is_of_inside;
+        options.is_solid = region.is_solid;
         if (options.wanted && region.is_solid && !is_of_inside)
             options.least_pair_dp = least_pair_dp;
         return options;
@@ -449,7 +450,6 @@ private:
         const bool is_before_layers = !region.is_solid && are_layered();
         const std::vector<Vec3> near_walls =
             is_before_layers ? std::vector<Vec3>{} : find_walls(region, movers, sliding);
-
         std::vector<Vec3> positions;
         for (const Mover& m : movers) positions.push_back(place_of(m.node, grid));
         if (is_of_inside)

@@ -18,6 +18,7 @@
 #include "walls/stacked_shells.h"
 #include "walls/step_surfaces.h"
 #include "walls/thickened.h"
+#include "walls/wet_side.h"
 
 #include <fmt/format.h>
 
@@ -126,9 +127,6 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
 {
     const std::string place = place_of(*scene.def, draw.source);
     const auto* file = shape_as<MeshFileOp>(draw);
-    // A tank drawn without its lid is open on purpose.
-    if (file == nullptr && !fitted.body.is_solid && fitted.body.facet_mk.empty())
-        fitted.warnings.clear();
     for (std::string& w : fitted.warnings)
         w = file != nullptr ? fmt::format("{}: {}: {}", place, file->file, w)
                             : fmt::format("{}: {}", place, w);
@@ -141,7 +139,7 @@ void say_place(const Scene& scene, const DrawOp& draw, FittedDraw& fitted)
 /// Gives sheets the layers that FitSettings::sheet_depths_dp has for them.
 void layer_sheet(FitSettings& settings)
 {
-    if (!settings.fluid_places.empty() && settings.depths_dp.empty())
+    if (!settings.fluid_places.empty() && settings.depths_dp.empty() && !settings.has_fluid_behind)
         settings.depths_dp = settings.sheet_depths_dp;
 }
 
@@ -151,6 +149,16 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     FitSettings settings = given;
     const LatticeGrid& grid = scene.def->grid;
     const double thickness = settings.thickens ? thicken(grid, threads, shape) : 0;
+    std::optional<WetSide> side;
+    if (!settings.sheet_depths_dp.empty())
+        side = wet_side(shape, grid, settings.fluid_places, threads);
+    if (side && settings.has_fluid_behind)
+    {
+        // Between its sides a shell has the layers that a closed surface has.
+        side.reset();
+        settings.has_fluid_behind = false;
+    }
+    if (side) shape = side->sheet;
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
@@ -158,12 +166,16 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     if (extent == BodyExtent::NearDomain && shape.cad == nullptr)
         axes = continue_over_periods(grid, shape.soup);
     FittedDraw out = fit_shape(shape, settings, grid, draw.state->clips, extent, threads);
+    const auto* file = shape_as<MeshFileOp>(draw);
+    // A tank drawn without its lid is open on purpose.
+    if (file == nullptr && !out.body.is_solid) out.warnings.clear();
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
+    if (side) out.warnings = warnings_of(*side, settings.depths_dp.size(), grid.dp);
     out.body.continued_along = std::move(axes);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
-    if (const auto* file = shape_as<MeshFileOp>(draw)) out.body.name += " " + file->file;
+    if (file != nullptr) out.body.name += " " + file->file;
     return out;
 }
 
@@ -369,8 +381,16 @@ TriangleSoup extent_of(const Scene& scene, const SceneStep& step, int threads)
     return out;
 }
 
+/// Which sheets of dynamic boundaries get layers.
+enum class SheetLayers
+{
+    None,
+    NoneInFluid, ///< those get none whose layers would stand in fluid
+    All
+};
+
 /// fluid  boxes_of_fluid()
-FittedStep fit_step(const Scene& scene, const SceneStep& step, bool layers_sheets,
+FittedStep fit_step(const Scene& scene, const SceneStep& step, SheetLayers layers,
                     const std::vector<Box3>& fluid, int threads)
 {
     const DrawState& state = *step.draw->state;
@@ -384,7 +404,8 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, bool layers_sheet
     const FitSettings* given = fit_settings(scene.def->fit, state.mk.mk);
     if (given == nullptr) return {};
     FitSettings own = *given;
-    if (!layers_sheets) own.sheet_depths_dp.clear();
+    if (layers == SheetLayers::None) own.sheet_depths_dp.clear();
+    own.has_fluid_behind = layers == SheetLayers::NoneInFluid;
     own.thickens = may_thicken(*scene.def, state.mk.mk);
     const FitSettings* settings = &own;
     if (step.combination)
@@ -429,8 +450,10 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
     for (std::uint32_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
-        const bool layers_sheets = may_layer_sheets(scene.steps[i], moving) && !wet.contains(i);
-        out[i] = fit_step(scene, scene.steps[i], layers_sheets, fluid, threads);
+        const SheetLayers layers = !may_layer_sheets(scene.steps[i], moving) ? SheetLayers::None
+                                   : wet.contains(i) ? SheetLayers::NoneInFluid
+                                                     : SheetLayers::All;
+        out[i] = fit_step(scene, scene.steps[i], layers, fluid, threads);
         const FitSettings* settings =
             fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);
         if (settings != nullptr && settings->depths_dp.empty())
@@ -443,7 +466,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
     }
     if (!layered) return out;
     for (const std::uint32_t i : leave_out_stacked_shells(scene, out))
-        out[i] = fit_step(scene, scene.steps[i], false, fluid, threads);
+        out[i] = fit_step(scene, scene.steps[i], SheetLayers::None, fluid, threads);
     return out;
 }
 

@@ -2,12 +2,10 @@
 
 #include "fppg/moving_parts.h"
 
-#include "core/parallel.h"
-#include "meshes/facing_distance.h"
 #include "meshes/measure_facets.h"
-#include "meshes/mesh_query.h"
 #include "offset/quadric.h"
 #include "walls/layer_builder.h"
+#include "walls/plate_thickness.h"
 
 #include <fmt/format.h>
 
@@ -24,75 +22,9 @@ namespace
 {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Thinner, the layers half a step behind both sides are one, dp.
-constexpr double one_layer_dp = 1 + merge_dp;
 constexpr double two_layers_dp = 2;
-constexpr double least_dp = 1e-6; ///< of sides that lie on each other
-/// Of the surface, where the rest is the rim of a plate, or thicker parts that it is joined to.
-constexpr double least_share = 0.5;
-/// Bodies of more volume for their surface are no plates, dp: that of a plate is its thickness.
-constexpr double no_plate_dp = 4;
 /// Corners of a thin facet go at most so much farther than its plane.
 constexpr double most_mitre = 2;
-/// Where the thickness is looked for: from the middle of a facet towards its corners.
-constexpr double off_middle = 0.6;
-
-/// Whether a surface has so little volume for its area that half of it may be thin.
-bool may_be_plate(const TriangleSoup& soup, double dp)
-{
-    double volume = 0;
-    double area = 0;
-    for (std::size_t f = 0; f < soup.size(); ++f)
-    {
-        const Vec3* c = &soup.vertices[3 * f];
-        const Vec3 across = cross(c[1] - c[0], c[2] - c[0]);
-        volume += dot(c[0] - soup.vertices[0], across) / 6;
-        area += norm(across) / 2;
-    }
-    return 2 * std::abs(volume) < no_plate_dp * dp * area;
-}
-
-/// Per facet how thick the body is behind it, metres; infinite where it is not thin, and in 2D
-/// of facets across the plane of the particles.
-std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
-{
-    const MeshQuery query(soup_of(mesh), threads);
-    query.prepare_nearest();
-    const double reach = (1 - 1e-9) * one_layer_dp * grid.dp;
-    std::vector<double> out(mesh.facets.size(), infinity);
-    parallel_for(
-        out.size(), threads,
-        [&](std::size_t f)
-        {
-            if (grid.is_2d && lies_across(mesh.normals[f], 1)) return;
-            const auto& corners = mesh.facets[f];
-            Vec3 middle;
-            for (const std::uint32_t v : corners) middle = middle + mesh.vertices[v] / 3;
-            std::array<double, 4> found{};
-            for (std::size_t c = 0; c < found.size(); ++c)
-            {
-                const Vec3 at =
-                    c == 3 ? middle
-                           : off_middle * mesh.vertices[corners[c]] + (1 - off_middle) * middle;
-                const double through =
-                    facing_distance(mesh.normals, query, {static_cast<std::uint32_t>(f), at},
-                                    FacetSide::Behind, reach);
-                if (!std::isfinite(through))
-                {
-                    found[c] = through;
-                    continue;
-                }
-                // Through round shells the way along an axis is longer.
-                const Vec3& n = mesh.normals[f];
-                const ClosestPoint other = query.closest_point(at - through * n, reach);
-                found[c] = std::max(least_dp * grid.dp, dot(at - other.point, n));
-            }
-            std::sort(found.begin(), found.end());
-            out[f] = found[1];
-        },
-        256);
-    return out;
-}
 
 /// How far the corners of facets go, so that each facet goes as far as it should.
 std::vector<Vec3> moves_of_vertices(const SurfaceMesh& mesh, const std::vector<double>& outwards)
@@ -172,7 +104,7 @@ bool may_thicken(const CaseDef& def, std::uint16_t mk)
 double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 {
     if (mesh.facets.empty() || !may_be_plate(soup_of(mesh), grid.dp)) return 0;
-    const std::vector<double> thickness = thicknesses(mesh, grid, threads);
+    const std::vector<double> thickness = plate_thicknesses(mesh, grid, threads);
     std::vector<double> outwards(mesh.facets.size(), 0);
     double thin = 0;
     double all = 0;
@@ -186,7 +118,7 @@ double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
         least = std::min(least, thickness[f]);
         outwards[f] = (two_layers_dp * grid.dp - thickness[f]) / 2;
     }
-    if (!(thin >= least_share * all && thin > 0)) return 0;
+    if (!(thin >= least_plate_share * all && thin > 0)) return 0;
     const std::vector<Vec3> moves = moves_of_vertices(mesh, outwards);
     for (std::size_t v = 0; v < moves.size(); ++v) mesh.vertices[v] = mesh.vertices[v] + moves[v];
     measure_facets(mesh, threads, high_for_particles * grid.dp);
@@ -195,20 +127,21 @@ double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 
 double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
 {
-    if (!shape.is_solid || shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp)) return 0;
-    if (TriangleSoup slab = slab_about(shape.soup, grid.dp); slab.size() > 0)
+    if (shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp)) return 0;
+    if (TriangleSoup slab; shape.is_solid && (slab = slab_about(shape.soup, grid.dp)).size() > 0)
     {
         shape = {};
         shape.soup = std::move(slab);
         shape.is_solid = true;
-        return least_dp * grid.dp;
+        return least_thickness_dp * grid.dp;
     }
     MeshReport report;
     SurfaceMesh mesh = repair_mesh(shape.soup,
                                    {.dp = grid.dp,
                                     .is_exact = shape.round != nullptr || shape.cad != nullptr,
-                                    .is_solid = true},
+                                    .is_solid = shape.is_solid},
                                    threads, report);
+    if (!shape.is_solid && !report.is_watertight) return 0;
     const double thickness = thicken(grid, threads, mesh);
     if (thickness > 0)
     {
@@ -221,7 +154,7 @@ double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)
 
 std::string thickened_from(double thickness, double dp)
 {
-    if (thickness <= least_dp * dp)
+    if (thickness <= least_thickness_dp * dp)
         return fmt::format(
             "it has no thickness and so room for one layer of mDBC, through which fluid goes: it "
             "is "

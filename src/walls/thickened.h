@@ -27,7 +27,8 @@ bool may_thicken(const CaseDef& def, std::uint16_t mk);
 /// returns  its least thickness before, metres; 0: nothing moved
 double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh);
 
-/// The same of a shape, which is no longer round, nor a CAD model.
+/// The same of a shape that is solid, or whose surface is closed; it is no longer round, nor a CAD
+/// model.
 double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape);
 
 /// What a warning says of it.
