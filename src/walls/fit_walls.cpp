@@ -148,7 +148,9 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
 {
     FitSettings settings = given;
     const LatticeGrid& grid = scene.def->grid;
-    const double thickness = settings.thickens ? thicken(grid, threads, shape) : 0;
+    // What has fluid on both sides of it holds with one layer.
+    const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
+    const double thickness = thickens ? thicken(grid, threads, shape) : 0;
     std::optional<WetSide> side;
     if (!settings.sheet_depths_dp.empty())
         side = wet_side(shape, grid, settings.fluid_places, threads);
@@ -170,6 +172,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     // A tank drawn without its lid is open on purpose.
     if (file == nullptr && !out.body.is_solid) out.warnings.clear();
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
+    out.body.is_thickened = thickness > 0;
     if (side) out.warnings = warnings_of(*side, settings.depths_dp.size(), grid.dp);
     out.body.continued_along = std::move(axes);
     out.body.line = draw.source.line;
@@ -456,9 +459,10 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
         out[i] = fit_step(scene, scene.steps[i], layers, fluid, threads);
         const FitSettings* settings =
             fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);
-        if (settings != nullptr && settings->depths_dp.empty())
-            for (FittedDraw& draw : out[i].draws)
-                if (!draw.layers.empty()) draw.body.layered_step = i;
+        for (FittedDraw& draw : out[i].draws)
+            if ((settings->depths_dp.empty() && !draw.layers.empty()) ||
+                (draw.body.is_thickened && !draw.body.is_solid))
+                draw.body.layered_step = i;
         // Zones of <vres> are meant to have parts of a case only.
         if (!scene.def->vres.is_active())
             warn_of_lost_layers(place_of(*scene.def, scene.steps[i].draw->source), scene.def->grid,

@@ -26,7 +26,7 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
             std::vector<StepSurface> out;
             for (ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::One, threads))
             {
-                if (thickens) thicken(scene.def->grid, threads, shape);
+                if (thickens && shape.is_solid) thicken(scene.def->grid, threads, shape);
                 out.push_back({std::move(shape), {}});
             }
             return out;

@@ -65,6 +65,19 @@ TEST(ThinPlate, BetweenWaterAndAirHasAllRowsThatWaterFeels)
     EXPECT_NEAR(static_cast<double>(of_plate(both)), 18.5, 2);
 }
 
+TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
+{
+    const std::string shell =
+        R"(<drawbox><boxfill>bottom | top | left | right | front | back</boxfill><point x="0.6" y="-0.1" z="-0.02" /><size x="0.025" y="0.2" z="0.9" /></drawbox>)";
+    const std::string mdbc = R"(<bodyfitted boundary="mdbc" />)";
+    const Result one = tank_in_2d(shell, {1}, mdbc);
+    EXPECT_TRUE(contains(one.output, "thickened to 2 dp")) << one.output;
+    EXPECT_GE(of_plate(one), 2 * 18u);
+    const Result both = tank_in_2d(shell, {0.1, 1}, mdbc);
+    EXPECT_FALSE(contains(both.output, "thickened to 2 dp")) << both.output;
+    EXPECT_LT(of_plate(both), 22u);
+}
+
 TEST(GapUnderABlock, HoldsWaterBetweenLayersButNotBetweenSurfaces)
 {
     const std::string block = fmt::format(
