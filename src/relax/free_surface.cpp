@@ -9,7 +9,9 @@ namespace fppg
 namespace
 {
 
-constexpr double least_nearer = 0.05; ///< to a wall, dp
+constexpr double least_nearer = 1e-3; ///< to a wall, dp
+/// A step that leads so far towards a wall may lead behind it, dp.
+constexpr double towards_wall = 0.05;
 
 /// Which of the six neighbours along the axes a particle has, as bits.
 unsigned axis_neighbours(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near)
@@ -91,17 +93,19 @@ std::size_t hold_free_surface(Band& band, const NeighbourList& list,
         way[static_cast<int>(side / 2)] = side % 2 == 1 ? band.dp : -band.dp;
         const Vec3 place = band.place(i);
         const double within = (options.clearance_dp + 1e-4) * band.dp;
-        if (!(norm(around.closest(place + way, within) - place - way) <= within)) return false;
+        const double there = norm(around.closest(place + way, within) - place - way);
+        if (!(there <= within)) return false;
         if (options.is_solid) return true;
         // A wall that the node is no nearer to than the particle, as one beside it, is no cause.
         const WallPlanes walls = find_wall_planes(place, within + band.dp, around.closest);
-        return walls.count == 0 || std::any_of(walls.begin(), walls.end(),
-                                               [&](const WallPlane& wall)
-                                               {
-                                                   const double nearer = dot(way, wall.normal);
-                                                   return nearer > least_nearer * band.dp &&
-                                                          wall.distance - nearer <= within;
-                                               });
+        return there < walls.distance - least_nearer * band.dp ||
+               std::any_of(walls.begin(), walls.end(),
+                           [&](const WallPlane& wall)
+                           {
+                               const double nearer = dot(way, wall.normal);
+                               return nearer > towards_wall * band.dp &&
+                                      wall.distance - nearer <= within;
+                           });
     };
     parallel_for(
         list.rows(), threads,

@@ -446,6 +446,7 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
 {
     const double room = off_nodes(layer, grid);
     Flats flats = find_flats(layer, grid, room);
+    if (flats.nodes.empty() && !grid.is_2d) return std::vector<char>(particles.positions.size(), 0);
     if (!flats.nodes.empty())
     {
         keep_off_others(grid, particles, flats);
@@ -453,18 +454,25 @@ std::vector<char> take_nodes_on_flats(const FittedBody& layer, const LatticeGrid
     }
     PointGrid taken(off_others_dp * grid.dp, flats.nodes.size());
     for (const auto& [node, facet] : flats.nodes) taken.add(place_of(node, grid));
+    std::vector<char> stays(particles.positions.size());
+    for (std::size_t i = 0; i < stays.size(); ++i)
+        stays[i] = particles.kinds[i] != FitKind::Surface ||
+                   flats.is_flat[particles.facets[i]] == 0 ||
+                   !taken.has_nearer(particles.positions[i], off_others_dp * grid.dp);
+    const auto kept = static_cast<std::size_t>(std::count(stays.begin(), stays.end(), 1));
     SurfaceParticles out;
+    out.positions.reserve(kept + flats.nodes.size());
+    out.kinds.reserve(kept + flats.nodes.size());
+    out.facets.reserve(kept + flats.nodes.size());
     const auto add = [&](const Vec3& place, FitKind kind, std::uint32_t facet)
     {
         out.positions.push_back(place);
         out.kinds.push_back(kind);
         out.facets.push_back(facet);
     };
-    for (std::size_t i = 0; i < particles.positions.size(); ++i)
-        if (particles.kinds[i] != FitKind::Surface || flats.is_flat[particles.facets[i]] == 0 ||
-            !taken.has_nearer(particles.positions[i], off_others_dp * grid.dp))
-            add(particles.positions[i], particles.kinds[i], particles.facets[i]);
-    std::vector<char> is_node(out.positions.size(), 0);
+    for (std::size_t i = 0; i < stays.size(); ++i)
+        if (stays[i] != 0) add(particles.positions[i], particles.kinds[i], particles.facets[i]);
+    std::vector<char> is_node(kept, 0);
     for (const auto& [node, facet] : flats.nodes)
     {
         Vec3 place = place_of(node, grid);
