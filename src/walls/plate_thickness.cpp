@@ -4,6 +4,7 @@
 #include "meshes/facing_distance.h"
 #include "meshes/measure_facets.h"
 #include "meshes/mesh_query.h"
+#include "walls/step_surfaces.h"
 
 #include <algorithm>
 #include <array>
@@ -19,24 +20,9 @@ namespace
 constexpr double no_plate_dp = 4;
 /// Where the thickness is looked for: from the middle of a facet towards its corners.
 constexpr double off_middle = 0.6;
+constexpr double least_plate_share = 0.5; ///< of the surface of a plate
 
-} // namespace
-
-bool may_be_plate(const TriangleSoup& soup, double dp)
-{
-    double volume = 0;
-    double area = 0;
-    for (std::size_t f = 0; f < soup.size(); ++f)
-    {
-        const Vec3* c = &soup.vertices[3 * f];
-        const Vec3 across = cross(c[1] - c[0], c[2] - c[0]);
-        volume += dot(c[0] - soup.vertices[0], across) / 6;
-        area += norm(across) / 2;
-    }
-    return 2 * std::abs(volume) < no_plate_dp * dp * area;
-}
-
-std::vector<double> plate_thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
 {
     const MeshQuery query(soup_of(mesh), threads);
     query.prepare_nearest();
@@ -73,6 +59,37 @@ std::vector<double> plate_thicknesses(const SurfaceMesh& mesh, const LatticeGrid
             out[f] = found[1];
         },
         256);
+    return out;
+}
+
+} // namespace
+
+bool may_be_plate(const TriangleSoup& soup, double dp)
+{
+    double volume = 0;
+    double area = 0;
+    for (std::size_t f = 0; f < soup.size(); ++f)
+    {
+        const Vec3* c = &soup.vertices[3 * f];
+        const Vec3 across = cross(c[1] - c[0], c[2] - c[0]);
+        volume += dot(c[0] - soup.vertices[0], across) / 6;
+        area += norm(across) / 2;
+    }
+    return 2 * std::abs(volume) < no_plate_dp * dp * area;
+}
+
+PlateThickness plate_thickness(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+{
+    PlateThickness out{thicknesses(mesh, grid, threads), std::numeric_limits<double>::infinity()};
+    double thin = 0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    {
+        if (grid.is_2d && lies_across(mesh.normals[f], 1)) continue;
+        out.area += mesh.areas[f];
+        if (std::isfinite(out.of_facets[f])) thin += mesh.areas[f];
+        out.least = std::min(out.least, out.of_facets[f]);
+    }
+    out.is_plate = thin > 0 && thin >= least_plate_share * out.area;
     return out;
 }
 

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -21,7 +20,6 @@ namespace fppg
 namespace
 {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double two_layers_dp = 2;
 /// Corners of a thin facet go at most so much farther than its plane.
 constexpr double most_mitre = 2;
@@ -104,25 +102,16 @@ bool may_thicken(const CaseDef& def, std::uint16_t mk)
 double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
 {
     if (mesh.facets.empty() || !may_be_plate(soup_of(mesh), grid.dp)) return 0;
-    const std::vector<double> thickness = plate_thicknesses(mesh, grid, threads);
+    const PlateThickness thickness = plate_thickness(mesh, grid, threads);
+    if (!thickness.is_plate) return 0;
     std::vector<double> outwards(mesh.facets.size(), 0);
-    double thin = 0;
-    double all = 0;
-    double least = infinity;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        if (grid.is_2d && lies_across(mesh.normals[f], 1)) continue;
-        all += mesh.areas[f];
-        if (!std::isfinite(thickness[f])) continue;
-        thin += mesh.areas[f];
-        least = std::min(least, thickness[f]);
-        outwards[f] = (two_layers_dp * grid.dp - thickness[f]) / 2;
-    }
-    if (!(thin >= least_plate_share * all && thin > 0)) return 0;
+    for (std::size_t f = 0; f < outwards.size(); ++f)
+        if (std::isfinite(thickness.of_facets[f]))
+            outwards[f] = (two_layers_dp * grid.dp - thickness.of_facets[f]) / 2;
     const std::vector<Vec3> moves = moves_of_vertices(mesh, outwards);
     for (std::size_t v = 0; v < moves.size(); ++v) mesh.vertices[v] = mesh.vertices[v] + moves[v];
     measure_facets(mesh, threads, high_for_particles * grid.dp);
-    return least;
+    return thickness.least;
 }
 
 double thicken(const LatticeGrid& grid, int threads, ShapeMesh& shape)

@@ -5,14 +5,11 @@
 #include "core/disjoint_set.h"
 #include "meshes/mesh_query.h"
 #include "walls/plate_thickness.h"
-#include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 namespace fppg
@@ -97,22 +94,14 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
                      .is_solid = shape.is_solid},
                     threads, report);
     if (mesh.facets.empty() || !report.is_watertight) return std::nullopt;
-    const std::vector<double> thickness = plate_thicknesses(mesh, grid, threads);
-    double thin = 0, all = 0, least = std::numeric_limits<double>::infinity();
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-    {
-        if (grid.is_2d && lies_across(mesh.normals[f], 1)) continue;
-        all += mesh.areas[f];
-        if (std::isfinite(thickness[f])) thin += mesh.areas[f];
-        least = std::min(least, thickness[f]);
-    }
-    if (!(thin >= least_plate_share * all && thin > 0)) return std::nullopt;
-    PlateSides sides(mesh, thickness);
+    const PlateThickness thickness = plate_thickness(mesh, grid, threads);
+    if (!thickness.is_plate) return std::nullopt;
+    PlateSides sides(mesh, thickness.of_facets);
     const std::optional<std::uint32_t> side = sides.side_of(fluid, threads);
-    if (!side || sides.area_of(*side) < least_side * all) return std::nullopt;
+    if (!side || sides.area_of(*side) < least_side * thickness.area) return std::nullopt;
     WetSide out;
     out.sheet.soup = sides.soup_of(*side);
-    out.thickness = least;
+    out.thickness = thickness.least;
     out.of_mesh = report.warnings;
     return out;
 }
