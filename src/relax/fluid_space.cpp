@@ -276,9 +276,8 @@ private:
         return 0;
     }
 
-    /// Whether a cell above fluid is under a roof: on the level way from the wall
-    /// there is fluid, or a wall is above, before a node comes that is empty and far from all
-    /// walls.
+    /// Whether a cell above fluid is under a roof: on the level way from the wall there is fluid,
+    /// or a wall is above, before a node comes that is empty and far from all walls.
     bool is_under_roof(const CellAtWall& cell) const
     {
         constexpr double steep = 0.1;

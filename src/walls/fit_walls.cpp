@@ -453,9 +453,9 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
     for (std::uint32_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
-        const SheetLayers layers = !may_layer_sheets(scene.steps[i], moving) ? SheetLayers::None
-                                   : wet.contains(i) ? SheetLayers::NoneInFluid
-                                                     : SheetLayers::All;
+        const SheetLayers layers = wet.contains(i) ? SheetLayers::NoneInFluid
+                                   : may_layer_sheets(scene.steps[i], moving) ? SheetLayers::All
+                                                                              : SheetLayers::None;
         out[i] = fit_step(scene, scene.steps[i], layers, fluid, threads);
         const FitSettings* settings =
             fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);
