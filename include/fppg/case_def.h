@@ -124,6 +124,7 @@ struct FitSettings
     /// A plate thinner than this gets one sheet of particles instead of one on each side, dp: no
     /// two particles of a wall are nearer (least_pair_dp).
     double one_sheet_dp = 0.6;
+    bool gives_sheets = false; ///< the case says how many sheets plates have
     RelaxSettings relax;
     std::optional<WallBoundary> boundary; ///< empty until the case's parameters are known
     /// How many layers: at (k + 1/2) dp behind the surface for Mdbc, at k dp for Dbc. Empty: for

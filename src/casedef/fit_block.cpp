@@ -131,6 +131,7 @@ private:
                 e, "clearance", 0, [](double v) { return v >= 0.5 && v <= 1; },
                 "auto or 0.5 to 1 (times dp)");
         const std::string plates = read_.text_or(e, "plates", "auto");
+        s.gives_sheets = plates != "auto";
         if (plates == "both" || plates == "one")
             s.one_sheet_dp = plates == "one" ? 1 : 0;
         else if (plates != "auto")

@@ -152,7 +152,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
     const double thickness = thickens ? thicken(grid, threads, shape) : 0;
     std::optional<WetSide> side;
-    if (!settings.sheet_depths_dp.empty())
+    if (!settings.sheet_depths_dp.empty() && !settings.gives_sheets)
         side = wet_side(shape, grid, settings.fluid_places, threads);
     if (side && settings.has_fluid_behind)
     {
