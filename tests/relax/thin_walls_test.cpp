@@ -23,7 +23,7 @@ double left_of_gravity(const Result& r)
     return found.empty() ? 1 : std::stod(found[1]);
 }
 
-/// A tank of 1.23 x 0.5 m in 2D, filled up to z = 0.6 from seeds at these x.
+/// A tank 1.23 m wide, in 2D, filled up to z = 0.6 from seeds at these x.
 Result tank_in_2d(const std::string& body, const std::vector<double>& seeds,
                   const std::string& fppg)
 {
