@@ -38,7 +38,7 @@ Result tank_in_2d(const std::string& body, const std::vector<double>& seeds,
     CaseText text = case_of(drawn, fppg);
     text.pointmin = R"(<pointmin x="-0.4" y="0" z="-0.4" />)";
     text.pointmax = R"(<pointmax x="1.7" y="0" z="1.5" />)";
-    const Result out = make(text);
+    Result out = make(text);
     EXPECT_EQ(out.code, 0) << out.output;
     return out;
 }
