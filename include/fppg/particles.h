@@ -4,6 +4,7 @@
 #include "fppg/lattice.h"
 #include "fppg/rgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -113,6 +114,12 @@ struct OffLatticeParticles
     std::vector<float> shares;
 
     std::size_t size() const { return positions.size(); }
+    bool is_of_wall(std::size_t i) const { return kinds[i] != FitKind::Volume; }
+    bool has_walls() const
+    {
+        return std::any_of(kinds.begin(), kinds.end(),
+                           [](FitKind kind) { return kind != FitKind::Volume; });
+    }
 };
 
 /// Distance of a lattice node to the walls in pictures: it is not measured, and far from any.
@@ -220,9 +227,10 @@ struct CaseDef;
 ///            zero
 /// throws    CaseError when a block is both moving and floating, a move leads out of the domain, or
 ///           there are more particles than ids
+/// field     the particles of its walls move into the result: it has none afterwards
 /// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
 ///           or `<initials>` need every place; O(n log n) for n particles off the lattice
-CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
+CaseParticles make_particles(const CaseDef& def, RunField& field, int threads,
                              CaseConstants& constants, std::vector<std::string>& warnings);
 
 } // namespace fppg

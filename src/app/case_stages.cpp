@@ -343,7 +343,7 @@ void make_normals(CaseRunState& run, MadeCase& made)
 
 void balance(CaseRunState& run, MadeCase& made)
 {
-    if (!made.def.balances() || made.field.walls.particles.size() == 0) return;
+    if (!made.def.balances() || made.field.walls.bodies.empty()) return;
     run.stage("Balance",
               [&]
               {

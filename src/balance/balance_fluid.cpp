@@ -101,7 +101,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
 {
     BalanceReport report;
     report.why_not = reason_against(def, constants, particles);
-    if (!report.why_not.empty() || field.walls.particles.size() == 0) return report;
+    if (!report.why_not.empty() || !particles.off_lattice.has_walls()) return report;
     const AllWalls all(field.walls.bodies, field.grid, threads);
     if (all.is_empty()) return report;
     RestReach reach;

@@ -221,8 +221,10 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     const auto side = static_cast<std::uint32_t>(std::ceil(std::max(widest, forces))) + 1;
     const bool is_whole = particles.n_fluid <= most_balanced_whole;
     const auto rhop0 = static_cast<float>(constants.rhop0);
-    const NearBlocks blocks(field.walls.particles.positions, field.grid,
-                            is_whole ? whole_lattice : side, 2, reach.threads);
+    const OffLatticeParticles& off_lattice = particles.off_lattice;
+    const NearBlocks blocks(off_lattice.positions, field.grid, is_whole ? whole_lattice : side, 2,
+                            reach.threads,
+                            [&](std::size_t i) { return off_lattice.is_of_wall(i); });
 
     const std::uint64_t first_fluid = particles.np - particles.n_fluid;
     const RawArray<NearParticle> fluid =

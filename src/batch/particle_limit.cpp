@@ -85,7 +85,7 @@ public:
         const Scene scene = make_scene(def);
         options_.meshes = scene.meshes;
         LatticeReport report;
-        const RunField field = draw_on_lattice(scene, threads_, {}, report);
+        RunField field = draw_on_lattice(scene, threads_, {}, report);
         CaseConstants constants;
         std::vector<std::string> warnings;
         return static_cast<double>(make_particles(def, field, threads_, constants, warnings).np);

@@ -49,14 +49,14 @@ public:
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
-        if (raises_roofs()) raise_roofed_depths(field_, meter_, top_);
+        if (raises_roofs()) raise_roofed_depths(field_, particles_.off_lattice, meter_, top_);
         measure_off_lattice();
         constants_.hswl = hswl();
         set_speeds(def_, g_, constants_);
         const ConstantsDef& c = def_.constants;
         is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
         const auto rhop0 = static_cast<float>(c.rhop0);
-        std::fill(particles_.off_lattice.rhop.begin(), particles_.off_lattice.rhop.end(), rhop0);
+        particles_.off_lattice.rhop.assign(particles_.off_lattice.size(), rhop0);
         if (particles_.n_fluid == 0) return;
         if (is_uniform_ || (is_vertical_ && (!by_height_ || c.gravity.z < 0)))
             set_by_steps();

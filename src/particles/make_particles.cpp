@@ -26,7 +26,7 @@ namespace
 class ParticleMaker
 {
 public:
-    ParticleMaker(const CaseDef& def, const RunField& field, int threads)
+    ParticleMaker(const CaseDef& def, RunField& field, int threads)
         : def_(def), field_(field), threads_(threads), type_of_mk_(65536, ParticleType::Fixed)
     {
     }
@@ -58,10 +58,7 @@ public:
 
 private:
     /// Whether there are particles off the lattice.
-    bool has_off_lattice() const
-    {
-        return field_.walls.particles.size() + field_.walls.volume.size() > 0;
-    }
+    bool has_off_lattice() const { return !off_lattice_of_mk_.empty(); }
 
     void set_types()
     {
@@ -93,7 +90,7 @@ private:
         for (const auto& slab : field_.slabs)
             for (const Run& r : slab)
                 if (!r.is_covered) used[r.mk] = 1;
-        if (has_off_lattice())
+        if (field_.walls.particles.size() + field_.walls.volume.size() > 0)
         {
             off_lattice_of_mk_ = count_off_lattice_particles(field_.walls);
             for (std::size_t mk = 0; mk < used.size(); ++mk)
@@ -440,7 +437,7 @@ private:
     }
 
     const CaseDef& def_;
-    const RunField& field_;
+    RunField& field_;
     int threads_;
     std::vector<ParticleType> type_of_mk_;
     static constexpr std::size_t no_block = SIZE_MAX;
@@ -456,7 +453,7 @@ private:
 
 } // namespace
 
-CaseParticles make_particles(const CaseDef& def, const RunField& field, int threads,
+CaseParticles make_particles(const CaseDef& def, RunField& field, int threads,
                              CaseConstants& constants, std::vector<std::string>& warnings)
 {
     return ParticleMaker(def, field, threads).run(constants, warnings);

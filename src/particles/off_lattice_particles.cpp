@@ -203,7 +203,7 @@ std::vector<std::uint64_t> count_off_lattice_particles(const FittedWalls& walls)
     return count;
 }
 
-OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
+OffLatticeParticles sort_off_lattice_particles(FittedWalls& walls,
                                                const std::vector<ParticleBlock>& blocks,
                                                const std::vector<PositionOrder>& orders,
                                                int threads, std::vector<std::uint64_t>& begin)
@@ -215,12 +215,10 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
     const std::size_t n = of_walls + walls.volume.size();
     const std::vector<std::uint32_t> order = SortedSources(walls, blocks, orders, threads).take();
     OffLatticeParticles out;
-    out.positions.resize(n);
     out.kinds.resize(n);
     out.normals.resize(n);
     out.distances.resize(n);
     out.layers.assign(n, 0);
-    out.rhop.resize(n);
     const auto share_of = [&](std::size_t body)
     {
         const FittedBody& of = walls.bodies[body];
@@ -238,19 +236,31 @@ OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
             const std::size_t source = order[at];
             if (source >= of_walls)
             {
-                out.positions[at] = walls.volume.positions[source - of_walls];
                 out.kinds[at] = FitKind::Volume;
                 out.distances[at] = walls.volume.distances[source - of_walls];
                 return;
             }
             const SurfacePlace place = surfaces.at(source);
             const std::uint32_t body = walls.particles.bodies[source];
-            out.positions[at] = walls.particles.positions[source];
             out.kinds[at] = walls.particles.kinds[source];
             out.normals[at] = place.normal;
             out.distances[at] = place.distance;
             out.layers[at] = static_cast<std::uint8_t>(walls.bodies[body].layer + 1);
             if (has_shares) out.shares[at] = static_cast<float>(share_of(body));
+        },
+        4096);
+    // What is done with goes before places and densities are made, so that most memory is in use
+    // while walls are relaxed.
+    const std::vector<Vec3> positions = std::move(walls.particles.positions);
+    walls.particles = {};
+    out.positions.resize(n);
+    parallel_for(
+        n, threads,
+        [&](std::size_t at)
+        {
+            const std::size_t source = order[at];
+            out.positions[at] =
+                source < of_walls ? positions[source] : walls.volume.positions[source - of_walls];
         },
         4096);
     return out;

@@ -74,13 +74,13 @@ private:
 std::vector<std::uint64_t> count_off_lattice_particles(const FittedWalls& walls);
 
 /// Puts the particles of `walls` into the order of the blocks, with normals and distances;
-/// densities are left to the caller (zero).
+/// densities are left to the caller (zero). Those of `walls.particles` are moved there.
 ///
 /// blocks   every mk of the walls has one
 /// orders   of every block
 /// returns  in `begin` where each block's particles begin, and their number as last entry
-/// cost     O(n log n) time, about 60 bytes per particle at its peak
-OffLatticeParticles sort_off_lattice_particles(const FittedWalls& walls,
+/// cost     O(n log n) time, 36 bytes per particle beside those of `walls` at its peak
+OffLatticeParticles sort_off_lattice_particles(FittedWalls& walls,
                                                const std::vector<ParticleBlock>& blocks,
                                                const std::vector<PositionOrder>& orders,
                                                int threads, std::vector<std::uint64_t>& begin);

@@ -14,8 +14,8 @@ namespace
 class RoofLevels
 {
 public:
-    RoofLevels(const RunField& field, const DepthMeter& meter,
-               std::vector<std::vector<std::uint32_t>>& top)
+    RoofLevels(const RunField& field, const OffLatticeParticles& off_lattice,
+               const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top)
         : field_(field),
           meter_(meter),
           top_(top),
@@ -24,8 +24,10 @@ public:
     {
         const Box3 water = box_of_water();
         if (water.is_empty()) return;
-        for (const Vec3& p : field.walls.particles.positions)
-            if (water.has(p, reach_dp * field.grid.dp)) walls_.add(p);
+        for (std::size_t i = 0; i < off_lattice.size(); ++i)
+            if (off_lattice.is_of_wall(i) &&
+                water.has(off_lattice.positions[i], reach_dp * field.grid.dp))
+                walls_.add(off_lattice.positions[i]);
     }
 
     void run()
@@ -187,10 +189,10 @@ private:
 
 } // namespace
 
-void raise_roofed_depths(const RunField& field, const DepthMeter& meter,
-                         std::vector<std::vector<std::uint32_t>>& top)
+void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+                         const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top)
 {
-    RoofLevels(field, meter, top).run();
+    RoofLevels(field, off_lattice, meter, top).run();
 }
 
 } // namespace fppg

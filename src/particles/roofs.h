@@ -1,5 +1,7 @@
 #pragma once
 
+#include "fppg/particles.h"
+
 #include "particles/depths.h"
 
 #include <cstdint>
@@ -17,10 +19,11 @@ namespace fppg
 /// within 2.2 dp. Columns are connected where they stand side by side and share a height. Columns
 /// that end in the air keep their depth, as their water is meant to fall. Gravity is along -z.
 ///
+/// off_lattice  holds the particles of walls
 /// top   per run of each slab, steps from its highest node to the top of its column
 ///       (DepthMeter::depths_along_z()); changed
 /// cost  O(n log n) for n runs, on one thread
-void raise_roofed_depths(const RunField& field, const DepthMeter& meter,
-                         std::vector<std::vector<std::uint32_t>>& top);
+void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+                         const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top);
 
 } // namespace fppg

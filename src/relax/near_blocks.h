@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace fppg
@@ -16,10 +17,11 @@ namespace fppg
 class NearBlocks
 {
 public:
-    /// side   of a block, nodes
-    /// reach  how many blocks beyond that of the particle count
+    /// side      of a block, nodes
+    /// reach     how many blocks beyond that of the particle count
+    /// is_taken  whether a point counts; empty: all do
     NearBlocks(const std::vector<Vec3>& points, const LatticeGrid& grid, std::uint32_t side,
-               int reach, int threads)
+               int reach, int threads, const std::function<bool(std::size_t)>& is_taken = {})
         : side_(side)
     {
         constexpr std::size_t chunk = 65536;
@@ -29,7 +31,8 @@ public:
                      {
                          const std::size_t end = std::min(points.size(), (c + 1) * chunk);
                          for (std::size_t i = c * chunk; i < end; ++i)
-                             add_block_of(points[i], grid, reach, of_chunk[c]);
+                             if (!is_taken || is_taken(i))
+                                 add_block_of(points[i], grid, reach, of_chunk[c]);
                          sort_once(of_chunk[c]);
                      });
         for (const std::vector<std::uint64_t>& keys : of_chunk)

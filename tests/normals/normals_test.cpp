@@ -64,7 +64,7 @@ Made make(const CaseText& text, const std::vector<ShapePolygons>& geometry = {},
     Made made;
     made.def = read_case(folder / "Case_Def.xml", options);
     LatticeReport lattice;
-    const RunField field = draw_scene(make_scene(made.def), threads, {}, lattice);
+    RunField field = draw_scene(make_scene(made.def), threads, {}, lattice);
     CaseConstants constants;
     std::vector<std::string> warnings;
     made.particles = make_particles(made.def, field, threads, constants, warnings);

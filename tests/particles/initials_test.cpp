@@ -54,7 +54,7 @@ Started start(const std::string& initials, const std::string& gravity = "",
     Started out;
     out.def = read_case(folder / "Case_Def.xml", {});
     LatticeReport report;
-    const RunField field = draw_scene(make_scene(out.def), 1, {}, report);
+    RunField field = draw_scene(make_scene(out.def), 1, {}, report);
     std::vector<std::string> warnings;
     out.particles = make_particles(out.def, field, 1, out.constants, warnings);
     return out;

@@ -73,7 +73,7 @@ CaseDef read(const CaseText& text)
     return read_case(folder / "Case_Def.xml", {});
 }
 
-Made make(const CaseDef& def, const RunField& field, int threads = 1)
+Made make(const CaseDef& def, RunField field, int threads = 1)
 {
     Made made;
     made.def = def;

@@ -70,7 +70,7 @@ struct Written
         options.fit = FitChoice::On;
         const CaseDef def = read_case(path, options);
         LatticeReport report;
-        const RunField field = draw_scene(make_scene(def), 2, {}, report);
+        RunField field = draw_scene(make_scene(def), 2, {}, report);
         CaseConstants constants;
         std::vector<std::string> warnings;
         return make_particles(def, field, 2, constants, warnings).np;

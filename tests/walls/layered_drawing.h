@@ -46,7 +46,7 @@ struct WallNormals
 };
 
 /// Of the boundary particles.
-inline WallNormals normals_of(const Drawing& drawing, const RunField& field)
+inline WallNormals normals_of(const Drawing& drawing, RunField field)
 {
     CaseDef def = drawing.def;
     def.constants.rhop0 = 1000;

@@ -87,7 +87,8 @@ Made make(const std::string& path, double dp)
     fppg::LatticeReport report;
     made.field = fppg::draw_scene(make_scene(made.def), 1, {}, report);
     std::vector<std::string> warnings;
-    made.particles = fppg::make_particles(made.def, made.field, 1, made.constants, warnings);
+    fppg::RunField field = made.field;
+    made.particles = fppg::make_particles(made.def, field, 1, made.constants, warnings);
     for (const fppg::ParticleBlock& block : made.particles.blocks)
         made.type_of_mk[block.mk] = block.type;
     return made;
@@ -178,10 +179,13 @@ void add_numbering(const CaseRef& what)
             time_stage(state, "particles", made.particles.np,
                        [&]
                        {
+                           state.PauseTiming();
+                           fppg::RunField field = made.field;
+                           state.ResumeTiming();
                            fppg::CaseConstants constants;
                            std::vector<std::string> warnings;
-                           benchmark::DoNotOptimize(fppg::make_particles(
-                               made.def, made.field, threads, constants, warnings));
+                           benchmark::DoNotOptimize(
+                               fppg::make_particles(made.def, field, threads, constants, warnings));
                        });
         });
 }
