@@ -259,6 +259,7 @@ void relax(CaseRunState& run, MadeCase& made)
     if (made.field.walls.bodies.empty()) return;
     log_fitted_walls(made.field, run.log);
     if (relaxes(made.def, made.field)) run.stage("Relax", [&] { run_relaxation(run, made); });
+    return_free_memory(); // surfaces were laid and relaxed piece by piece
     log_left_out(made.field.walls, run.log);
     for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))
         run.warn(fmt::format("{}: {}", made.def.file, w));

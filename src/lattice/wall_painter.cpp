@@ -510,9 +510,11 @@ void WallPainter::finish()
     hold_beside(walls.replaced, walls.replaced_bodies);
 }
 
-/// Holds the particles of a body that are near to places where it has none.
-void WallPainter::hold_beside(const std::vector<Vec3>& places,
-                              const std::vector<std::uint32_t>& bodies)
+/// Holds the particles that are near to places where none may be put.
+///
+/// holds  whether place c holds particle i
+void WallPainter::hold_near(const std::vector<Vec3>& places,
+                            const std::function<bool(std::size_t c, std::size_t i)>& holds)
 {
     if (places.empty()) return;
     WallParticles& all = field_->walls.particles;
@@ -532,37 +534,32 @@ void WallPainter::hold_beside(const std::vector<Vec3>& places,
             near.for_each_near(all.positions[i], reach,
                                [&](std::uint32_t c, double)
                                {
-                                   if (bodies[c] == all.bodies[i]) all.held[i] = 1;
+                                   if (holds(c, i)) all.held[i] = 1;
                                });
         },
         1024);
 }
 
+void WallPainter::hold_beside(const std::vector<Vec3>& places,
+                              const std::vector<std::uint32_t>& bodies)
+{
+    const WallParticles& all = field_->walls.particles;
+    hold_near(places, [&](std::size_t c, std::size_t i) { return bodies[c] == all.bodies[i]; });
+}
+
 void WallPainter::hold_beside_second_sheets()
 {
-    FittedWalls& walls = field_->walls;
+    const FittedWalls& walls = field_->walls;
+    const WallParticles& all = walls.particles;
     const WallParticles& second = walls.second_sheets;
-    if (second.size() == 0) return;
-    WallParticles& all = walls.particles;
-    const double reach = held_distance_dp * field_->grid.dp;
-    PointGrid grid(reach, second.size());
-    for (const Vec3& p : second.positions) grid.add(p);
-    parallel_for(
-        all.size(), threads_,
-        [&](std::size_t i)
-        {
-            const SurfaceMesh& mesh = walls.bodies[all.bodies[i]].mesh;
-            if (walls.bodies[all.bodies[i]].is_layer()) return;
-            const Vec3& normal = mesh.normals[all.facets[i]];
-            grid.for_each_near(all.positions[i], reach,
-                               [&](std::uint32_t c, double)
-                               {
-                                   if (second.bodies[c] == all.bodies[i] &&
-                                       dot(mesh.normals[second.facets[c]], normal) > 0)
-                                       all.held[i] = 1;
-                               });
-        },
-        1024);
+    hold_near(second.positions,
+              [&](std::size_t c, std::size_t i)
+              {
+                  const FittedBody& body = walls.bodies[all.bodies[i]];
+                  return second.bodies[c] == all.bodies[i] && !body.is_layer() &&
+                         dot(body.mesh.normals[second.facets[c]],
+                             body.mesh.normals[all.facets[i]]) > 0;
+              });
 }
 
 } // namespace fppg

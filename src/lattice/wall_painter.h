@@ -95,6 +95,8 @@ private:
     void note_missing();
     void cut_by(const FittedDraw& draw);
     /// What is left of a sheet beside the part that was taken out would flow into its place.
+    void hold_near(const std::vector<Vec3>& places,
+                   const std::function<bool(std::size_t c, std::size_t i)>& holds);
     void hold_beside(const std::vector<Vec3>& places, const std::vector<std::uint32_t>& bodies);
     void hold_beside_second_sheets();
     void anchor(std::size_t first_particle, const std::vector<Spans>& zone);
