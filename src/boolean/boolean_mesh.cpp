@@ -48,7 +48,8 @@ class Solid
 public:
     Solid(const BooleanPart& part, int threads) : closed_(find_closed_part(*part.mesh))
     {
-        has_inside_ = !part.is_surface && closed_.volume > 0 && closed_.soup.size() > 0;
+        soup_ = soup_of_closed_part(*part.mesh, closed_);
+        has_inside_ = !part.is_surface && closed_.volume > 0 && soup_.size() > 0;
         if (!has_inside_)
         {
             if (!part.may_be_sheet && !part.is_surface)
@@ -58,8 +59,8 @@ public:
                     part.name));
             return;
         }
-        for (const Vec3& v : closed_.soup.vertices) bounds_.add(v);
-        inside_ = std::make_unique<InsideTest>(closed_.soup, threads);
+        for (const Vec3& v : soup_.vertices) bounds_.add(v);
+        inside_ = std::make_unique<InsideTest>(soup_, threads);
     }
 
     bool has_inside() const { return has_inside_; }
@@ -77,7 +78,7 @@ public:
         const ClosestPoint closest = inside_->query().closest_point(p);
         if (closest.distance < merge_distance)
         {
-            const Vec3* c = &closed_.soup.vertices[3 * static_cast<std::size_t>(closest.facet)];
+            const Vec3* c = &soup_.vertices[3 * static_cast<std::size_t>(closest.facet)];
             const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
             const double across = dot(n, normal) / norm(n);
             // A surface that only comes near at an angle is judged by what is behind it.
@@ -94,6 +95,7 @@ public:
 
 private:
     ClosedPart closed_;
+    TriangleSoup soup_; ///< of the facets that bound its volume
     Box3 bounds_;
     std::unique_ptr<InsideTest> inside_;
     bool has_inside_ = false;
@@ -574,10 +576,11 @@ BooleanMesh boolean_mesh(const std::vector<BooleanPart>& parts, const BooleanNod
 SpanSet solid_nodes(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
 {
     const ClosedPart closed = find_closed_part(mesh);
-    if (!(closed.volume > 0) || closed.soup.size() == 0) return {};
-    if (closed.is_exact) return inside_spans(closed.soup, grid, threads);
+    const TriangleSoup soup = soup_of_closed_part(mesh, closed);
+    if (!(closed.volume > 0) || soup.size() == 0) return {};
+    if (closed.is_exact) return inside_spans(soup, grid, threads);
     std::uint64_t disputed = 0;
-    return inside_by_vote(closed.soup, grid, threads, disputed);
+    return inside_by_vote(soup, grid, threads, disputed);
 }
 
 } // namespace fppg

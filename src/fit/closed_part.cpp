@@ -189,14 +189,18 @@ ClosedPart find_closed_part(const SurfaceMesh& mesh)
         part.is_bounding.assign(mesh.facets.size(), 0);
         part.sheet_facets = mesh.facets.size();
         part.volume = part.hole_area = 0;
-        return part;
     }
-    part.soup.vertices.reserve(3 * (mesh.facets.size() - part.sheet_facets));
+    return part;
+}
+
+TriangleSoup soup_of_closed_part(const SurfaceMesh& mesh, const ClosedPart& part)
+{
+    TriangleSoup soup;
+    soup.vertices.reserve(3 * (mesh.facets.size() - part.sheet_facets));
     for (std::size_t f = 0; f < mesh.facets.size(); ++f)
         if (part.is_bounding[f] != 0)
-            for (const std::uint32_t v : mesh.facets[f])
-                part.soup.vertices.push_back(mesh.vertices[v]);
-    return part;
+            for (const std::uint32_t v : mesh.facets[f]) soup.vertices.push_back(mesh.vertices[v]);
+    return soup;
 }
 
 } // namespace fppg

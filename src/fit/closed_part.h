@@ -17,7 +17,6 @@ namespace fppg
 /// edges of more than two facets may close one another. What is left are sheets and fins.
 struct ClosedPart
 {
-    TriangleSoup soup;              ///< of the facets that bound a volume
     std::vector<char> is_bounding;  ///< per facet
     std::uint64_t sheet_facets = 0; ///< the others
     bool is_exact = true;           ///< it has no holes and no edge that clashes
@@ -27,5 +26,8 @@ struct ClosedPart
 };
 
 ClosedPart find_closed_part(const SurfaceMesh& mesh);
+
+/// The facets that bound a volume.
+TriangleSoup soup_of_closed_part(const SurfaceMesh& mesh, const ClosedPart& part);
 
 } // namespace fppg

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -189,48 +191,66 @@ std::uint32_t even_rank(std::int64_t x, std::int64_t y, std::int64_t z)
                                       a3 * static_cast<std::uint64_t>(z));
 }
 
-/// The nodes near the wall on one side of it: which of them are left out.
+/// How many nodes stand in each range of distances, 0.00026 dp wide.
+using DistanceCounts = std::vector<std::uint64_t>;
+
+constexpr std::size_t range_of(std::uint32_t distance)
+{
+    return distance >> 18U;
+}
+
+constexpr std::size_t distance_ranges = range_of(distance_units) + 1;
+
+/// The nodes near the wall on one side of it: which of them are left out. They are counted by
+/// ranges of distances first; of the range in which the last of them is, all are then looked at.
 class Side
 {
 public:
     /// Nodes nearer than this are always left out.
     explicit Side(std::uint32_t always_below) : always_below_(always_below) {}
 
-    std::uint64_t key(std::uint32_t distance, std::uint32_t hash) const
+    static std::uint64_t key(std::uint32_t distance, std::uint32_t hash)
     {
-        return std::uint64_t{distance} << 32 | hash;
+        return std::uint64_t{distance} << 32U | hash;
     }
-    void add(std::uint32_t distance, std::uint32_t hash)
-    {
-        if (distance < always_below_)
-            ++always_;
-        else
-            keys_.push_back(key(distance, hash));
-    }
+    bool is_always_left_out(std::uint32_t distance) const { return distance < always_below_; }
 
-    /// Leaves out `wanted` nodes, or as near to that as may be.
-    void leave_out(double wanted)
+    /// Leaves out `wanted` nodes, or as near to that as may be; what is still to be settled are the
+    /// nodes of one range.
+    ///
+    /// always  how many are always left out
+    /// counts  of the others
+    void leave_out(double wanted, std::uint64_t always, const DistanceCounts& counts)
     {
-        const double more = std::clamp(std::floor(wanted + 0.5) - static_cast<double>(always_), 0.0,
-                                       static_cast<double>(keys_.size()));
-        const auto n = static_cast<std::ptrdiff_t>(more);
-        if (n == 0)
-            below_ = 0;
-        else if (n == static_cast<std::ptrdiff_t>(keys_.size()))
-            below_ = UINT64_MAX;
-        else
-        {
-            std::nth_element(keys_.begin(), keys_.begin() + n, keys_.end());
-            below_ = keys_[static_cast<std::size_t>(n)];
-        }
-        keys_ = {};
+        const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+        const double more = std::clamp(std::floor(wanted + 0.5) - static_cast<double>(always), 0.0,
+                                       static_cast<double>(all));
+        rest_ = static_cast<std::uint64_t>(more);
+        below_ = rest_ == 0 ? 0 : UINT64_MAX;
+        if (rest_ == 0 || rest_ == all) return;
+        std::size_t range = 0;
+        for (; counts[range] <= rest_; ++range) rest_ -= counts[range];
+        range_ = range;
+    }
+    bool is_to_settle(std::uint32_t distance) const
+    {
+        return range_ && !is_always_left_out(distance) && range_of(distance) == *range_;
+    }
+    /// keys  of all nodes that are to be settled, in any order
+    void settle(std::vector<std::uint64_t> keys)
+    {
+        if (!range_) return;
+        const auto last = keys.begin() + static_cast<std::ptrdiff_t>(rest_);
+        std::nth_element(keys.begin(), last, keys.end());
+        below_ = *last;
+        range_.reset();
     }
     /// Leaves out all nodes nearer than the distance.
     void leave_out_below(std::uint32_t distance) { below_ = key(distance, 0); }
 
     bool is_left_out(std::uint32_t distance, std::uint32_t hash) const
     {
-        return distance < always_below_ || key(distance, hash) < below_;
+        return is_always_left_out(distance) || key(distance, hash) < below_;
     }
     /// In dp; the distance that all nodes which stay have at least.
     double clearance() const
@@ -243,9 +263,9 @@ public:
 
 private:
     std::uint32_t always_below_;
-    std::uint64_t always_ = 0;
-    std::uint64_t below_ = 0; ///< keys below this are left out
-    std::vector<std::uint64_t> keys_;
+    std::uint64_t below_ = 0;          ///< keys below this are left out
+    std::optional<std::size_t> range_; ///< to be settled
+    std::uint64_t rest_ = 0;           ///< that are left out of it
 };
 
 /// Walks the near nodes of a slab together with its inside; body(node, is_inside).
@@ -346,12 +366,13 @@ public:
     ExclusionBand run()
     {
         part_ = find_closed_part(mesh_);
-        const Wall wall =
+        Wall wall =
             grid_.is_2d ? section_of(mesh_, part_, grid_.origin.y) : whole_surface(mesh_, part_);
         if (wall.soup.size() == 0) return {};
         wide_ = widen(grid_, report_.bounds);
         near_ = find_near_nodes(wall.soup, wide_.grid, threads_);
         measure(wall);
+        if (!grid_.is_2d) wall.soup = {}; // many facets are larger than what is drawn of them
         if (zone_.has_inside)
             find_inside(wall);
         else
@@ -379,26 +400,30 @@ private:
         zone_.wall_share_inside = options_.share_inside;
     }
 
-    void find_inside(const Wall& wall)
+    void find_inside(Wall& wall)
     {
+        const TriangleSoup bounding = soup_of_closed_part(mesh_, part_);
         InsideVote vote;
         if (part_.is_exact)
         {
             ColumnOptions column_options;
             column_options.measures_overlap = true;
-            ColumnCuts cuts = cut_columns(part_.soup, wide_.grid, column_options, threads_);
+            ColumnCuts cuts = cut_columns(bounding, wide_.grid, column_options, threads_);
             vote.inside = std::move(cuts.inside);
             vote.overlap = cuts.overlap;
         }
         else
-            vote = vote_inside(part_.soup, wide_.grid, threads_);
+            vote = vote_inside(bounding, wide_.grid, threads_);
         zone_.disputed_nodes = vote.disputed;
         overlap_ = vote.overlap;
         if (overlap_ != 0 && part_.is_exact && !grid_.is_2d)
-            overlap_ = measure_overlap(part_.soup, threads_);
+            overlap_ = measure_overlap(bounding, threads_);
         zone_.body_volume -= overlap_;
         if (overlap_ != 0 || zone_.sheet_facets > 0)
-            zone_.wall_share_inside *= 2 * share_inside(wall, part_.soup, grid_.dp, threads_);
+        {
+            if (!grid_.is_2d) wall.soup = soup_of(mesh_);
+            zone_.wall_share_inside *= 2 * share_inside(wall, bounding, grid_.dp, threads_);
+        }
         inside_ = std::move(vote.inside);
     }
 
@@ -429,20 +454,95 @@ private:
             return;
         }
         if (!zone_.has_inside) return;
-        std::uint64_t in_body = 0;
-        for (std::size_t x = 0; x < near_.size(); ++x)
-        {
-            in_body += count_nodes(inside_of(x));
-            for_each_near_node(
-                near_[x], inside_of(x),
-                [&](const NearNode& node, bool is_inside)
-                { (is_inside ? within_ : beyond_).add(node.distance, hash_of(x, node)); });
-        }
+        const NodeCounts counts = count_nodes_near();
         const auto particles = static_cast<double>(options_.wall_particles);
         const double cells = zone_.body_volume / dp3();
-        const auto nodes = static_cast<double>(in_body);
-        within_.leave_out(nodes - (cells - particles * zone_.wall_share_inside));
-        beyond_.leave_out(cells + particles * (1 - zone_.wall_share_inside) - nodes);
+        const auto nodes = static_cast<double>(counts.in_body);
+        within_.leave_out(nodes - (cells - particles * zone_.wall_share_inside), counts.always[1],
+                          counts.by_distance[1]);
+        beyond_.leave_out(cells + particles * (1 - zone_.wall_share_inside) - nodes,
+                          counts.always[0], counts.by_distance[0]);
+        settle_last_range();
+    }
+
+    /// Of one part of the slabs, or of all; of the two arrays the second entry is the inside's.
+    struct NodeCounts
+    {
+        std::uint64_t in_body = 0;
+        std::array<std::uint64_t, 2> always{};
+        std::array<DistanceCounts, 2> by_distance{DistanceCounts(distance_ranges),
+                                                  DistanceCounts(distance_ranges)};
+    };
+    static constexpr std::size_t most_parts = 32;
+
+    /// Calls body(part, slab) for all slabs, those of a part one after another.
+    template <typename Body>
+    void for_each_slab(const Body& body) const
+    {
+        const std::size_t parts = std::min(near_.size(), most_parts);
+        parallel_for(parts, threads_,
+                     [&](std::size_t p)
+                     {
+                         const std::size_t end = (p + 1) * near_.size() / parts;
+                         for (std::size_t x = p * near_.size() / parts; x < end; ++x) body(p, x);
+                     });
+    }
+
+    NodeCounts count_nodes_near() const
+    {
+        std::vector<NodeCounts> parts(std::min(near_.size(), most_parts));
+        for_each_slab(
+            [&](std::size_t p, std::size_t x)
+            {
+                NodeCounts& counts = parts[p];
+                counts.in_body += count_nodes(inside_of(x));
+                for_each_near_node(near_[x], inside_of(x),
+                                   [&](const NearNode& node, bool is_inside)
+                                   {
+                                       const Side& side = is_inside ? within_ : beyond_;
+                                       if (side.is_always_left_out(node.distance))
+                                           ++counts.always[is_inside];
+                                       else
+                                           ++counts.by_distance[is_inside][range_of(node.distance)];
+                                   });
+            });
+        NodeCounts all;
+        for (const NodeCounts& part : parts)
+        {
+            all.in_body += part.in_body;
+            for (std::size_t side = 0; side < 2; ++side)
+            {
+                all.always[side] += part.always[side];
+                for (std::size_t r = 0; r < distance_ranges; ++r)
+                    all.by_distance[side][r] += part.by_distance[side][r];
+            }
+        }
+        return all;
+    }
+
+    void settle_last_range()
+    {
+        std::vector<std::array<std::vector<std::uint64_t>, 2>> parts(
+            std::min(near_.size(), most_parts));
+        for_each_slab(
+            [&](std::size_t p, std::size_t x)
+            {
+                for_each_near_node(
+                    near_[x], inside_of(x),
+                    [&](const NearNode& node, bool is_inside)
+                    {
+                        if ((is_inside ? within_ : beyond_).is_to_settle(node.distance))
+                            parts[p][is_inside].push_back(
+                                Side::key(node.distance, hash_of(x, node)));
+                    });
+            });
+        for (std::size_t side = 0; side < 2; ++side)
+        {
+            std::vector<std::uint64_t> keys;
+            for (const auto& part : parts)
+                keys.insert(keys.end(), part[side].begin(), part[side].end());
+            (side == 1 ? within_ : beyond_).settle(std::move(keys));
+        }
     }
 
     void take_nodes()
@@ -456,6 +556,7 @@ private:
                          const std::vector<Span> left_out = left_out_of(x);
                          const std::vector<Span> volume = subtract(inside_of(x), left_out);
                          kept[x] = count_nodes(volume);
+                         near_[x] = {}; // as much memory as the particles of the wall
                          const std::int64_t slab = static_cast<std::int64_t>(x) + wide_.offset[0];
                          if (slab < 0 || slab >= grid_.n[0]) return;
                          const auto s = static_cast<std::size_t>(slab);

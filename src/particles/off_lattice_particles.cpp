@@ -203,6 +203,28 @@ std::vector<std::uint64_t> count_off_lattice_particles(const FittedWalls& walls)
     return count;
 }
 
+namespace
+{
+
+/// One coordinate after the other: with a second copy of all places this would take more memory
+/// than laying and relaxing the walls did.
+///
+/// order  for each place the index of what comes there
+void put_in_order(const std::vector<std::uint32_t>& order, int threads, std::vector<Vec3>& places)
+{
+    std::vector<double> moved(places.size());
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        parallel_for(
+            places.size(), threads, [&](std::size_t at) { moved[at] = places[order[at]][axis]; },
+            4096);
+        parallel_for(
+            places.size(), threads, [&](std::size_t at) { places[at][axis] = moved[at]; }, 4096);
+    }
+}
+
+} // namespace
+
 OffLatticeParticles sort_off_lattice_particles(FittedWalls& walls,
                                                const std::vector<ParticleBlock>& blocks,
                                                const std::vector<PositionOrder>& orders,
@@ -249,20 +271,11 @@ OffLatticeParticles sort_off_lattice_particles(FittedWalls& walls,
             if (has_shares) out.shares[at] = static_cast<float>(share_of(body));
         },
         4096);
-    // What is done with goes before places and densities are made, so that most memory is in use
-    // while walls are relaxed.
-    const std::vector<Vec3> positions = std::move(walls.particles.positions);
+    out.positions = std::move(walls.particles.positions);
     walls.particles = {};
-    out.positions.resize(n);
-    parallel_for(
-        n, threads,
-        [&](std::size_t at)
-        {
-            const std::size_t source = order[at];
-            out.positions[at] =
-                source < of_walls ? positions[source] : walls.volume.positions[source - of_walls];
-        },
-        4096);
+    out.positions.insert(out.positions.end(), walls.volume.positions.begin(),
+                         walls.volume.positions.end());
+    put_in_order(order, threads, out.positions);
     return out;
 }
 

@@ -79,7 +79,7 @@ std::vector<std::uint64_t> count_off_lattice_particles(const FittedWalls& walls)
 /// blocks   every mk of the walls has one
 /// orders   of every block
 /// returns  in `begin` where each block's particles begin, and their number as last entry
-/// cost     O(n log n) time, 36 bytes per particle beside those of `walls` at its peak
+/// cost     O(n log n) time, about 22 bytes per particle beside those of `walls`
 OffLatticeParticles sort_off_lattice_particles(FittedWalls& walls,
                                                const std::vector<ParticleBlock>& blocks,
                                                const std::vector<PositionOrder>& orders,

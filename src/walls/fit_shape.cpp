@@ -298,7 +298,7 @@ FeatureOptions feature_options(const FitSettings& settings, const LatticeGrid& g
     return options;
 }
 
-FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+FittedDraw fit_shape(ShapeMesh shape, const FitSettings& settings, const LatticeGrid& grid,
                      const std::vector<ClipPlane>& clips, BodyExtent extent, int threads)
 {
     FittedBody body;
@@ -310,6 +310,7 @@ FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const 
                              .is_solid = shape.is_solid,
                              .warns_of_folds = true},
                             threads, body.report);
+    shape.soup = {};
     unite_touching_shells(body.mesh, body.report, grid.dp, threads);
     std::vector<std::uint32_t> seams;
     if (extent == BodyExtent::NearDomain) seams = cut_to_domain(body, settings, grid, threads);

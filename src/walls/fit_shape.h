@@ -30,7 +30,7 @@ double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid);
 /// clips    particles and nodes beyond them are left out; particles are judged by their true place
 /// returns  particles inside the domain (between its first and last nodes) only
 /// throws   GeometryError without the place of the draw
-FittedDraw fit_shape(const ShapeMesh& shape, const FitSettings& settings, const LatticeGrid& grid,
+FittedDraw fit_shape(ShapeMesh shape, const FitSettings& settings, const LatticeGrid& grid,
                      const std::vector<ClipPlane>& clips, BodyExtent extent, int threads);
 
 /// The same for a body whose mesh, report and features are made; is_solid and, where it is round,

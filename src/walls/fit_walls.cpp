@@ -167,7 +167,8 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     std::string axes;
     if (extent == BodyExtent::NearDomain && shape.cad == nullptr)
         axes = continue_over_periods(grid, shape.soup);
-    FittedDraw out = fit_shape(shape, settings, grid, draw.state->clips, extent, threads);
+    FittedDraw out =
+        fit_shape(std::move(shape), settings, grid, draw.state->clips, extent, threads);
     const auto* file = shape_as<MeshFileOp>(draw);
     // A tank drawn without its lid is open on purpose.
     if (file == nullptr && !out.body.is_solid) out.warnings.clear();
@@ -215,7 +216,7 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
         return out;
     }
     const std::optional<DrawOp> shorter = made_near_domain(draw, *scene.def);
-    const std::vector<ShapeMesh> shapes =
+    std::vector<ShapeMesh> shapes =
         surfaces_of(scene, shorter ? *shorter : draw, PartsAs::Drawn, threads);
     if (shapes.empty()) return out;
     if (state.pattern && state.draw_points)
@@ -225,8 +226,9 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
             "body-fitted, or without a pattern");
     std::vector<FittedDraw> walls;
     if (state.draw_points)
-        for (const ShapeMesh& shape : shapes)
-            walls.push_back(fit(scene, draw, shape, settings, threads));
+        for (ShapeMesh& shape : shapes)
+            walls.push_back(
+                fit(scene, draw, grid.is_2d ? shape : std::move(shape), settings, threads));
     if (state.draw_points && lacks_section(shapes, walls, grid))
     {
         out.warnings.push_back(fmt::format(
