@@ -103,7 +103,7 @@ private:
         on_lattice.fluid_bands.clear();
         LatticeReport report;
         RunField field = draw_on_lattice(scene_, options_.threads, {}, report);
-        for (const auto& slab : field.slabs) runs_ += slab.size();
+        runs_ = runs_of_nodes(field);
         fluid_ = sample_fluid(field, def_.mk_bound_first);
         add_point_files(scene_, field, report);
         CaseConstants constants;
@@ -116,6 +116,20 @@ private:
         for (const auto* list : {&def_.warnings, &def_.hints, &report.warnings, &warnings})
             out_.warnings.insert(out_.warnings.end(), list->begin(), list->end());
         note_files(report);
+    }
+
+    /// Without those that particles of fitted walls cover, which stand at their surfaces.
+    std::uint64_t runs_of_nodes(const RunField& field) const
+    {
+        constexpr std::uint32_t longest_covered = 2;
+        std::vector<char> is_fitted(65536, 0);
+        for (std::uint32_t mk = 0; mk < is_fitted.size(); ++mk)
+            is_fitted[mk] = fit_settings(def_.fit, static_cast<std::uint16_t>(mk)) != nullptr;
+        std::uint64_t count = 0;
+        for (const auto& slab : field.slabs)
+            for (const Run& run : slab)
+                count += is_fitted[run.mk] == 0 || run.z_end - run.z_begin > longest_covered;
+        return count;
     }
 
     void note_files(const LatticeReport& report)
@@ -437,13 +451,15 @@ private:
     void set_memory(double bound, double near_walls)
     {
         out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
-                            rates.bytes_per_run * static_cast<double>(runs_) +
+                            rates.bytes_a_fitted_facet * facets_ +
                             rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
                             rates.bytes_a_wall_particle * (on_surfaces_ + laid_layers_);
         if (!walls_.empty()) out_.memory_bytes += rates.bytes_to_fit;
         if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
         out_.memory_bytes += std::max(
-            {rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
+            {rates.bytes_per_run * static_cast<double>(runs_),
+             rates.bytes_a_laid_particle * (on_surfaces_ + laid_layers_),
+             rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
              bytes_to_relax(relaxed_ + laid_layers_) + rates.bytes_a_band_particle * in_band_,
              rates.bytes_a_layered_facet * layered_facets_,
              rates.bytes_a_balanced_particle * near_walls});

@@ -266,7 +266,7 @@ void check_memory(const TriangleSoup& soup, const LatticeGrid& grid)
         nodes += norm(cross(p[1] - p[0], p[2] - p[0])) / (grid.dp * grid.dp);
         if (longest > 2) nodes += longest;
     }
-    constexpr double bytes_per_node = 30;
+    constexpr double bytes_per_node = 16;
     constexpr double bytes_per_slab = 200;
     const double bytes = bytes_per_node * nodes + bytes_per_slab * grid.n[0];
     const auto available = static_cast<double>(available_memory());

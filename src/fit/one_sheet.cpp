@@ -4,6 +4,8 @@
 #include "meshes/mesh_query.h"
 #include "meshes/point_grid.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <unordered_map>
@@ -62,8 +64,9 @@ SmoothParts smooth_parts(const SurfaceMesh& mesh, const Features& features)
     return parts;
 }
 
-/// Coarse cells with the directions of the surface in and around them: where all are within 60
-/// degrees of one, no two face away from each other, and no sheet lies behind another.
+/// Coarse cells with the directions of the surface in and around them. Where those of each part
+/// are within 30 degrees of one, and these within 30 of the first, all are within 60 degrees of it:
+/// no two face away from each other, and no sheet lies behind another.
 class FacingCells
 {
 public:
@@ -72,14 +75,22 @@ public:
     /// A surface with unit normal n at p, which counts in all cells within reach.
     void add(const Vec3& p, const Vec3& n)
     {
-        for_each_cell(p,
+        // Neighbours follow one another, many of them on one facet.
+        const std::array<std::int64_t, 6> range = cells_around(p);
+        if (range == last_range_ && n == last_normal_) return;
+        last_range_ = range;
+        last_normal_ = n;
+        for_each_cell(range,
                       [&](std::uint64_t key)
                       {
-                          const auto [cell, is_new] = cells_.try_emplace(key, Cell{n, false});
-                          if (!is_new && !(dot(cell->second.axis, n) > cos_of_axis))
-                              cell->second.is_mixed = true;
+                          add(key, {n, false});
                           return false;
                       });
+    }
+    /// Those of another part of the surface.
+    void add(const FacingCells& part)
+    {
+        for (const auto& [key, cell] : part.cells_) add(key, cell);
     }
     bool is_mixed_at(const Vec3& p) const
     {
@@ -88,19 +99,34 @@ public:
     }
     bool is_mixed_within_reach(const Vec3& p) const
     {
-        return for_each_cell(p, [&](std::uint64_t key) { return cells_.at(key).is_mixed; });
+        return for_each_cell(cells_around(p),
+                             [&](std::uint64_t key) { return cells_.at(key).is_mixed; });
     }
 
 private:
     static constexpr double cell_reaches = 5;
-    static constexpr double cos_of_axis = 0.5 + 1e-9;
+    static constexpr double cos_of_axis = 0.8660254 + 1e-7; ///< of 30 degrees
     struct Cell
     {
         Vec3 axis;
         bool is_mixed = false;
     };
 
+    void add(std::uint64_t key, const Cell& cell)
+    {
+        const auto [known, is_new] = cells_.try_emplace(key, cell);
+        if (!is_new && (cell.is_mixed || !(dot(known->second.axis, cell.axis) > cos_of_axis)))
+            known->second.is_mixed = true;
+    }
     std::int64_t index(double c) const { return static_cast<std::int64_t>(std::floor(c / side_)); }
+    /// From and to along each axis, of the cells within reach.
+    std::array<std::int64_t, 6> cells_around(const Vec3& p) const
+    {
+        const Vec3 r{reach_, reach_, reach_};
+        const Vec3 low = p - r, high = p + r;
+        return {index(low.x),  index(high.x), index(low.y),
+                index(high.y), index(low.z),  index(high.z)};
+    }
     /// Far cells may share a key, which only makes more of them mixed.
     static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z)
     {
@@ -111,19 +137,19 @@ private:
     }
     /// Until `stops` is true for one; whether it was.
     template <typename Stops>
-    bool for_each_cell(const Vec3& p, const Stops& stops) const
+    static bool for_each_cell(const std::array<std::int64_t, 6>& range, const Stops& stops)
     {
-        const Vec3 r{reach_, reach_, reach_};
-        const Vec3 low = p - r, high = p + r;
-        for (std::int64_t x = index(low.x); x <= index(high.x); ++x)
-            for (std::int64_t y = index(low.y); y <= index(high.y); ++y)
-                for (std::int64_t z = index(low.z); z <= index(high.z); ++z)
+        for (std::int64_t x = range[0]; x <= range[1]; ++x)
+            for (std::int64_t y = range[2]; y <= range[3]; ++y)
+                for (std::int64_t z = range[4]; z <= range[5]; ++z)
                     if (stops(key_of(x, y, z))) return true;
         return false;
     }
 
     double reach_;
     double side_;
+    std::array<std::int64_t, 6> last_range_{};
+    Vec3 last_normal_;
     std::unordered_map<std::uint64_t, Cell> cells_;
 };
 
@@ -174,21 +200,51 @@ private:
                squared - depth * depth <= dp * dp;
     }
 
+    /// Calls body(chunk, particle) for the particles on faces, those of a chunk in their order.
+    template <typename Body>
+    void for_each_on_face(const Body& body) const
+    {
+        parallel_for(chunk_count(), threads_,
+                     [&](std::size_t c)
+                     {
+                         const std::size_t end = std::min(is_taken_.size(), (c + 1) * in_chunk);
+                         for (std::size_t i = c * in_chunk; i < end; ++i)
+                             if (is_on_face(i)) body(c, static_cast<std::uint32_t>(i));
+                     });
+    }
+    std::size_t chunk_count() const { return (is_taken_.size() + in_chunk - 1) / in_chunk; }
+
+    FacingCells facing_cells(double reach) const
+    {
+        std::vector<FacingCells> chunks(chunk_count(), FacingCells(reach));
+        for_each_on_face([&](std::size_t c, std::uint32_t i)
+                         { chunks[c].add(particles_.positions[i], normal_of(i)); });
+        FacingCells all(reach);
+        for (const FacingCells& chunk : chunks) all.add(chunk);
+        return all;
+    }
+
+    std::vector<std::uint32_t> particles_in_mixed(const FacingCells& facing) const
+    {
+        std::vector<std::vector<std::uint32_t>> chunks(chunk_count());
+        for_each_on_face(
+            [&](std::size_t c, std::uint32_t i)
+            {
+                if (facing.is_mixed_within_reach(particles_.positions[i])) chunks[c].push_back(i);
+            });
+        std::vector<std::uint32_t> all;
+        for (const auto& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+        return all;
+    }
+
     void take_behind_others()
     {
         const double reach = sheet_reach_dp * options_.dp;
-        const std::size_t n = is_taken_.size();
-        FacingCells facing(reach);
-        for (std::size_t i = 0; i < n; ++i)
-            if (is_on_face(i)) facing.add(particles_.positions[i], normal_of(i));
-        std::vector<std::uint32_t> near; // the particles in the grid
-        PointGrid grid(reach, n);
-        for (std::uint32_t i = 0; i < n; ++i)
-        {
-            if (!is_on_face(i) || !facing.is_mixed_within_reach(particles_.positions[i])) continue;
-            near.push_back(i);
-            grid.add(particles_.positions[i]);
-        }
+        const FacingCells facing = facing_cells(reach);
+        const std::vector<std::uint32_t> near = particles_in_mixed(facing);
+        if (near.empty()) return;
+        PointGrid grid(reach, near.size());
+        for (const std::uint32_t i : near) grid.add(particles_.positions[i]);
         parallel_for(
             near.size(), threads_,
             [&](std::size_t k)
@@ -216,11 +272,13 @@ private:
         std::vector<char> is_rim(n, 0);
         std::vector<char> is_winner(parts_.areas.size(), 0);
         PointGrid taken(rim_reach_dp * dp, 64);
+        Box3 box;
         for (std::size_t i = 0; i < n; ++i)
         {
             if (!is_taken_[i]) continue;
             is_winner[winner_[i]] = 1;
             taken.add(particles_.positions[i]);
+            box.add(particles_.positions[i]);
         }
         TriangleSoup sheet;
         for (std::size_t f = 0; f < mesh_.facets.size(); ++f)
@@ -234,13 +292,17 @@ private:
             [&](std::size_t i)
             {
                 const Vec3& p = particles_.positions[i];
-                if (is_taken_[i] || !taken.has_nearer(p, rim_reach_dp * dp)) return;
+                if (is_taken_[i] || !box.has(p, rim_reach_dp * dp) ||
+                    !taken.has_nearer(p, rim_reach_dp * dp))
+                    return;
                 const double distance = query.closest_point(p).distance;
                 is_rim[i] = distance > 1e-6 * dp && distance < dp;
             },
             1024);
         return is_rim;
     }
+
+    static constexpr std::size_t in_chunk = 65536;
 
     const SurfaceMesh& mesh_;
     const OneSheetOptions& options_;
@@ -259,6 +321,7 @@ SurfaceParticles keep_one_sheet(const SurfaceMesh& mesh, const Features& feature
 {
     const std::vector<char> goes = SheetChoice(mesh, features, options, particles, threads).run();
     SurfaceParticles out;
+    if (std::find(goes.begin(), goes.end(), 1) == goes.end()) return out;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < goes.size(); ++i)
     {
