@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "fit/closed_part.h"
+#include "fit/left_out_nodes.h"
 #include "fit/near_nodes.h"
 #include "fit/wall_section.h"
 #include "fppg/error.h"
@@ -15,8 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,8 +25,6 @@ namespace fppg
 
 namespace
 {
-
-constexpr std::uint32_t half_dp = distance_units / 2;
 
 /// A lattice around the mesh whose nodes are those of the case's lattice, moved by whole steps.
 struct WideGrid
@@ -190,83 +187,6 @@ std::uint32_t even_rank(std::int64_t x, std::int64_t y, std::int64_t z)
                                       a2 * static_cast<std::uint64_t>(y) +
                                       a3 * static_cast<std::uint64_t>(z));
 }
-
-/// How many nodes stand in each range of distances, 0.00026 dp wide.
-using DistanceCounts = std::vector<std::uint64_t>;
-
-constexpr std::size_t range_of(std::uint32_t distance)
-{
-    return distance >> 18U;
-}
-
-constexpr std::size_t distance_ranges = range_of(distance_units) + 1;
-
-/// The nodes near the wall on one side of it: which of them are left out. They are counted by
-/// ranges of distances first; of the range in which the last of them is, all are then looked at.
-class Side
-{
-public:
-    /// Nodes nearer than this are always left out.
-    explicit Side(std::uint32_t always_below) : always_below_(always_below) {}
-
-    static std::uint64_t key(std::uint32_t distance, std::uint32_t hash)
-    {
-        return std::uint64_t{distance} << 32U | hash;
-    }
-    bool is_always_left_out(std::uint32_t distance) const { return distance < always_below_; }
-
-    /// Leaves out `wanted` nodes, or as near to that as may be; what is still to be settled are the
-    /// nodes of one range.
-    ///
-    /// always  how many are always left out
-    /// counts  of the others
-    void leave_out(double wanted, std::uint64_t always, const DistanceCounts& counts)
-    {
-        const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-        const double more = std::clamp(std::floor(wanted + 0.5) - static_cast<double>(always), 0.0,
-                                       static_cast<double>(all));
-        rest_ = static_cast<std::uint64_t>(more);
-        below_ = rest_ == 0 ? 0 : UINT64_MAX;
-        if (rest_ == 0 || rest_ == all) return;
-        std::size_t range = 0;
-        for (; counts[range] <= rest_; ++range) rest_ -= counts[range];
-        range_ = range;
-    }
-    bool is_to_settle(std::uint32_t distance) const
-    {
-        return range_ && !is_always_left_out(distance) && range_of(distance) == *range_;
-    }
-    /// keys  of all nodes that are to be settled, in any order
-    void settle(std::vector<std::uint64_t> keys)
-    {
-        if (!range_) return;
-        const auto last = keys.begin() + static_cast<std::ptrdiff_t>(rest_);
-        std::nth_element(keys.begin(), last, keys.end());
-        below_ = *last;
-        range_.reset();
-    }
-    /// Leaves out all nodes nearer than the distance.
-    void leave_out_below(std::uint32_t distance) { below_ = key(distance, 0); }
-
-    bool is_left_out(std::uint32_t distance, std::uint32_t hash) const
-    {
-        return is_always_left_out(distance) || key(distance, hash) < below_;
-    }
-    /// In dp; the distance that all nodes which stay have at least.
-    double clearance() const
-    {
-        const auto distance =
-            static_cast<std::uint32_t>(std::min<std::uint64_t>(below_ >> 32, distance_units));
-        return std::max(distance, std::min(always_below_, half_dp)) /
-               static_cast<double>(distance_units);
-    }
-
-private:
-    std::uint32_t always_below_;
-    std::uint64_t below_ = 0;          ///< keys below this are left out
-    std::optional<std::size_t> range_; ///< to be settled
-    std::uint64_t rest_ = 0;           ///< that are left out of it
-};
 
 /// Walks the near nodes of a slab together with its inside; body(node, is_inside).
 template <typename Body>
@@ -496,15 +416,16 @@ private:
             {
                 NodeCounts& counts = parts[p];
                 counts.in_body += count_nodes(inside_of(x));
-                for_each_near_node(near_[x], inside_of(x),
-                                   [&](const NearNode& node, bool is_inside)
-                                   {
-                                       const Side& side = is_inside ? within_ : beyond_;
-                                       if (side.is_always_left_out(node.distance))
-                                           ++counts.always[is_inside];
-                                       else
-                                           ++counts.by_distance[is_inside][range_of(node.distance)];
-                                   });
+                for_each_near_node(
+                    near_[x], inside_of(x),
+                    [&](const NearNode& node, bool is_inside)
+                    {
+                        const LeftOutNodes& side = is_inside ? within_ : beyond_;
+                        if (side.is_always_left_out(node.distance))
+                            ++counts.always[is_inside];
+                        else
+                            ++counts.by_distance[is_inside][distance_range(node.distance)];
+                    });
             });
         NodeCounts all;
         for (const NodeCounts& part : parts)
@@ -533,7 +454,7 @@ private:
                     {
                         if ((is_inside ? within_ : beyond_).is_to_settle(node.distance))
                             parts[p][is_inside].push_back(
-                                Side::key(node.distance, hash_of(x, node)));
+                                LeftOutNodes::key(node.distance, hash_of(x, node)));
                     });
             });
         for (std::size_t side = 0; side < 2; ++side)
@@ -581,7 +502,7 @@ private:
         for_each_near_node(near_[x], inside_of(x),
                            [&](const NearNode& node, bool is_inside)
                            {
-                               const Side& side = is_inside ? within_ : beyond_;
+                               const LeftOutNodes& side = is_inside ? within_ : beyond_;
                                if (side.is_left_out(node.distance, hash_of(x, node)))
                                    append_node(out, node.y, node.z);
                            });
@@ -595,8 +516,8 @@ private:
     const LatticeGrid& grid_;
     const ExclusionBandOptions& options_;
     int threads_;
-    Side within_;
-    Side beyond_;
+    LeftOutNodes within_;
+    LeftOutNodes beyond_;
     ClosedPart part_;
     WideGrid wide_;
     std::vector<std::vector<NearNode>> near_; ///< per slab of the wide grid
