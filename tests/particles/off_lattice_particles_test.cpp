@@ -370,6 +370,24 @@ TEST(OffLatticeParticles, MakeABlockOfAnMkWithoutNodes)
     EXPECT_NEAR(body.inertia[2].z, 0, 1e-15);
 }
 
+TEST(OffLatticeParticles, OfWallsMoveOutOfTheField)
+{
+    const CaseDef def = read(small_case());
+    test::DenseMks nodes(def.grid);
+    RunField field = walled(nodes);
+    std::vector<Vec3> places;
+    for (int i = 0; i < 50; ++i) places.push_back({0.01 * (i * 7 % 50), 0.002 * i, 0.2});
+    for (const Vec3& p : places) add_to_wall(field.walls, p, 10);
+    CaseConstants constants;
+    std::vector<std::string> warnings;
+    const CaseParticles particles = make_particles(def, field, 2, constants, warnings);
+    EXPECT_EQ(field.walls.particles.size(), 0U);
+    std::sort(places.begin(), places.end(),
+              [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+    EXPECT_EQ(particles.off_lattice.positions, places);
+    EXPECT_EQ(particles.off_lattice.rhop.size(), places.size());
+}
+
 TEST(OffLatticeParticles, OfAFloatingBodyCountForItsMassCentreAndInertia)
 {
     Dice dice(9);
