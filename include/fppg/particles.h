@@ -221,13 +221,13 @@ struct CaseDef;
 /// lattice has the density of its true place below the top of the water column of its nearest node;
 /// where that is no water, of the nearest node of water within 4 dp, and rhop0 where there is none.
 ///
+/// field      the particles of its walls move into the result: it has none afterwards
 /// threads    number of threads; the result does not depend on it
 /// constants  filled: what the definition fixes, the rest by formula
 /// warnings   sentences that GenCase prints too are appended: no particles, no fluid, depth or b
 ///            zero
 /// throws    CaseError when a block is both moving and floating, a move leads out of the domain, or
 ///           there are more particles than ids
-/// field     the particles of its walls move into the result: it has none afterwards
 /// cost      O(runs) time and memory; O(particles) only where gravity is neither zero nor along z
 ///           or `<initials>` need every place; O(n log n) for n particles off the lattice
 CaseParticles make_particles(const CaseDef& def, RunField& field, int threads,
