@@ -23,8 +23,10 @@ std::vector<Node> some_nodes(std::size_t count, std::uint32_t steps)
     std::mt19937 random(7);
     std::vector<Node> nodes(count);
     for (Node& node : nodes)
-        node = {distance_units / steps * (random() % (steps + 1)),
-                static_cast<std::uint32_t>(random())};
+    {
+        const auto step = static_cast<std::uint32_t>(random() % (steps + 1));
+        node = {distance_units / steps * step, static_cast<std::uint32_t>(random())};
+    }
     return nodes;
 }
 
