@@ -2,6 +2,7 @@
 """Runs clang-tidy 14 (.clang-tidy) over sources and says what it found.
 
     check_tidy.py BUILD              those that differ from the merge base with main, or from the commit before on main itself
+    check_tidy.py BUILD --since REV  those that differ from this commit
     check_tidy.py BUILD --all        all; each stage is read as one file, as FPPG_UNITY compiles it: a fifth of the time
 
 BUILD is a folder that is configured: its version.h is included, and tests, plugins and benchmarks are read as its
@@ -31,8 +32,8 @@ def git(*arguments):
                           text=True).stdout.split()
 
 
-def changed_sources():
-    base = (git("merge-base", "HEAD", "main") or git("merge-base", "HEAD", "origin/main"))[:1]
+def changed_sources(since):
+    base = [since] if since else (git("merge-base", "HEAD", "main") or git("merge-base", "HEAD", "origin/main"))[:1]
     if not base or base == git("rev-parse", "HEAD"):
         base = git("rev-parse", "HEAD~")
     if not base:
@@ -106,22 +107,25 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build")
     parser.add_argument("--all", action="store_true")
+    parser.add_argument("--since", default="", metavar="REV")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--stages", default="", help="of --all only these; \"others\" are all sources that belong to none")
     options = parser.parse_args()
+    if options.since and not git("rev-parse", "--verify", "--quiet", options.since + "^{commit}"):
+        parser.error(f"--since {options.since}: expected a commit of this repository")
     program = shutil.which("clang-tidy-14")
     if program is None or shutil.which("git") is None:
         print("skipped: clang-tidy-14 or git is missing")
         return 77
     with tempfile.TemporaryDirectory(prefix="fppg-tidy-") as folder:
-        sources = list(stages(folder)) + all_others() if options.all else changed_sources()
+        sources = list(stages(folder)) + all_others() if options.all else changed_sources(options.since)
         if sources is None:
             print("skipped: there is no commit to compare with")
             return 77
         if options.stages:
             wanted = options.stages.split(",")
             sources = [s for s in sources if ("others" if s.startswith(ROOT + os.sep) else os.path.basename(s)[:-4]) in wanted]
-        if not options.all and len(sources) > MOST:
+        if not options.all and not options.since and len(sources) > MOST:
             print(f"{len(sources)} sources differ, {MOST} of them are looked at; --all looks at all")
             sources = sources[::-(-len(sources) // MOST)][:MOST]
         build = os.path.abspath(options.build)
