@@ -344,7 +344,7 @@ void make_normals(CaseRunState& run, MadeCase& made)
 
 void balance(CaseRunState& run, MadeCase& made)
 {
-    if (!made.def.balances() || made.field.walls.bodies.empty()) return;
+    if (!made.def.balances() || !made.particles.off_lattice.has_walls()) return;
     run.stage("Balance",
               [&]
               {
