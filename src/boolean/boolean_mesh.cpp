@@ -48,8 +48,8 @@ class Solid
 public:
     Solid(const BooleanPart& part, int threads) : closed_(find_closed_part(*part.mesh))
     {
-        soup_ = soup_of_closed_part(*part.mesh, closed_);
-        has_inside_ = !part.is_surface && closed_.volume > 0 && soup_.size() > 0;
+        TriangleSoup soup = soup_of_closed_part(*part.mesh, closed_);
+        has_inside_ = !part.is_surface && closed_.volume > 0 && soup.size() > 0;
         if (!has_inside_)
         {
             if (!part.may_be_sheet && !part.is_surface)
@@ -59,8 +59,8 @@ public:
                     part.name));
             return;
         }
-        for (const Vec3& v : soup_.vertices) bounds_.add(v);
-        inside_ = std::make_unique<InsideTest>(soup_, threads);
+        for (const Vec3& v : soup.vertices) bounds_.add(v);
+        inside_ = std::make_unique<InsideTest>(std::move(soup), threads);
     }
 
     bool has_inside() const { return has_inside_; }
@@ -78,7 +78,8 @@ public:
         const ClosestPoint closest = inside_->query().closest_point(p);
         if (closest.distance < merge_distance)
         {
-            const Vec3* c = &soup_.vertices[3 * static_cast<std::size_t>(closest.facet)];
+            const TriangleSoup& soup = inside_->query().soup();
+            const Vec3* c = &soup.vertices[3 * static_cast<std::size_t>(closest.facet)];
             const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
             const double across = dot(n, normal) / norm(n);
             // A surface that only comes near at an angle is judged by what is behind it.
@@ -95,7 +96,6 @@ public:
 
 private:
     ClosedPart closed_;
-    TriangleSoup soup_; ///< of the facets that bound its volume
     Box3 bounds_;
     std::unique_ptr<InsideTest> inside_;
     bool has_inside_ = false;

@@ -292,7 +292,8 @@ public:
         wide_ = widen(grid_, report_.bounds);
         near_ = find_near_nodes(wall.soup, wide_.grid, threads_);
         measure(wall);
-        if (!grid_.is_2d) wall.soup = {}; // many facets are larger than what is drawn of them
+        // Of fine facets it is large; find_inside() makes it anew for the few meshes that need it.
+        if (!grid_.is_2d) wall.soup = {};
         if (zone_.has_inside)
             find_inside(wall);
         else

@@ -145,7 +145,7 @@ bool is_fitted(const CaseDef& def, const DrawState& state)
 /// Body-fitted walls are laid before what is outside the domain goes, but for what is far beyond.
 void expect_few_on_surface(const Scene& scene, const DrawOp& draw, int threads)
 {
-    constexpr double bytes_per_particle = 85; // bunny of 31 million: 81 to lay, 80 to relax
+    constexpr double bytes_per_particle = 85; // bunny of 260 million: 83 to lay, 76 to relax
     const double dp = scene.def->grid.dp;
     const auto memory = static_cast<double>(available_memory());
     const double most = std::min(static_cast<double>(most_particles), memory / bytes_per_particle);
