@@ -227,9 +227,10 @@ constexpr auto attribute_table = std::to_array<NameRow>({
     {"v11 v12 v13 v21 v22 v23 v31 v32 v33",
 "values"},
     {"value",
-"axes cflnumber coefficient coefh coefsound densitydepth/b eps gamma hdp intrinsic "
-"massbody masspart movecenter normals/distanceh normals/maxsizeh normals/svshapes "
-"rhop0 rhopgradient savegrid savepoints svnormals"},
+"axes cflnumber coefficient coefh coefsound computenormals densitydepth/b dg_svopenshapes "
+"dg_svpartsnormal eps ftsupport gamma hdp intrinsic massbody masspart movecenter "
+"normals/distanceh normals/maxsizeh normals/svshapes rhop0 rhopgradient savegrid savepoints "
+"svnormaldata svnormals"},
     {"vars",
 "delvar exportvar"},
     {"vdp",

@@ -61,11 +61,21 @@ private:
     /// `<normals>` of GenCase v5.0: the children of norgeometry, with their values in `value`
     /// instead of `v`. A `<geometryfile>` in `<normals>` tells it; nothing else may stand beside.
     /// svnormals has no effect (GenCase v5.4.354: the same normals as in the new form for 11 of
-    /// these; 12 other elements of v5.0 beside them refused).
+    /// these). The others that GenCase v5.0 knows there, v5.4 refuses: with v5.0 they write files
+    /// for debugging or change nothing, but for ftsupport, without which it gives floating bodies
+    /// no normals (v5.0.229, a box that floats in a tank, with each of them on and off).
     GeometryNormals read_old_form(const Element& e) const
     {
         require_known_children(
-            e, {"geometryfile", "distanceh", "maxsizeh", "svshapes", "svnormals"}, read_);
+            e,
+            {"geometryfile", "distanceh", "maxsizeh", "svshapes", "svnormals", "svnormaldata",
+             "computenormals", "ftsupport", "dg_svopenshapes", "dg_svpartsnormal"},
+            read_);
+        if (e.find_child("ftsupport") != nullptr && !flag(e, "ftsupport", true, "value"))
+            warnings_.push_back(
+                fmt::format("{}:{}: <ftsupport>: floating bodies have normals all "
+                            "the same, as with GenCase v5.4.",
+                            read_.file(), e.find_child("ftsupport")->line));
         GeometryNormals geometry = read_geometry(e, "value");
         std::string form = fmt::format("<norgeometry><geometryfile file=\"{}\" />",
                                        *read_.child(e, "geometryfile").find_attribute("file"));

@@ -801,13 +801,33 @@ TEST(Normals, MayHaveTheFormOfGenCase50)
         std::string::npos)
         << def.warnings[1];
     text.after_geometry =
-        R"(<normals><geometryfile file="a.vtk" /><computenormals value="1" /></normals>)";
-    EXPECT_NE(error_of(text).find("<computenormals>: is not known in <normals>"),
+        R"(<normals><geometryfile file="a.vtk" /><computesnormals value="1" /></normals>)";
+    EXPECT_NE(error_of(text).find("<computesnormals>: is not known in <normals> (did you mean "
+                                  "computenormals?)"),
               std::string::npos);
     text.after_geometry =
         R"(<normals><norplane mk="0"><point x="0" y="0" z="0" /><normal x="1" y="0" z="0" /></norplane></normals>)";
     EXPECT_NE(error_of(text).find("<norplane>: attribute mk=\"0\" is not known, expected mkbound"),
               std::string::npos);
+}
+
+TEST(Normals, OfGenCase50MayHaveWordsThatOfGenCase54Refuses)
+{
+    CaseText text;
+    const auto warnings = [&](const std::string& words)
+    {
+        text.after_geometry = R"(<normals><geometryfile file="a.vtk" />)" + words + "</normals>";
+        std::string all;
+        for (const std::string& warning : read(text).warnings) all += warning + "\n";
+        return all;
+    };
+    EXPECT_THAT(warnings(R"(<svnormaldata value="1" /><computenormals value="1" />)"
+                         R"(<ftsupport value="1" /><dg_svopenshapes value="0" />)"
+                         R"(<dg_svpartsnormal value="0" />)"),
+                testing::AllOf(testing::HasSubstr("this is the form of GenCase v5.0"),
+                               testing::Not(testing::HasSubstr("<ftsupport>"))));
+    EXPECT_THAT(warnings(R"(<ftsupport value="0" />)"),
+                testing::HasSubstr("<ftsupport>: floating bodies have normals all the same"));
 }
 
 TEST(Transforms, ActInReverseOrderOfWriting)
