@@ -4,6 +4,7 @@
 #include "app/drop_in.h"
 #include "app/run_log.h"
 #include "app/subcommands.h"
+#include "platform/memory.h"
 #include "platform/start.h"
 #include "platform/stop_signals.h"
 #include "platform/terminal.h"
@@ -16,6 +17,8 @@
 #include <new>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace
 {
@@ -93,9 +96,13 @@ int run_and_tell(int argc, char** argv)
     }
     catch (const std::bad_alloc&)
     {
-        return fail(
-            "there is not enough memory for this case; a larger dp or a smaller domain needs less",
-            4);
+        const auto limit = static_cast<double>(fppg::memory_limit());
+        const std::string why = limit > 0 ? fmt::format(
+                                                "this case needs more than the {:.3g} GB that "
+                                                "-memory allows",
+                                                limit * 1e-9)
+                                          : "there is not enough memory for this case";
+        return fail((why + "; a larger dp or a smaller domain needs less").c_str(), 4);
     }
     catch (const std::filesystem::filesystem_error& error)
     {

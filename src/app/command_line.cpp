@@ -106,7 +106,7 @@ struct OptionForm
     std::string_view example{}; ///< of a value
 };
 
-constexpr std::array<OptionForm, 19> option_forms{{
+constexpr std::array<OptionForm, 20> option_forms{{
     {"h"},
     {"help"},
     {"ver"},
@@ -122,6 +122,7 @@ constexpr std::array<OptionForm, 19> option_forms{{
     {"dp", OptionForm::Value::Needed, "0.01"},
     {"evars", OptionForm::Value::Needed, "A=1"},
     {"threads", OptionForm::Value::Needed, "4"},
+    {"memory", OptionForm::Value::Needed, "8"},
     {"save", OptionForm::Value::Needed, "all"},
     {"to", OptionForm::Value::Needed, "vtu"},
     {"save3vtk", OptionForm::Value::Needed, "1"},
@@ -228,6 +229,13 @@ void read_option(const std::string& argument, DropInOptions& options)
         if (options.threads < 0 || options.threads > 4096)
             throw UsageError(
                 fmt::format("-threads: {} is out of range, expected 0 to 4096", options.threads));
+    }
+    else if (name == "-memory")
+    {
+        options.memory_gb = number_of<double>(name, value, "gigabytes above 0");
+        if (!(options.memory_gb > 0) || !std::isfinite(options.memory_gb))
+            throw UsageError(
+                fmt::format("-memory: {} is out of range, expected gigabytes above 0", value));
     }
     else if (name == "-save")
         choose_formats(value, options);
@@ -336,7 +344,7 @@ std::string help_text()
         "Options, each as -name:value or --name value (GenCase's own, but for -fit, -strict, "
         "-quiet, "
         "-log-json,\n"
-        "vtkfeatures and -overwrite):\n"
+        "-memory, vtkfeatures and -overwrite):\n"
         "  -dp:VALUE              particle distance, in place of the definition's\n"
         "  -evars:A=1:B=2         new values for variables that the definition defines\n"
         "  -fit                   body-fitted walls: every boundary mk gets its particles on its "
@@ -350,6 +358,8 @@ std::string help_text()
         "  -log-json              print one JSON object per line: stages, warnings, counts, "
         "errors\n"
         "  -threads:N             threads (default 0: what the machine or its scheduler allows)\n"
+        "  -memory:GB             a run that would take more memory ends with an error (default: "
+        "what is free)\n"
         "  -save:LIST             files besides OUTPUT.xml, separated by commas, + or - before "
         "each:\n"
         "                         bi, vtkcells, vtkfreept (these three by default), vtkall, "

@@ -31,6 +31,7 @@ struct DropInOptions
     std::vector<std::pair<std::string, std::string>> evars;
     FitChoice fit = FitChoice::AsCase;
     int threads = 0; ///< 0: what the machine or its scheduler allows
+    double memory_gb = 0; ///< that the run may take; 0: what the machine has
     int debug = 0;
     bool save_nothing = false; ///< makes all and writes no file
     bool save_bi4 = true;

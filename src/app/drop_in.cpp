@@ -12,6 +12,7 @@
 #include "batch/rates.h"
 #include "files/output_lock.h"
 #include "platform/files.h"
+#include "platform/memory.h"
 
 #include <fmt/format.h>
 
@@ -126,6 +127,8 @@ int run_case(const DropInOptions& options)
     CaseRunState run;
     run.options = options;
     run.threads = options.threads > 0 ? options.threads : default_threads();
+    if (options.memory_gb > 0)
+        limit_memory(static_cast<std::uint64_t>(options.memory_gb * 1e9), run.threads);
     run.log = RunLog(options.log_json   ? LogStyle::Json
                      : options.is_quiet ? LogStyle::Quiet
                                         : LogStyle::Text);

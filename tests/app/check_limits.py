@@ -144,6 +144,47 @@ class TooMany(Limits):
                 self.assertIn(f"Total particles: {expected:,} ", out)
 
 
+class Memory(Limits):
+    """-memory ends a run that would take more, and changes no particle of one that fits."""
+
+    SPHERE = ('<setdrawmode mode="face" /><setmkbound mk="0" /><drawsphere radius="0.5"><point x="0.5" y="0.5" z="0.5" />'
+              "</drawsphere>")
+
+    def make(self, *options):
+        code, out = self.run_it("Case_Def", "out/Case", "-fit", "-save:-vtkcells", *options, limit=60)
+        with open(self.path("out/Case.bi4"), "rb") as file:
+            return code, out, file.read()
+
+    @unittest.skipIf(is_sanitized(PROGRAM), "sanitizers reserve memory of their own")
+    def test_of_a_run_is_held(self):
+        self.write_case(self.SPHERE, "0.008")
+        code, out, before = self.make()
+        self.assertEqual(code, 0, out)
+        for threads in ("1", "2"):
+            code, out, after = self.make("-memory:0.2", "-threads:" + threads)
+            self.assertEqual(code, 0, out)
+            self.assertTrue(after == before)
+        self.write_case(self.SPHERE, "0.002")
+        for threads in ("1", "2"):
+            code, out, after = self.make("-memory:0.2", "-threads:" + threads)
+            self.assertEqual(code, 4, out)
+            self.assertIn("this case needs more than the 0.2 GB that -memory allows", out)
+            self.assertTrue(after == before)
+
+    @unittest.skipIf(is_sanitized(PROGRAM), "sanitizers reserve memory of their own")
+    def test_is_looked_at_before_the_work(self):
+        self.write_case(self.SPHERE, "0.0005")
+        code, out = self.run_it("Case_Def", "out/Case", "-fit", "-save:-bi", "-memory:0.2")
+        self.assertEqual(code, 3, out)
+        self.assertRegex(out, r"need 1\.3e\+07 particles with dp=0\.0005; this machine has 0\.\d+ GB of memory free")
+
+    def test_has_to_be_a_number(self):
+        for value in ("0", "-1", "nan", "2GB"):
+            code, out = self.run_it("Case_Def", "out/Case", "-memory:" + value)
+            self.assertEqual(code, 2, out)
+            self.assertIn("-memory: ", out)
+
+
 class SmallDisk(Limits):
     SIZE = 1 << 21
 

@@ -3,6 +3,7 @@
 #ifdef __linux__
 #include <malloc.h>
 #endif
+#include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,9 +21,11 @@ namespace
 
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// The first number in a file, or the one behind a name at the begin of a line; `unlimited` where
-/// there is none ("max").
-std::uint64_t number_of_file(const std::string& path, const std::string& wanted = "")
+std::uint64_t limit_given = 0;
+
+/// The first number in a file, or the one behind a name at the begin of a line, and of several the
+/// one at `place`; `unlimited` where there is none ("max").
+std::uint64_t number_of_file(const std::string& path, const std::string& wanted = "", int place = 0)
 {
     std::ifstream in(path);
     std::string line;
@@ -31,6 +34,7 @@ std::uint64_t number_of_file(const std::string& path, const std::string& wanted 
         if (!line.starts_with(wanted)) continue;
         std::istringstream rest(line.substr(wanted.size()));
         std::uint64_t number = 0;
+        for (int k = 0; k < place; ++k) rest >> number;
         return rest >> number ? number : unlimited;
     }
     return unlimited;
@@ -78,14 +82,27 @@ std::uint64_t left_in_groups()
     return least;
 }
 
-/// What `ulimit -v` leaves.
-std::uint64_t left_of_addresses()
+/// What a limit of the process leaves.
+///
+/// place  of what counts for it in /proc/self/statm
+std::uint64_t left_of_process(decltype(RLIMIT_AS) what, int place)
 {
     struct rlimit limit = {};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
-    const std::uint64_t pages = number_of_file("/proc/self/statm");
+    if (::getrlimit(what, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
+    const std::uint64_t pages = number_of_file("/proc/self/statm", "", place);
     const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
     return left_of(limit.rlim_cur, pages == unlimited ? pages : pages * page, unlimited);
+}
+
+/// Of a thread whose maker does not name a size.
+std::uint64_t bytes_of_stack()
+{
+    pthread_attr_t attributes;
+    std::size_t bytes = 0;
+    if (::pthread_attr_init(&attributes) != 0) return 0;
+    ::pthread_attr_getstacksize(&attributes, &bytes);
+    ::pthread_attr_destroy(&attributes);
+    return bytes;
 }
 
 } // namespace
@@ -93,8 +110,26 @@ std::uint64_t left_of_addresses()
 std::uint64_t available_memory()
 {
     const std::uint64_t free = number_of_file("/proc/meminfo", "MemAvailable:");
-    return std::min(
-        {free == unlimited ? free : free * 1024, left_in_groups(), left_of_addresses()});
+    constexpr int all_pages = 0, data_pages = 5;
+    return std::min({free == unlimited ? free : free * 1024, left_in_groups(),
+                     left_of_process(RLIMIT_AS, all_pages),
+                     left_of_process(RLIMIT_DATA, data_pages)});
+}
+
+void limit_memory(std::uint64_t bytes, int threads)
+{
+    limit_given = bytes;
+    struct rlimit limit = {};
+    if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    const std::uint64_t with_stacks =
+        bytes + bytes_of_stack() * static_cast<std::uint64_t>(std::max(threads, 1));
+    limit.rlim_cur = std::min<rlim_t>({limit.rlim_cur, limit.rlim_max, with_stacks});
+    ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+std::uint64_t memory_limit()
+{
+    return limit_given;
 }
 
 void return_free_memory()
