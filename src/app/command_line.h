@@ -30,7 +30,7 @@ struct DropInOptions
     std::optional<double> dp;
     std::vector<std::pair<std::string, std::string>> evars;
     FitChoice fit = FitChoice::AsCase;
-    int threads = 0; ///< 0: what the machine or its scheduler allows
+    int threads = 0;      ///< 0: what the machine or its scheduler allows
     double memory_gb = 0; ///< that the run may take; 0: what the machine has
     int debug = 0;
     bool save_nothing = false; ///< makes all and writes no file

@@ -19,6 +19,9 @@ using Lanes = float __attribute__((vector_size(32)));
 /// Four numbers, half of the lanes.
 using HalfLanes = float __attribute__((vector_size(16)));
 using LaneMask = std::int32_t __attribute__((vector_size(32)));
+/// Four numbers of double precision, a register as well.
+using DoubleLanes = double __attribute__((vector_size(32)));
+using DoubleMask = std::int64_t __attribute__((vector_size(32)));
 
 inline constexpr std::size_t lane_count = 8;
 
@@ -69,6 +72,21 @@ FPPG_LANES unsigned set_lanes(const LaneMask& mask)
     for (unsigned l = 0; l < lane_count; ++l) set |= mask[l] != 0 ? 1u << l : 0;
     return set;
 #endif
+}
+
+FPPG_LANES DoubleLanes larger(const DoubleLanes& a, const DoubleLanes& b)
+{
+    return a > b ? a : b;
+}
+
+FPPG_LANES DoubleLanes smaller(const DoubleLanes& a, const DoubleLanes& b)
+{
+    return a < b ? a : b;
+}
+
+FPPG_LANES bool is_any_set(const DoubleMask& mask)
+{
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
 FPPG_LANES Lanes square_root(const Lanes& squared)

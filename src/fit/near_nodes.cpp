@@ -1,8 +1,9 @@
 #include "fit/near_nodes.h"
 
+#include "core/lanes.h"
 #include "core/parallel.h"
+#include "fit/facet_lanes.h"
 #include "fppg/error.h"
-#include "meshes/facet_distance.h"
 #include "meshes/near_tree.h"
 #include "meshes/outline.h"
 #include "meshes/unit_cube.h"
@@ -11,9 +12,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -26,7 +29,7 @@ namespace
 /// How far nodes are looked for, in dp; more than 1 by what rounding may take.
 constexpr double reach_dp = 1 + 1e-8;
 /// Facets whose box is smaller than this need no cutting to rows, in dp.
-constexpr double small_facet_dp = 2.5;
+constexpr double small_facet_dp = 8;
 
 /// Nodes [begin, end) along an axis.
 struct Range
@@ -81,18 +84,33 @@ public:
     SlabSearch(const TriangleSoup& soup, const LatticeGrid& grid, const NearTree* tree)
         : soup_(soup), grid_(grid), tree_(tree), reach_(reach_dp * grid.dp), offsets_(grid.n[1] + 1)
     {
-        nearest_.resize(grid.n[2], no_distance);
+        nearest_.resize(grid.n[2] + nodes_at_once, no_distance);
         touched_.resize((grid.n[2] / chunk + 63) / 64 + 1, 0);
     }
 
-    std::vector<NearNode> search(std::uint32_t slab, const std::uint32_t* begin,
-                                 const std::uint32_t* end)
+    std::vector<NearNode> search(std::uint32_t slab, std::span<const std::uint32_t> facets)
+    {
+        return is_avx2_there() ? search_avx2(slab, facets) : look(slab, facets);
+    }
+
+private:
+    static constexpr double no_distance = std::numeric_limits<double>::infinity();
+    static constexpr std::uint32_t chunk = 16; ///< nodes of a row that are looked through together
+    static constexpr std::uint32_t nodes_at_once = 4;
+
+    FPPG_AVX2 [[gnu::flatten]] std::vector<NearNode> search_avx2(
+        std::uint32_t slab, std::span<const std::uint32_t> facets)
+    {
+        return look(slab, facets);
+    }
+
+    FPPG_LANES std::vector<NearNode> look(std::uint32_t slab, std::span<const std::uint32_t> facets)
     {
         x_ = grid_.origin.x + slab * grid_.step(0);
         stretches_.clear();
         facets_.clear();
         boxes_.clear();
-        for (const std::uint32_t* f = begin; f < end; ++f) add_stretches(*f);
+        for (const std::uint32_t f : facets) add_stretches(f);
         sort_by_row();
         std::vector<NearNode> result;
         for (std::uint32_t row = first_row_; row < last_row_; ++row)
@@ -105,10 +123,6 @@ public:
         result.shrink_to_fit();
         return result;
     }
-
-private:
-    static constexpr double no_distance = std::numeric_limits<double>::infinity();
-    static constexpr std::uint32_t chunk = 16; ///< nodes of a row that are looked through together
 
     void add_stretches(std::uint32_t f)
     {
@@ -137,8 +151,15 @@ private:
             const double y = grid_.origin.y + static_cast<double>(row) * grid_.step(1);
             const double across = distance_between(y, box.min.y, box.max.y);
             const double rest = std::sqrt(std::max(left - across * across, 0.0));
-            add(row, nodes_between(box.min.z - rest, box.max.z + rest, grid_.origin.z,
-                                   grid_.step(2), grid_.n[2]));
+            double low = box.min.z - rest;
+            double high = box.max.z + rest;
+            if (tree_ == nullptr)
+            {
+                const auto [begin, end] = facets_.back().within_plane(x_, y, reach_);
+                low = std::max(low, begin);
+                high = std::min(high, end);
+            }
+            add(row, nodes_between(low, high, grid_.origin.z, grid_.step(2), grid_.n[2]));
         }
     }
 
@@ -190,22 +211,31 @@ private:
             order_[filled_[stretches_[i].row - first_row_]++] = i;
     }
 
-    void measure(const Stretch& s)
+    FPPG_LANES void measure(const Stretch& s)
     {
         const Box3& box = boxes_[s.facet];
-        Vec3 p{x_, grid_.origin.y + s.row * grid_.step(1), 0};
+        PointsAlongZ p{x_, grid_.origin.y + s.row * grid_.step(1), {}};
         const double aside = distance_between(p.x, box.min.x, box.max.x);
         const double across = distance_between(p.y, box.min.y, box.max.y);
         const double to_row = aside * aside + across * across;
-        const double limit = reach_ * reach_;
-        for (std::uint32_t k = s.begin; k < s.end; ++k)
+        const DoubleLanes limit = DoubleLanes{} + reach_ * reach_;
+        for (std::uint32_t k = s.begin; k < s.end; k += nodes_at_once)
         {
-            p.z = grid_.origin.z + k * grid_.step(2);
-            const double before = std::min(nearest_[k], limit);
-            const double along = distance_between(p.z, box.min.z, box.max.z);
-            if (to_row + along * along >= before) continue;
-            const double squared = tree_ != nullptr ? 0 : facets_[s.facet].squared(p, before);
-            if (squared < before) nearest_[k] = squared;
+            const double first = k;
+            const DoubleLanes node{first, first + 1, first + 2, first + 3};
+            p.z = grid_.origin.z + node * grid_.step(2);
+            DoubleLanes known;
+            std::memcpy(&known, &nearest_[k], sizeof known);
+            const DoubleLanes before = smaller(known, limit);
+            const DoubleLanes along =
+                larger(larger(box.min.z - p.z, p.z - box.max.z), DoubleLanes{});
+            const DoubleMask may_be =
+                (to_row + along * along < before) & (node < static_cast<double>(s.end));
+            if (!is_any_set(may_be)) continue;
+            const DoubleLanes squared =
+                tree_ != nullptr ? DoubleLanes{} : facets_[s.facet].squared(p, before);
+            known = may_be & (squared < before) ? squared : known;
+            std::memcpy(&nearest_[k], &known, sizeof known);
         }
         for (std::uint32_t c = s.begin / chunk; c <= (s.end - 1) / chunk; ++c)
             touched_[c / 64] |= std::uint64_t{1} << (c % 64);
@@ -250,7 +280,8 @@ private:
     std::vector<Stretch> stretches_;
     std::vector<std::uint32_t> offsets_, filled_, order_;
     std::uint32_t first_row_ = 0, last_row_ = 0;
-    std::vector<double> nearest_; ///< squared distance per node of the row in hand
+    /// Squared distance per node of the row in hand, and a few more that are none.
+    std::vector<double> nearest_;
     std::vector<std::uint64_t> touched_;
 };
 
@@ -339,8 +370,8 @@ std::vector<std::vector<NearNode>> find_near_nodes(const TriangleSoup& soup,
                      }
                      if (!search) search = std::make_unique<SlabSearch>(soup, grid, tree.get());
                      slabs[x] =
-                         search->search(static_cast<std::uint32_t>(x), facets.data() + offsets[x],
-                                        facets.data() + offsets[x + 1]);
+                         search->search(static_cast<std::uint32_t>(x),
+                                        {facets.data() + offsets[x], offsets[x + 1] - offsets[x]});
                      const std::lock_guard lock(guard);
                      idle.push_back(std::move(search));
                  });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace fppg
@@ -169,8 +170,15 @@ bool are_of_two_faces(const EdgeCrossing& a, const EdgeCrossing& b, double cell)
            norm(a.foot - b.foot) > foot_jump * norm(a.position - b.position) + 0.02 * cell;
 }
 
-bool has_crease(const std::vector<EdgeCrossing>& tangents, double cell)
+bool has_crease(std::span<const EdgeCrossing> tangents, double cell)
 {
+    // Where all turn from the first by less than half of that, no two turn by more.
+    constexpr double half_turn = 0.9946;
+    static_assert(2 * half_turn * half_turn - 1 > least_turn);
+    if (std::all_of(tangents.begin(), tangents.end(),
+                    [&](const EdgeCrossing& c)
+                    { return dot(c.normal, tangents.front().normal) > half_turn; }))
+        return false;
     for (std::size_t i = 0; i < tangents.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (are_of_two_faces(tangents[i], tangents[j], cell)) return true;
@@ -178,7 +186,7 @@ bool has_crease(const std::vector<EdgeCrossing>& tangents, double cell)
 }
 
 /// The point in a cell nearest to all tangents, if it is as deep as they say.
-std::optional<Vec3> crease_point(const std::vector<EdgeCrossing>& tangents, const Vec3& middle,
+std::optional<Vec3> crease_point(std::span<const EdgeCrossing> tangents, const Vec3& middle,
                                  const Vec3& low, double depth, const DualSource& from)
 {
     const double cell = from.grid.cell;
@@ -218,11 +226,25 @@ DualVertex vertex_of(std::vector<EdgeCrossing>& tangents,
     Vec3 middle;
     for (const EdgeCrossing& c : tangents) middle = middle + c.position;
     middle = middle / static_cast<double>(tangents.size());
-    const std::vector<EdgeCrossing> crossings = tangents;
+    const std::size_t crossings = tangents.size();
     add_corners(corners, low, from.grid.cell, depth, tangents);
     std::optional<Vec3> point = crease_point(tangents, middle, low, depth, from);
-    if (!point) point = crease_point(crossings, middle, low, depth, from);
+    if (!point) point = crease_point({tangents.data(), crossings}, middle, low, depth, from);
     return point ? DualVertex{*point, true} : DualVertex{middle, false};
+}
+
+/// Whether all corners of a cell are known, some of them deep and some not.
+bool is_crossed(const DualBrick& brick, const std::array<int, 3>& cell)
+{
+    constexpr int along_y = brick_nodes, along_x = brick_nodes * brick_nodes;
+    constexpr std::array<int, 8> corners{
+        0, 1, along_y, along_y + 1, along_x, along_x + 1, along_x + along_y, along_x + along_y + 1};
+    const NodeSide* low = &brick.sides[static_cast<std::size_t>(
+        (cell[0] * brick_nodes + cell[1]) * brick_nodes + cell[2])];
+    unsigned seen = 0;
+    for (const int c : corners) seen |= 1U << static_cast<unsigned>(low[c]);
+    return seen == (1U << static_cast<unsigned>(NodeSide::Deep) |
+                    1U << static_cast<unsigned>(NodeSide::Shallow));
 }
 
 } // namespace
@@ -241,20 +263,16 @@ DualBrick make_dual_brick(const DualSource& from, const DepthBrick& brick, doubl
     {
         const std::array<int, 3> at{cell / (brick_cells * brick_cells),
                                     cell / brick_cells % brick_cells, cell % brick_cells};
+        if (!is_crossed(out, at)) continue;
         std::array<bool, 8> is_deep{};
         std::array<const DepthNode*, 8> corners{};
-        int deep = 0;
-        bool is_known = true;
-        for (int c = 0; c < 8 && is_known; ++c)
+        for (int c = 0; c < 8; ++c)
         {
             const DepthNode& node =
                 brick.node(at[0] + (c >> 2), at[1] + (c >> 1 & 1), at[2] + (c & 1));
-            is_known = node.is_known;
             corners[static_cast<std::size_t>(c)] = &node;
             is_deep[static_cast<std::size_t>(c)] = node.depth > depth;
-            deep += node.depth > depth ? 1 : 0;
         }
-        if (!is_known || deep == 0 || deep == 8) continue;
         DualCell dual;
         dual.first = static_cast<std::uint32_t>(out.vertices.size());
         const int sheets = CellSheets(is_deep).name(dual.vertex);

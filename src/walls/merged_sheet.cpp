@@ -2,9 +2,9 @@
 
 #include "fppg/features.h"
 
-#include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "meshes/facing_distance.h"
+#include "meshes/joined_points.h"
 #include "meshes/point_grid.h"
 #include "meshes/small_pieces.h"
 #include "offset/middle.h"
@@ -387,19 +387,27 @@ struct GapPatch
 /// How many particles each point of a gap stands for: of what layers lack there. A point has an
 /// even share of a disk around it (2D: of a piece of the line). Points too near to a layer for a
 /// particle go.
-void settle_numbers(const PointGrid& taken, double dp, bool is_2d, GapPatch& patch)
+void settle_numbers(const PointGrid& taken, double dp, bool is_2d, int threads, GapPatch& patch)
 {
     constexpr double disk_dp = 0.45;
     const double room = is_2d ? 2 * disk_dp : std::numbers::pi * disk_dp * disk_dp;
     const PointGrid all = grid_of(patch.points, disk_dp * dp);
+    std::vector<int> in_disk(patch.points.size(), 0);
+    parallel_for(
+        patch.points.size(), threads,
+        [&](std::size_t k)
+        {
+            const Vec3& p = patch.points[k].position;
+            if (!taken.has_nearer(p, least_pair_dp * dp))
+                all.for_each_near(p, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk[k]; });
+        },
+        256);
     std::vector<MiddlePoint> free;
-    for (const MiddlePoint& p : patch.points)
+    for (std::size_t k = 0; k < in_disk.size(); ++k)
     {
-        if (taken.has_nearer(p.position, least_pair_dp * dp)) continue;
-        int in_disk = 0;
-        all.for_each_near(p.position, disk_dp * dp, [&](std::uint32_t, double) { ++in_disk; });
-        free.push_back(p);
-        patch.numbers.push_back(p.number * room / in_disk);
+        if (in_disk[k] == 0) continue;
+        free.push_back(patch.points[k]);
+        patch.numbers.push_back(patch.points[k].number * room / in_disk[k]);
     }
     patch.points = std::move(free);
 }
@@ -459,7 +467,7 @@ void centre(const Middle& middle, GapPatch& patch, const PointGrid& taken,
 std::vector<MiddlePoint> fill_gap(const Middle& middle, GapPatch& patch, const PointGrid& taken,
                                   const MergedSheetOptions& options, int threads)
 {
-    settle_numbers(taken, options.dp, options.plane_y.has_value(), patch);
+    settle_numbers(taken, options.dp, options.plane_y.has_value(), threads, patch);
     const auto wanted = static_cast<std::size_t>(
         std::lround(std::accumulate(patch.numbers.begin(), patch.numbers.end(), 0.0)));
     std::vector<MiddlePoint> sheet;
@@ -474,14 +482,9 @@ std::vector<MiddlePoint> fill_gap(const Middle& middle, GapPatch& patch, const P
 /// are too small for a particle.
 std::vector<GapPatch> patches_of(const std::vector<MiddlePoint>& points, double dp)
 {
-    const PointGrid all = grid_of(points, patch_dp * dp);
-    DisjointSet sets(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i)
-        all.for_each_near(points[i].position, patch_dp * dp,
-                          [&](std::uint32_t j, double)
-                          {
-                              if (j < i) sets.join(i, j);
-                          });
+    std::vector<Vec3> places;
+    for (const MiddlePoint& p : points) places.push_back(p.position);
+    DisjointSet sets = joined_within(places, patch_dp * dp);
     std::vector<GapPatch> out;
     std::vector<std::size_t> patch_of(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i)
