@@ -294,15 +294,24 @@ private:
                probe.seconds_a_ball * probe.balls * laid;
     }
 
-    /// Fluid near walls that is balanced (balance.h).
-    double balanced() const
+    /// What is balanced (balance.h).
+    struct Balanced
     {
-        if (!def_.balances() || out_.n_fluid == 0) return 0;
-        if (out_.n_fluid <= most_balanced_whole) return static_cast<double>(out_.n_fluid);
+        double fluid = 0;
+        double walls = 0; ///< particles of walls that its forces reach
+    };
+
+    Balanced balanced(double bound) const
+    {
+        if (!def_.balances() || out_.n_fluid == 0) return {};
         double width = 2 * def_.h / def_.grid.dp + 1.5;
         for (const FluidBand& band : def_.fluid_bands) width = std::max(width, band.width_dp);
-        return static_cast<double>(out_.n_fluid) *
-               share_near(fluid_, surfaces_, width * def_.grid.dp, options_.threads);
+        const auto fluid = static_cast<double>(out_.n_fluid);
+        const double near =
+            fluid * share_near(fluid_, surfaces_, width * def_.grid.dp, options_.threads);
+        const double rows = std::ceil(2 * def_.h / def_.grid.dp);
+        return {out_.n_fluid <= most_balanced_whole ? fluid : near,
+                std::min(bound, rows * near / width)};
     }
 
     /// Single sheets do not hold fluid at rest; lines of 2D cases are not counted.
@@ -422,9 +431,9 @@ private:
         if (options_.saves_all) out_.output_bytes += np * vtk;
         if (options_.saves_parts) out_.output_bytes += np * vtk;
 
-        const double near_walls = balanced();
-        set_memory(bound, near_walls);
-        const double pairs = pairs_to_balance(def_, near_walls, holds_fluid());
+        const Balanced to_balance = balanced(bound);
+        set_memory(bound, to_balance);
+        const double pairs = pairs_to_balance(def_, to_balance.fluid, holds_fluid());
         out_.seconds =
             rates.seconds_to_start + draw_seconds_ + search_seconds_ / options_.threads +
             read_machine_speed().factor *
@@ -448,7 +457,7 @@ private:
     }
 
     /// What stays over the run, and the largest of what its stages need besides.
-    void set_memory(double bound, double near_walls)
+    void set_memory(double bound, const Balanced& to_balance)
     {
         out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
                             rates.bytes_a_fitted_facet * facets_ +
@@ -462,7 +471,8 @@ private:
              rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
              bytes_to_relax(relaxed_ + laid_layers_) + rates.bytes_a_band_particle * in_band_,
              rates.bytes_a_layered_facet * layered_facets_,
-             rates.bytes_a_balanced_particle * near_walls});
+             rates.bytes_a_balanced_particle * to_balance.fluid +
+                 rates.bytes_a_wet_particle * to_balance.walls});
     }
 
     EstimateOptions options_;

@@ -24,7 +24,8 @@ struct Rates
     double bytes_a_cut_place = 4900;         ///< of a surface with layers, dp^2: its distance field
     double bytes_a_cut_particle = 2450;      ///< the surface that those of layers are laid on
     double bytes_a_layered_facet = 520;      ///< of the wet surface, for normals
-    double bytes_a_balanced_particle = 1500; ///< fluid near walls, and what is around it
+    double bytes_a_balanced_particle = 870;  ///< of fluid
+    double bytes_a_wet_particle = 1100;      ///< of walls, where such fluid is near
     double picture_bytes_per_particle = 200; ///< with its sphere and the tree over them
 
     double seconds_to_start = 0.01;
