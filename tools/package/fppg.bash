@@ -28,7 +28,7 @@ _fppg()
         *:report) options="--output --stl --definition --particles --picture --data --quiet --threads --help" ;;
         *:templates) options="--overwrite --help" ;;
         *:upgrade) options="--output --in-place --help" endings="xml" ;;
-        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -save: -save:all -to: -save3vtk: -createdirs: -debug:
+        *) options="-dp: -evars: -fit -fit:raw -fit:off -strict -threads: -memory: -save: -save:all -to: -save3vtk: -createdirs: -debug:
                 -quiet -log-json -clean" ;;
     esac
     COMPREPLY=()
