@@ -239,8 +239,8 @@ bool is_crossed(const DualBrick& brick, const std::array<int, 3>& cell)
     constexpr int along_y = brick_nodes, along_x = brick_nodes * brick_nodes;
     constexpr std::array<int, 8> corners{
         0, 1, along_y, along_y + 1, along_x, along_x + 1, along_x + along_y, along_x + along_y + 1};
-    const NodeSide* low = &brick.sides[static_cast<std::size_t>(
-        (cell[0] * brick_nodes + cell[1]) * brick_nodes + cell[2])];
+    const int first = (cell[0] * brick_nodes + cell[1]) * brick_nodes + cell[2];
+    const NodeSide* low = &brick.sides[static_cast<std::size_t>(first)];
     unsigned seen = 0;
     for (const int c : corners) seen |= 1U << static_cast<unsigned>(low[c]);
     return seen == (1U << static_cast<unsigned>(NodeSide::Deep) |
