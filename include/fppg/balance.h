@@ -32,8 +32,8 @@ struct BalanceProgress
 /// fitted walls, but for what is beside other walls. Where fluid near walls has left the lattice it
 /// slides along the rest if that stays (2D, 30 dp deep, stairs off the lattice, DBC, after 0.3 and
 /// 1 s: mean 0.0093 and 0.0123 m/s; all balanced 0.0019, and 0.0033 after 1 s; GenCase's particles
-/// 0.0056 and 0.0122). Some 3 million take two to three times as long as what is near walls alone,
-/// 1.2 kB each, and two minutes on two cores.
+/// 0.0056 and 0.0122). To balance 3 million takes two minutes on two cores, two to three times as
+/// long as what is near walls alone, and 1.2 kB a particle.
 inline constexpr std::size_t most_balanced_whole = 3'000'000;
 
 struct BalanceReport

@@ -73,8 +73,8 @@ private:
             read_);
         if (e.find_child("ftsupport") != nullptr && !flag(e, "ftsupport", true, "value"))
             warnings_.push_back(
-                fmt::format("{}:{}: <ftsupport>: floating bodies have normals all "
-                            "the same, as with GenCase v5.4.",
+                fmt::format("{}:{}: <ftsupport>: has no effect, floating bodies have "
+                            "normals, as with GenCase v5.4.",
                             read_.file(), e.find_child("ftsupport")->line));
         GeometryNormals geometry = read_geometry(e, "value");
         std::string form = fmt::format("<norgeometry><geometryfile file=\"{}\" />",

@@ -827,7 +827,7 @@ TEST(Normals, OfGenCase50MayHaveWordsThatOfGenCase54Refuses)
                 testing::AllOf(testing::HasSubstr("this is the form of GenCase v5.0"),
                                testing::Not(testing::HasSubstr("<ftsupport>"))));
     EXPECT_THAT(warnings(R"(<ftsupport value="0" />)"),
-                testing::HasSubstr("<ftsupport>: floating bodies have normals all the same"));
+                testing::HasSubstr("<ftsupport>: has no effect, floating bodies have normals"));
 }
 
 TEST(Transforms, ActInReverseOrderOfWriting)
