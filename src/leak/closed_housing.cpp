@@ -19,20 +19,50 @@ constexpr std::uint8_t outside = 2;
 
 } // namespace
 
-ClosedHousing::ClosedHousing(const CaseSolids& solids, const std::vector<Vec3>& fluid, double dp,
+bool ClosedHousing::Wall::is_near(const Vec3& p, double distance) const
+{
+    return shape->solid->is_nearer(motion == nullptr ? p : motion->backward(p), distance);
+}
+
+ClosedHousing::ClosedHousing(const CaseSolids& solids, const MotionOfMk& motions, double dp,
                              const double* plane_y, int threads)
 {
     Box3 box;
-    std::vector<const Solid*> walls;
+    std::vector<Wall> walls;
     for (const CaseShape& shape : solids.shapes)
     {
         if (shape.kind != MkKind::Bound) continue;
-        walls.push_back(shape.solid.get());
-        box.add(shape.solid->bounds().min);
-        box.add(shape.solid->bounds().max);
+        const auto motion = motions.find(shape.mk);
+        walls.push_back({&shape, motion == motions.end() ? nullptr : &motion->second});
+        const Box3 own = shape.solid->bounds();
+        for (int corner = 0; corner < 8; ++corner)
+        {
+            const Vec3 p{(corner & 1) != 0 ? own.max.x : own.min.x,
+                         (corner & 2) != 0 ? own.max.y : own.min.y,
+                         (corner & 4) != 0 ? own.max.z : own.min.z};
+            box.add(walls.back().motion == nullptr ? p : walls.back().motion->forward(p));
+        }
     }
-    if (walls.empty() || fluid.empty()) return;
-    if (plane_y != nullptr) box.min.y = box.max.y = *plane_y;
+    if (walls.empty()) return;
+    set_lattice(box, dp, plane_y);
+    state_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), 0);
+    const std::int64_t slab = n_[1] * n_[2];
+    parallel_for(
+        static_cast<std::size_t>(n_[0]), threads,
+        [&](std::size_t x)
+        {
+            const std::int64_t first = static_cast<std::int64_t>(x) * slab;
+            for (std::int64_t node = first; node < first + slab; ++node)
+                if (std::any_of(walls.begin(), walls.end(),
+                                [&](const Wall& wall)
+                                { return wall.is_near(place(node), blocked_within * spacing_); }))
+                    state_[static_cast<std::size_t>(node)] = near_surface;
+        });
+    flood(walls);
+}
+
+void ClosedHousing::set_lattice(const Box3& box, double dp, const double* plane_y)
+{
     const Vec3 size = box.max - box.min;
     spacing_ = dp;
     const auto nodes_along = [&](int axis)
@@ -50,30 +80,31 @@ ClosedHousing::ClosedHousing(const CaseSolids& solids, const std::vector<Vec3>& 
     for (int axis = 0; axis < 3; ++axis)
     {
         n_[static_cast<std::size_t>(axis)] = nodes_along(axis);
-        const bool is_flat = plane_y != nullptr && axis == 1;
-        origin_[axis] = box.min[axis] - (is_flat ? 0 : static_cast<double>(margin) * spacing_);
+        origin_[axis] = plane_y != nullptr && axis == 1
+                            ? *plane_y
+                            : box.min[axis] - static_cast<double>(margin) * spacing_;
     }
-    state_.assign(static_cast<std::size_t>(n_[0] * n_[1] * n_[2]), 0);
+}
+
+Vec3 ClosedHousing::place(std::int64_t node) const
+{
     const std::int64_t slab = n_[1] * n_[2];
-    parallel_for(
-        static_cast<std::size_t>(n_[0]), threads,
-        [&](std::size_t x)
-        {
-            for (std::int64_t i = 0; i < slab; ++i)
-            {
-                const std::int64_t row = i / n_[2];
-                const Vec3 p = origin_ + Vec3{static_cast<double>(x), static_cast<double>(row),
-                                              static_cast<double>(i % n_[2])} *
-                                             spacing_;
-                for (const Solid* wall : walls)
-                    if (wall->is_nearer(p, blocked_within * spacing_))
-                    {
-                        state_[x * static_cast<std::size_t>(slab) + static_cast<std::size_t>(i)] =
-                            near_surface;
-                        break;
-                    }
-            }
-        });
+    return origin_ + Vec3{static_cast<double>(node / slab),
+                          static_cast<double>(node % slab / n_[2]),
+                          static_cast<double>(node % n_[2])} *
+                         spacing_;
+}
+
+void ClosedHousing::flood(const std::vector<Wall>& walls)
+{
+    const auto reach = [&](std::int64_t node)
+    {
+        for (const Wall& wall : walls)
+            if (!mks_.contains(wall.shape->mk) &&
+                wall.is_near(place(node), blocked_within * spacing_))
+                mks_.insert(wall.shape->mk);
+    };
+    const std::int64_t slab = n_[1] * n_[2];
     // The first node is in the margin, away from every surface.
     std::vector<std::int64_t> open{0};
     state_[0] = outside;
@@ -87,18 +118,19 @@ ClosedHousing::ClosedHousing(const CaseSolids& solids, const std::vector<Vec3>& 
             for (const std::int64_t way : {-1, 1})
             {
                 if (at[axis] + way < 0 || at[axis] + way >= n_[axis]) continue;
-                std::uint8_t& state = state_[static_cast<std::size_t>(node + way * step[axis])];
+                const std::int64_t next = node + way * step[axis];
+                std::uint8_t& state = state_[static_cast<std::size_t>(next)];
+                if (state == near_surface) reach(next);
                 if (state != 0) continue;
                 state = outside;
-                open.push_back(node + way * step[axis]);
+                open.push_back(next);
             }
     }
-    is_closed_ =
-        std::none_of(fluid.begin(), fluid.end(), [&](const Vec3& p) { return is_outside(p); });
 }
 
 bool ClosedHousing::is_outside(const Vec3& p) const
 {
+    if (state_.empty()) return true;
     std::int64_t node = 0;
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -114,12 +114,53 @@ private:
                 fmt::format("Open surfaces have no inside: {}.", fmt::join(open, ", ")));
     }
 
-    void find_housing()
+    ClosedHousing housing_at(const MotionOfMk& motions) const
     {
         const double plane_y = def_.grid.origin.y;
-        housing_.emplace(solids_, fluid_, def_.grid.dp, def_.grid.is_2d ? &plane_y : nullptr,
-                         options_.threads);
-        report_.has_housing = housing_->is_closed();
+        return {solids_, motions, def_.grid.dp, def_.grid.is_2d ? &plane_y : nullptr,
+                options_.threads};
+    }
+
+    void find_housing()
+    {
+        housing_.emplace(housing_at({}));
+        report_.has_housing =
+            !fluid_.empty() && std::none_of(fluid_.begin(), fluid_.end(),
+                                            [&](const Vec3& p) { return housing_->is_outside(p); });
+    }
+
+    /// Whether each place is outside the housing; empty where there is none at that time.
+    std::vector<char> outside_housing(const std::vector<Vec3>& places, const MotionOfMk& motions,
+                                      const std::set<std::uint16_t>& given_up, double time)
+    {
+        if (!report_.has_housing) return {};
+        const std::set<std::uint16_t>& mks = housing_->mks();
+        const auto is_of_housing = [&](std::uint16_t mk) { return mks.contains(mk); };
+        if (std::any_of(given_up.begin(), given_up.end(), is_of_housing)) return {};
+        const bool moves =
+            std::any_of(motions.begin(), motions.end(),
+                        [&](const auto& motion) { return mks.contains(motion.first); });
+        const bool moves_as_one = moves && mks.size() == 1;
+        std::optional<ClosedHousing> moved;
+        if (moves && !moves_as_one) moved.emplace(housing_at(motions));
+        const ClosedHousing& housing = moved ? *moved : *housing_;
+        std::vector<char> is_out(places.size(), 0);
+        parallel_for(
+            places.size(), options_.threads,
+            [&](std::size_t k)
+            {
+                const Vec3 p =
+                    moves_as_one ? motions.at(*mks.begin()).backward(places[k]) : places[k];
+                is_out[k] = housing.is_outside(p) ? 1 : 0;
+            },
+            particles_per_chunk);
+        const auto out = static_cast<std::size_t>(std::count(is_out.begin(), is_out.end(), 1));
+        if (!moved || 2 * out <= places.size()) return is_out;
+        report_.notes.push_back(
+            fmt::format("The housing is open at {:g} s: most of the fluid can be reached from "
+                        "outside, which is not counted then.",
+                        time));
+        return {};
     }
 
     void list_bodies()
@@ -191,36 +232,34 @@ private:
         instant.in_body.assign(report_.bodies.size(), 0);
         std::set<std::uint16_t> given_up;
         const MotionOfMk motions = motions_of(part, given_up);
-        std::vector<std::size_t> fluid;
+        std::vector<Vec3> fluid;
         for (std::size_t i = 0; i < part.size(); ++i)
-            if (type_of(part.id(i)) == ParticleType::Fluid) fluid.push_back(i);
+            if (type_of(part.id(i)) == ParticleType::Fluid) fluid.push_back(part.position(i));
         std::vector<std::size_t> in(fluid.size(), CaseSolids::none);
+        std::vector<char> is_in_solid(fluid.size(), 0);
         std::vector<double> depth(fluid.size(), 0);
-        std::vector<char> is_out(fluid.size(), 0);
         const auto judge = [&](std::size_t k)
         {
-            const Vec3 p = part.position(fluid[k]);
-            const std::size_t s = solids_.find(p, motions);
-            if (s != CaseSolids::none)
-            {
-                const CaseShape& shape = solids_.shapes[s];
-                const auto motion = motions.find(shape.mk);
-                const Vec3 before = motion == motions.end() ? p : motion->second.backward(p);
-                depth[k] = shape.solid->distance(before) / report_.dp;
-                if (depth[k] > options_.tolerance_dp && !given_up.contains(shape.mk)) in[k] = s;
-            }
-            else if (report_.has_housing)
-                is_out[k] = housing_->is_outside(p) ? 1 : 0;
+            const std::size_t s = solids_.find(fluid[k], motions);
+            if (s == CaseSolids::none) return;
+            is_in_solid[k] = 1;
+            const CaseShape& shape = solids_.shapes[s];
+            const auto motion = motions.find(shape.mk);
+            const Vec3 before =
+                motion == motions.end() ? fluid[k] : motion->second.backward(fluid[k]);
+            depth[k] = shape.solid->distance(before) / report_.dp;
+            if (depth[k] > options_.tolerance_dp && !given_up.contains(shape.mk)) in[k] = s;
         };
         parallel_for(fluid.size(), options_.threads, judge, particles_per_chunk);
         instant.fluid = fluid.size();
         const auto known =
             static_cast<std::uint64_t>(part.value("NpTotal", static_cast<double>(source_.size())));
         if (known >= part.size()) instant.excluded = known - part.size();
-        if (report_.has_housing) instant.outside = 0;
+        const std::vector<char> is_out = outside_housing(fluid, motions, given_up, instant.time);
+        if (report_.has_housing && is_out.size() == fluid.size()) instant.outside = 0;
         for (std::size_t k = 0; k < fluid.size(); ++k)
         {
-            if (is_out[k] != 0) ++*instant.outside;
+            if (instant.outside && is_out[k] != 0 && is_in_solid[k] == 0) ++*instant.outside;
             if (in[k] == CaseSolids::none) continue;
             ++instant.inside;
             if (depth[k] > 0.5) ++instant.deep;

@@ -71,7 +71,8 @@ struct LeakReport
 /// winding number. What a later void or fluid shape takes away is not solid. A closed housing is
 /// there when no way leads from outside all shapes to the fluid of the case through openings wider
 /// than about two dp; outside of it are particles whose lattice node such a way reaches, which is
-/// 0.87 dp off the surface at the latest.
+/// 0.87 dp off the surface at the latest. It moves with its shapes; where it opens while it moves,
+/// or bends, nothing is counted at that time.
 ///
 /// Shapes of a moving or floating mk stand where its particles are: the rigid motion that takes
 /// those of the case to those of the output with the least squares (Horn 1987). Where they are more

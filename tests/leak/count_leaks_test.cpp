@@ -73,6 +73,13 @@ protected:
     }
 };
 
+/// About the axis y through (0.5, 0, 0.5).
+std::string rotation_of_mk(int mk)
+{
+    return R"(<motion><objreal ref=")" + std::to_string(mk) +
+           R"("><begin mov="1" start="0" /><mvrot id="1" duration="10" anglesunits="degrees"><vel ang="90" /><axisp1 x="0.5" y="0" z="0.5" /><axisp2 x="0.5" y="1" z="0.5" /></mvrot></objreal></motion>)";
+}
+
 /// A flat bar of 0.6 x 0.6 x 0.2 m about the middle of a tank, which turns about y; water below.
 CaseText turning_bar()
 {
@@ -85,8 +92,7 @@ CaseText turning_bar()
         R"(<setmkbound mk="1" />)" +
         box_command(R"(x="0.2" y="0.2" z="0.4")", R"(x="0.6" y="0.6" z="0.2")") +
         R"(<setmkfluid mk="0" /><fillbox x="0.5" y="0.5" z="0.05"><modefill>void</modefill><point x="0" y="0" z="0" /><size x="1" y="1" z="0.1" /></fillbox>)";
-    out.after_geometry =
-        R"(<motion><objreal ref="1"><begin mov="1" start="0" /><mvrot id="1" duration="10" anglesunits="degrees"><vel ang="90" /><axisp1 x="0.5" y="0" z="0.5" /><axisp2 x="0.5" y="1" z="0.5" /></mvrot></objreal></motion>)";
+    out.after_geometry = rotation_of_mk(1);
     return out;
 }
 
@@ -166,6 +172,40 @@ TEST_F(CountLeaks, FindsAParticleOutsideAClosedHousing)
     EXPECT_EQ(below.instants[0].outside, 1U);
     EXPECT_EQ(count(with_last_at(part(), {0.5, 0.5, -40})).instants[0].outside, 1U);
     EXPECT_FALSE(below.is_tight());
+}
+
+TEST_F(CountLeaks, TakesAHousingWithTheWallsThatMove)
+{
+    CaseText text = closed_tank();
+    text.after_geometry = rotation_of_mk(0);
+    generate(text);
+    const double eighth = std::numbers::pi / 4;
+    // The tank stands on an edge, the other water is left where it was.
+    const auto outside = [&](const Vec3& last)
+    {
+        const LeakReport report = count(with_last_at(part(10, eighth), last));
+        EXPECT_TRUE(report.instants[0].outside.has_value());
+        return report.instants[0].outside.value_or(0);
+    };
+    EXPECT_EQ(outside({0.1, 0.5, 0.1}), outside({0.5, 0.5, -0.05}) + 1);
+}
+
+TEST_F(CountLeaks, FollowsTheOneOfTwoWallsThatMoves)
+{
+    CaseText text = closed_tank();
+    const std::string sides = "all";
+    text.mainlist.replace(text.mainlist.rfind(sides), sides.size(),
+                          "bottom | left | right | front | back");
+    text.mainlist +=
+        R"(<setmkbound mk="1" />)" + box_command(R"(x="0" y="0" z="1")", R"(x="1" y="1" z="0.1")");
+    text.after_geometry = rotation_of_mk(1);
+    generate(text);
+    const PartText still = part();
+    EXPECT_EQ(count(with_last_at(still, {0.5, 0.5, 1.3})).instants[0].outside, 1U);
+    // The lid stands upright: the tank is open.
+    const LeakReport open = count(with_last_at(part(11, std::numbers::pi / 2), {0.5, 0.5, 1.3}));
+    EXPECT_EQ(open.instants[0].outside, std::nullopt);
+    EXPECT_THAT(open.notes, testing::Contains(HasSubstr("The housing is open at 1 s")));
 }
 
 TEST_F(CountLeaks, HasNoHousingWhereTheTankIsOpen)
