@@ -90,6 +90,14 @@ struct Box3
             if (p[axis] < min[axis] - margin || p[axis] > max[axis] + margin) return false;
         return true;
     }
+    std::array<Vec3, 8> corners() const
+    {
+        std::array<Vec3, 8> out;
+        for (std::size_t k = 0; k < out.size(); ++k)
+            out[k] = {(k & 1U) != 0 ? max.x : min.x, (k & 2U) != 0 ? max.y : min.y,
+                      (k & 4U) != 0 ? max.z : min.z};
+        return out;
+    }
 };
 
 /// Affine map p -> linear * p + offset; rows of `linear` first.

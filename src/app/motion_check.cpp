@@ -1,5 +1,6 @@
 #include "app/motion_check.h"
 
+#include "core/finite_number.h"
 #include "particles/initials.h"
 #include "particles/motion_path.h"
 #include "particles/run_positions.h"
@@ -16,6 +17,7 @@ namespace
 {
 
 constexpr int steps = 2000;
+constexpr double border = 0.05; ///< of the solver around all particles, h
 /// Places of particles that are followed, times steps: of larger bodies fewer steps are looked at.
 constexpr std::size_t most_places = 40'000'000;
 
@@ -25,37 +27,64 @@ public:
     MotionChecker(const CaseDef& def, const CaseParticles& particles)
         : def_(def), particles_(particles)
     {
-        for (const Element& e : def.execution)
-            if (e.name == "parameters")
-                for (const Element& p : e.children)
-                {
-                    const std::string* key = p.find_attribute("key");
-                    if (key != nullptr && *key == "TimeMax") end_ = number_or(p, "value", end_);
-                }
+        end_ = time_max(def.execution, end_);
     }
 
     std::vector<std::string> run()
     {
-        if (!has_own_domain())
+        if (!def_.vres.is_active() && set_domain())
             for_each_moving(def_.motion, [&](const Element& object, const MotionChain& chain)
                             { check(object, chain); });
         return std::move(found_);
     }
 
 private:
-    bool has_own_domain() const
+    /// The domain of the solver v5.4: that of all particles and 0.05 h, with what
+    /// <simulationdomain> adds. False where old keys of <parameters> give it.
+    bool set_domain()
     {
-        const auto is_given = [](const Element::Attribute& a)
-        { return a.name.size() == 1 && a.value != "default"; };
+        domain_.min = particles_.pos_min - border * def_.h * Vec3{1, 1, 1};
+        domain_.max = particles_.pos_max + border * def_.h * Vec3{1, 1, 1};
+        const Vec3 size = domain_.max - domain_.min;
         for (const Element& e : def_.execution)
         {
-            const Element* domain = e.find_child("simulationdomain");
-            if (domain == nullptr) continue;
-            for (const Element& limit : domain->children)
-                if (std::any_of(limit.attributes.begin(), limit.attributes.end(), is_given))
-                    return true;
+            if (e.name != "parameters") continue;
+            for (const Element& p : e.children)
+            {
+                const std::string* key = p.find_attribute("key");
+                if (key != nullptr && (*key == "IncZ" || key->starts_with("DomainFixed") ||
+                                       key->starts_with("DomainParticles")))
+                    return false;
+            }
+            if (const Element* domain = e.find_child("simulationdomain"))
+                for (const Element& limit : domain->children)
+                    for (int axis = 0; axis < 3; ++axis)
+                        if (const std::string* value =
+                                limit.find_attribute(std::string(1, "xyz"[axis])))
+                        {
+                            const bool is_min = limit.name == "posmin";
+                            double& place = is_min ? domain_.min[axis] : domain_.max[axis];
+                            place = limit_of(*value, place, is_min ? -size[axis] : size[axis]);
+                        }
         }
-        return false;
+        return true;
+    }
+
+    /// Of "default", "default + 0.5", "default - 10%" or a number.
+    ///
+    /// size  of the domain without it, negative for the lower end
+    static double limit_of(std::string text, double otherwise, double size)
+    {
+        std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
+        constexpr std::string_view word = "default";
+        const bool adds = text.starts_with(word);
+        if (adds) text.erase(0, std::min(text.size(), word.size() + 1));
+        const bool is_percent = text.ends_with('%');
+        if (is_percent) text.pop_back();
+        const std::optional<double> value = finite_number(text);
+        if (!value) return otherwise;
+        if (!adds) return *value;
+        return otherwise + (is_percent ? *value / 100 * size : std::copysign(*value, size));
     }
 
     void check(const Element& object, const MotionChain& chain)
@@ -66,7 +95,8 @@ private:
             if (block.type != ParticleType::Moving || block.mk_type != mkbound) continue;
             const std::vector<Vec3> places = ends_of_runs(block);
             if (places.empty()) continue;
-            const std::vector<Vec3> corners = corners_around(places);
+            const std::array<Vec3, 8> around = box_around(places, {}).corners();
+            const std::vector<Vec3> corners(around.begin(), around.end());
             // What turns within the domain stays there, though corners of its box leave it.
             const auto stride = static_cast<int>(places.size() * steps / most_places) + 1;
             for (int step = 1; step <= steps; ++step)
@@ -101,18 +131,6 @@ private:
         return places;
     }
 
-    static std::vector<Vec3> corners_around(const std::vector<Vec3>& places)
-    {
-        Box3 box;
-        for (const Vec3& p : places) box.add(p);
-        std::vector<Vec3> corners;
-        for (unsigned corner = 0; corner < 8; ++corner)
-            corners.push_back({(corner & 1U) != 0 ? box.max.x : box.min.x,
-                               (corner & 2U) != 0 ? box.max.y : box.min.y,
-                               (corner & 4U) != 0 ? box.max.z : box.min.z});
-        return corners;
-    }
-
     static Box3 box_around(const std::vector<Vec3>& places, const Transform& place)
     {
         Box3 box;
@@ -123,16 +141,13 @@ private:
     /// An axis along which a box is not in the domain.
     std::optional<int> axis_left(const Box3& box) const
     {
-        const double room = def_.grid.dp;
         for (int axis = 0; axis < 3; ++axis)
         {
             // The solver takes what leaves a period in at its other end.
             if ((def_.grid.is_2d && axis == 1) ||
                 def_.grid.is_periodic[static_cast<std::size_t>(axis)])
                 continue;
-            if (box.min[axis] < def_.case_pos_min[axis] - room ||
-                box.max[axis] > def_.case_pos_max[axis] + room)
-                return axis;
+            if (box.min[axis] < domain_.min[axis] || box.max[axis] > domain_.max[axis]) return axis;
         }
         return std::nullopt;
     }
@@ -140,15 +155,19 @@ private:
     void note(const Element& object, double time, int axis, const Box3& box)
     {
         found_.push_back(fmt::format(
-            "{}:{}: <objreal ref=\"{}\">: by t = {:g} s it has left the domain: {} from {:g} to "
-            "{:g}, expected {:g} to {:g} up to TimeMax = {:g} s; move <pointmin> and <pointmax>, "
-            "give a <simulationdomain> or shorten the motion",
+            "{}:{}: <objreal ref=\"{}\">: by t = {:.3g} s it has left the domain of the solver, "
+            "which "
+            "ends there: {} from {:g} to {:g}, expected {:g} to {:g} up to TimeMax = {:g} s. That "
+            "is "
+            "where particles are at the start; give a <simulationdomain> that reaches further "
+            "(\"default + 20%\") or shorten the motion",
             def_.file, object.line, *object.find_attribute("ref"), time, "xyz"[axis], box.min[axis],
-            box.max[axis], def_.case_pos_min[axis], def_.case_pos_max[axis], end_));
+            box.max[axis], domain_.min[axis], domain_.max[axis], end_));
     }
 
     const CaseDef& def_;
     const CaseParticles& particles_;
+    Box3 domain_;
     double end_ = 10;
     std::vector<std::string> found_;
 };

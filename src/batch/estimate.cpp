@@ -4,7 +4,6 @@
 #include "fppg/error.h"
 #include "fppg/features.h"
 #include "fppg/lattice.h"
-#include "fppg/moving_parts.h"
 #include "fppg/scene.h"
 
 #include "batch/fluid_near_walls.h"
@@ -17,6 +16,7 @@
 #include "lattice/mesh_units.h"
 #include "meshes/outline.h"
 #include "scene/near_domain.h"
+#include "walls/fast_walls.h"
 #include "walls/fluid_boxes.h"
 #include "walls/layer_builder.h"
 #include "walls/part_in_domain.h"
@@ -72,7 +72,8 @@ public:
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
         scene_ = make_scene(def_);
-        moving_ = mks_that_move(def_);
+        fast_ =
+            mks_of_fast_walls(scene_, boxes_of_fluid(scene_, options_.threads), options_.threads);
         CaseOptions coarse = options_.case_options;
         coarse.meshes = scene_.meshes;
         expect_particles_fit(path, coarse, def_, options_.threads);
@@ -170,7 +171,7 @@ private:
         const FitSettings* given = fit_settings(def_.fit, state.mk.mk);
         if (given == nullptr) return;
         FitSettings settings = *given;
-        if (fluid_.empty() || !may_layer_sheets(step, moving_)) settings.sheet_depths_dp.clear();
+        if (fluid_.empty() || !may_layer_sheets(step, fast_)) settings.sheet_depths_dp.clear();
         const std::optional<DrawOp> shorter = made_near_domain(*step.draw, def_);
         SceneStep near = step;
         if (shorter) near.draw = &*shorter;
@@ -477,8 +478,8 @@ private:
 
     EstimateOptions options_;
     CaseDef def_;
-    Scene scene_;                    ///< of def_
-    std::set<std::uint16_t> moving_; ///< mks
+    Scene scene_;                  ///< of def_
+    std::set<std::uint16_t> fast_; ///< mks
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
     std::uint64_t runs_ = 0;

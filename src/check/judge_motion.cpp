@@ -1,11 +1,13 @@
 #include "check/judge_motion.h"
 
+#include "particles/farthest_points.h"
+#include "particles/motion_path.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 namespace fppg
 {
@@ -13,41 +15,12 @@ namespace fppg
 namespace
 {
 
-/// Of a block the particles farthest along 26 directions: the fastest one of a rigid body is nearly
-/// as fast as the fastest of them.
-std::vector<Vec3> farthest_places(const CheckParticles& particles, std::uint16_t mk)
+FarthestPoints farthest_points(const CheckParticles& particles, std::uint16_t mk)
 {
-    std::vector<Vec3> ways;
-    for (int x = -1; x <= 1; ++x)
-        for (int y = -1; y <= 1; ++y)
-            for (int z = -1; z <= 1; ++z)
-                if (x != 0 || y != 0 || z != 0)
-                    ways.push_back(
-                        {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
-    std::vector<Vec3> out;
+    FarthestPoints out;
     for (std::size_t i = 0; i < particles.positions.size(); ++i)
-    {
-        if (particles.mk[i] != mk || !is_finite(particles.positions[i])) continue;
-        const Vec3& p = particles.positions[i];
-        if (out.empty()) out.assign(ways.size(), p);
-        for (std::size_t w = 0; w < ways.size(); ++w)
-            if (dot(p, ways[w]) > dot(out[w], ways[w])) out[w] = p;
-    }
-    return out;
-}
-
-/// The largest speed of the places of a block over its motion, and when.
-std::pair<double, double> fastest(const MovingBlock& block, const std::vector<Vec3>& places)
-{
-    std::pair<double, double> out{0, 0};
-    for (std::size_t step = 1; step < block.places.size(); ++step)
-        for (const Vec3& p : places)
-        {
-            const double speed =
-                norm(block.places[step](p) - block.places[step - 1](p)) / block.step;
-            if (speed > out.first * (1 + 1e-6))
-                out = {speed, static_cast<double>(step) * block.step};
-        }
+        if (particles.mk[i] == mk && is_finite(particles.positions[i]))
+            out.add(particles.positions[i]);
     return out;
 }
 
@@ -100,7 +73,8 @@ std::vector<std::string> judge_motion(const CheckParticles& particles, const Che
     for (std::size_t k = 0; k < setup.moving.size(); ++k)
     {
         const MovingBlock& block = setup.moving[k];
-        const auto [speed, time] = fastest(block, farthest_places(particles, block.mk));
+        const auto [speed, time] =
+            top_speed(block.places, block.step, farthest_points(particles, block.mk).points());
         if (setup.speed_sound > 0 && 10 * speed > setup.speed_sound)
             out.push_back(fmt::format(
                 "mk {}: its fastest particle has {:.3g} m/s at {:.3g} s, more than a tenth of the "

@@ -225,16 +225,7 @@ void read_motion(const SetupReader& reader, CheckSetup& setup)
     {
         MovingBlock block;
         block.step = end / steps;
-        for (int step = 0; step <= steps; ++step)
-        {
-            const std::optional<Transform> place = place_at(chain, step * block.step);
-            if (!place)
-            {
-                block.places.clear();
-                break;
-            }
-            block.places.push_back(*place);
-        }
+        block.places = places_over(chain, block.step, steps);
         for (const Element& of : particles->children)
         {
             if (of.name != "moving" ||

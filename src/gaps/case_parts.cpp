@@ -10,24 +10,6 @@
 namespace fppg
 {
 
-namespace
-{
-
-double time_max(const CaseDef& def)
-{
-    double end = 0;
-    for (const Element& e : def.execution)
-        if (e.name == "parameters")
-            for (const Element& p : e.children)
-            {
-                const std::string* key = p.find_attribute("key");
-                if (key != nullptr && *key == "TimeMax") end = number_or(p, "value", end);
-            }
-    return end;
-}
-
-} // namespace
-
 Transform inverse_of(const Transform& t)
 {
     Transform out;
@@ -101,7 +83,7 @@ GapCase read_gap_case(const std::string& definition, const MotionGapOptions& opt
     GapCase out;
     out.def = read_case(definition, case_options);
     out.solids = case_solids(make_scene(out.def), options.threads);
-    out.end = options.end > 0 ? options.end : time_max(out.def);
+    out.end = options.end > 0 ? options.end : time_max(out.def.execution, 0);
     out.notes = out.solids.notes;
     out.parts = case_parts(out.def, out.solids, out.notes);
     if (!(out.end > 0) && !out.def.motion.children.empty())

@@ -34,14 +34,8 @@ ClosedHousing::ClosedHousing(const CaseSolids& solids, const MotionOfMk& motions
         if (shape.kind != MkKind::Bound) continue;
         const auto motion = motions.find(shape.mk);
         walls.push_back({&shape, motion == motions.end() ? nullptr : &motion->second});
-        const Box3 own = shape.solid->bounds();
-        for (int corner = 0; corner < 8; ++corner)
-        {
-            const Vec3 p{(corner & 1) != 0 ? own.max.x : own.min.x,
-                         (corner & 2) != 0 ? own.max.y : own.min.y,
-                         (corner & 4) != 0 ? own.max.z : own.min.z};
+        for (const Vec3& p : shape.solid->bounds().corners())
             box.add(walls.back().motion == nullptr ? p : walls.back().motion->forward(p));
-        }
     }
     if (walls.empty()) return;
     set_lattice(box, dp, plane_y);

@@ -139,4 +139,42 @@ std::optional<Transform> place_at(const MotionChain& chain, double time)
     return place;
 }
 
+std::vector<Transform> places_over(const MotionChain& chain, double step, int steps)
+{
+    std::vector<Transform> out;
+    for (int k = 0; k <= steps; ++k)
+    {
+        const std::optional<Transform> place = place_at(chain, k * step);
+        if (!place) return {};
+        out.push_back(*place);
+    }
+    return out;
+}
+
+TopSpeed top_speed(const std::vector<Transform>& places, double step,
+                   const std::vector<Vec3>& points)
+{
+    TopSpeed out;
+    for (std::size_t k = 1; k < places.size(); ++k)
+        for (const Vec3& p : points)
+        {
+            const double speed = norm(places[k](p) - places[k - 1](p)) / step;
+            if (speed > out.speed * (1 + 1e-6)) out = {speed, static_cast<double>(k) * step};
+        }
+    return out;
+}
+
+double time_max(const std::vector<Element>& execution, double otherwise)
+{
+    double end = otherwise;
+    for (const Element& e : execution)
+        if (e.name == "parameters")
+            for (const Element& p : e.children)
+            {
+                const std::string* key = p.find_attribute("key");
+                if (key != nullptr && *key == "TimeMax") end = number_or(p, "value", end);
+            }
+    return end;
+}
+
 } // namespace fppg

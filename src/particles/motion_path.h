@@ -25,6 +25,25 @@ using MotionChain = std::vector<const Element*>;
 /// time  seconds
 std::optional<Transform> place_at(const MotionChain& chain, double time);
 
+/// place_at() at 0, step, 2 step, ... steps * step; empty where one of them is nothing.
+std::vector<Transform> places_over(const MotionChain& chain, double step, int steps);
+
+/// Of a body that moves.
+struct TopSpeed
+{
+    double speed = 0; ///< m/s
+    double time = 0;  ///< seconds, at the end of the step with it
+};
+
+/// The largest mean speed over a step of any of the points.
+///
+/// places  places_over()
+TopSpeed top_speed(const std::vector<Transform>& places, double step,
+                   const std::vector<Vec3>& points);
+
+/// The value of TimeMax among the children of `<execution>`, seconds.
+double time_max(const std::vector<Element>& execution, double otherwise);
+
 /// Calls visit(object, chain) for every `<objreal>` in `<motion>` or an object, the chain with the
 /// objects around it and itself.
 template <typename Visit>

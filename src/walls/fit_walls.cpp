@@ -1,7 +1,6 @@
 #include "walls/fit_walls.h"
 
 #include "fppg/error.h"
-#include "fppg/moving_parts.h"
 
 #include "core/parallel.h"
 #include "lattice/depth_region.h"
@@ -11,6 +10,7 @@
 #include "scene/near_domain.h"
 #include "scene/surfaces.h"
 #include "walls/boolean_wall.h"
+#include "walls/fast_walls.h"
 #include "walls/fit_shape.h"
 #include "walls/fluid_boxes.h"
 #include "walls/lost_layers.h"
@@ -451,13 +451,14 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
     if (scene.def->fit.is_empty()) return out;
     const bool layered = has_layers(scene.def->fit);
     const std::vector<Box3> fluid = layered ? boxes_of_fluid(scene, threads) : std::vector<Box3>{};
-    const std::set<std::uint16_t> moving = mks_that_move(*scene.def);
+    const std::set<std::uint16_t> fast =
+        layered ? mks_of_fast_walls(scene, fluid, threads) : std::set<std::uint16_t>{};
     for (std::uint32_t i = 0; i < out.size(); ++i)
     {
         if (progress) progress(i, out.size());
         const SheetLayers layers = wet.contains(i) ? SheetLayers::NoneInFluid
-                                   : may_layer_sheets(scene.steps[i], moving) ? SheetLayers::All
-                                                                              : SheetLayers::None;
+                                   : may_layer_sheets(scene.steps[i], fast) ? SheetLayers::All
+                                                                            : SheetLayers::None;
         out[i] = fit_step(scene, scene.steps[i], layers, fluid, threads);
         const FitSettings* settings =
             fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);

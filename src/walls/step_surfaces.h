@@ -38,13 +38,13 @@ inline bool draws_bound(const SceneStep& step)
 
 /// Whether sheets of a step get layers by FitSettings::sheet_depths_dp where fluid is on one side.
 /// Shells of `<layers vdp>` are all that such a wall has, and between layers of DBC that move fast
-/// fluid comes in (jerked vessel of tools/solver-trials).
+/// fluid comes in.
 ///
-/// moving  mks_that_move()
-inline bool may_layer_sheets(const SceneStep& step, const std::set<std::uint16_t>& moving)
+/// fast  mks_of_fast_walls()
+inline bool may_layer_sheets(const SceneStep& step, const std::set<std::uint16_t>& fast)
 {
     const DrawOp& draw = step.combination ? *step.combination->parts[0] : *step.draw;
-    return draw.surface == nullptr && !moving.contains(draw.state->mk.mk);
+    return draw.surface == nullptr && !fast.contains(draw.state->mk.mk);
 }
 
 /// Whether a facet lies across an axis.

@@ -83,8 +83,19 @@ private:
                 [&](double beyond)
                 { return has_fluid_near(field_, from + (sense * beyond) * way, first_); });
         };
-        if (!owner(body).is_thickened) return {true, has_fluid(p, 1)};
+        if (!owner(body).is_thickened) return {true, has_fluid_behind(*body.wall, p, way)};
         return {has_fluid(p - to_front_dp * way, -1), has_fluid(p + to_back_dp * way, 1)};
+    }
+
+    /// Not what is before the other side of a thin closed shell.
+    bool has_fluid_behind(const WallDepth& wall, const Vec3& p, const Vec3& way) const
+    {
+        return std::any_of(beyond_dp.begin(), beyond_dp.end(),
+                           [&](double beyond)
+                           {
+                               const Vec3 q = p + beyond * way;
+                               return wall.at(q).depth > 0 && has_fluid_near(field_, q, first_);
+                           });
     }
 
     const RunField& field_;

@@ -163,23 +163,69 @@ TEST(Diagnostic, AnAutofillOfTheWrongSpaceIsTold)
     EXPECT_TRUE(contains(scene.run().output, "open.stl has 4 open edges"));
 }
 
+/// A motion of mkbound 0.
+std::string motion_of_walls(const std::string& movement)
+{
+    return R"(<motion><objreal ref="0"><begin mov="1" start="0" />)" + movement +
+           "</objreal></motion>";
+}
+
+/// About an axis along y.
+std::string turn_about(double x)
+{
+    return motion_of_walls(fmt::format(
+        R"(<mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="{0}" y="0" z="0.5" /><axisp2 x="{0}" y="1" z="0.5" /></mvrot>)",
+        x));
+}
+
+std::string domain_of_solver(const std::string& from, const std::string& to)
+{
+    return R"(<parameters><simulationdomain><posmin x=")" + from +
+           R"(" y="default" z="default - 5%" /><posmax x=")" + to +
+           R"(" y="default" z="default + 50%" /></simulationdomain></parameters>)";
+}
+
 TEST(Diagnostic, AMovingPartThatLeavesTheDomainIsTold)
 {
     Scene scene(box_command(R"(x="0" y="0" z="0")", R"(x="0.3" y="0.3" z="0.3")"));
     scene.text.after_geometry =
-        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="-1"><vel x="2" y="0" z="0" /></mvrect></objreal></motion>)";
-    expect_diagnostic(scene, R"(<objreal ref="0">: by t = 0.65)");
+        motion_of_walls(R"(<mvrect id="1" duration="-1"><vel x="0.01" y="0" z="0" /></mvrect>)");
+    // The domain is that of the particles and 0.05 h, within which it stays for 0.9 s.
+    expect_diagnostic(scene, R"(<objreal ref="0">: by t = 0.8)");
     const std::string usual = scene.text.execution;
     scene.text.execution =
         R"(<parameters><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
     EXPECT_FALSE(contains(scene.run().output, "<objreal")) << "it comes back at the other end";
     scene.text.execution = usual;
+    // Where other particles are there is room.
+    scene.text.mainlist += R"(<setmkbound mk="1" />)" +
+                           box_command(R"(x="-0.4" y="0" z="0.5")", R"(x="1.2" y="0.3" z="0.3")");
     scene.text.after_geometry =
-        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrectsinu id="1" duration="5"><freq x="1" y="0" z="0" /><ampl x="0.4" y="0" z="0" /></mvrectsinu></objreal></motion>)";
+        motion_of_walls(R"(<mvrect id="1" duration="2"><vel x="0.2" y="0" z="0" /></mvrect>)");
     EXPECT_FALSE(contains(scene.run().output, "<objreal"));
-    scene.text.after_geometry =
-        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="1.2" y="0" z="0" /><axisp2 x="1.2" y="1" z="0" /></mvrot></objreal></motion>)";
+    scene.text.after_geometry = turn_about(1.2);
     expect_diagnostic(scene, R"(<objreal ref="0">: by t =)");
+}
+
+TEST(Diagnostic, AMovingPartStaysInTheDomainThatTheCaseGivesTheSolver)
+{
+    Scene scene(box_command(R"(x="0" y="0" z="0")", R"(x="0.3" y="0.3" z="0.3")"));
+    scene.text.after_geometry = motion_of_walls(
+        R"(<mvrectsinu id="1" duration="50"><freq x="1" y="0" z="0" /><ampl x="0.1" y="0" z="0" /><phase x="0" y="0" z="0" /></mvrectsinu>)");
+    for (const auto& [from, to] :
+         {std::pair{"default - 50%", "default + 50%"}, std::pair{"default - 0.11", "default+0.11"},
+          std::pair{"-0.2", "0.5"}})
+    {
+        scene.text.execution = domain_of_solver(from, to);
+        EXPECT_FALSE(contains(scene.run().output, "<objreal")) << from;
+    }
+    for (const auto& [from, to] :
+         {std::pair{"default", "default + 50%"}, std::pair{"default - 50%", "default"},
+          std::pair{"default - 0.05", "default + 1"}, std::pair{"-0.2", "0.35"}})
+    {
+        scene.text.execution = domain_of_solver(from, to);
+        EXPECT_TRUE(contains(scene.run().output, "it has left the domain of the solver")) << from;
+    }
 }
 
 TEST(Diagnostic, AWheelThatTurnsInTheDomainDoesNotLeaveIt)
@@ -187,12 +233,7 @@ TEST(Diagnostic, AWheelThatTurnsInTheDomainDoesNotLeaveIt)
     // The corners of its box would.
     Scene scene(
         R"(<drawcylinder radius="0.9"><point x="0.5" y="0" z="0.5" /><point x="0.5" y="0.3" z="0.5" /></drawcylinder>)");
-    const auto turn_about = [](double x)
-    {
-        return fmt::format(
-            R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrot id="1" duration="5"><vel ang="360" /><axisp1 x="{0}" y="0" z="0.5" /><axisp2 x="{0}" y="1" z="0.5" /></mvrot></objreal></motion>)",
-            x);
-    };
+    scene.text.execution = domain_of_solver("default - 5%", "default + 5%");
     scene.text.after_geometry = turn_about(0.5);
     EXPECT_FALSE(contains(scene.run().output, "<objreal"));
     scene.text.after_geometry = turn_about(0.75);
