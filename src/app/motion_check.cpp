@@ -45,29 +45,34 @@ private:
     {
         domain_.min = particles_.pos_min - border * def_.h * Vec3{1, 1, 1};
         domain_.max = particles_.pos_max + border * def_.h * Vec3{1, 1, 1};
-        const Vec3 size = domain_.max - domain_.min;
         for (const Element& e : def_.execution)
         {
             if (e.name != "parameters") continue;
-            for (const Element& p : e.children)
-            {
-                const std::string* key = p.find_attribute("key");
-                if (key != nullptr && (*key == "IncZ" || key->starts_with("DomainFixed") ||
-                                       key->starts_with("DomainParticles")))
-                    return false;
-            }
-            if (const Element* domain = e.find_child("simulationdomain"))
-                for (const Element& limit : domain->children)
-                    for (int axis = 0; axis < 3; ++axis)
-                        if (const std::string* value =
-                                limit.find_attribute(std::string(1, "xyz"[axis])))
-                        {
-                            const bool is_min = limit.name == "posmin";
-                            double& place = is_min ? domain_.min[axis] : domain_.max[axis];
-                            place = limit_of(*value, place, is_min ? -size[axis] : size[axis]);
-                        }
+            if (std::any_of(e.children.begin(), e.children.end(), gives_domain)) return false;
+            if (const Element* domain = e.find_child("simulationdomain")) widen_domain(*domain);
         }
         return true;
+    }
+
+    static bool gives_domain(const Element& parameter)
+    {
+        const std::string* key = parameter.find_attribute("key");
+        return key != nullptr && (*key == "IncZ" || key->starts_with("DomainFixed") ||
+                                  key->starts_with("DomainParticles"));
+    }
+
+    void widen_domain(const Element& given)
+    {
+        const Vec3 size = domain_.max - domain_.min;
+        for (const Element& limit : given.children)
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                const std::string* value = limit.find_attribute(std::string(1, "xyz"[axis]));
+                if (value == nullptr) continue;
+                const bool is_min = limit.name == "posmin";
+                double& place = is_min ? domain_.min[axis] : domain_.max[axis];
+                place = limit_of(*value, place, is_min ? -size[axis] : size[axis]);
+            }
     }
 
     /// Of "default", "default + 0.5", "default - 10%" or a number.
