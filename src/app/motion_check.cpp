@@ -1,9 +1,9 @@
 #include "app/motion_check.h"
 
-#include "core/finite_number.h"
 #include "particles/initials.h"
 #include "particles/motion_path.h"
 #include "particles/run_positions.h"
+#include "particles/simulation_domain.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,6 @@ namespace
 {
 
 constexpr int steps = 2000;
-constexpr double border = 0.05; ///< of the solver around all particles, h
 /// Places of particles that are followed, times steps: of larger bodies fewer steps are looked at.
 constexpr std::size_t most_places = 40'000'000;
 
@@ -39,57 +38,21 @@ public:
     }
 
 private:
-    /// The domain of the solver v5.4: that of all particles and 0.05 h, with what
-    /// <simulationdomain> adds. False where old keys of <parameters> give it.
+    /// False where it is not known.
     bool set_domain()
     {
-        domain_.min = particles_.pos_min - border * def_.h * Vec3{1, 1, 1};
-        domain_.max = particles_.pos_max + border * def_.h * Vec3{1, 1, 1};
-        for (const Element& e : def_.execution)
-        {
-            if (e.name != "parameters") continue;
-            if (std::any_of(e.children.begin(), e.children.end(), gives_domain)) return false;
-            if (const Element* domain = e.find_child("simulationdomain")) widen_domain(*domain);
-        }
-        return true;
-    }
-
-    static bool gives_domain(const Element& parameter)
-    {
-        const std::string* key = parameter.find_attribute("key");
-        return key != nullptr && (*key == "IncZ" || key->starts_with("DomainFixed") ||
-                                  key->starts_with("DomainParticles"));
-    }
-
-    void widen_domain(const Element& given)
-    {
-        const Vec3 size = domain_.max - domain_.min;
-        for (const Element& limit : given.children)
-            for (int axis = 0; axis < 3; ++axis)
-            {
-                const std::string* value = limit.find_attribute(std::string(1, "xyz"[axis]));
-                if (value == nullptr) continue;
-                const bool is_min = limit.name == "posmin";
-                double& place = is_min ? domain_.min[axis] : domain_.max[axis];
-                place = limit_of(*value, place, is_min ? -size[axis] : size[axis]);
-            }
-    }
-
-    /// Of "default", "default + 0.5", "default - 10%" or a number.
-    ///
-    /// size  of the domain without it, negative for the lower end
-    static double limit_of(std::string text, double otherwise, double size)
-    {
-        std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-        constexpr std::string_view word = "default";
-        const bool adds = text.starts_with(word);
-        if (adds) text.erase(0, std::min(text.size(), word.size() + 1));
-        const bool is_percent = text.ends_with('%');
-        if (is_percent) text.pop_back();
-        const std::optional<double> value = finite_number(text);
-        if (!value) return otherwise;
-        if (!adds) return *value;
-        return otherwise + (is_percent ? *value / 100 * size : std::copysign(*value, size));
+        const auto parameters =
+            std::find_if(def_.execution.begin(), def_.execution.end(),
+                         [](const Element& e) { return e.name == "parameters"; });
+        const Element none;
+        const Element& given = parameters == def_.execution.end() ? none : *parameters;
+        domain_ = solver_domain(given, def_.file,
+                                {{particles_.pos_min, particles_.pos_max},
+                                 def_.grid.dp,
+                                 def_.h,
+                                 def_.grid.is_periodic,
+                                 def_.grid.is_2d});
+        return !has_old_domain(given);
     }
 
     void check(const Element& object, const MotionChain& chain)

@@ -9,9 +9,7 @@
 namespace fppg
 {
 
-/// Moving parts that leave the domain of the solver: that of all particles at the start, widened by
-/// 0.05 h and by what `<simulationdomain>` adds. Solver v5.4 ends where a particle of a wall leaves
-/// it, wherever `<pointmin>` and `<pointmax>` are. The particles of every moving block whose box
+/// Moving parts that leave solver_domain(). The particles of every moving block whose box
 /// leaves it are followed through the movements of `<motion>` up to TimeMax (10 s without it) in
 /// 2000 steps, of more than 20,000 particles in fewer. Movements that files give are not followed,
 /// nor is a case with old keys of `<parameters>` for the domain, or with variable resolution.

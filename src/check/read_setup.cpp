@@ -1,12 +1,9 @@
-// The domain that the solver makes of a case (DualSPHysics v5.4, JSph.cpp ResizeMapLimits): the box
-// of all particles and 0.05 h around it, dp/2 where it is periodic; a limit that is no periodic one
-// may be moved or replaced by <simulationdomain>.
-
 #include "check/read_setup.h"
 
 #include "core/finite_number.h"
 #include "fppg/error.h"
 #include "particles/motion_path.h"
+#include "particles/simulation_domain.h"
 
 #include <fmt/format.h>
 
@@ -113,62 +110,6 @@ void read_periodic(const SetupReader& reader, CheckSetup& setup, const Box3& par
                 particles.max[axis] - particles.min[axis] + setup.dp;
 }
 
-/// "default", "default - 10%", "default + 0.1" or a number.
-double domain_limit(const SetupReader& reader, const Element& element, const char* attribute,
-                    double limit, double size, double outwards)
-{
-    const std::string* given = element.find_attribute(attribute);
-    std::string text;
-    if (given != nullptr)
-        for (const char c : *given)
-            if (c != ' ' && c != '\t') text += static_cast<char>(std::tolower(c));
-    if (text.empty() || text == "default") return limit;
-    const bool is_relative = text.starts_with("default") && text.size() > 8;
-    std::string_view number = text;
-    if (is_relative) number.remove_prefix(8);
-    const bool is_percent = is_relative && number.ends_with('%');
-    if (is_percent) number.remove_suffix(1);
-    const auto value = finite_signed_number(number);
-    if (!value)
-        throw CaseError(reader.path, element.line,
-                        fmt::format("<{} {}=\"{}\">: expected default, default {} 10%, default {} "
-                                    "0.5 or a number",
-                                    element.name, attribute, *given, outwards < 0 ? '-' : '+',
-                                    outwards < 0 ? '-' : '+'));
-    if (!is_relative) return *value;
-    return limit + outwards * (is_percent ? size * *value / 100 : *value);
-}
-
-void read_domain(const SetupReader& reader, CheckSetup& setup, const Box3& particles)
-{
-    setup.domain = particles;
-    if (particles.is_empty()) return;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const double border =
-            setup.is_periodic[static_cast<std::size_t>(axis)] ? setup.dp / 2 : 0.05 * setup.h;
-        setup.domain.min[axis] -= border;
-        setup.domain.max[axis] += border;
-    }
-    const Element* domain = reader.find({"execution", "parameters", "simulationdomain"});
-    if (domain == nullptr) return;
-    const Box3 all = setup.domain;
-    for (const bool is_least : {true, false})
-    {
-        const Element* limit = domain->find_child(is_least ? "posmin" : "posmax");
-        if (limit == nullptr) continue;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            if (setup.is_periodic[static_cast<std::size_t>(axis)] || (setup.is_2d && axis == 1))
-                continue;
-            const char name[] = {"xyz"[axis], '\0'};
-            double& value = is_least ? setup.domain.min[axis] : setup.domain.max[axis];
-            value = domain_limit(reader, *limit, name, value, all.max[axis] - all.min[axis],
-                                 is_least ? -1 : 1);
-        }
-    }
-}
-
 /// A box of <vres>; empty where it is not along the axes.
 Box3 read_box(const SetupReader& reader, const Element& zone, const char* name)
 {
@@ -260,7 +201,9 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
             "Ghost nodes were judged with the Wendland kernel; the case asks for "
             "the cubic spline.");
     read_periodic(reader, setup, particles);
-    read_domain(reader, setup, particles);
+    const Element* parameters = reader.find({"execution", "parameters"});
+    setup.domain = solver_domain(parameters != nullptr ? *parameters : Element{}, path,
+                                 {particles, setup.dp, setup.h, setup.is_periodic, setup.is_2d});
     read_motion(reader, setup);
     const Element* vres = reader.find({"execution", "vres"});
     const std::string* id = vres != nullptr ? vres->find_attribute("selid") : nullptr;

@@ -1,9 +1,14 @@
+// Facts: DualSPHysics v5.4.3, JPartsLoad4::CalculeLimitsPos, JSph::ResizeMapLimits and
+// JCaseEParms::CheckPosValue.
 #include "particles/simulation_domain.h"
 
 #include "core/finite_number.h"
+#include "fppg/error.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <optional>
 #include <utility>
 
@@ -49,6 +54,33 @@ void widen(Element& limit, const CaseParticles& particles, const CaseDef& def,
     }
 }
 
+/// usual     the limit without <simulationdomain>
+/// outwards  the size of the domain without it, negative for the least limit
+double limit_of(const Element& element, const std::string& path, int axis, double usual,
+                double outwards)
+{
+    const std::string* given = element.find_attribute(std::string(1, "xyz"[axis]));
+    std::string text;
+    if (given != nullptr)
+        for (const char c : *given)
+            if (c != ' ' && c != '\t') text += static_cast<char>(std::tolower(c));
+    if (text.empty() || text == "default") return usual;
+    const bool is_relative = text.starts_with("default") && text.size() > 8;
+    std::string_view number = text;
+    if (is_relative) number.remove_prefix(8);
+    const bool is_percent = is_relative && number.ends_with('%');
+    if (is_percent) number.remove_suffix(1);
+    const std::optional<double> value = finite_signed_number(number);
+    if (!value)
+        throw CaseError(path, element.line,
+                        fmt::format("<{} {}=\"{}\">: expected default, default {} 10%, default {} "
+                                    "0.5 or a number",
+                                    element.name, "xyz"[axis], *given, outwards < 0 ? '-' : '+',
+                                    outwards < 0 ? '-' : '+'));
+    if (!is_relative) return *value;
+    return usual + (is_percent ? outwards * *value / 100 : std::copysign(*value, outwards));
+}
+
 } // namespace
 
 std::vector<std::string> widen_simulation_domain(const CaseParticles& particles, CaseDef& def)
@@ -63,6 +95,47 @@ std::vector<std::string> widen_simulation_domain(const CaseParticles& particles,
             for (Element& limit : domain.children) widen(limit, particles, def, lines);
         }
     return lines;
+}
+
+Box3 solver_domain(const Element& parameters, const std::string& path, const DomainFacts& facts)
+{
+    Box3 all = facts.particles;
+    if (all.is_empty()) return all;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double wider =
+            facts.is_periodic[static_cast<std::size_t>(axis)] ? facts.dp / 2 : border_h * facts.h;
+        all.min[axis] -= wider;
+        all.max[axis] += wider;
+    }
+    Box3 out = all;
+    const Element* given = parameters.find_child("simulationdomain");
+    for (const bool is_least : {true, false})
+    {
+        const Element* limit =
+            given != nullptr ? given->find_child(is_least ? "posmin" : "posmax") : nullptr;
+        for (int axis = 0; axis < 3 && limit != nullptr; ++axis)
+        {
+            if (facts.is_periodic[static_cast<std::size_t>(axis)] || (facts.is_2d && axis == 1))
+                continue;
+            const double size = all.max[axis] - all.min[axis];
+            double& value = is_least ? out.min[axis] : out.max[axis];
+            value = limit_of(*limit, path, axis, value, is_least ? -size : size);
+        }
+    }
+    return out;
+}
+
+bool has_old_domain(const Element& parameters)
+{
+    return std::any_of(parameters.children.begin(), parameters.children.end(),
+                       [](const Element& parameter)
+                       {
+                           const std::string* key = parameter.find_attribute("key");
+                           return key != nullptr &&
+                                  (*key == "IncZ" || key->starts_with("DomainFixed") ||
+                                   key->starts_with("DomainParticles"));
+                       });
 }
 
 } // namespace fppg
