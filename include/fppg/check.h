@@ -62,6 +62,7 @@ struct CheckSetup
     double cfl_number = 0;
     double least_step = 0;           ///< parameter DtMin, s; 0: the solver's own
     std::vector<MovingBlock> moving; ///< up to TimeMax
+    Vec3 gravity;                    ///< m/s2
     int boundary = 1;                ///< parameter Boundary: 1 DBC, 2 mDBC
     int slip_mode = 1;               ///< parameter SlipMode
     bool no_penetration = false;     ///< parameter NoPenetration, where SlipMode is 2 or 3
@@ -141,10 +142,12 @@ struct CheckReport
 /// of all boundary particles that are 0.87 dp (2D: 0.75 dp, so that no way leads through a sheet of
 /// particles) or more from all boundary particles and not in the cylinder around a normal (radius
 /// 0.7 dp, up to 0.5 dp beyond the surface), and that a way from node to node joins with the fluid
-/// of the case; where the case has no fluid, all spaces of eight such nodes or more. Those nearer
-/// than 0.75 dp to fluid of the case give way to it. Where fluid comes to a side of the box, as
-/// over an open tank, it is taken to go on 4 h beyond that side, and 2 h along it, so that rims are
-/// judged as if under water.
+/// of the case; where the case has no fluid, all spaces of eight such nodes or more. Under gravity
+/// along -z not those that fluid comes to over a rim only, above where it is at the start, and from
+/// which it runs down and out of the box, as beside a round vessel; within the rim it stands up to
+/// 2 h above its level. Nodes nearer than 0.75 dp to fluid of the case give way to it. Where fluid
+/// comes to a side of the box, as over an open tank, it is taken to go on 4 h beyond that side, and
+/// 2 h along it, so that rims are judged as if under water.
 ///
 /// threads  the result does not depend on it
 /// cost     a few microseconds a boundary particle that fluid can reach, less for others; about 100

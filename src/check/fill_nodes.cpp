@@ -1,5 +1,6 @@
 #include "check/fill_nodes.h"
 
+#include "check/spilled_nodes.h"
 #include "core/parallel.h"
 
 #include <atomic>
@@ -164,27 +165,6 @@ void emit_cylinder(const FillNodes& nodes, const Vec3& p, const Vec3& normal, co
             }
 }
 
-std::pair<std::int64_t, std::int64_t> xy_of(const FillNodes& nodes, std::size_t column)
-{
-    const auto c = static_cast<std::int64_t>(column);
-    return {c / nodes.n[1], c % nodes.n[1]};
-}
-
-/// Beyond which side of the box a run lies: 0 to 5 for x, y and z, before and behind; -1 in the
-/// box.
-int side_of(const FillNodes& nodes, std::size_t column, const FillNodes::NodeRun& run)
-{
-    const auto [x, y] = xy_of(nodes, column);
-    const std::int64_t at[3] = {x, y, run.begin};
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const auto a = static_cast<std::size_t>(axis);
-        if (at[a] < nodes.beyond[a]) return 2 * axis;
-        if (at[a] >= nodes.n[a] - nodes.beyond[a]) return 2 * axis + 1;
-    }
-    return -1;
-}
-
 /// All nodes of a new lattice, those in the box and those beyond each side as runs of their own.
 void add_all_runs(FillNodes& nodes)
 {
@@ -195,7 +175,7 @@ void add_all_runs(FillNodes& nodes)
     nodes.begins.assign(columns + 1, 0);
     for (std::size_t c = 0; c < columns; ++c)
     {
-        const auto [x, y] = xy_of(nodes, c);
+        const auto [x, y] = nodes.xy_of(c);
         const bool is_beyond_x = x < nodes.beyond[0] || x >= nodes.n[0] - nodes.beyond[0];
         const bool is_beyond_y = y < nodes.beyond[1] || y >= nodes.n[1] - nodes.beyond[1];
         if (!is_beyond_x && !is_beyond_y && begin > 0) nodes.runs.push_back({0, begin});
@@ -297,8 +277,8 @@ std::array<OpenSide, 6> open_sides(const FillNodes& nodes, const std::vector<std
         for (std::uint64_t r = nodes.begins[c]; r < nodes.begins[c + 1]; ++r)
         {
             const FillNodes::NodeRun run = nodes.runs[r];
-            if (!wet[r] || side_of(nodes, c, run) >= 0) continue;
-            const auto [x, y] = xy_of(nodes, c);
+            if (!wet[r] || nodes.side_of(c, run) >= 0) continue;
+            const auto [x, y] = nodes.xy_of(c);
             const std::int64_t at[6] = {x, x + 1, y, y + 1, run.begin, run.end};
             const auto along_y = static_cast<std::uint32_t>(y);
             for (std::size_t side = 0; side < 6; ++side)
@@ -324,7 +304,7 @@ template <typename Keep>
 void for_each_beyond(const FillNodes& nodes, const OpenSide& side, int number, std::size_t column,
                      const FillNodes::NodeRun& run, const Keep& keep)
 {
-    const auto [x, y] = xy_of(nodes, column);
+    const auto [x, y] = nodes.xy_of(column);
     const auto& row = side.rows[static_cast<std::size_t>(number < 2 ? y : x)];
     if (number >= 4)
     {
@@ -353,7 +333,7 @@ void keep_wet(FillNodes& nodes, const std::vector<std::uint8_t>& wet, std::int64
         for (std::uint64_t r = nodes.begins[c]; r < nodes.begins[c + 1]; ++r)
         {
             const FillNodes::NodeRun run = nodes.runs[r];
-            const int side = side_of(nodes, c, run);
+            const int side = nodes.side_of(c, run);
             const auto keep = [&](const FillNodes::NodeRun& part) { runs.push_back(part); };
             if (side < 0 ? wet[r] != 0 : false) keep(run);
             if (side >= 0)
@@ -408,9 +388,9 @@ void spread(const FillNodes& nodes, std::vector<RunPlace>& reached, std::vector<
     for (std::size_t i = 0; i < reached.size(); ++i)
     {
         const auto [run, column] = reached[i];
-        const auto [x, y] = xy_of(nodes, column);
+        const auto [x, y] = nodes.xy_of(column);
         const FillNodes::NodeRun of = nodes.runs[run];
-        if (side_of(nodes, column, of) >= 0) continue;
+        if (nodes.side_of(column, of) >= 0) continue;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
         {
             if (x + dx < 0 || x + dx >= nodes.n[0] || y + dy < 0 || y + dy >= nodes.n[1]) continue;
@@ -450,12 +430,20 @@ std::vector<std::uint8_t> wet_spaces(const FillNodes& nodes)
     return wet;
 }
 
-/// All that the fluid of the case can come to.
-std::vector<std::uint8_t> wet_from_fluid(const FillNodes& nodes, const std::vector<Vec3>& positions,
-                                         const std::vector<std::uint32_t>& fluid, double dp,
-                                         int threads)
+std::int64_t nodes_in(double length, double dp)
 {
-    std::vector<std::uint8_t> wet = wet_by_fluid(nodes, positions, fluid, 0.87 * dp, threads);
+    return static_cast<std::int64_t>(std::ceil(length / dp));
+}
+
+/// All that the fluid of the case can come to, but not over a rim and away.
+std::vector<std::uint8_t> wet_from_fluid(FillNodes& nodes, const std::vector<Vec3>& positions,
+                                         const std::vector<std::uint32_t>& fluid,
+                                         const CheckSetup& setup, int threads)
+{
+    const double beside = 0.87 * setup.dp;
+    FluidAtStart start;
+    start.is_beside = wet_by_fluid(nodes, positions, fluid, beside, threads);
+    std::vector<std::uint8_t> wet = start.is_beside;
     std::vector<RunPlace> reached;
     for_each_run(nodes,
                  [&](const RunPlace& p)
@@ -463,6 +451,14 @@ std::vector<std::uint8_t> wet_from_fluid(const FillNodes& nodes, const std::vect
                      if (wet[p.run]) reached.push_back(p);
                  });
     spread(nodes, reached, wet);
+    const Vec3& g = setup.gravity;
+    if (g.x != 0 || g.y != 0 || !(g.z < 0) || setup.is_periodic[2]) return wet;
+    double top = positions[fluid.front()].z;
+    for (const std::uint32_t i : fluid) top = std::max(top, positions[i].z);
+    start.top = static_cast<std::uint32_t>(
+        std::max<std::int64_t>(nodes.beyond[2], nodes.last(top + beside, 2)));
+    leave_out_spilled(nodes, start, static_cast<std::uint32_t>(nodes_in(2 * setup.h, setup.dp)),
+                      wet);
     return wet;
 }
 
@@ -493,9 +489,8 @@ FillNodes fill_cavity(const CheckParticles& particles, const CheckSetup& setup,
                             }),
               threads);
     const std::vector<std::uint8_t> wet =
-        fluid.empty() ? wet_spaces(nodes)
-                      : wet_from_fluid(nodes, positions, fluid, setup.dp, threads);
-    keep_wet(nodes, wet, static_cast<std::int64_t>(std::ceil(longest / setup.dp)));
+        fluid.empty() ? wet_spaces(nodes) : wet_from_fluid(nodes, positions, fluid, setup, threads);
+    keep_wet(nodes, wet, nodes_in(longest, setup.dp));
     if (!nodes.runs.empty())
         take_away(nodes,
                   collect_spans(columns, fluid.size(), threads,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace fppg
@@ -65,6 +66,27 @@ public:
                     }
             }
         return false;
+    }
+
+    /// Of a column.
+    std::pair<std::int64_t, std::int64_t> xy_of(std::size_t column) const
+    {
+        const auto c = static_cast<std::int64_t>(column);
+        return {c / n[1], c % n[1]};
+    }
+    /// Beyond which side of the box a run lies: 0 to 5 for x, y and z, before and behind; -1 in the
+    /// box.
+    int side_of(std::size_t column, const NodeRun& run) const
+    {
+        const auto [x, y] = xy_of(column);
+        const std::int64_t at[3] = {x, y, run.begin};
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto a = static_cast<std::size_t>(axis);
+            if (at[a] < beyond[a]) return 2 * axis;
+            if (at[a] >= n[a] - beyond[a]) return 2 * axis + 1;
+        }
+        return -1;
     }
 
     /// The first run of a column that ends above node z.

@@ -192,6 +192,9 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
     setup.speed_sound =
         std::sqrt(reader.constant("b") * reader.constant("gamma") / reader.positive("rhop0"));
     setup.cfl_number = reader.constant("cflnumber");
+    if (const Element* gravity = reader.find({"execution", "constants", "gravity"}))
+        setup.gravity = {reader.number_of(*gravity, "x"), reader.number_of(*gravity, "y"),
+                         reader.number_of(*gravity, "z")};
     setup.least_step = reader.parameter_or("DtMin", 0);
     setup.boundary = static_cast<int>(reader.parameter_or("Boundary", 1));
     setup.slip_mode = static_cast<int>(reader.parameter_or("SlipMode", 1));

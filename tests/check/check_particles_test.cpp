@@ -72,6 +72,25 @@ TEST_P(CheckedTank, IsJudgedAsFullThoughHalfOfItIsEmpty)
     EXPECT_EQ(found(report), Faults{}) << to_text(report);
 }
 
+TEST_P(CheckedTank, IsNotFilledFromOutsideWhereFluidRunsOverItsRim)
+{
+    const std::uint64_t near_tank = mk_of(tank_.check(), LayeredTank::wall_mk).near_fluid;
+    // A post beside the tank and higher: the box of the walls reaches over and beyond its side.
+    tank_.setup.domain.max = {4, 4, 4};
+    for (int k = 0; k < 22; ++k) tank_.add_wall({3.05, y_, (k - 2.5) * LayeredTank::dp}, {}, 11);
+    const CheckReport report = tank_.check();
+    EXPECT_EQ(found(report), Faults{}) << to_text(report);
+    EXPECT_NEAR(static_cast<double>(mk_of(report, LayeredTank::wall_mk).near_fluid),
+                static_cast<double>(near_tank), 0.01 * static_cast<double>(near_tank));
+    // A floor beside the tank holds what runs over: its side is wet from there too.
+    for (int i = 26; i <= 33; ++i)
+        for (int j = 0; j < (GetParam() ? 1 : 16); ++j)
+            tank_.add_wall(
+                {(i - 2.5) * LayeredTank::dp, GetParam() ? 0 : (j - 2.5) * LayeredTank::dp, -0.25},
+                {0, 0, 0.05}, 12);
+    EXPECT_GT(mk_of(tank_.check(), 12).near_fluid, 0U);
+}
+
 TEST_P(CheckedTank, WithoutFluidIsJudgedAsFull)
 {
     tank_.drain([](const Vec3&) { return true; });

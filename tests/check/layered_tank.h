@@ -28,6 +28,7 @@ public:
         setup.dp = dp;
         setup.h = std::sqrt(is_2d ? 2.0 : 3.0) * dp;
         setup.volume = is_2d ? dp * dp : dp * dp * dp;
+        setup.gravity = {0, 0, -9.81};
         setup.boundary = 2;
         setup.slip_mode = 2;
         setup.no_penetration = true;
