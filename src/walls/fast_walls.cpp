@@ -94,7 +94,11 @@ std::set<std::uint16_t> mks_of_fast_walls(const Scene& scene, const std::vector<
                                           int threads)
 {
     const CaseDef& def = *scene.def;
-    std::set<std::uint16_t> out = floating_mks(def);
+    std::set<std::uint16_t> out;
+    for (const FloatingDef& floating : def.floatings)
+        for (const std::uint16_t mkbound : floating.mkbound)
+            if (!floating.mass_body)
+                out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
     const std::set<int> moving = moving_mkbound(def.motion);
     if (moving.empty()) return out;
     const double allowed = slow * speed_of_sound(scene, fluid);

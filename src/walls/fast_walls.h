@@ -9,9 +9,10 @@
 namespace fppg
 {
 
-/// Absolute mks whose sheets keep one row of particles under dynamic boundaries, as they float, or
-/// move faster than a thirtieth of the speed of sound at some time. What files move, or what stands
-/// elsewhere for the solver, as paddles, is taken for slow.
+/// Absolute mks whose sheets keep one row of particles under dynamic boundaries: what moves faster
+/// than a thirtieth of the speed of sound at some time, and what floats with a mass that its
+/// particles make. What files move, or what stands elsewhere for the solver, as paddles, is taken
+/// for slow, as are bodies afloat.
 ///
 /// Solver v5.4: an open vessel jerked to 0.5 to 2 m/s at dp 0.01, 0.007 and 0.005 m, by a thirtieth
 /// of its speed of sound: no fluid gets through three rows; by a twentieth, up to 1; by a tenth, up

@@ -231,7 +231,8 @@ bool has_room_inside(const FittedBody& body, double dp)
     return body.is_solid && of.volume > 0 && 2 * of.volume > thinnest_dp * dp * of.area;
 }
 
-/// Settings of a body that would have its particles inside, but has no inside.
+} // namespace
+
 FitSettings of_open_body(const FitSettings& settings)
 {
     FitSettings out = settings;
@@ -240,8 +241,6 @@ FitSettings of_open_body(const FitSettings& settings)
     out.depths_dp.clear();
     return out;
 }
-
-} // namespace
 
 double open_rims(const SurfaceMesh& mesh, const LatticeGrid& grid)
 {

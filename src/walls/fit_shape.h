@@ -38,4 +38,8 @@ FittedDraw fit_shape(ShapeMesh shape, const FitSettings& settings, const Lattice
 FittedDraw fit_body(FittedBody&& body, const FitSettings& settings, const LatticeGrid& grid,
                     const std::vector<ClipPlane>& clips, int threads);
 
+/// Settings of a body that would have its particles inside (FitSettings::may_be_open), but has no
+/// inside.
+FitSettings of_open_body(const FitSettings& settings);
+
 } // namespace fppg

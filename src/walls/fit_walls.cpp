@@ -161,6 +161,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
         settings.has_fluid_behind = false;
     }
     if (side) shape = side->sheet;
+    if (!shape.is_solid && settings.may_be_open) settings = of_open_body(settings);
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;

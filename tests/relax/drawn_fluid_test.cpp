@@ -180,16 +180,77 @@ TEST(SheetLayers, AreLeftOutWhereFluidIsOnBothSides)
     EXPECT_GT(count, 10);
 }
 
-TEST(SheetLayers, AreNotForWhatMoves)
+/// Fluid comes in between layers of what is jerked by more than a thirtieth of the speed of sound,
+/// which is 39 m/s here.
+TEST(SheetLayers, AreForWhatMovesSlowly)
 {
-    CaseText text = case_of(tank + water, "<bodyfitted />");
-    text.after_geometry +=
-        R"(<motion><objreal ref="0"><begin mov="1" start="0" /><mvrect id="1" duration="1"><vel x="0.1" y="0" z="0" /></mvrect></objreal></motion>)";
+    const auto made_with = [](const std::string& movement)
+    {
+        CaseText text = case_of(tank + water, "<bodyfitted />");
+        text.after_geometry += R"(<motion><objreal ref="0"><begin mov="1" start="0" />)" +
+                               movement + "</objreal></motion>";
+        return make(text);
+    };
+    const auto turn = [](double degrees_per_second)
+    {
+        return fmt::format(
+            R"(<mvrot id="1" duration="1" anglesunits="degrees"><vel ang="{}" /><axisp1 x="0.4" y="0.3" z="0" /><axisp2 x="0.4" y="0.3" z="1" /></mvrot>)",
+            degrees_per_second);
+    };
+    const std::string slow = R"(<mvrect id="1" duration="1"><vel x="1" y="0" z="0" /></mvrect>)";
+    const std::string fast = R"(<mvrect id="1" duration="1"><vel x="2" y="0" z="0" /></mvrect>)";
+    // Corners of the tank are 0.5 m from the axis.
+    for (const auto& [movement, layers_it] :
+         {std::pair{slow, true}, std::pair{fast, false}, std::pair{turn(120), true},
+          std::pair{turn(200), false}})
+    {
+        const Result made = made_with(movement);
+        ASSERT_EQ(made.code, 0) << made.output;
+        const std::array<int, 4> layers = layers_of_tank(made);
+        EXPECT_GT(layers[0], 300);
+        if (layers_it)
+            EXPECT_GT(layers[2], layers[1]) << movement;
+        else
+            EXPECT_EQ(layers[1] + layers[2], 0) << movement;
+    }
+}
+
+/// Of a hollow ball, how many of its particles stand on its surface and how many within.
+std::array<int, 2> shell_of_ball(const std::string& more, double radius = 0.15)
+{
+    const std::string ball = fmt::format(
+        R"(<setdrawmode mode="face" /><setmkbound mk="1" /><drawsphere radius="{}"><point x="0.4" y="0.3" z="0.35" /></drawsphere>)",
+        radius);
+    CaseText text = case_of(tank + ball + water, "<bodyfitted />");
+    text.after_geometry += more;
     const Result made = make(text);
-    ASSERT_EQ(made.code, 0) << made.output;
-    const std::array<int, 4> layers = layers_of_tank(made);
-    EXPECT_GT(layers[0], 300);
-    EXPECT_EQ(layers[1] + layers[2], 0);
+    EXPECT_EQ(made.code, 0) << made.output;
+    std::array<int, 2> out{};
+    for (const Vec3& p : made.bound())
+        if (const double r = norm(p - Vec3{0.4, 0.3, 0.35}); r < radius + 0.1 * dp)
+            ++out[r > radius - 0.1 * dp ? 0 : 1];
+    return out;
+}
+
+/// A mass that particles make is that of one layer.
+TEST(SheetLayers, AreForHollowBodiesAfloatWithAMassOfTheirOwn)
+{
+    const std::array<int, 2> given = shell_of_ball(
+        R"(<floatings><floating mkbound="1"><massbody value="5" /></floating></floatings>)");
+    EXPECT_GT(given[0], 100);
+    EXPECT_GT(given[1], 50);
+    const std::array<int, 2> made =
+        shell_of_ball(R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings>)");
+    EXPECT_GT(made[0], 100);
+    EXPECT_EQ(made[1], 0);
+}
+
+/// What is before the other side of a thin shell is no fluid within it.
+TEST(SheetLayers, AreInThinHollowBodiesInFluid)
+{
+    const std::array<int, 2> thin = shell_of_ball("", 1.3 * dp);
+    EXPECT_GT(thin[0], 10);
+    EXPECT_GT(thin[1], 0);
 }
 
 /// A pipe on a floor, its wall so many dp thick, with water.
