@@ -138,7 +138,8 @@ struct FitSettings
     /// Depths of the layers in dp, ascending, once the boundary condition is known; empty: only the
     /// surface has particles.
     std::vector<double> depths_dp;
-    /// The same of sheets for Dbc that stand still with fluid on one side, where `layers` is empty.
+    /// The same of sheets for Dbc with fluid on one side that stand still or move slowly
+    /// (walls/fast_walls.h), where `layers` is empty.
     std::vector<double> sheet_depths_dp;
     /// Empty: Inside for solids that float, with dynamic boundaries (settle_boundaries()), else
     /// Surface.

@@ -53,13 +53,12 @@ void settle_depths(double kernel_dp, FitSettings& settings)
     for (int k = 0; k < count; ++k) depths.push_back(k + (is_mdbc ? 0.5 : 0.0));
     settings.depths_dp.clear();
     settings.sheet_depths_dp.clear();
-    if (settings.place == Placement::Inside) settings.depths_dp = {0.5};
-    if (is_mdbc || settings.layers)
-    {
-        if (settings.depths_dp.empty()) settings.depths_dp = std::move(depths);
-    }
-    else if (settings.depths_dp.empty() || settings.may_be_open)
+    const bool is_inside = settings.place == Placement::Inside;
+    if (is_inside) settings.depths_dp = {0.5};
+    if (!is_mdbc && !settings.layers && (!is_inside || settings.may_be_open))
         settings.sheet_depths_dp = std::move(depths);
+    else if (!is_inside)
+        settings.depths_dp = std::move(depths);
 }
 
 /// Says of layers for mDBC that are fewer than fluid sees what that means.
