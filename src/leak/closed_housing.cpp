@@ -82,11 +82,11 @@ void ClosedHousing::set_lattice(const Box3& box, double dp, const double* plane_
 
 Vec3 ClosedHousing::place(std::int64_t node) const
 {
-    const std::int64_t slab = n_[1] * n_[2];
-    return origin_ + Vec3{static_cast<double>(node / slab),
-                          static_cast<double>(node % slab / n_[2]),
-                          static_cast<double>(node % n_[2])} *
-                         spacing_;
+    const std::int64_t x = node / (n_[1] * n_[2]);
+    const std::int64_t y = node / n_[2] % n_[1];
+    const std::int64_t z = node % n_[2];
+    return origin_ +
+           Vec3{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)} * spacing_;
 }
 
 void ClosedHousing::flood(const std::vector<Wall>& walls)
