@@ -199,9 +199,12 @@ void log_balance(const BalanceReport& report, RunLog& log)
         return fmt::format("mean {:.4f} g, 99 % below {:.3f} g, {:.2f} % above 0.05 g", a.mean,
                            a.of_99, 100 * a.above_5);
     };
-    const std::string held = report.held > 0 ? fmt::format(" ({} held, as they are at free faces)",
-                                                           thousands(report.held))
-                                             : std::string{};
+    const std::string held = report.held > 0
+                                 ? fmt::format(
+                                       " ({} held, as they are at free faces, or where one depth "
+                                       "meets another)",
+                                       thousands(report.held))
+                                 : std::string{};
     if (!report.is_balanced)
     {
         log.line(

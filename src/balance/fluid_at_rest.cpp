@@ -285,6 +285,15 @@ std::size_t hold_free_faces(FluidAtRest& rest, int threads)
     // Of a lattice, the rows at a free face have 0.6 to 0.7 / h, those at a sheet 0.5 at most.
     constexpr double least = 0.55;
     constexpr double level_cosine = 0.7;
+    // Neighbours in one basin have levels that differ by less: columns end at nodes.
+    constexpr double beside_dp = 1.5;
+    constexpr double level_jump_dp = 2;
+    const auto levels_jump = [&](std::size_t i, std::size_t j)
+    {
+        return rest.roles[j] != RestRole::Bound &&
+               std::abs(rest.levels[i] - rest.levels[j]) > level_jump_dp * rest.dp &&
+               norm(rest.positions[i] - rest.positions[j]) < beside_dp * rest.dp;
+    };
     const Vec3 up = rest.gravity / -norm(rest.gravity);
     const double scale = rest.slope_scale();
     // Volumes of 1 and pressures that add up to 1: the sums are those of the kernel's slope.
@@ -306,18 +315,21 @@ std::size_t hold_free_faces(FluidAtRest& rest, int threads)
         [](std::size_t) { return true; });
     const PairShape shape{static_cast<float>(rest.h / rest.dp), rest.is_cubic};
     std::vector<char> is_face(rest.size(), 0);
-    list.for_each_group(threads,
-                        [&](const PointGroup& group)
-                        {
-                            const PressureSums sums = pressure_sums(field, group, shape);
-                            for (std::size_t l = 0; l < group.count; ++l)
-                            {
-                                const Vec3 outward = -scale * sums.of(l);
-                                const double size = norm(outward);
-                                is_face[group.points[l]] =
-                                    size * rest.h > least && dot(outward, up) < level_cosine * size;
-                            }
-                        });
+    list.for_each_group(
+        threads,
+        [&](const PointGroup& group)
+        {
+            const PressureSums sums = pressure_sums(field, group, shape);
+            for (std::size_t l = 0; l < group.count; ++l)
+            {
+                const Vec3 outward = -scale * sums.of(l);
+                const double size = norm(outward);
+                const std::uint32_t i = group.points[l];
+                is_face[i] = (size * rest.h > least && dot(outward, up) < level_cosine * size) ||
+                             std::any_of(group.near.begin(), group.near.end(),
+                                         [&](std::uint32_t j) { return levels_jump(i, j); });
+            }
+        });
     std::vector<char> is_held = is_face;
     list.for_each_group(
         threads,

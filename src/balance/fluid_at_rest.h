@@ -140,8 +140,9 @@ struct RestReach
 FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseConstants& constants,
                          const CaseParticles& particles, const RestReach& reach);
 
-/// Holds fluid within 2h of a free face that is not level. The number of those held, of fluid near
-/// walls.
+/// Holds fluid within 2h of a free face that is not level, and of places where one depth of fluid
+/// meets another without a wall between them, as under a gate or where a dam breaks over a wet bed:
+/// it starts to move there. The number of those held, of fluid near walls.
 std::size_t hold_free_faces(FluidAtRest& rest, int threads);
 
 } // namespace fppg

@@ -343,6 +343,38 @@ TEST(Balance, FluidThatIsMeantToFallStaysAsItIs)
     EXPECT_GT(moved, 100);
 }
 
+/// Where water 0.85 m deep meets water 0.35 m deep it starts to move; all else is at rest.
+TEST(Balance, ADamOverAWetBedIsHeldWhereItsDepthsMeet)
+{
+    const TemporaryFolder folder;
+    const auto with_bed = [](const std::string& band)
+    {
+        CaseText text = tank(R"(<bodyfitted layers="3" />)" + band, "1.05");
+        text.mainlist +=
+            R"(<fillbox x="1.2" y="0.7" z="0.2"><modefill>void</modefill><point x="0.8" y="-0.2" z="-0.2" /><size x="1.2" y="2" z="0.55" /></fillbox>)";
+        return text;
+    };
+    const Result even = make(folder, with_bed(R"(<fluidband balance="false" />)"));
+    const Result dam = make(folder, with_bed("<fluidband />"));
+    EXPECT_TRUE(contains(dam.output, "Balanced fluid")) << dam.output;
+    EXPECT_TRUE(contains(dam.output, "where one depth meets another")) << dam.output;
+    ASSERT_EQ(dam.cloud.positions.size(), even.cloud.positions.size());
+    int held = 0;
+    int moved = 0;
+    for (std::size_t i = 0; i < even.cloud.positions.size(); ++i)
+    {
+        if (even.cloud.mk[i] >= first_bound) continue;
+        const Vec3& p = even.cloud.positions[i];
+        const double distance = norm(p - dam.cloud.positions[i]);
+        moved += distance > 0 ? 1 : 0;
+        if (std::abs(p.x - 0.85) > h || p.z > 0.3) continue;
+        ++held;
+        EXPECT_EQ(distance, 0) << p.x << ' ' << p.y << ' ' << p.z;
+    }
+    EXPECT_GT(held, 100);
+    EXPECT_GT(moved, 300);
+}
+
 TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
 {
     const TemporaryFolder folder;
