@@ -112,6 +112,12 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     report.particles = near_walls(rest);
     if (report.particles == 0) return report;
     report.held = hold_free_faces(rest, threads);
+    if (near_walls(rest) == 0)
+    {
+        report.why_not = "all fluid near walls is at free faces, or where one depth meets another";
+        report.particles = 0;
+        return report;
+    }
     RestWalls walls{reach.closest, boundary_of(def)};
     const std::vector<FittedBody>& bodies = field.walls.bodies;
     if (walls.boundary == RestBoundary::Dbc &&

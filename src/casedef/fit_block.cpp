@@ -1,6 +1,7 @@
 #include "casedef/fit_block.h"
 
 #include "casedef/block_reader.h"
+#include "casedef/driven_flow.h"
 #include "casedef/wall_boundary.h"
 #include "shapes/shape.h"
 
@@ -576,6 +577,7 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
     settle_boundaries(read, def);
+    drop_driven_depth(def);
     // Fluid that touches fitted walls is relaxed with them unless the case says otherwise.
     if (def.fluid_bands.empty() && !def.fit.is_empty()) def.fluid_bands.emplace_back();
     if (choice != FitChoice::Raw) return;

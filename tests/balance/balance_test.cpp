@@ -375,6 +375,44 @@ TEST(Balance, ADamOverAWetBedIsHeldWhereItsDepthsMeet)
     EXPECT_GT(moved, 300);
 }
 
+/// Flow that gravity drives through a period has no depth.
+TEST(Balance, DrivenFlowHasOneDensity)
+{
+    const auto channel = [](const std::string& fppg, const std::string& gravity)
+    {
+        CaseText text;
+        text.pointmin = R"(<pointmin x="0" y="0" z="-0.5" />)";
+        text.pointmax = R"(<pointmax x="2" y="0" z="1.5" />)";
+        text.gravity = gravity;
+        text.mainlist =
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="-1" z="-0.4" /><size x="2" y="2" z="1.8" /></drawbox>
+<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="-1" z="0" /><size x="2" y="2" z="1" /></drawbox>)";
+        text.execution = R"(<parameters><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
+        text.after_geometry = fppg;
+        return text;
+    };
+    const auto range = [](const Result& made)
+    {
+        std::pair<float, float> out{1e9F, 0};
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+            if (made.cloud.mk[i] < first_bound)
+                out = {std::min(out.first, made.densities[i]),
+                       std::max(out.second, made.densities[i])};
+        return out;
+    };
+    const std::string along = R"(<gravity x="1" y="0" z="0" />)";
+    const std::string fitted = "<fppg><bodyfitted /></fppg>";
+    const TemporaryFolder folder;
+    const Result driven = make(folder, channel(fitted, along));
+    EXPECT_EQ(range(driven), std::pair(1000.0F, 1000.0F));
+    EXPECT_TRUE(contains(driven.output, "gravity drives the fluid along x, which is periodic"));
+    const Result lattice = make(folder, channel("", along));
+    EXPECT_GT(range(lattice).second, range(lattice).first) << "as GenCase has it";
+    EXPECT_FALSE(contains(lattice.output, "gravity drives"));
+    const Result still = make(folder, channel(fitted, R"(<gravity x="0" y="0" z="-9.81" />)"));
+    EXPECT_GT(range(still).second, range(still).first);
+}
+
 TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
 {
     const TemporaryFolder folder;
