@@ -388,21 +388,15 @@ void spread(const FillNodes& nodes, std::vector<RunPlace>& reached, std::vector<
     for (std::size_t i = 0; i < reached.size(); ++i)
     {
         const auto [run, column] = reached[i];
-        const auto [x, y] = nodes.xy_of(column);
         const FillNodes::NodeRun of = nodes.runs[run];
         if (nodes.side_of(column, of) >= 0) continue;
-        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-        {
-            if (x + dx < 0 || x + dx >= nodes.n[0] || y + dy < 0 || y + dy >= nodes.n[1]) continue;
-            const auto beside = static_cast<std::size_t>((x + dx) * nodes.n[1] + y + dy);
-            for (std::uint64_t r = nodes.run_from(beside, of.begin);
-                 r < nodes.begins[beside + 1] && nodes.runs[r].begin < of.end; ++r)
-                if (!wet[r])
-                {
-                    wet[r] = 1;
-                    reached.push_back({r, beside});
-                }
-        }
+        nodes.for_each_beside(column, of,
+                              [&](std::uint64_t r, std::size_t beside)
+                              {
+                                  if (wet[r]) return;
+                                  wet[r] = 1;
+                                  reached.push_back({r, beside});
+                              });
     }
 }
 

@@ -89,6 +89,22 @@ public:
         return -1;
     }
 
+    /// Calls visit(run, column) for the runs in the four columns beside one that have nodes at
+    /// heights of a run of it.
+    template <typename Visit>
+    void for_each_beside(std::size_t column, const NodeRun& of, const Visit& visit) const
+    {
+        const auto [x, y] = xy_of(column);
+        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+        {
+            if (x + dx < 0 || x + dx >= n[0] || y + dy < 0 || y + dy >= n[1]) continue;
+            const auto beside = static_cast<std::size_t>((x + dx) * n[1] + y + dy);
+            for (std::uint64_t r = run_from(beside, of.begin);
+                 r < begins[beside + 1] && runs[r].begin < of.end; ++r)
+                visit(r, beside);
+        }
+    }
+
     /// The first run of a column that ends above node z.
     std::uint64_t run_from(std::size_t column, std::int64_t z) const
     {

@@ -12,23 +12,6 @@ namespace
 
 constexpr std::uint32_t never = UINT32_MAX;
 
-/// Calls visit(run, column) for the runs in the four columns beside a run that share a node's
-/// height with it.
-template <typename Visit>
-void for_each_beside(const FillNodes& nodes, std::size_t column, const FillNodes::NodeRun& of,
-                     const Visit& visit)
-{
-    const auto [x, y] = nodes.xy_of(column);
-    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-    {
-        if (x + dx < 0 || x + dx >= nodes.n[0] || y + dy < 0 || y + dy >= nodes.n[1]) continue;
-        const auto beside = static_cast<std::size_t>((x + dx) * nodes.n[1] + y + dy);
-        for (std::uint64_t r = nodes.run_from(beside, of.begin);
-             r < nodes.begins[beside + 1] && nodes.runs[r].begin < of.end; ++r)
-            visit(r, beside);
-    }
-}
-
 /// Runs with the column of each.
 struct Runs
 {
@@ -66,8 +49,8 @@ std::vector<std::uint8_t> reached_below(const Runs& runs, const std::vector<std:
     {
         const std::uint64_t r = next.back();
         next.pop_back();
-        for_each_beside(runs.nodes, runs.columns[r], runs.up_to(r, top),
-                        [&](std::uint64_t other, std::size_t) { reach(other); });
+        runs.nodes.for_each_beside(runs.columns[r], runs.up_to(r, top),
+                                   [&](std::uint64_t other, std::size_t) { reach(other); });
     }
     return reached;
 }
@@ -96,9 +79,9 @@ std::vector<std::uint32_t> draining_heights(const Runs& runs, const std::vector<
         const auto [height, r] = open.top();
         open.pop();
         if (height > heights[r]) continue;
-        for_each_beside(runs.nodes, runs.columns[r], {height, runs.nodes.runs[r].end},
-                        [&, from = height](std::uint64_t other, std::size_t)
-                        { lower(other, from); });
+        runs.nodes.for_each_beside(runs.columns[r], {height, runs.nodes.runs[r].end},
+                                   [&, from = height](std::uint64_t other, std::size_t)
+                                   { lower(other, from); });
     }
     return heights;
 }
