@@ -124,11 +124,9 @@ private:
     {
         found_.push_back(fmt::format(
             "{}:{}: <objreal ref=\"{}\">: by t = {:.3g} s it has left the domain of the solver, "
-            "which "
-            "ends there: {} from {:g} to {:g}, expected {:g} to {:g} up to TimeMax = {:g} s. That "
-            "is "
-            "where particles are at the start; give a <simulationdomain> that reaches further "
-            "(\"default + 20%\") or shorten the motion",
+            "which ends there: {} from {:g} to {:g}, expected {:g} to {:g} up to TimeMax = {:g} s. "
+            "That is where particles are at the start; give a <simulationdomain> that reaches "
+            "further (\"default + 20%\") or shorten the motion",
             def_.file, object.line, *object.find_attribute("ref"), time, "xyz"[axis], box.min[axis],
             box.max[axis], domain_.min[axis], domain_.max[axis], end_));
     }

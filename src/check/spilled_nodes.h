@@ -16,9 +16,9 @@ struct FluidAtStart
 };
 
 /// Of runs that the fluid can come to, takes away what lies beyond a rim: nodes that it comes to
-/// only by rising above where it is at the start, and from which it runs down out of the box, as
-/// the outside of a round vessel that stands in its box. What stands above the rim
-/// within it stays. Gravity is along -z.
+/// only by rising above where it is at the start, and from which it runs down and out of the box,
+/// as the outside of a round vessel that stands in its box. Nodes over the vessel stay a little
+/// above its rim. Gravity is along -z.
 ///
 /// above  nodes that stay above the level of the rim
 /// wet    per run; a run of which nothing is left becomes dry
