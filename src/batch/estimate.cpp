@@ -72,8 +72,9 @@ public:
         const auto start = std::chrono::steady_clock::now();
         def_ = read_case(path, options.case_options);
         scene_ = make_scene(def_);
-        fast_ =
-            mks_of_fast_walls(scene_, boxes_of_fluid(scene_, options_.threads), options_.threads);
+        if (!def_.fit.is_empty())
+            fast_ = mks_of_fast_walls(scene_, boxes_of_fluid(scene_, options_.threads),
+                                      options_.threads);
         CaseOptions coarse = options_.case_options;
         coarse.meshes = scene_.meshes;
         expect_particles_fit(path, coarse, def_, options_.threads);

@@ -67,6 +67,7 @@ private:
     std::vector<Vec3> fluid_;          ///< of the case
     LeakReport report_;
     std::set<std::uint16_t> told_; ///< mks that do not move as rigid bodies
+    bool is_open_told_ = false;    ///< that the housing opens
 
     void read_definition()
     {
@@ -156,10 +157,12 @@ private:
             particles_per_chunk);
         const auto out = static_cast<std::size_t>(std::count(is_out.begin(), is_out.end(), 1));
         if (!moved || 2 * out <= places.size()) return is_out;
-        report_.notes.push_back(
-            fmt::format("The housing is open at {:g} s: most of the fluid can be reached from "
-                        "outside, which is not counted then.",
-                        time));
+        if (!is_open_told_)
+            report_.notes.push_back(
+                fmt::format("The housing is open at {:g} s: most of the fluid can be reached from "
+                            "outside. What is outside is not counted at such times.",
+                            time));
+        is_open_told_ = true;
         return {};
     }
 
