@@ -32,6 +32,7 @@ struct ConstantsDef
     int lattice_bound = 1;
     int lattice_fluid = 1;
     Vec3 gravity;
+    Vec3 driving; ///< part of gravity that drives fluid through a channel, where walls are fitted
     double rhop0 = 0;
     int rhop_gradient = 2;
     double gamma = 0;
@@ -47,6 +48,9 @@ struct ConstantsDef
     std::optional<double> b;
     std::optional<double> mass_bound;
     std::optional<double> mass_fluid;
+
+    /// What walls and a free surface hold at rest.
+    Vec3 rest_gravity() const { return gravity - driving; }
 };
 
 /// `<mkorientbound>`, `<mkorientfluid>`: the order of the particles of one mk (rule N2).

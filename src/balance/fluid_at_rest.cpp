@@ -211,7 +211,7 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     rest.gamma = constants.gamma;
     rest.b = constants.b;
     rest.fullness = def.fluid_fullness;
-    rest.gravity = constants.gravity;
+    rest.gravity = def.constants.rest_gravity();
     rest.is_2d = constants.is_2d;
     rest.is_cubic = def.solver.kernel == 1;
 

@@ -39,7 +39,7 @@ struct FluidAtRest
     double gamma = 0;
     double b = 0;
     double fullness = 1; ///< CaseDef::fluid_fullness
-    Vec3 gravity;
+    Vec3 gravity;        ///< without what drives fluid through a channel
     bool is_2d = false;
     bool is_cubic = false; ///< kernel; else that of Wendland
     Vec3 origin;           ///< of GroupList's coordinates

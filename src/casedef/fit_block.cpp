@@ -561,7 +561,7 @@ bool CaseDef::fills_litres() const
 
 bool CaseDef::balances() const
 {
-    return !fit.is_empty() && norm(constants.gravity) > 0 && constants.rhop_gradient != 1 &&
+    return !fit.is_empty() && norm(constants.rest_gravity()) > 0 && constants.rhop_gradient != 1 &&
            std::any_of(fluid_bands.begin(), fluid_bands.end(),
                        [](const FluidBand& band) { return band.is_active && band.balances; });
 }
@@ -577,7 +577,7 @@ void read_fit(const Element& root, const AttributeReader& read, FitChoice choice
         def.fit.all = FitSettings{};
     warn_of_undrawn_mks(def);
     settle_boundaries(read, def);
-    drop_driven_depth(def);
+    find_driving_gravity(def);
     // Fluid that touches fitted walls is relaxed with them unless the case says otherwise.
     if (def.fluid_bands.empty() && !def.fit.is_empty()) def.fluid_bands.emplace_back();
     if (choice != FitChoice::Raw) return;

@@ -57,8 +57,7 @@ public:
     /// Before a shape is painted: what it cuts of body-fitted walls by its true shape. False: none.
     bool cut_walls(const SourceRef& draw, FittedStep& step)
     {
-        return walls_.has_walls() &&
-               walls_.cut_by_shape(draw, std::move(step.openings), std::move(step.extent));
+        return walls_.has_walls() && walls_.cut_by_shape(draw, step);
     }
 
     /// Whether no node carries an mk.

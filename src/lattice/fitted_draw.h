@@ -50,6 +50,7 @@ struct FittedStep
     /// The true shape of fluid or a void, closed; empty: unknown. Outside of it walls and their
     /// nodes stay, though the nodes of the lattice reach farther.
     TriangleSoup extent;
+    bool is_void = false; ///< the extent's: solids that it touches from outside keep their surface
     /// Whole sentences that name the draw.
     std::vector<std::string> warnings;
 };

@@ -1,6 +1,7 @@
 #include "lattice/wall_painter.h"
 
 #include "core/parallel.h"
+#include "lattice/flush_walls.h"
 #include "meshes/crowded_points.h"
 #include "meshes/inside_test.h"
 #include "meshes/point_grid.h"
@@ -25,8 +26,8 @@ constexpr double cut_distance_dp = 0.5 - 1e-6;
 constexpr char touched = 2;
 /// Deeper in a later body than this a place is inside it, dp.
 constexpr double touching_dp = 1e-6;
-/// Rounding of places on a face, dp.
-constexpr double on_face_dp = 1e-3;
+/// Nodes this near to a wall that a void touches stay those of its zone, dp.
+constexpr double flush_zone_dp = 0.75;
 /// A cut particle of a layer has another in its place so near, dp.
 constexpr double replaced_dp = 0.9;
 /// Fluid so near to the layer of a wall, on the wrong side of its surface, gives way to it, dp.
@@ -190,18 +191,26 @@ void WallPainter::cut_by(const FittedDraw& draw)
         1024);
 }
 
-bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings,
-                               TriangleSoup&& extent)
+void WallPainter::set_extent(TriangleSoup&& extent, bool is_void)
 {
     extent_.reset();
-    if (extent.size() > 0)
-    {
-        extent_ = std::make_unique<const InsideTest>(std::move(extent), threads_);
-        extent_->query().prepare_nearest();
-    }
+    is_flush_.assign(field_->walls.particles.size(), 0);
+    flush_ = PointGrid(flush_zone_dp * field_->grid.dp, 0);
+    if (extent.size() == 0) return;
+    extent_ = std::make_unique<const InsideTest>(std::move(extent), threads_);
+    extent_->query().prepare_nearest();
+    if (!is_void) return;
+    is_flush_ = flush_particles(field_->walls, *extent_, field_->grid.dp, threads_);
+    for (std::size_t i = 0; i < is_flush_.size(); ++i)
+        if (is_flush_[i]) flush_.add(field_->walls.particles.positions[i]);
+}
+
+bool WallPainter::cut_by_shape(const SourceRef& draw, FittedStep& step)
+{
+    set_extent(std::move(step.extent), step.is_void);
     const std::vector<FittedBody>& bodies = field_->walls.bodies;
     is_spared_.assign(bodies.size(), 0);
-    if (!openings.empty()) is_spared_ = sheets_among(bodies);
+    if (!step.openings.empty()) is_spared_ = sheets_among(bodies);
     spared_mks_.clear();
     is_of_wall_.assign(65536, 0);
     for (const FittedBody& body : bodies)
@@ -217,7 +226,7 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&&
         is_spared_[b] = 1;
         spared_mks_.push_back(bodies[b].mk);
     }
-    for (WallOpening& opening : openings)
+    for (WallOpening& opening : step.openings)
     {
         opening.bodies = static_cast<std::uint32_t>(bodies.size());
         openings_.push_back(std::move(opening));
@@ -281,7 +290,9 @@ Spans WallPainter::without_spared(std::size_t x, const Spans& spans) const
         for (std::uint32_t z = s.z_begin; z < s.z_end; ++z)
         {
             const Vec3 p = position(Node{static_cast<std::int64_t>(x), s.y, z}, field_->grid);
-            if (!is_in_extent(p) || is_before_layer(p)) beyond.push_back({s.y, z, z + 1});
+            if (!is_in_extent(p) || is_before_layer(p) ||
+                flush_.has_nearer(p, flush_zone_dp * field_->grid.dp))
+                beyond.push_back({s.y, z, z + 1});
         }
     sort_and_join(beyond);
     return subtract(left, beyond);
@@ -313,7 +324,7 @@ Spans WallPainter::paint_over(std::size_t x, const Spans& spans, std::uint16_t m
 bool WallPainter::is_spared(std::uint32_t particle) const
 {
     const WallParticles& all = field_->walls.particles;
-    return is_spared_[all.bodies[particle]] != 0 ||
+    return is_spared_[all.bodies[particle]] != 0 || is_flush_[particle] != 0 ||
            (extent_ != nullptr && !is_in_extent(all.positions[particle]));
 }
 

@@ -3,6 +3,7 @@
 #include "lattice/fitted_draw.h"
 #include "lattice/wall_openings.h"
 #include "meshes/inside_test.h"
+#include "meshes/point_grid.h"
 
 #include <cstdint>
 #include <functional>
@@ -44,8 +45,7 @@ public:
     /// fluid of 6.5 in it, where the true tube is within half a step of its nodes.
     ///
     /// returns  whether anything may be left that its nodes would cut
-    bool cut_by_shape(const SourceRef& draw, std::vector<WallOpening>&& openings,
-                      TriangleSoup&& extent);
+    bool cut_by_shape(const SourceRef& draw, FittedStep& step);
     /// Of spans to be painted, those without the nodes of what is left.
     Spans without_spared(std::size_t x, const Spans& spans) const;
 
@@ -83,6 +83,7 @@ private:
         std::vector<double> depths; ///< metres, ascending
     };
 
+    void set_extent(TriangleSoup&& extent, bool is_void);
     bool is_in_extent(const Vec3& p) const;
     void note_layered_wall(const FittedBody& layer);
     bool is_before_layer(const Vec3& p) const;
@@ -111,6 +112,8 @@ private:
     std::vector<char> is_spared_;                            ///< per body
     std::vector<std::uint16_t> spared_mks_;    ///< absolute, of the bodies that the draw hollows
     std::unique_ptr<const InsideTest> extent_; ///< of the draw; null: unknown
+    std::vector<char> is_flush_;               ///< per particle: the draw, a void, touches its body
+    PointGrid flush_{1, 0};                    ///< these
     std::vector<char> is_of_wall_;             ///< per absolute mk
     std::vector<LayeredWall> layered_walls_;
 };

@@ -27,38 +27,48 @@ void set_speeds(const CaseDef& def, double g, CaseConstants& constants)
 class Densities
 {
 public:
-    Densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
-              int threads)
+    Densities(const WaterNodes& water, const Vec3& gravity, CaseParticles& particles,
+              CaseConstants& constants, int threads)
         : def_(water.def),
           field_(water.field),
           type_of_mk_(water.type_of_mk),
           particles_(particles),
           constants_(constants),
           threads_(threads),
+          gravity_(gravity),
           meter_(field_, type_of_mk_, !raises_roofs()),
-          g_(norm(def_.constants.gravity)),
-          is_vertical_(def_.constants.gravity.x == 0 && def_.constants.gravity.y == 0),
+          g_(norm(gravity_)),
+          is_vertical_(gravity_.x == 0 && gravity_.y == 0),
           by_height_(def_.constants.rhop_gradient == 3),
           top_(field_.slabs.size()),
           off_lattice_(field_, meter_, water.off_lattice_begin, particles, threads)
     {
     }
 
-    void compute()
+    void measure()
     {
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
         if (raises_roofs()) raise_roofed_depths(field_, particles_.off_lattice, meter_, top_);
         measure_off_lattice();
+    }
+
+    void set_constants()
+    {
+        if (by_height_ && std::isfinite(water_.s_max)) constants_.surface = water_.s_max;
         constants_.hswl = hswl();
         set_speeds(def_, g_, constants_);
+    }
+
+    void set_densities()
+    {
         const ConstantsDef& c = def_.constants;
         is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
         const auto rhop0 = static_cast<float>(c.rhop0);
         particles_.off_lattice.rhop.assign(particles_.off_lattice.size(), rhop0);
         if (particles_.n_fluid == 0) return;
-        if (is_uniform_ || (is_vertical_ && (!by_height_ || c.gravity.z < 0)))
+        if (is_uniform_ || (is_vertical_ && (!by_height_ || gravity_.z < 0)))
             set_by_steps();
         else
             set_one_by_one();
@@ -69,8 +79,7 @@ private:
     /// Height over the origin against gravity.
     double height(const Vec3& p) const
     {
-        const Vec3& gravity = def_.constants.gravity;
-        return -(p.x * gravity.x + p.y * gravity.y + p.z * gravity.z) / g_;
+        return -(p.x * gravity_.x + p.y * gravity_.y + p.z * gravity_.z) / g_;
     }
     double height(std::size_t x, std::uint32_t y, std::uint32_t z) const
     {
@@ -91,9 +100,8 @@ private:
 
     bool raises_roofs() const
     {
-        const ConstantsDef& c = def_.constants;
-        return def_.balances() && c.rhop_gradient != 3 && c.gravity.x == 0 && c.gravity.y == 0 &&
-               c.gravity.z < 0;
+        return def_.balances() && def_.constants.rhop_gradient != 3 && gravity_.x == 0 &&
+               gravity_.y == 0 && gravity_.z < 0;
     }
 
     /// GenCase gives all fluid of an mk that setfrdrawmode draws rhop0, on nodes too.
@@ -145,7 +153,6 @@ private:
         // Where GenCase v5.4.354 has several zones, the surface of the first is that of all.
         if (def_.main_surface && particles_.n_fluid > 0) water_.s_max = *def_.main_surface;
         if (std::isfinite(of_nodes)) excess_ = water_.s_max - of_nodes;
-        if (std::isfinite(water_.s_max)) constants_.surface = water_.s_max;
     }
 
     double hswl()
@@ -157,7 +164,7 @@ private:
         if (is_vertical_)
             return std::max(water_.deepest * def_.grid.step(2), off_lattice_.deepest());
         double most = 0;
-        TiltedDepths tilted(def_, field_, meter_);
+        TiltedDepths tilted(gravity_, field_, meter_);
         tilted.for_each(
             [&](std::size_t x, std::size_t i, std::uint32_t, double d)
             {
@@ -215,7 +222,7 @@ private:
         particles_.rhop_of_depth.resize(static_cast<std::size_t>(most) + 1);
         for (std::uint32_t s = 0; s <= most; ++s)
         {
-            const double step = s * def_.grid.step(2) * def_.constants.gravity.z;
+            const double step = s * def_.grid.step(2) * gravity_.z;
             particles_.rhop_of_depth[s] =
                 rhop(is_uniform_ ? 0 : std::sqrt(step * step) / g_ + excess_);
         }
@@ -262,7 +269,7 @@ private:
         particles_.rhop.assign(particles_.n_fluid, static_cast<float>(def_.constants.rhop0));
         if (!by_height_)
         {
-            TiltedDepths tilted(def_, field_, meter_);
+            TiltedDepths tilted(gravity_, field_, meter_);
             tilted.for_each(
                 [&](std::size_t x, std::size_t i, std::uint32_t k, double d)
                 {
@@ -305,6 +312,7 @@ private:
     CaseParticles& particles_;
     CaseConstants& constants_;
     int threads_;
+    Vec3 gravity_;
     DepthMeter meter_;
     double g_;
     bool is_vertical_; ///< gravity is along z, or there is none
@@ -321,7 +329,18 @@ private:
 void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
                        int threads)
 {
-    Densities(water, particles, constants, threads).compute();
+    const ConstantsDef& c = water.def.constants;
+    Densities by_gravity(water, c.gravity, particles, constants, threads);
+    by_gravity.measure();
+    by_gravity.set_constants();
+    if (c.driving == Vec3{})
+    {
+        by_gravity.set_densities();
+        return;
+    }
+    Densities at_rest(water, c.rest_gravity(), particles, constants, threads);
+    at_rest.measure();
+    at_rest.set_densities();
 }
 
 } // namespace fppg

@@ -26,6 +26,9 @@ struct WaterNodes
 ///   rhopgradient 3
 /// - rhop = rhop0 (1 + rhop0 |gravity| d / b)^(1 / gamma), as float; rhop0 for rhopgradient 1, and
 ///   where b or gravity is zero (GenCase writes NaN there)
+/// - where part of gravity drives the fluid (ConstantsDef::driving), rhop by depths without it;
+/// hswl
+///   and the speed of sound stay those of gravity
 /// - all fluid of an mk that has particles of `<setfrdrawmode>` has rhop0, on nodes too, unless
 ///   def.hydrostatic_off_lattice (33 cases, 2D too, with all gradients and oblique gravity)
 ///

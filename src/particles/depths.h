@@ -223,10 +223,10 @@ inline const Run* row_begin(const std::vector<Run>& runs, std::uint32_t y)
 class TiltedDepths
 {
 public:
-    TiltedDepths(const CaseDef& def, const RunField& field, const DepthMeter& meter)
+    TiltedDepths(const Vec3& gravity, const RunField& field, const DepthMeter& meter)
         : field_(field),
           meter_(meter),
-          gravity_(def.constants.gravity),
+          gravity_(gravity),
           steps_{field.grid.step(0), field.grid.step(1), field.grid.step(2)},
           g_(norm(gravity_))
     {

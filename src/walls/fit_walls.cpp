@@ -405,6 +405,7 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, SheetLayers layer
         FittedStep out;
         out.openings = openings_of(scene, step, threads);
         out.extent = extent_of(scene, step, threads);
+        out.is_void = state.mk.kind == MkKind::Void;
         return out;
     }
     const FitSettings* given = fit_settings(scene.def->fit, state.mk.mk);

@@ -58,6 +58,21 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
     return found;
 }
 
+/// Without the nodes that have a particle of a layer that two sides share so near that they would
+/// stand between it and the layer before.
+Spans without_crowded(const Spans& nodes, std::size_t x, const PointGrid& shared,
+                      const LatticeGrid& grid)
+{
+    Spans found;
+    for (const Span& span : nodes)
+        for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
+            if (!shared.has_nearer(grid.place({static_cast<double>(x), static_cast<double>(span.y),
+                                               static_cast<double>(z)}),
+                                   gap_dp * grid.dp))
+                append_node(found, span.y, z);
+    return found;
+}
+
 /// In 2D, of the nodes inside those half a step and more under the innermost layer, but for the
 /// shallowest, up to a step, that the area of the body has no room for.
 std::vector<Spans> deep_nodes_2d(const std::vector<Spans>& inside, const FittedBody& innermost,
@@ -122,19 +137,35 @@ void take_nodes_between(const LatticeGrid& grid, int threads, FittedDraw& out)
     }
     if (inside.empty()) return;
     const PointGrid taken = grid_of(out.particles.positions, gap_dp * grid.dp);
+    std::vector<Vec3> of_shared;
+    for (std::size_t i = 0; i < out.particles.size(); ++i)
+        if (out.particles.bodies[i] > 0 &&
+            out.layers[out.particles.bodies[i] - 1].mesh.facets.empty())
+            of_shared.push_back(out.particles.positions[i]);
+    const PointGrid shared = grid_of(of_shared, gap_dp * grid.dp);
     std::vector<std::uint64_t> added(grid.n[0], 0);
+    std::vector<std::uint64_t> dropped(grid.n[0], 0);
+    const auto count = [](const Spans& spans)
+    {
+        std::uint64_t n = 0;
+        for (const Span& s : spans) n += s.z_end - s.z_begin;
+        return n;
+    };
     parallel_for(grid.n[0], threads,
                  [&](std::size_t x)
                  {
                      deep[x] = intersect(deep[x], inside[x]);
+                     dropped[x] = count(deep[x]);
+                     deep[x] = without_crowded(deep[x], x, shared, grid);
+                     dropped[x] -= count(deep[x]);
                      const Spans gaps =
                          find_gaps(subtract(inside[x], deep[x]), x, taken, grid, out);
-                     for (const Span& s : gaps) added[x] += s.z_end - s.z_begin;
+                     added[x] = count(gaps);
                      deep[x] = unite(deep[x], gaps);
                      out.zone[x] = unite(out.zone[x], subtract(inside[x], deep[x]));
                  });
     inside = std::move(deep);
-    for (const std::uint64_t n : added) nodes += n;
+    for (std::uint32_t x = 0; x < grid.n[0]; ++x) nodes = nodes + added[x] - dropped[x];
     out.body.measures.node_volume = static_cast<double>(nodes) * grid.dp * grid.dp * grid.dp;
 }
 

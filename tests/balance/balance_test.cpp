@@ -1,10 +1,8 @@
 // Water at rest beside fitted walls, judged by the sums of the solver over the particles of
 // Case.bi4.
 
-#include "fppg/read_particles.h"
+#include "balance/made_case.h"
 
-#include "helpers/bi4_array.h"
-#include "helpers/case_text.h"
 #include "helpers/run_fppg.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +24,6 @@ using fppg::Vec3;
 
 constexpr double dp = 0.1;
 constexpr double h = 1.7320508075688772 * dp;
-constexpr std::uint16_t first_bound = 10; ///< mk of mkbound 0
 
 /// An open tank of 1.65 x 1.45 x 1 m, its walls sheets, with water 0.8 m deep up to where a box
 /// of this size along x from x = -0.2 ends.
@@ -43,30 +40,12 @@ CaseText tank(const std::string& fppg, const std::string& water_size = "2.2")
     return text;
 }
 
-struct Result
-{
-    std::string output;
-    ParticleCloud cloud;
-    std::vector<float> densities;
-};
-
-Result make(const TemporaryFolder& folder, const CaseText& text, const Arguments& more = {})
-{
-    write_text(folder / "Case_Def.xml", text.text());
-    Arguments words{"Case_Def", "out/Case"};
-    words.insert(words.end(), more.begin(), more.end());
-    const RunResult done = run(folder, words);
-    EXPECT_EQ(done.code, 0) << done.output;
-    return {done.output, fppg::read_particles(folder / "out/Case", false, 1),
-            bi4_array<float>(read_text(folder / "out/Case.bi4"), "Rhop")};
-}
-
 /// What gravity is in these cases.
 constexpr double g = 9.81;
 
 /// Accelerations of the fluid over gravity, as the solver with dynamic boundaries sums them; of the
 /// two highest rows along the surface only, as they draw together in every lattice.
-std::vector<double> accelerations(const Result& r, double b)
+std::vector<double> accelerations(const MadeCase& r, double b)
 {
     std::vector<double> out;
     const auto pressure = [&](std::size_t i)
@@ -99,7 +78,7 @@ std::vector<double> accelerations(const Result& r, double b)
 
 /// Of a particle of a 2D case with coefh 1, in m/s^2, as the solver with dynamic boundaries sums
 /// it.
-Vec3 acceleration_2d(const Result& r, double b, std::size_t i)
+Vec3 acceleration_2d(const MadeCase& r, double b, std::size_t i)
 {
     const double h_2d = std::numbers::sqrt2 * dp;
     const auto pressure = [&](std::size_t k)
@@ -153,10 +132,10 @@ TEST(Balance, WaterBesideFittedWallsStartsAtRest)
 {
     const TemporaryFolder folder;
     CaseText text = tank(R"(<bodyfitted layers="3" /><fluidband />)");
-    const Result even =
+    const MadeCase even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
     const std::vector<double> before = accelerations(even, b_of(folder));
-    const Result calm = make(folder, text);
+    const MadeCase calm = make(folder, text);
     EXPECT_TRUE(contains(calm.output, "Balanced fluid")) << calm.output;
     const std::vector<double> after = accelerations(calm, b_of(folder));
     ASSERT_EQ(after.size(), before.size());
@@ -181,7 +160,7 @@ TEST(Balance, WaterBesideFlatWallsFallsAsTheLatticeDoes)
         box_command(R"(x="0" y="-1" z="0")", R"(x="2.4" y="2" z="5")") +
         R"(<setmkfluid mk="0" />)" + box_command(R"(x="0" y="-1" z="0")", R"(x="2.4" y="2" z="4")");
     text.after_geometry = R"(<fppg><bodyfitted /><fluidband packing="cubic" /></fppg>)";
-    const Result calm = make(folder, text);
+    const MadeCase calm = make(folder, text);
     const double b = b_of(folder);
     const auto falls = [&](double from, double to)
     {
@@ -296,7 +275,7 @@ TEST(Balance, TheWaterOfCasesRestStartsAtRestAtOtherDistancesToo)
 TEST(Balance, DensitiesAreThoseOfTheDepthBelowTheSurface)
 {
     const TemporaryFolder folder;
-    const Result calm = make(folder, tank(R"(<bodyfitted layers="3" />)"));
+    const MadeCase calm = make(folder, tank(R"(<bodyfitted layers="3" />)"));
     const double b = b_of(folder);
     double top = 0;
     for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
@@ -321,9 +300,9 @@ TEST(Balance, DensitiesAreThoseOfTheDepthBelowTheSurface)
 TEST(Balance, FluidThatIsMeantToFallStaysAsItIs)
 {
     const TemporaryFolder folder;
-    const Result even =
+    const MadeCase even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)", "1.05"));
-    const Result dam = make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)", "1.05"));
+    const MadeCase dam = make(folder, tank(R"(<bodyfitted layers="3" /><fluidband />)", "1.05"));
     EXPECT_TRUE(contains(dam.output, "at free faces")) << dam.output;
     ASSERT_EQ(dam.cloud.positions.size(), even.cloud.positions.size());
     int face = 0;
@@ -354,8 +333,8 @@ TEST(Balance, ADamOverAWetBedIsHeldWhereItsDepthsMeet)
             R"(<fillbox x="1.2" y="0.7" z="0.2"><modefill>void</modefill><point x="0.8" y="-0.2" z="-0.2" /><size x="1.2" y="2" z="0.55" /></fillbox>)";
         return text;
     };
-    const Result even = make(folder, with_bed(R"(<fluidband balance="false" />)"));
-    const Result dam = make(folder, with_bed("<fluidband />"));
+    const MadeCase even = make(folder, with_bed(R"(<fluidband balance="false" />)"));
+    const MadeCase dam = make(folder, with_bed("<fluidband />"));
     EXPECT_TRUE(contains(dam.output, "Balanced fluid")) << dam.output;
     EXPECT_TRUE(contains(dam.output, "where one depth meets another")) << dam.output;
     ASSERT_EQ(dam.cloud.positions.size(), even.cloud.positions.size());
@@ -375,51 +354,13 @@ TEST(Balance, ADamOverAWetBedIsHeldWhereItsDepthsMeet)
     EXPECT_GT(moved, 300);
 }
 
-/// Flow that gravity drives through a period has no depth.
-TEST(Balance, DrivenFlowHasOneDensity)
-{
-    const auto channel = [](const std::string& fppg, const std::string& gravity)
-    {
-        CaseText text;
-        text.pointmin = R"(<pointmin x="0" y="0" z="-0.5" />)";
-        text.pointmax = R"(<pointmax x="2" y="0" z="1.5" />)";
-        text.gravity = gravity;
-        text.mainlist =
-            R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="-1" z="-0.4" /><size x="2" y="2" z="1.8" /></drawbox>
-<setmkfluid mk="0" /><drawbox><boxfill>solid</boxfill><point x="0" y="-1" z="0" /><size x="2" y="2" z="1" /></drawbox>)";
-        text.execution = R"(<parameters><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
-        text.after_geometry = fppg;
-        return text;
-    };
-    const auto range = [](const Result& made)
-    {
-        std::pair<float, float> out{1e9F, 0};
-        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
-            if (made.cloud.mk[i] < first_bound)
-                out = {std::min(out.first, made.densities[i]),
-                       std::max(out.second, made.densities[i])};
-        return out;
-    };
-    const std::string along = R"(<gravity x="1" y="0" z="0" />)";
-    const std::string fitted = "<fppg><bodyfitted /></fppg>";
-    const TemporaryFolder folder;
-    const Result driven = make(folder, channel(fitted, along));
-    EXPECT_EQ(range(driven), std::pair(1000.0F, 1000.0F));
-    EXPECT_TRUE(contains(driven.output, "gravity drives the fluid along x, which is periodic"));
-    const Result lattice = make(folder, channel("", along));
-    EXPECT_GT(range(lattice).second, range(lattice).first) << "as GenCase has it";
-    EXPECT_FALSE(contains(lattice.output, "gravity drives"));
-    const Result still = make(folder, channel(fitted, R"(<gravity x="0" y="0" z="-9.81" />)"));
-    EXPECT_GT(range(still).second, range(still).first);
-}
-
 TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
 {
     const TemporaryFolder folder;
-    const Result even =
+    const MadeCase even =
         make(folder, tank(R"(<bodyfitted layers="3" /><fluidband balance="false" />)"));
     const std::string banded = R"(<bodyfitted layers="3" /><fluidband packing="cubic" />)";
-    const Result calm = make(folder, tank(banded), {"-threads:1"});
+    const MadeCase calm = make(folder, tank(banded), {"-threads:1"});
     ASSERT_EQ(calm.cloud.mk, even.cloud.mk);
     for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
         EXPECT_LE(norm(calm.cloud.positions[i] - even.cloud.positions[i]), 1.0001 * dp);
@@ -431,7 +372,7 @@ TEST(Balance, OnlyPlacesAndDensitiesChangeAndThreadsDoNotMatter)
 TEST(Balance, NothingIsDoneWithoutFittedWallsGravityOrDepths)
 {
     const TemporaryFolder folder;
-    const Result lattice = make(folder, tank(R"(<bodyfitted layers="3" />)"), {"-fit:off"});
+    const MadeCase lattice = make(folder, tank(R"(<bodyfitted layers="3" />)"), {"-fit:off"});
     EXPECT_FALSE(contains(lattice.output, "Balance"));
     EXPECT_EQ(lattice.densities.front(), 1000);
     CaseText weightless = tank(R"(<bodyfitted layers="3" />)");
@@ -451,7 +392,7 @@ TEST(Balance, NothingIsDoneWhereTheEquationOfStateHasNoStiffness)
     CaseText text = tank(R"(<bodyfitted layers="3" />)");
     text.constants =
         R"(<rhop0 value="1000" /><hswl value="0" /><gamma value="7" /><coefsound value="20" /><coefh value="1" /><cflnumber value="0.2" />)";
-    const Result made = make(folder, text);
+    const MadeCase made = make(folder, text);
     EXPECT_TRUE(contains(made.output, "Constant B is zero"));
     EXPECT_TRUE(contains(made.output, "Balance: left out, as constant B"));
     EXPECT_EQ(*std::min_element(made.densities.begin(), made.densities.end()), 1000);
@@ -467,7 +408,7 @@ TEST(Balance, WaterUnderARoofHasThePressureOfTheOpenSurface)
     text.mainlist.insert(
         fill, R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill>)"
               R"(<point x="0.5" y="0.4" z="0.35" /><size x="0.6" y="0.6" z="0.3" /></drawbox>)");
-    const Result calm = make(folder, text);
+    const MadeCase calm = make(folder, text);
     const double b = b_of(folder);
     int under = 0;
     for (std::size_t i = 0; i < calm.cloud.positions.size(); ++i)
@@ -494,7 +435,7 @@ TEST(Balance, WaterBelowAFloatingBodyHasThePressureOfTheOpenSurface)
         at,
         R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.53" y="0.42" z="0.45" /><size x="0.6" y="0.6" z="0.7" /></drawbox>)");
     text.after_geometry += R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings>)";
-    const Result r = make(folder, text);
+    const MadeCase r = make(folder, text);
     EXPECT_TRUE(contains(r.output, "Balanced fluid")) << r.output;
     const double b = b_of(folder);
     std::size_t below = 0;
@@ -524,7 +465,7 @@ TEST(Balance, DeepWaterBesideAFloatingBodyStartsAtRest)
 <setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="1.13" y="-1" z="0.97" /><size x="0.8" y="2" z="0.6" /></drawbox>)";
     text.after_geometry =
         R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings><fppg><bodyfitted /></fppg>)";
-    const Result r = make(folder, text);
+    const MadeCase r = make(folder, text);
     ASSERT_TRUE(contains(r.output, "Balanced fluid")) << r.output;
     const double b = b_of(folder);
     std::vector<double> near;
@@ -543,7 +484,7 @@ TEST(Balance, DeepWaterBesideAFloatingBodyStartsAtRest)
 TEST(Balance, NumberOfFluidThatFitsIsWarnedOfWithABandOrWithout)
 {
     const TemporaryFolder folder;
-    const auto count = [](const Result& r)
+    const auto count = [](const MadeCase& r)
     {
         return std::count_if(r.cloud.mk.begin(), r.cloud.mk.end(),
                              [](std::uint16_t mk) { return mk < first_bound; });
@@ -552,7 +493,8 @@ TEST(Balance, NumberOfFluidThatFitsIsWarnedOfWithABandOrWithout)
         count(make(folder, tank(R"(<bodyfitted layers="3" /><fluidband active="false" />)")));
     for (const char* band : {"", "<fluidband />"})
     {
-        const Result made = make(folder, tank(R"(<bodyfitted layers="3" />)" + std::string(band)));
+        const MadeCase made =
+            make(folder, tank(R"(<bodyfitted layers="3" />)" + std::string(band)));
         EXPECT_NE(count(made), on_nodes) << band;
         EXPECT_TRUE(contains(made.output, "litres of fills")) << made.output;
     }

@@ -127,6 +127,43 @@ TEST(HollowedSolid, IsLeftWholeByFluidUpToItsFace)
     EXPECT_EQ(counts, (std::vector<std::size_t>{12, 12, 12}));
 }
 
+/// A void that ends where a solid begins empties the nodes there, but the solid keeps its surface,
+/// and its edges and corners.
+TEST(TouchedSolid, KeepsTheFaceThatAVoidEndsAt)
+{
+    for (const double face : {0.4, 0.43})
+    {
+        Drawing drawing = layered();
+        drawing.def.fit.all->depths_dp.clear();
+        drawing.box({-1.5, -1.5, -1.5}, {2.1, 3, 1});
+        drawing.bound(1);
+        drawing.box({face, -0.5, -0.5}, {0.9, 1, 1});
+        const std::vector<Vec3> whole = drawing.run().walls.particles.positions;
+        EXPECT_GT(std::count_if(whole.begin(), whole.end(),
+                                [&](const Vec3& p)
+                                { return std::abs(p.x - face) < 1e-9 && p.z > -0.45; }),
+                  100);
+        drawing.empty();
+        drawing.box({-0.5, -0.8, -0.5}, {0.5 + face, 1.6, 2});
+        const RunField touched = drawing.run();
+        EXPECT_EQ(touched.walls.particles.positions, whole);
+        drawing.fill({0, 0, 0}, 0.3);
+        const RunField filled = drawing.run();
+        EXPECT_EQ(filled.walls.particles.positions, whole);
+        for (std::size_t x = 0; x < filled.slabs.size(); ++x)
+            for (const fppg::Run& run : filled.slabs[x])
+            {
+                const Vec3 at =
+                    filled.grid.place({static_cast<double>(x), static_cast<double>(run.y),
+                                       static_cast<double>(run.z_begin)});
+                if (run.mk != Drawing::fluid_mk || run.is_covered || std::abs(at.y) > 0.45 ||
+                    at.z < -0.45)
+                    continue;
+                EXPECT_GT(std::abs(at.x - face), 0.45 * dp);
+            }
+    }
+}
+
 /// The lid of a tank in 2D, through which water is drawn.
 TEST(HollowedSheet, LosesItsParticlesIn2D)
 {

@@ -141,7 +141,7 @@ TEST(WallLayers, OfPlatesHaveOneMoreBetweenThemWhereThereIsRoomForOne)
         drawing.box(low, size);
         const std::vector<Vec3> all = normals_of(drawing, relaxed(drawing)).positions;
         EXPECT_NEAR(static_cast<double>(all.size()) * std::pow(dp, 3) / (size.x * size.y * size.z),
-                    1, 0.05)
+                    1, 0.06) // three rows in 3.2 dp
             << thickness;
         std::vector<double> heights;
         for (const Vec3& p : all)
@@ -153,6 +153,28 @@ TEST(WallLayers, OfPlatesHaveOneMoreBetweenThemWhereThereIsRoomForOne)
         EXPECT_LT(widest, 1.3) << thickness;
         EXPECT_NEAR(heights.front(), 0.5, 1e-6);
         EXPECT_NEAR(heights.back(), thickness - 0.5, 1e-6);
+    }
+}
+
+/// Nodes half a dp from both the layer that the sides share and the next one stood among them.
+TEST(WallLayers, OfPlatesThatShareOneHaveNoNodesBetweenThem)
+{
+    for (const int thickness : {3, 5})
+    {
+        Drawing drawing = layered();
+        drawing.box({-0.93, -0.77, 0}, {1.8, 1.5, thickness * dp});
+        const std::vector<Vec3> all = normals_of(drawing, relaxed(drawing)).positions;
+        EXPECT_NEAR(static_cast<double>(all.size()) * dp * dp / (1.8 * 1.5 * thickness), 1, 0.02);
+        std::size_t beside_layers = 0;
+        for (const Vec3& p : all)
+        {
+            const double layer = p.z / dp - 0.5;
+            beside_layers += std::abs(p.x) < 0.4 && std::abs(p.y) < 0.4 &&
+                                     std::abs(layer - std::round(layer)) > 0.01
+                                 ? 1
+                                 : 0;
+        }
+        EXPECT_LE(beside_layers, 2u) << thickness; // of 64 nodes a row
     }
 }
 
