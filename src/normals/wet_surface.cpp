@@ -21,8 +21,10 @@ constexpr double longer_way_dp = 10;
 constexpr double higher_way_dp = 10;
 /// Facets are judged in pieces of at most this length, dp.
 constexpr double longest_piece_dp = 3;
-/// Those that another wall covers in part are cut down to this length, dp.
+/// Those that another wall covers in part are cut down to this length, dp, and then along its
+/// border, which is found by halving a side so often.
 constexpr double least_piece_dp = 0.25;
+constexpr int border_halvings = 12;
 /// Of facets smaller than this, dp, one in each cube of that edge is compared with its other side.
 constexpr double small_piece_dp = 0.5;
 /// Where another wall that covers a facet is looked for before it, dp, and how far from its corners
@@ -246,14 +248,61 @@ std::vector<WetSurface::Piece> WetSurface::cut_at_covers(Piece& piece) const
                             return is_covered(now, corner + off_corner * (middle - corner)) !=
                                    is_middle_covered;
                         });
-        if (is_mixed && now.length() > least_piece_dp * dp_)
+        if (!is_mixed)
+            out.push_back(now);
+        else if (now.length() > least_piece_dp * dp_)
             for (const Piece& half : now.halves()) todo.push_back(half);
         else
-            out.push_back(now);
+            cut_along_border(now, out);
     }
     if (out.size() > 1) return out;
     piece.state = out[0].state;
     return {};
+}
+
+/// Adds the parts of a small piece on both sides of the border of what covers it in part.
+void WetSurface::cut_along_border(const Piece& piece, std::vector<Piece>& out) const
+{
+    const Vec3 middle = piece.middle();
+    const auto is_dry_at = [&](const Vec3& p)
+    { return is_covered(piece, p + off_corner * (middle - p)); };
+    std::array<bool, 3> are_dry{};
+    for (std::size_t k = 0; k < 3; ++k) are_dry[k] = is_dry_at(piece.corners[k]);
+    std::size_t lone = 0; // the corner whose two sides the border crosses
+    while (lone < 3 &&
+           (are_dry[lone] == are_dry[(lone + 1) % 3] || are_dry[lone] == are_dry[(lone + 2) % 3]))
+        ++lone;
+    if (lone == 3) // its middle alone is covered, or is not
+    {
+        out.push_back(piece);
+        return;
+    }
+    const Vec3& tip = piece.corners[lone];
+    const Vec3& second = piece.corners[(lone + 1) % 3];
+    const Vec3& third = piece.corners[(lone + 2) % 3];
+    const auto border_towards = [&](const Vec3& end)
+    {
+        Vec3 from = tip;
+        Vec3 to = end;
+        for (int i = 0; i < border_halvings; ++i)
+        {
+            const Vec3 half = 0.5 * (from + to);
+            (is_dry_at(half) == are_dry[lone] ? from : to) = half;
+        }
+        return 0.5 * (from + to);
+    };
+    const Vec3 on_second = border_towards(second);
+    const Vec3 on_third = border_towards(third);
+    const auto add = [&](const std::array<Vec3, 3>& corners, bool dry)
+    {
+        Piece part = piece;
+        part.corners = corners;
+        part.state = dry ? is_dry : is_wet;
+        out.push_back(part);
+    };
+    add({tip, on_second, on_third}, are_dry[lone]);
+    add({on_second, second, third}, !are_dry[lone]);
+    add({on_second, third, on_third}, !are_dry[lone]);
 }
 
 void WetSurface::judge(const RunField& field, const FluidWay& way, int threads)

@@ -98,6 +98,7 @@ private:
     void add_pieces(const Piece& whole, double longest);
     void find_covered(int threads);
     std::vector<Piece> cut_at_covers(Piece& piece) const;
+    void cut_along_border(const Piece& piece, std::vector<Piece>& out) const;
     bool may_cover(const Wall& wall, const Box3& box) const;
     bool may_be_covered(const Piece& piece) const;
     bool is_covered(const Piece& piece, const Vec3& at) const;

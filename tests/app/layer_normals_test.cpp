@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -105,6 +106,41 @@ TEST(WallsWithoutNormals, AreNamedWhereTheSolverLeavesTheirVelocityUndefined)
 }
 
 /// Water comes to the upper face of a plate of 4 dp over the water in waves, or when it goes down.
+/// Five blocks, each with an mk of its own: what one covers of another is cut off along its border.
+TEST(BlocksThatMakeUpATank, LookToTheNearestPlaceOfItsCavity)
+{
+    constexpr Vec3 low{-1, -0.6, 0};
+    constexpr Vec3 high{1, 0.6, 0.9};
+    CaseText text = body_in_tank("", false);
+    text.mainlist = R"(<setdrawmode mode="full" />)";
+    const auto block = [&](int mk, const Vec3& from, const Vec3& to)
+    { text.mainlist += fmt::format(R"(<setmkbound mk="{}" />)", mk) + solid(from, to); };
+    block(0, {-1.2, -0.8, -0.2}, {1.2, 0.8, 0});
+    block(1, {-1.2, -0.8, 0}, {-1, 0.8, 0.9});
+    block(2, {1, -0.8, 0}, {1.2, 0.8, 0.9});
+    block(3, {-1, -0.8, 0}, {1, -0.6, 0.9});
+    block(4, {-1, 0.6, 0}, {1, 0.8, 0.9});
+    text.mainlist +=
+        R"(<setmkfluid mk="0" /><fillbox x="0" y="0" z="0.1"><modefill>void</modefill><point x="-1.1" y="-0.7" z="-0.1" /><size x="2.2" y="1.4" z="0.4" /></fillbox>)";
+    text.after_geometry = R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
+    const ParticleCloud cloud = make(text);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    {
+        const Vec3& p = cloud.positions[i];
+        if (cloud.mk[i] < body_mk || p.z > 0.6) continue;
+        Vec3 nearest;
+        for (int axis = 0; axis < 3; ++axis)
+            nearest[axis] = std::clamp(p[axis], low[axis], high[axis]);
+        if (norm(nearest - p) > 3.4 * dp) continue; // out of reach of the fluid
+        ++count;
+        const std::array<float, 3>& n = cloud.normals[i];
+        EXPECT_LT(norm(Vec3{n[0], n[1], n[2]} - (nearest - p)), 2e-3 * dp)
+            << p.x << ' ' << p.y << ' ' << p.z;
+    }
+    EXPECT_GT(count, 8000u);
+}
+
 class PlateOverWater : public testing::TestWithParam<std::tuple<bool, bool>>
 {
 };
