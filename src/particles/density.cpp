@@ -3,9 +3,11 @@
 #include "core/parallel.h"
 #include "particles/depths.h"
 #include "particles/roofs.h"
+#include "particles/upward_depths.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace fppg
 {
@@ -50,7 +52,8 @@ public:
         parallel_for(
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
-        if (raises_roofs()) raise_roofed_depths(field_, particles_.off_lattice, meter_, top_);
+        if (raises_roofs())
+            raise_roofed_depths(field_, places_of_walls(particles_.off_lattice), meter_, top_);
         measure_off_lattice();
     }
 
@@ -68,6 +71,13 @@ public:
         const auto rhop0 = static_cast<float>(c.rhop0);
         particles_.off_lattice.rhop.assign(particles_.off_lattice.size(), rhop0);
         if (particles_.n_fluid == 0) return;
+        const std::optional<UpAxis> up = up_axis(gravity_);
+        row_ = up ? def_.grid.step(up->axis) : def_.grid.dp;
+        if (!is_uniform_ && !by_height_ && def_.balances() && up && !up->is_z())
+        {
+            set_upward(*up);
+            return;
+        }
         if (is_uniform_ || (is_vertical_ && (!by_height_ || gravity_.z < 0)))
             set_by_steps();
         else
@@ -93,7 +103,7 @@ private:
         const ConstantsDef& c = def_.constants;
         if (is_uniform_) return static_cast<float>(c.rhop0);
         // GenCase's surface goes through the highest particles, that of the fluid lies above them.
-        if (def_.balances()) depth += (is_vertical_ ? def_.grid.step(2) : def_.grid.dp) / 2;
+        if (def_.balances()) depth += row_ / 2;
         const double pressure = c.rhop0 * g_ * depth / def_.fluid_fullness;
         return static_cast<float>(c.rhop0 * std::pow(1 + pressure / constants_.b, 1 / c.gamma));
     }
@@ -292,6 +302,33 @@ private:
                      });
     }
 
+    /// Under gravity along any axis, where fluid is balanced.
+    void set_upward(const UpAxis& up)
+    {
+        const UpwardDepths depths(field_, type_of_mk_, particles_.off_lattice, up, threads_);
+        const std::vector<std::vector<std::uint64_t>> first = first_of_runs();
+        particles_.rhop.assign(particles_.n_fluid, static_cast<float>(def_.constants.rhop0));
+        parallel_for(first.size(), threads_,
+                     [&](std::size_t x)
+                     {
+                         for (std::size_t i = 0; i < first[x].size(); ++i)
+                         {
+                             if (first[x][i] == no_particle) continue;
+                             const Run& r = field_.slabs[x][i];
+                             for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
+                                 particles_.rhop[first[x][i] + (z - r.z_begin)] =
+                                     rhop(depths.of_node({static_cast<std::int64_t>(x), r.y, z}));
+                         }
+                     });
+        off_lattice_.for_each_of_fluid(
+            [&](std::uint64_t i, const ParticleBlock& block)
+            {
+                if (is_plain(block)) return;
+                particles_.off_lattice.rhop[i] =
+                    rhop(depths.of_place(particles_.off_lattice.positions[i]));
+            });
+    }
+
     /// Of the particles off the lattice.
     void set_off_lattice()
     {
@@ -318,6 +355,7 @@ private:
     bool is_vertical_; ///< gravity is along z, or there is none
     bool by_height_;   ///< rhopgradient 3
     bool is_uniform_ = false;
+    double row_ = 0;                              ///< metres, between rows of fluid
     std::vector<std::vector<std::uint32_t>> top_; ///< per run, steps from its highest node
     WaterLimits water_;
     double excess_ = 0; ///< height of the highest particle off the lattice over the highest node

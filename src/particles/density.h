@@ -29,6 +29,8 @@ struct WaterNodes
 /// - where part of gravity drives the fluid (ConstantsDef::driving), rhop by depths without it;
 /// hswl
 ///   and the speed of sound stay those of gravity
+/// - where fluid is balanced and gravity is along an axis, depths are those of water at rest
+///   (upward_depths.h)
 /// - all fluid of an mk that has particles of `<setfrdrawmode>` has rhop0, on nodes too, unless
 ///   def.hydrostatic_off_lattice (33 cases, 2D too, with all gradients and oblique gravity)
 ///

@@ -14,8 +14,8 @@ namespace
 class RoofLevels
 {
 public:
-    RoofLevels(const RunField& field, const OffLatticeParticles& off_lattice,
-               const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top)
+    RoofLevels(const RunField& field, const std::vector<Vec3>& walls, const DepthMeter& meter,
+               std::vector<std::vector<std::uint32_t>>& top)
         : field_(field),
           meter_(meter),
           top_(top),
@@ -24,10 +24,8 @@ public:
     {
         const Box3 water = box_of_water();
         if (water.is_empty()) return;
-        for (std::size_t i = 0; i < off_lattice.size(); ++i)
-            if (off_lattice.is_of_wall(i) &&
-                water.has(off_lattice.positions[i], reach_dp * field.grid.dp))
-                walls_.add(off_lattice.positions[i]);
+        for (const Vec3& p : walls)
+            if (water.has(p, reach_dp * field.grid.dp)) walls_.add(p);
     }
 
     void run()
@@ -189,10 +187,18 @@ private:
 
 } // namespace
 
-void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+void raise_roofed_depths(const RunField& field, const std::vector<Vec3>& walls,
                          const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top)
 {
-    RoofLevels(field, off_lattice, meter, top).run();
+    RoofLevels(field, walls, meter, top).run();
+}
+
+std::vector<Vec3> places_of_walls(const OffLatticeParticles& off_lattice)
+{
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < off_lattice.size(); ++i)
+        if (off_lattice.is_of_wall(i)) out.push_back(off_lattice.positions[i]);
+    return out;
 }
 
 } // namespace fppg

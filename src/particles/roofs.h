@@ -19,11 +19,14 @@ namespace fppg
 /// within 2.2 dp. Columns are connected where they stand side by side and share a height. Columns
 /// that end in the air keep their depth, as their water is meant to fall. Gravity is along -z.
 ///
-/// off_lattice  holds the particles of walls
+/// walls  places of particles of walls off the lattice
 /// top   per run of each slab, steps from its highest node to the top of its column
 ///       (DepthMeter::depths_along_z()); changed
 /// cost  O(n log n) for n runs, on one thread
-void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+void raise_roofed_depths(const RunField& field, const std::vector<Vec3>& walls,
                          const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top);
+
+/// Of the particles of walls off the lattice.
+std::vector<Vec3> places_of_walls(const OffLatticeParticles& off_lattice);
 
 } // namespace fppg

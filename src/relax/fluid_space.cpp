@@ -140,9 +140,8 @@ public:
     FluidSpace run()
     {
         if (near_.is_empty()) return {};
-        const Vec3& gravity = def_.constants.gravity;
-        if (gravity.x == 0 && gravity.y == 0 && gravity.z < 0)
-            levels_ = OpenLevels(field_, def_.mk_bound_first, closest_, threads_);
+        if (const std::optional<UpAxis> up = up_axis(def_.constants.rest_gravity()))
+            levels_ = OpenLevels(field_, *up, def_.mk_bound_first, closest_, threads_);
         const std::vector<std::vector<NearNode>> found =
             find_near_nodes(all_.soup(), field_.grid, threads_);
         std::vector<NodeIndex> nodes;

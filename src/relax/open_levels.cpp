@@ -18,10 +18,11 @@ constexpr std::uint32_t nodes_of_roofs = 2; ///< the same of walls on nodes
 
 } // namespace
 
-OpenLevels::OpenLevels(const RunField& field, std::uint16_t bound_first,
+OpenLevels::OpenLevels(const RunField& given, const UpAxis& up, std::uint16_t bound_first,
                        const ClosestWallPoint& closest, int threads)
-    : field_(&field), bound_first_(bound_first)
+    : upward_(std::in_place, given, up, threads), bound_first_(bound_first)
 {
+    const RunField& field = upward_->field();
     const std::size_t slabs = field.slabs.size();
     first_.assign(slabs + 1, 0);
     for (std::size_t x = 0; x < slabs; ++x) first_[x + 1] = first_[x] + field.slabs[x].size();
@@ -55,8 +56,8 @@ OpenLevels::OpenLevels(const RunField& field, std::uint16_t bound_first,
 void OpenLevels::join_columns(DisjointSets<std::size_t>& sets, std::size_t x, std::size_t to_x,
                               std::uint32_t to_y) const
 {
-    const std::vector<Run>& from = field_->slabs[x];
-    const std::vector<Run>& to = field_->slabs[to_x];
+    const std::vector<Run>& from = upward_->field().slabs[x];
+    const std::vector<Run>& to = upward_->field().slabs[to_x];
     const std::uint32_t touching = x == to_x && to_y == 0 ? 1 : 0;
     std::size_t next = 0;
     for (std::size_t i = 0; i < from.size(); ++i)
@@ -75,29 +76,32 @@ void OpenLevels::join_columns(DisjointSets<std::size_t>& sets, std::size_t x, st
 
 bool OpenLevels::is_open(std::size_t x, std::size_t i, const ClosestWallPoint& closest) const
 {
-    const std::vector<Run>& runs = field_->slabs[x];
+    const std::vector<Run>& runs = upward_->field().slabs[x];
     const Run& run = runs[i];
     if (!is_fluid(run)) return false;
     if (i + 1 < runs.size() && runs[i + 1].y == run.y &&
         runs[i + 1].z_begin < run.z_end + nodes_of_roofs)
         return false;
-    const LatticeGrid& grid = field_->grid;
+    const LatticeGrid& grid = upward_->field().grid;
     const Vec3 top = grid.place(
         {static_cast<double>(x), static_cast<double>(run.y), static_cast<double>(run.z_end - 1)});
-    const WallPlanes walls = find_wall_planes(top, reach_of_roofs * grid.dp, closest);
+    const WallPlanes walls =
+        find_wall_planes(upward_->turned_back(top), reach_of_roofs * grid.dp, closest);
     return std::none_of(walls.begin(), walls.end(),
-                        [](const WallPlane& wall) { return wall.normal.z > leaning; });
+                        [&](const WallPlane& wall)
+                        { return upward_->turned(wall.normal).z > leaning; });
 }
 
 bool OpenLevels::is_above(const Node& node, const Node& of_fluid) const
 {
-    if (field_ == nullptr) return false;
-    const Run* run = run_at(*field_, of_fluid);
+    if (!upward_) return false;
+    const Node at = upward_->turned(of_fluid);
+    const Run* run = run_at(upward_->field(), at);
     if (run == nullptr) return false;
-    const auto x = static_cast<std::size_t>(of_fluid.x);
-    const auto i = static_cast<std::size_t>(run - field_->slabs[x].data());
+    const auto x = static_cast<std::size_t>(at.x);
+    const auto i = static_cast<std::size_t>(run - upward_->field().slabs[x].data());
     const std::int64_t level = levels_[first_[x] + i];
-    return level != no_level && node.z > level;
+    return level != no_level && upward_->turned(node).z > level;
 }
 
 } // namespace fppg

@@ -2,12 +2,18 @@
 
 #include "balance/made_case.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 namespace
 {
 
 using namespace fppg::test;
+using fppg::Vec3;
 
 /// Flow that gravity drives through a period has no depth.
 TEST(DrivenFlow, HasOneDensity)
@@ -89,6 +95,84 @@ TEST(DrivenFlow, HasTheDepthsThatItsBedHolds)
     const MadeCase held = make(folder, channel("0.9", from_one_end));
     EXPECT_NE(held.densities, level.densities) << "a basin that is filled from one end";
     EXPECT_FALSE(contains(held.output, "gravity drives"));
+}
+
+/// Water over and under a plate that reaches from one side of its tank to its middle, in a case
+/// whose axes are exchanged so that `up` is up, or down if it is not positive.
+CaseText plate_in_tank(int up, bool is_positive)
+{
+    const auto place = [&](double x, double y, double z)
+    {
+        const std::array<double, 3> of_up = {x, y, is_positive ? z : 1 - z};
+        // z goes to the axis that is up, the others keep their order.
+        if (up == 0) return Vec3{of_up[2], x, y};
+        if (up == 1) return Vec3{x, of_up[2], y};
+        return Vec3{x, y, of_up[2]};
+    };
+    const auto corners = [&](const Vec3& a, const Vec3& b)
+    {
+        const Vec3 from = place(a.x, a.y, a.z);
+        const Vec3 to = place(b.x, b.y, b.z);
+        fppg::Box3 box;
+        box.add(from);
+        box.add(to);
+        return box;
+    };
+    const auto solid = [&](const Vec3& a, const Vec3& b)
+    {
+        const fppg::Box3 box = corners(a, b);
+        return fmt::format(
+            R"(<drawbox><boxfill>solid</boxfill><point x="{}" y="{}" z="{}" /><size x="{}" y="{}" z="{}" /></drawbox>)",
+            box.min.x, box.min.y, box.min.z, box.max.x - box.min.x, box.max.y - box.min.y,
+            box.max.z - box.min.z);
+    };
+    CaseText text;
+    text.pointmin = R"(<pointmin x="-0.5" y="-0.5" z="-0.5" />)";
+    text.pointmax = R"(<pointmax x="1.5" y="1.5" z="1.5" />)";
+    Vec3 gravity;
+    gravity[up] = is_positive ? -9.81 : 9.81;
+    text.gravity =
+        fmt::format(R"(<gravity x="{}" y="{}" z="{}" />)", gravity.x, gravity.y, gravity.z);
+    text.constants += R"(<speedsound value="60" auto="false" />)";
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+                    solid({-0.4, -0.4, -0.4}, {1.4, 1.4, 1.4}) + "<setmkvoid />" +
+                    solid({0, 0, 0}, {1, 1, 1.4}) + R"(<setmkbound mk="1" />)" +
+                    solid({-0.1, -0.1, 0.3}, {0.5, 1.1, 0.6});
+    const Vec3 seed = place(0.8, 0.5, 0.5);
+    const fppg::Box3 fill = corners({-0.2, -0.2, -0.2}, {1.2, 1.2, 0.9});
+    text.mainlist += fmt::format(
+        R"(<setmkfluid mk="0" /><fillbox x="{}" y="{}" z="{}"><modefill>void</modefill><point x="{}" y="{}" z="{}" /><size x="{}" y="{}" z="{}" /></fillbox>)",
+        seed.x, seed.y, seed.z, fill.min.x, fill.min.y, fill.min.z, fill.max.x - fill.min.x,
+        fill.max.y - fill.min.y, fill.max.z - fill.min.z);
+    text.after_geometry = R"(<fppg><bodyfitted boundary="mdbc" /></fppg>)";
+    text.execution = R"(<parameters><parameter key="Boundary" value="2" /></parameters>)";
+    return text;
+}
+
+/// Under the plate it has the pressure of its depth under the open surface, whichever axis is up.
+TEST(WaterUnderAPlate, IsTheSameUnderGravityAlongAnyAxis)
+{
+    const TemporaryFolder folder;
+    const auto densities_of = [&](int up, bool is_positive)
+    {
+        const MadeCase made = make(folder, plate_in_tank(up, is_positive));
+        std::vector<float> out;
+        for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+            if (made.cloud.mk[i] < first_bound) out.push_back(made.densities[i]);
+        std::sort(out.begin(), out.end());
+        return out;
+    };
+    const std::vector<float> upright = densities_of(2, true);
+    ASSERT_GT(upright.size(), 500u);
+    for (const auto& [up, is_positive] : {std::pair{0, true}, {0, false}, {1, true}, {2, false}})
+    {
+        const std::vector<float> turned = densities_of(up, is_positive);
+        ASSERT_EQ(turned.size(), upright.size()) << up << is_positive;
+        float farthest = 0;
+        for (std::size_t i = 0; i < turned.size(); ++i)
+            farthest = std::max(farthest, std::abs(turned[i] - upright[i]));
+        EXPECT_LT(farthest, 0.1F * (upright.back() - upright.front())) << up << is_positive;
+    }
 }
 
 } // namespace
