@@ -1,5 +1,6 @@
 #include "check/judge_motion.h"
 
+#include "check/judge_walls.h"
 #include "particles/farthest_points.h"
 #include "particles/motion_path.h"
 
@@ -30,8 +31,25 @@ struct Gap
     Vec3 place;
 };
 
+/// Gaps narrower than this are told, dp, and normals longer than this are not those of a first
+/// layer.
+constexpr double narrow_dp = 2;
+constexpr double first_layer_dp = 0.75;
+/// With modified boundaries nothing goes through a gap narrower than this, dp.
+constexpr double closed_dp = 0.1;
+
+/// Where the surface of a wall is: with modified boundaries at the end of the normals of its first
+/// layer.
+Vec3 surface_place(const CheckParticles& particles, const CheckSetup& setup, std::size_t i)
+{
+    const Vec3& p = particles.positions[i];
+    if (setup.boundary != 2) return p;
+    const Vec3 n = normal_of(particles, i);
+    return norm(n) <= first_layer_dp * setup.dp ? p + n : p;
+}
+
 /// The least distance from a moving block to each other that does not move with it and is nearer
-/// than 2 dp.
+/// than narrow_dp.
 std::map<std::uint16_t, Gap> gaps_of(std::size_t own, const CheckParticles& particles,
                                      const CheckSetup& setup, const ParticleColumns& walls)
 {
@@ -47,20 +65,23 @@ std::map<std::uint16_t, Gap> gaps_of(std::size_t own, const CheckParticles& part
     for (std::size_t i = 0; i < particles.positions.size(); ++i)
     {
         if (particles.mk[i] != mk || !is_finite(particles.positions[i])) continue;
-        walls.find_near(particles.positions[i], 2 * setup.dp,
-                        [&](std::uint32_t j, const Vec3&, double squared)
+        const Vec3 here = surface_place(particles, setup, i);
+        walls.find_near(here, (narrow_dp + first_layer_dp) * setup.dp,
+                        [&](std::uint32_t j, const Vec3&, double)
                         {
                             const std::uint16_t other = particles.mk[j];
                             if (other == mk) return false;
-                            const double distance = std::sqrt(squared);
-                            const auto [at, is_new] =
-                                out.try_emplace(other, Gap{distance, particles.positions[i]});
+                            const double distance = norm(surface_place(particles, setup, j) - here);
+                            if (distance > narrow_dp * setup.dp) return false;
+                            const auto [at, is_new] = out.try_emplace(other, Gap{distance, here});
                             if (!is_new && distance < at->second.least)
-                                at->second = {distance, particles.positions[i]};
+                                at->second = {distance, here};
                             return false;
                         });
     }
-    std::erase_if(out, [&](const auto& gap) { return moves_with(gap.first); });
+    const double closed = setup.boundary == 2 ? closed_dp * setup.dp : 0;
+    std::erase_if(
+        out, [&](const auto& gap) { return moves_with(gap.first) || gap.second.least < closed; });
     return out;
 }
 
@@ -89,9 +110,12 @@ std::vector<std::string> judge_motion(const CheckParticles& particles, const Che
             if (is_told) continue;
             out.push_back(fmt::format(
                 "mk {} and mk {} move against each other {:.2g} dp apart, at ({:.6g}, {:.6g}, "
-                "{:.6g}): fluid that gets between them is pressed into them. A gap wants 2 dp at "
-                "least.",
-                block.mk, other, gap.least / setup.dp, gap.place.x, gap.place.y, gap.place.z));
+                "{:.6g}): {} A gap wants 2 dp at least.",
+                block.mk, other, gap.least / setup.dp, gap.place.x, gap.place.y, gap.place.z,
+                setup.boundary == 2
+                    ? "with modified boundaries fluid goes through such a gap. Draw one part up to "
+                      "the other to close it."
+                    : "fluid that gets between them is pressed into them."));
         }
     }
     const double step = setup.speed_sound > 0 ? setup.cfl_number * setup.h / setup.speed_sound : 0;

@@ -13,7 +13,7 @@
 #include "normals/geometry_normals.h"
 #include "normals/other_surface.h"
 #include "normals/part_normals.h"
-#include "normals/wet_surface.h"
+#include "normals/wet_setup.h"
 #include "particles/initials.h"
 #include "particles/run_positions.h"
 
@@ -308,14 +308,7 @@ private:
         }
         if (is_layered_.empty()) return;
         const double reach = 2 * def_.h;
-        WetSurface::Setup setup{def_.mk_bound_first, def_.constants.gravity, reach,
-                                std::vector<char>(65536, 0), std::vector<char>(65536, 0)};
-        for (const ParticleBlock& block : particles_.blocks)
-        {
-            if (block.type == ParticleType::Moving) setup.is_moving[block.mk] = 1;
-            if (block.type == ParticleType::Floating) setup.floats[block.mk] = 1;
-        }
-        const WetSurface wet(field_, setup, threads_);
+        const WetSurface wet(field_, wet_setup(def_, particles_, reach), threads_);
         if (wet.is_empty()) return;
         const auto visit = [&](std::size_t r)
         {

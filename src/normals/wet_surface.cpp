@@ -44,11 +44,24 @@ constexpr char is_wet = 0;
 constexpr char is_dry = 1;
 constexpr char is_thin = 2; ///< wet, and so is the other side
 
+/// Fluid so near to a side stands at it, dp.
+constexpr double stands_at_dp = 3;
+
+/// How a part of a wall moves.
+enum class Moving
+{
+    No,
+    KeepsSides,
+    TurnsOver
+};
+
 /// Whether one side of a wall is dry beside the other.
-bool is_dry_beside(const FluidWay::Way& here, const FluidWay::Way& there, bool is_moving)
+bool is_dry_beside(const FluidWay::Way& here, const FluidWay::Way& there, Moving moving)
 {
     if (!(here.length > there.length + longer_way_dp)) return false;
-    if (is_moving) return here.runs_out && !there.runs_out;
+    const bool stays_so =
+        moving == Moving::No || (moving == Moving::KeepsSides && there.length < stands_at_dp);
+    if (!stays_so) return here.runs_out && !there.runs_out;
     return here.runs_out || here.rise > there.rise + higher_way_dp;
 }
 
@@ -162,6 +175,7 @@ void WetSurface::cut_pieces(const std::vector<FittedBody>& bodies)
             piece.normal = wall.depth->sign() * mesh.normals[f];
             piece.mk = owner.facet_mk.empty() ? owner.mk : owner.facet_mk[f];
             piece.is_moving = setup_.is_moving[piece.mk] != 0;
+            piece.turns_over = setup_.turns_over[piece.mk] != 0;
             facets_.push_back({piece.corners, pieces_.size()});
             const bool is_judged = wall.is_closed || may_be_covered(piece);
             add_pieces(piece, is_judged ? longest_piece_dp * dp_ : whole);
@@ -424,9 +438,12 @@ void WetSurface::compare_sides(Piece& piece, const FluidWay& way) const
     const FluidWay::Way there = way.to(other.nearest + (off_surface_dp * dp_) * other_normal);
     piece.other_way = there.length;
     if (!std::isfinite(piece.way.length) && !std::isfinite(there.length)) return;
-    if (is_dry_beside(piece.way, there, piece.is_moving))
+    const Moving moving = !piece.is_moving   ? Moving::No
+                          : piece.turns_over ? Moving::TurnsOver
+                                             : Moving::KeepsSides;
+    if (is_dry_beside(piece.way, there, moving))
         piece.state = is_dry;
-    else if (!is_dry_beside(there, piece.way, piece.is_moving))
+    else if (!is_dry_beside(there, piece.way, moving))
         piece.state = is_thin;
 }
 

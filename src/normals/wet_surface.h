@@ -22,9 +22,10 @@ namespace fppg
 /// - it has to rise 10 dp more, above where it stands (the inside of a boat).
 /// The parts that move come to where fluid is: of these a side is dry only where fluid would run
 /// out of the domain and from the other side would not (a tank that moves; not the teeth of a
-/// gear). A dry side goes on up to its rim, where the way is not so much longer, and behind what
-/// covers the wet side. What another body, or the layers of a sheet, cover is dry too. Everything
-/// else is wet.
+/// gear), or where fluid stands at the other side at the start and the part does not turn over (a
+/// gate, a piston, a flap). A dry side goes on up to its rim, where the way is not so much longer,
+/// and behind what covers the wet side. What another body, or the layers of a sheet, cover is dry
+/// too. Everything else is wet.
 class WetSurface
 {
 public:
@@ -32,9 +33,10 @@ public:
     {
         std::uint16_t first_bound = 0; ///< mks below it are fluid
         Vec3 gravity;
-        double reach = 0;            ///< metres, 2 h
-        std::vector<char> is_moving; ///< by mk: moves on a given path
-        std::vector<char> floats;    ///< by mk
+        double reach = 0;             ///< metres, 2 h
+        std::vector<char> is_moving;  ///< by mk: moves on a given path
+        std::vector<char> turns_over; ///< likewise: by more than a right angle
+        std::vector<char> floats;     ///< by mk
     };
     WetSurface(const RunField& field, const Setup& setup, int threads);
 
@@ -64,6 +66,7 @@ private:
         std::uint32_t wall = 0; ///< in walls_
         std::uint16_t mk = 0;
         bool is_moving = false;
+        bool turns_over = false;
         char state = 0;
         double thickness = 0;          ///< metres; 0: no other side was found
         bool is_straight = false;      ///< the other side is behind it, not aside beyond an edge

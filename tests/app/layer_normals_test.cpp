@@ -105,7 +105,44 @@ TEST(WallsWithoutNormals, AreNamedWhereTheSolverLeavesTheirVelocityUndefined)
     }
 }
 
-/// Water comes to the upper face of a plate of 4 dp over the water in waves, or when it goes down.
+/// A gate between water and air, unless it turns over and both of its sides come to the water.
+TEST(GateOfTwoLayers, LooksToTheWaterWithBoth)
+{
+    const auto gate = [](const std::string& motion)
+    {
+        CaseText text = body_in_tank("", true);
+        text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+                        solid({-1.2, -1, -0.2}, {1.2, 1, 0}) + solid({-1.2, -1, 0}, {-1, 1, 1.4}) +
+                        solid({1, -1, 0}, {1.2, 1, 1.4}) + R"(<setmkbound mk="1" />)" +
+                        solid({0, -1, 0}, {2 * dp, 1, 1.2}) + R"(<setmkfluid mk="0" />)" +
+                        solid({-1, -1, 0}, {0, 1, 0.6});
+        text.after_geometry = R"(<motion><objreal ref="1"><begin mov="1" start="0.1" />)" + motion +
+                              R"(</objreal></motion><fppg><bodyfitted boundary="mdbc" /></fppg>)";
+        return make(text);
+    };
+    const auto looking_away = [](const ParticleCloud& cloud)
+    {
+        std::size_t away = 0;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        {
+            const double z = cloud.positions[i].z;
+            if (cloud.mk[i] != tank_mk || z < 0.1 || z > 0.5) continue;
+            ++count;
+            away += cloud.normals[i][0] < 0 ? 0 : 1;
+        }
+        EXPECT_EQ(count, 2 * 8u);
+        return away;
+    };
+    EXPECT_EQ(
+        looking_away(gate(R"(<mvrect id="1" duration="1"><vel x="0" y="0" z="0.2" /></mvrect>)")),
+        0u);
+    EXPECT_EQ(
+        looking_away(gate(
+            R"(<mvrot id="1" duration="1" anglesunits="degrees"><vel ang="360" /><axisp1 x="0" y="0" z="0.6" /><axisp2 x="0" y="1" z="0.6" /></mvrot>)")),
+        8u);
+}
+
 /// Five blocks, each with an mk of its own: what one covers of another is cut off along its border.
 TEST(BlocksThatMakeUpATank, LookToTheNearestPlaceOfItsCavity)
 {
@@ -141,6 +178,7 @@ TEST(BlocksThatMakeUpATank, LookToTheNearestPlaceOfItsCavity)
     EXPECT_GT(count, 8000u);
 }
 
+/// Water comes to the upper face of a plate of 4 dp over the water in waves, or when it goes down.
 class PlateOverWater : public testing::TestWithParam<std::tuple<bool, bool>>
 {
 };

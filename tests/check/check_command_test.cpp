@@ -266,6 +266,41 @@ TEST_F(CheckCommand, SaysWhereMovingPartsAreTooFastOrTooNear)
     EXPECT_FALSE(has_note(check_case(folder_ / "Case", 2), "fastest"));
 }
 
+/// Its particles are a dp farther from the floor than the gate is.
+TEST_F(CheckCommand, SaysWhereAGateInLayersLeavesAGap)
+{
+    const auto gate = [](const std::string& bottom)
+    {
+        CaseText out;
+        out.dp = "0.02";
+        out.pointmin = R"(<pointmin x="-0.2" y="0" z="-0.2" />)";
+        out.pointmax = R"(<pointmax x="1.2" y="0" z="0.8" />)";
+        out.mainlist =
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+            box_command(R"(x="-0.1" y="-1" z="-0.1")", R"(x="1.2" y="2" z="0.1")") +
+            R"(<setmkbound mk="1" />)" +
+            box_command(R"(x="0.5" y="-1" z=")" + bottom + "\"", R"(x="0.08" y="2" z="0.5")") +
+            R"(<setmkfluid mk="0" />)" +
+            box_command(R"(x="0" y="-1" z="0")", R"(x="0.48" y="2" z="0.3")");
+        out.after_geometry =
+            R"(<motion><objreal ref="1"><begin mov="1" start="0.3" /><mvrect id="1" duration="2"><vel x="0" y="0" z="0.1" /></mvrect></objreal></motion><fppg><bodyfitted /></fppg>)";
+        out.execution =
+            R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="TimeMax" value="0.5" /></parameters>)";
+        return out;
+    };
+    generate(gate("0.02"));
+    const CheckReport open = check_case(folder_ / "Case", 2);
+    EXPECT_TRUE(has_note(open, "mk 11 and mk 10 move against each other 1 dp apart"))
+        << to_text(open);
+    EXPECT_TRUE(has_note(open, "fluid goes through such a gap")) << to_text(open);
+    for (const std::string bottom : {"0", "0.06"})
+    {
+        generate(gate(bottom));
+        const CheckReport none = check_case(folder_ / "Case", 2);
+        EXPECT_FALSE(has_note(none, "move against each other")) << to_text(none);
+    }
+}
+
 TEST_F(CheckCommand, SaysThatTheLeastStepIsTooLong)
 {
     const auto warns = [&](const std::string& step)
