@@ -25,6 +25,7 @@
 #include "scene/part_colours.h"
 #include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
+#include "walls/lattice_margin.h"
 #include "walls/lattice_shift.h"
 #include "walls/periodic_ends.h"
 #include "walls/true_surfaces.h"
@@ -213,6 +214,16 @@ void settle_walls(CaseRunState& run, MadeCase& made)
         made.def.hints.push_back(std::move(w));
     for (const std::string& line : draw_true_surfaces(made.scene, run.threads, made.def))
         run.log.line(line);
+    if (const LatticeMargin margin = margin_for_layers(made.scene, run.threads);
+        margin != LatticeMargin{})
+    {
+        widen_lattice(margin, made.def.grid);
+        run.log.line(fmt::format(
+            "Lattice wider than the domain, by {}, {}, {} nodes before and {}, {}, {} behind it: "
+            "room for all layers of its walls",
+            margin.low[0], margin.low[1], margin.low[2], margin.high[0], margin.high[1],
+            margin.high[2]));
+    }
     if (const LatticeMove move = lattice_move(made.scene, run.threads); !move.is_none())
     {
         move_lattice(move, run.threads, made.def, made.scene);

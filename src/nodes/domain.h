@@ -15,7 +15,7 @@ inline constexpr double beyond_period_dp = 3;
 /// beyond_dp  along a periodic axis so much farther on both sides
 inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid, double beyond_dp = 0)
 {
-    constexpr double tolerance = 1e-6; // dp
+    constexpr double tolerance = 1e-4; // dp; coordinates of STL files are float
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto a = static_cast<std::size_t>(axis);

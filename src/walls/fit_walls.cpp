@@ -143,8 +143,12 @@ void layer_sheet(FitSettings& settings)
         settings.depths_dp = settings.sheet_depths_dp;
 }
 
+/// The wall of a shape.
+///
+/// rest  shells of it that get a wall of their own, as they have fluid on both sides, unlike the
+///       others; null: it is such a rest
 FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const FitSettings& given,
-               int threads)
+               int threads, ShapeMesh* rest)
 {
     FitSettings settings = given;
     const LatticeGrid& grid = scene.def->grid;
@@ -152,7 +156,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
     const double thickness = thickens ? thicken(grid, threads, shape) : 0;
     std::optional<WetSide> side;
-    if (!settings.sheet_depths_dp.empty() && !settings.gives_sheets)
+    if (rest != nullptr && !settings.sheet_depths_dp.empty() && !settings.gives_sheets)
         side = wet_side(shape, grid, settings.fluid_places, threads);
     if (side && settings.has_fluid_behind)
     {
@@ -160,7 +164,11 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
         side.reset();
         settings.has_fluid_behind = false;
     }
-    if (side) shape = side->sheet;
+    if (side)
+    {
+        shape = std::move(side->sheet);
+        *rest = std::move(side->rest);
+    }
     if (!shape.is_solid && settings.may_be_open) settings = of_open_body(settings);
     if (!shape.is_solid) layer_sheet(settings);
     const BodyExtent extent =
@@ -228,8 +236,13 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     std::vector<FittedDraw> walls;
     if (state.draw_points)
         for (ShapeMesh& shape : shapes)
+        {
+            ShapeMesh rest;
             walls.push_back(
-                fit(scene, draw, grid.is_2d ? shape : std::move(shape), settings, threads));
+                fit(scene, draw, grid.is_2d ? shape : std::move(shape), settings, threads, &rest));
+            if (rest.soup.size() > 0)
+                walls.push_back(fit(scene, draw, std::move(rest), settings, threads, nullptr));
+        }
     if (state.draw_points && lacks_section(shapes, walls, grid))
     {
         out.warnings.push_back(fmt::format(

@@ -5,78 +5,229 @@
 #include "core/disjoint_set.h"
 #include "meshes/mesh_query.h"
 #include "walls/plate_thickness.h"
+#include "walls/step_surfaces.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
 #include <optional>
+#include <set>
 
 namespace fppg
 {
 namespace
 {
 
-constexpr double least_side = 0.2; ///< of the surface of a plate
+/// Of the surface of a shell: what is thin in a plate, and what fluid is on.
+constexpr double least_plate = 0.5;
+constexpr double least_side = 0.2;
+constexpr double most_else = 0.02; ///< small parts of it, such as hinges
+
+/// How far before a facet fluid beside it is looked for, dp, and from how many facets of a side,
+/// the largest ones.
+constexpr double before_dp = 2;
+constexpr std::size_t most_looks = 12;
+constexpr double opposite_face = -0.5; ///< cosine, of the two faces of a plate
+constexpr double sharp = 0.5;          ///< the same of a face and a rim
 
 /// The thin facets of a plate; of each the side that it belongs to, named by a facet.
 class PlateSides
 {
 public:
-    PlateSides(const SurfaceMesh& mesh, const std::vector<double>& thickness)
-        : mesh_(mesh), sides_(mesh.facets.size())
+    PlateSides(const SurfaceMesh& mesh, const std::vector<double>& thickness, double dp,
+               int threads)
+        : mesh_(mesh),
+          thickness_(thickness),
+          dp_(dp),
+          threads_(threads),
+          sides_(mesh.facets.size()),
+          shells_(mesh.facets.size()),
+          all_(fppg::soup_of(mesh), threads)
     {
         for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
         {
-            if (!std::isfinite(thickness[f])) continue;
-            thin_.push_back(f);
-            for (std::size_t k = 0; k < 3; ++k)
+            for (const std::uint32_t other : mesh.neighbours[f])
             {
-                soup_.vertices.push_back(mesh.vertices[mesh.facets[f][k]]);
-                const std::uint32_t other = mesh.neighbours[f][k];
-                if (other != no_index && std::isfinite(thickness[other])) sides_.join(f, other);
+                if (other == no_index) continue;
+                shells_.join(f, other);
+                if (is_thin(f) && is_thin(other) && !is_round_the_rim(f, other))
+                    sides_.join(f, other);
+            }
+            if (is_thin(f)) thin_.push_back(f);
+        }
+        std::stable_sort(thin_.begin(), thin_.end(),
+                         [&](std::uint32_t a, std::uint32_t b)
+                         { return mesh.areas[a] > mesh.areas[b]; });
+        all_.prepare_nearest();
+    }
+
+    /// Finds the sides that fluid comes to: those nearest to it, and those that face it along an
+    /// axis, from where it is and from places before the sides that were found.
+    void find_wet(const std::vector<Vec3>& fluid)
+    {
+        std::vector<Vec3> todo = fluid;
+        const MeshQuery thin(thin_soup(), threads_);
+        thin.prepare_nearest();
+        for (const Vec3& p : fluid) take(thin_[thin.closest_point(p).facet], todo);
+        while (!todo.empty())
+        {
+            const Vec3 p = todo.back();
+            todo.pop_back();
+            for (int axis = 0; axis < 3; ++axis)
+                for (const bool is_up : {true, false})
+                    if (const std::optional<std::uint32_t> f = first_facet(p, axis, is_up);
+                        f && is_thin(*f) && (mesh_.normals[*f][axis] < 0) == is_up)
+                        take(*f, todo);
+        }
+    }
+
+    /// The shells that fluid is on one face of: their wet sides make up the sheet, all facets of
+    /// the others the rest.
+    ///
+    /// counts  whether a facet counts for the surface of a plate
+    std::optional<WetSide> sheet(const std::function<bool(std::uint32_t)>& counts)
+    {
+        std::map<std::uint32_t, Shell> shells;
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+        {
+            Shell& shell = shells[shells_.find(f)];
+            if (!counts(f)) continue;
+            shell.area += mesh_.areas[f];
+            if (!is_thin(f))
+            {
+                if (!is_of_rim(f)) shell.thick_area += mesh_.areas[f];
+                continue;
+            }
+            shell.thin_area += mesh_.areas[f];
+            if (!is_wet(f)) continue;
+            shell.wet_area += mesh_.areas[f];
+            if (is_wet_behind(f)) shell.area_of_both += mesh_.areas[f];
+        }
+        WetSide out;
+        out.thickness = std::numeric_limits<double>::infinity();
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+        {
+            const Shell& shell = shells[shells_.find(f)];
+            if (!shell.is_wet_on_one())
+                add(f, out.rest.soup);
+            else if (is_thin(f) && is_wet(f))
+            {
+                add(f, out.sheet.soup);
+                out.thickness = std::min(out.thickness, thickness_[f]);
             }
         }
-    }
-
-    /// The one side that all fluid is on; nothing: it is on several.
-    std::optional<std::uint32_t> side_of(const std::vector<Vec3>& fluid, int threads)
-    {
-        const MeshQuery query(soup_, threads);
-        query.prepare_nearest();
-        std::optional<std::uint32_t> side;
-        for (const Vec3& p : fluid)
-        {
-            const std::uint32_t of_place = sides_.find(thin_[query.closest_point(p).facet]);
-            if (side && *side != of_place) return std::nullopt;
-            side = of_place;
-        }
-        return side;
-    }
-
-    TriangleSoup soup_of(std::uint32_t side)
-    {
-        TriangleSoup out;
-        for (std::size_t i = 0; i < thin_.size(); ++i)
-            if (sides_.find(thin_[i]) == side)
-                for (std::size_t k = 0; k < 3; ++k)
-                    out.vertices.push_back(soup_.vertices[3 * i + k]);
+        if (out.sheet.soup.vertices.empty()) return std::nullopt;
         return out;
     }
 
-    double area_of(std::uint32_t side)
+private:
+    struct Shell
     {
-        double area = 0;
-        for (const std::uint32_t f : thin_)
-            if (sides_.find(f) == side) area += mesh_.areas[f];
-        return area;
+        double area = 0; ///< m2
+        double thin_area = 0;
+        double thick_area = 0; ///< but for rims
+        double wet_area = 0;
+        double area_of_both = 0; ///< wet where the other face is wet too
+
+        bool is_wet_on_one() const
+        {
+            return wet_area > 0 && thin_area >= least_plate * area &&
+                   wet_area >= least_side * area && area_of_both <= most_else * area &&
+                   thick_area <= most_else * area;
+        }
+    };
+
+    bool is_thin(std::uint32_t f) const { return std::isfinite(thickness_[f]); }
+    bool is_wet(std::uint32_t f) { return wet_.contains(sides_.find(f)); }
+    /// Whether the way from one facet to the other leads over an edge as the rim of a plate has:
+    /// where plates cross, their rims are before others, and thin.
+    bool is_round_the_rim(std::uint32_t f, std::uint32_t other) const
+    {
+        const Vec3& n = mesh_.normals[f];
+        return dot(n, mesh_.normals[other]) < sharp && dot(n, middle(other) - middle(f)) < 0;
+    }
+    /// Whether a facet is as narrow as plates are thick.
+    bool is_of_rim(std::uint32_t f) const
+    {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, norm(mesh_.vertices[mesh_.facets[f][k]] -
+                                             mesh_.vertices[mesh_.facets[f][(k + 1) % 3]]));
+        return 2 * mesh_.areas[f] < plate_dp * dp_ * longest;
+    }
+    /// Whether the other face of the plate behind a facet is wet too.
+    bool is_wet_behind(std::uint32_t f)
+    {
+        const Vec3 behind = middle(f) - mesh_.normals[f] * (1.5 * thickness_[f]);
+        const std::uint32_t other = all_.closest_point(behind).facet;
+        return other != f && shells_.find(other) == shells_.find(f) && is_thin(other) &&
+               is_wet(other) && dot(mesh_.normals[other], mesh_.normals[f]) < opposite_face;
+    }
+    void add(std::uint32_t f, TriangleSoup& soup) const
+    {
+        for (const std::uint32_t v : mesh_.facets[f]) soup.vertices.push_back(mesh_.vertices[v]);
+    }
+    TriangleSoup thin_soup() const
+    {
+        TriangleSoup out;
+        for (const std::uint32_t f : thin_) add(f, out);
+        return out;
+    }
+    Vec3 middle(std::uint32_t f) const
+    {
+        const auto& [a, b, c] = mesh_.facets[f];
+        return (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) / 3;
     }
 
-private:
+    /// The facet that the way from p along an axis meets first.
+    std::optional<std::uint32_t> first_facet(const Vec3& p, int axis, bool is_up) const
+    {
+        Vec3 from = p;
+        if (!is_up) from[axis] = -std::numeric_limits<float>::max();
+        std::optional<std::uint32_t> out;
+        for (const Crossing& c : all_.crossings(from, axis))
+        {
+            if (is_up) return c.facet;
+            if (!(c.position < p[axis])) break;
+            out = c.facet;
+        }
+        return out;
+    }
+
+    /// Notes that the side of a facet is wet; where that is new, adds places before it.
+    void take(std::uint32_t facet, std::vector<Vec3>& todo)
+    {
+        const std::uint32_t side = sides_.find(facet);
+        if (!wet_.insert(side).second) return;
+        std::size_t seen = 0;
+        for (const std::uint32_t f : thin_)
+        {
+            if (sides_.find(f) != side) continue;
+            for (const double before : {before_dp, before_dp / 4})
+            {
+                const Vec3 p = middle(f) + mesh_.normals[f] * (before * dp_);
+                if (all_.closest_point(p).distance < 0.9 * before * dp_) continue;
+                todo.push_back(p);
+                break;
+            }
+            if (++seen == most_looks) break;
+        }
+    }
+
     const SurfaceMesh& mesh_;
+    const std::vector<double>& thickness_;
+    double dp_;
+    int threads_;
     DisjointSet sides_;
-    std::vector<std::uint32_t> thin_;
-    TriangleSoup soup_; ///< of these
+    DisjointSet shells_;
+    std::vector<std::uint32_t> thin_; ///< the largest first
+    MeshQuery all_;
+    std::set<std::uint32_t> wet_; ///< sides
 };
 
 } // namespace
@@ -96,13 +247,13 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
     if (mesh.facets.empty() || !report.is_watertight) return std::nullopt;
     const PlateThickness thickness = plate_thickness(mesh, grid, threads);
     if (!thickness.is_plate) return std::nullopt;
-    PlateSides sides(mesh, thickness.of_facets);
-    const std::optional<std::uint32_t> side = sides.side_of(fluid, threads);
-    if (!side || sides.area_of(*side) < least_side * thickness.area) return std::nullopt;
-    WetSide out;
-    out.sheet.soup = sides.soup_of(*side);
-    out.thickness = thickness.least;
-    out.of_mesh = report.warnings;
+    PlateSides sides(mesh, thickness.of_facets, grid.dp, threads);
+    sides.find_wet(fluid);
+    std::optional<WetSide> out = sides.sheet(
+        [&](std::uint32_t f) { return !grid.is_2d || !lies_across(mesh.normals[f], 1); });
+    if (!out) return std::nullopt;
+    out->rest.is_solid = shape.is_solid;
+    out->of_mesh = report.warnings;
     return out;
 }
 

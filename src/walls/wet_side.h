@@ -21,13 +21,16 @@ namespace fppg
 struct WetSide
 {
     ShapeMesh sheet;                  ///< it looks to the fluid
+    ShapeMesh rest;                   ///< shells with fluid on both of their faces, or too thick
     double thickness = 0;             ///< the least of the plate, metres
     std::vector<std::string> of_mesh; ///< warnings
 };
 
-/// Nothing where the shape is no plate, or fluid is on more than one of its sides.
+/// Nothing where the shape is no plate, or fluid is on both faces of all its shells. A tank of thin
+/// slabs that cross each other has several sides that look to the fluid; they make up one sheet.
 ///
-/// fluid  places in it, of which each is on the side of the nearest thin facet
+/// fluid  places in it, of which each is on the side of the nearest thin facet, and on those that
+///        face it along an axis
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
                                 const std::vector<Vec3>& fluid, int threads);
 

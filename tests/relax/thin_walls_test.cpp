@@ -1,5 +1,6 @@
 // Fluid beside plates thinner than their rows of particles, and in gaps between walls.
 
+#include "helpers/gears.h"
 #include "relax/fluid_case.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <regex>
 
 namespace
@@ -63,6 +65,82 @@ TEST(ThinPlate, BetweenWaterAndAirHasAllRowsThatWaterFeels)
     const Result both = tank_in_2d(plate, {0.1, 1}, R"(<bodyfitted boundary="dbc" />)");
     EXPECT_FALSE(contains(both.output, "too thin for the rows of particles")) << both.output;
     EXPECT_NEAR(static_cast<double>(of_plate(both)), 18.5, 2);
+}
+
+/// Adds the facets of a box, which look outwards.
+void add_box(const Vec3& low, const Vec3& high, fppg::TriangleSoup& soup)
+{
+    const auto corner = [&](int at)
+    {
+        return Vec3{(at & 1) != 0 ? high.x : low.x, (at & 2) != 0 ? high.y : low.y,
+                    (at & 4) != 0 ? high.z : low.z};
+    };
+    constexpr std::array<std::array<int, 4>, 6> faces{
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    for (const auto& [a, b, c, d] : faces)
+        for (const int k : {a, b, c, a, c, d}) soup.vertices.push_back(corner(k));
+}
+
+/// Each slab is a shell of its own and looks to the water with one side. As in a public tank of a
+/// wave energy converter (CaseOWSC3D), of which 1.1 g were left.
+TEST(TankOfThinSlabs, HasAllRowsThatWaterFeels)
+{
+    constexpr double thick = 0.002;
+    fppg::TriangleSoup slabs;
+    add_box({-0.01, -0.01, -thick}, {1.01, 0.61, 0}, slabs);
+    add_box({-thick, -0.02, -0.02}, {0, 0.62, 0.6}, slabs);
+    add_box({1, -0.02, -0.02}, {1 + thick, 0.62, 0.6}, slabs);
+    add_box({-0.02, -thick, -0.02}, {1.02, 0, 0.6}, slabs);
+    add_box({-0.02, 0.6, -0.02}, {1.02, 0.6 + thick, 0.6}, slabs);
+    const TemporaryFolder folder;
+    write_stl(folder / "slabs.stl", slabs);
+    CaseText text = case_of(
+        R"(<setmkbound mk="0" /><drawfilestl file=")" + folder / "slabs.stl" +
+            R"(" /><setmkfluid mk="0" /><fillbox x="0.5" y="0.3" z="0.2"><modefill>void</modefill><point x="-0.1" y="-0.1" z="-0.1" /><size x="1.2" y="0.8" z="0.5" /></fillbox>)",
+        R"(<bodyfitted boundary="dbc" />)");
+    text.pointmin = R"(<pointmin x="-0.3" y="-0.3" z="-0.3" />)";
+    text.pointmax = R"(<pointmax x="1.3" y="0.9" z="0.8" />)";
+    const Result made = make(text);
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_TRUE(contains(made.output, "too thin for the rows of particles")) << made.output;
+    EXPECT_LT(left_of_gravity(made), 0.06); // rows do not meet behind its corners
+}
+
+/// A definition need not reach farther than the walls that it draws.
+TEST(TankOfSheets, HasAllItsRowsInADomainThatEndsBesideIt)
+{
+    const auto tank = [](double beside, const std::string& more, const std::string& fppg)
+    {
+        CaseText text = case_of(
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1" y="0.5" z="0.5" /></drawbox>
+<setmkfluid mk="0" />)" +
+                more +
+                R"(<fillbox x="0.5" y="0.2" z="0.1"><modefill>void</modefill><point x="0" y="0" z="0" /><size x="1" y="0.5" z="0.33" /></fillbox>)",
+            fppg);
+        text.pointmin = fmt::format(R"(<pointmin x="{0}" y="{0}" z="{0}" />)", -beside);
+        text.pointmax =
+            fmt::format(R"(<pointmax x="{}" y="{}" z="0.7" />)", 1 + beside, 0.5 + beside);
+        Result out = make(text);
+        EXPECT_EQ(out.code, 0) << out.output;
+        return out;
+    };
+    for (const std::string boundary : {"dbc", "mdbc"})
+    {
+        const std::string fppg = R"(<bodyfitted boundary=")" + boundary + R"(" />)";
+        const Result wide = tank(5 * dp, "", fppg);
+        const Result narrow = tank(1.2 * dp, "", fppg);
+        EXPECT_EQ(narrow.bound().size(), wide.bound().size());
+        EXPECT_EQ(narrow.fluid().size(), wide.fluid().size());
+        EXPECT_LT(left_of_gravity(narrow), 0.003);
+        EXPECT_TRUE(contains(narrow.output, "Lattice wider than the domain")) << narrow.output;
+        EXPECT_FALSE(contains(wide.output, "Lattice wider than the domain")) << wide.output;
+    }
+    // The domain cuts what is drawn beyond it.
+    const Result cut = tank(
+        1.2 * dp,
+        R"(<drawbox><boxfill>solid</boxfill><point x="-1" y="0.2" z="0.6" /><size x="0.95" y="0.1" z="0.05" /></drawbox>)",
+        R"(<bodyfitted boundary="dbc" />)");
+    EXPECT_TRUE(contains(cut.output, "Lattice wider than the domain, by 0, ")) << cut.output;
 }
 
 TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
