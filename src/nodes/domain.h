@@ -16,15 +16,16 @@ inline constexpr double beyond_period_dp = 3;
 inline bool is_in_domain(const Vec3& p, const LatticeGrid& grid, double beyond_dp = 0)
 {
     constexpr double tolerance = 1e-4; // dp; coordinates of STL files are float
+    constexpr double on_seam = 1e-6;
     for (int axis = 0; axis < 3; ++axis)
     {
         const auto a = static_cast<std::size_t>(axis);
         const double index = (p[axis] - grid.origin[axis]) / grid.step(axis);
         const double last = grid.n[a] - 1;
         // What is at the end of a period is at its begin too.
-        const double low = grid.is_periodic[a] ? -0.5 - beyond_dp - tolerance : -tolerance;
+        const double low = grid.is_periodic[a] ? -0.5 - beyond_dp - on_seam : -tolerance;
         const double high =
-            last + (grid.is_periodic[a] ? 0.5 + beyond_dp - 2 * tolerance : tolerance);
+            last + (grid.is_periodic[a] ? 0.5 + beyond_dp - 2 * on_seam : tolerance);
         if (!(index >= low && index <= high)) return false;
     }
     return true;

@@ -63,6 +63,9 @@ public:
         std::stable_sort(thin_.begin(), thin_.end(),
                          [&](std::uint32_t a, std::uint32_t b)
                          { return mesh.areas[a] > mesh.areas[b]; });
+        for (const std::uint32_t f : thin_)
+            if (std::vector<std::uint32_t>& of = looks_of_[sides_.find(f)]; of.size() < most_looks)
+                of.push_back(f);
         all_.prepare_nearest();
     }
 
@@ -204,10 +207,7 @@ private:
     {
         const std::uint32_t side = sides_.find(facet);
         if (!wet_.insert(side).second) return;
-        std::size_t seen = 0;
-        for (const std::uint32_t f : thin_)
-        {
-            if (sides_.find(f) != side) continue;
+        for (const std::uint32_t f : looks_of_[side])
             for (const double before : {before_dp, before_dp / 4})
             {
                 const Vec3 p = middle(f) + mesh_.normals[f] * (before * dp_);
@@ -215,8 +215,6 @@ private:
                 todo.push_back(p);
                 break;
             }
-            if (++seen == most_looks) break;
-        }
     }
 
     const SurfaceMesh& mesh_;
@@ -225,7 +223,8 @@ private:
     int threads_;
     DisjointSet sides_;
     DisjointSet shells_;
-    std::vector<std::uint32_t> thin_; ///< the largest first
+    std::vector<std::uint32_t> thin_;                              ///< the largest first
+    std::map<std::uint32_t, std::vector<std::uint32_t>> looks_of_; ///< of each side, most_looks
     MeshQuery all_;
     std::set<std::uint32_t> wet_; ///< sides
 };
