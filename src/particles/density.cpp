@@ -64,25 +64,27 @@ public:
         set_speeds(def_, g_, constants_);
     }
 
-    void set_densities()
+    /// returns  whether fluid has another depth than rhopgradient 3 asks for
+    bool set_densities()
     {
         const ConstantsDef& c = def_.constants;
         is_uniform_ = c.rhop_gradient == 1 || g_ == 0 || constants_.b == 0;
         const auto rhop0 = static_cast<float>(c.rhop0);
         particles_.off_lattice.rhop.assign(particles_.off_lattice.size(), rhop0);
-        if (particles_.n_fluid == 0) return;
+        if (particles_.n_fluid == 0) return false;
         const std::optional<UpAxis> up = up_axis(gravity_);
         row_ = up ? def_.grid.step(up->axis) : def_.grid.dp;
-        if (!is_uniform_ && !by_height_ && def_.balances() && up && !up->is_z())
+        if (!is_uniform_ && def_.balances() && up && (by_height_ || !up->is_z()) &&
+            !def_.vres.is_active())
         {
-            set_upward(*up);
-            return;
+            return set_upward(*up) && by_height_;
         }
         if (is_uniform_ || (is_vertical_ && (!by_height_ || gravity_.z < 0)))
             set_by_steps();
         else
             set_one_by_one();
         if (!is_uniform_) set_off_lattice();
+        return false;
     }
 
 private:
@@ -303,23 +305,33 @@ private:
     }
 
     /// Under gravity along any axis, where fluid is balanced.
-    void set_upward(const UpAxis& up)
+    ///
+    /// returns  whether some has less depth than under the highest fluid
+    bool set_upward(const UpAxis& up)
     {
+        constexpr double lower_rows = 2;
         const UpwardDepths depths(field_, type_of_mk_, particles_.off_lattice, up, threads_);
         const std::vector<std::vector<std::uint64_t>> first = first_of_runs();
         particles_.rhop.assign(particles_.n_fluid, static_cast<float>(def_.constants.rhop0));
-        parallel_for(first.size(), threads_,
-                     [&](std::size_t x)
-                     {
-                         for (std::size_t i = 0; i < first[x].size(); ++i)
-                         {
-                             if (first[x][i] == no_particle) continue;
-                             const Run& r = field_.slabs[x][i];
-                             for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
-                                 particles_.rhop[first[x][i] + (z - r.z_begin)] =
-                                     rhop(depths.of_node({static_cast<std::int64_t>(x), r.y, z}));
-                         }
-                     });
+        std::vector<char> is_lower(first.size(), 0);
+        parallel_for(
+            first.size(), threads_,
+            [&](std::size_t x)
+            {
+                for (std::size_t i = 0; i < first[x].size(); ++i)
+                {
+                    if (first[x][i] == no_particle) continue;
+                    const Run& r = field_.slabs[x][i];
+                    for (std::uint32_t z = r.z_begin; z < r.z_end; ++z)
+                    {
+                        const double depth = depths.of_node({static_cast<std::int64_t>(x), r.y, z});
+                        particles_.rhop[first[x][i] + (z - r.z_begin)] = rhop(depth);
+                        if (by_height_ &&
+                            water_.s_max - height(x, r.y, z) > depth + lower_rows * row_)
+                            is_lower[x] = 1;
+                    }
+                }
+            });
         off_lattice_.for_each_of_fluid(
             [&](std::uint64_t i, const ParticleBlock& block)
             {
@@ -327,6 +339,7 @@ private:
                 particles_.off_lattice.rhop[i] =
                     rhop(depths.of_place(particles_.off_lattice.positions[i]));
             });
+        return std::find(is_lower.begin(), is_lower.end(), 1) != is_lower.end();
     }
 
     /// Of the particles off the lattice.
@@ -364,21 +377,17 @@ private:
 
 } // namespace
 
-void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
+bool compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
                        int threads)
 {
     const ConstantsDef& c = water.def.constants;
     Densities by_gravity(water, c.gravity, particles, constants, threads);
     by_gravity.measure();
     by_gravity.set_constants();
-    if (c.driving == Vec3{})
-    {
-        by_gravity.set_densities();
-        return;
-    }
+    if (c.driving == Vec3{}) return by_gravity.set_densities();
     Densities at_rest(water, c.rest_gravity(), particles, constants, threads);
     at_rest.measure();
-    at_rest.set_densities();
+    return at_rest.set_densities();
 }
 
 } // namespace fppg

@@ -30,7 +30,8 @@ struct WaterNodes
 /// hswl
 ///   and the speed of sound stay those of gravity
 /// - where fluid is balanced and gravity is along an axis, depths are those of water at rest
-///   (upward_depths.h)
+///   (upward_depths.h), for rhopgradient 3 too: the highest surface is not that of water that
+///   stands lower (public CaseFlexibleGate of v5.2, a bed of 0.05 m before a dam of 0.6 m: 1.3 g)
 /// - all fluid of an mk that has particles of `<setfrdrawmode>` has rhop0, on nodes too, unless
 ///   def.hydrostatic_off_lattice (33 cases, 2D too, with all gradients and oblique gravity)
 ///
@@ -46,7 +47,8 @@ struct WaterNodes
 /// default order (x, y, z) and without those off the lattice; where values are stored one per
 /// particle, those of a block's nodes come first.
 ///
-void compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
+/// returns  whether fluid has less depth than rhopgradient 3 asks for
+bool compute_densities(const WaterNodes& water, CaseParticles& particles, CaseConstants& constants,
                        int threads);
 
 } // namespace fppg

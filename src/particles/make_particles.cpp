@@ -42,8 +42,8 @@ public:
         sort_off_lattice();
         set_limits();
         set_constants(constants);
-        compute_densities({def_, field_, type_of_mk_, off_lattice_begin_}, out_, constants,
-                          threads_);
+        has_lower_fluid_ = compute_densities({def_, field_, type_of_mk_, off_lattice_begin_}, out_,
+                                             constants, threads_);
         orient_blocks();
         merge_off_lattice();
         list_off_lattice_points();
@@ -432,6 +432,12 @@ private:
                 "Automatic maximum depth is zero since there are no fluid particles.");
         else if (!def_.constants.hswl && g == 0)
             warnings.push_back("Automatic maximum depth is zero since gravity is zero.");
+        if (has_lower_fluid_)
+            warnings.push_back(fmt::format(
+                "{}: <rhopgradient value=\"3\"> takes the depth under the highest fluid for all; "
+                "beside body-fitted walls fluid that stands lower has the density of its own "
+                "depth.",
+                def_.file));
         if (constants.b == 0)
             warnings.push_back("Constant B is zero. The solver refuses such a case.");
     }
@@ -447,6 +453,7 @@ private:
         off_lattice_begin_; ///< per block its first one in out_.off_lattice, then their number
     std::vector<PositionOrder> orders_;    ///< of every block, where some are off the lattice
     std::vector<std::uint64_t> run_begin_; ///< per slab and block, index of the slab's first run
+    bool has_lower_fluid_ = false;
     CaseParticles single_; ///< floating blocks before `<lattice>` doubles them; or empty
     CaseParticles out_;
 };

@@ -175,4 +175,34 @@ TEST(WaterUnderAPlate, IsTheSameUnderGravityAlongAnyAxis)
     }
 }
 
+/// A bed of water beside a dam, in two basins.
+TEST(WaterAtTwoLevels, HasTheDepthOfItsOwnSurfaceBesideFittedWalls)
+{
+    const auto basins = [](const std::string& gradient, const std::string& fppg)
+    {
+        CaseText text;
+        text.pointmin = R"(<pointmin x="-0.4" y="0" z="-0.4" />)";
+        text.pointmax = R"(<pointmax x="2.5" y="0" z="1.5" />)";
+        text.constants += R"(<speedsound value="60" auto="false" />)";
+        text.rhopgradient = R"(<rhopgradient value=")" + gradient + R"(" />)";
+        text.mainlist =
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>bottom | left | right</boxfill><point x="0" y="-1" z="0" /><size x="2.1" y="2" z="1.2" /></drawbox><drawbox><boxfill>solid</boxfill><point x="1" y="-1" z="0" /><size x="0.4" y="2" z="1.2" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.5" y="0" z="0.2"><modefill>void</modefill><point x="-0.1" y="-1" z="-0.1" /><size x="1.2" y="2" z="0.95" /></fillbox>
+<setmkfluid mk="1" /><fillbox x="1.7" y="0" z="0.2"><modefill>void</modefill><point x="1.2" y="-1" z="-0.1" /><size x="1" y="2" z="0.45" /></fillbox>)";
+        text.after_geometry = fppg;
+        return text;
+    };
+    const TemporaryFolder folder;
+    const std::string fitted = "<fppg><bodyfitted /></fppg>";
+    const MadeCase by_column = make(folder, basins("2", fitted));
+    const MadeCase by_height = make(folder, basins("3", fitted));
+    EXPECT_EQ(by_height.cloud.positions, by_column.cloud.positions);
+    EXPECT_EQ(by_height.densities, by_column.densities);
+    EXPECT_TRUE(contains(by_height.output, "fluid that stands lower")) << by_height.output;
+    EXPECT_FALSE(contains(by_column.output, "fluid that stands lower"));
+    const MadeCase lattice = make(folder, basins("3", ""));
+    EXPECT_NE(lattice.densities, make(folder, basins("2", "")).densities) << "as GenCase has it";
+    EXPECT_FALSE(contains(lattice.output, "fluid that stands lower"));
+}
+
 } // namespace
