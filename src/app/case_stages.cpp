@@ -11,6 +11,7 @@
 #include "app/body_table.h"
 #include "app/fit_check.h"
 #include "app/lattice_fluid.h"
+#include "app/layer_gaps.h"
 #include "app/motion_check.h"
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
@@ -114,6 +115,7 @@ void check_blocks(CaseRunState& run, const MadeCase& made)
         for (std::string& w : found) run.diagnose(std::move(w));
     };
     tell(check_motion(def, made.particles));
+    tell(check_layer_gaps(def, made.particles));
     tell(check_floor(def, made.particles));
     if (def.vres.is_active() && def.zone + 1 < def.vres.zones.size()) return;
     tell(check_mks(def, run.mks));

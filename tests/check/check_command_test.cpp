@@ -288,7 +288,10 @@ TEST_F(CheckCommand, SaysWhereAGateInLayersLeavesAGap)
             R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="TimeMax" value="0.5" /></parameters>)";
         return out;
     };
-    generate(gate("0.02"));
+    const std::string of_run = "mkbound 1 moves 1 dp from mkbound 0";
+    write_text(folder_ / "Case_Def.xml", gate("0.02").text());
+    const RunResult made = run(folder_, {"Case_Def", "Case"});
+    EXPECT_TRUE(contains(made.output, of_run)) << made.output;
     const CheckReport open = check_case(folder_ / "Case", 2);
     EXPECT_TRUE(has_note(open, "mk 11 and mk 10 move against each other 1 dp apart"))
         << to_text(open);
@@ -296,6 +299,7 @@ TEST_F(CheckCommand, SaysWhereAGateInLayersLeavesAGap)
     for (const std::string bottom : {"0", "0.06"})
     {
         generate(gate(bottom));
+        EXPECT_FALSE(contains(run(folder_, {"Case_Def", "Case"}).output, "mkbound 1 moves"));
         const CheckReport none = check_case(folder_ / "Case", 2);
         EXPECT_FALSE(has_note(none, "move against each other")) << to_text(none);
     }
