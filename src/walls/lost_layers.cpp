@@ -51,20 +51,29 @@ struct Beyond
 
 void warn_of_lost_layers(const std::string& place, const LatticeGrid& grid, FittedStep& step)
 {
+    // Sheets of dynamic boundaries hold fluid with one row too, but not at rest.
+    constexpr double told_share = 0.02;
     Beyond lost;
+    Beyond of_sheets;
+    double rows = 0;
     for (const FittedDraw& draw : step.draws)
     {
-        // One sheet of them holds fluid as well.
-        if (draw.body.layered_step != no_index) continue;
+        const bool is_sheet = draw.body.layered_step != no_index;
+        if (is_sheet) rows += static_cast<double>(draw.particles.size());
         for (std::size_t i = 0; i < draw.cut.size(); ++i)
         {
             const std::uint32_t body = draw.cut_bodies[i];
             if (body == 0 || is_in_domain(draw.cut[i], grid, beyond_period_dp)) continue;
             const WallDepth* wall = draw.layers[body - 1].wall.get();
             if (wall != nullptr && is_in_domain(wall->at(draw.cut[i]).nearest, grid))
-                lost.add(draw.cut[i], grid);
+                (is_sheet ? of_sheets : lost).add(draw.cut[i], grid);
         }
     }
+    if (static_cast<double>(of_sheets.count) > told_share * rows)
+        step.warnings.push_back(fmt::format(
+            "{}: {} particles of the rows behind this sheet lie beyond the domain and are left "
+            "out: fluid beside it does not stay at rest. Let <definition> reach further to {}.",
+            place, of_sheets.count, fmt::join(of_sheets.ways(), ", ")));
     if (lost.count == 0) return;
     step.warnings.push_back(fmt::format(
         "{}: {} particles of layers lie beyond the domain and are left out, though their wall is "

@@ -137,10 +137,11 @@ TEST(TankOfSheets, HasAllItsRowsInADomainThatEndsBesideIt)
     }
     // The domain cuts what is drawn beyond it.
     const Result cut = tank(
-        1.2 * dp,
+        0.6 * dp,
         R"(<drawbox><boxfill>solid</boxfill><point x="-1" y="0.2" z="0.6" /><size x="0.95" y="0.1" z="0.05" /></drawbox>)",
         R"(<bodyfitted boundary="dbc" />)");
     EXPECT_TRUE(contains(cut.output, "Lattice wider than the domain, by 0, ")) << cut.output;
+    EXPECT_TRUE(contains(cut.output, "rows behind this sheet lie beyond the domain")) << cut.output;
 }
 
 TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
