@@ -69,13 +69,16 @@ struct Gap
 class FixedWalls
 {
 public:
-    FixedWalls(const CaseParticles& particles, double dp) : grid_(wide_dp * dp, 0), dp_(dp)
+    /// Those in a box, grown by the width of a gap.
+    FixedWalls(const CaseParticles& particles, const Box3& near, double dp)
+        : grid_(wide_dp * dp, 0), dp_(dp)
     {
         for (const ParticleBlock& block : particles.blocks)
             if (block.type == ParticleType::Fixed)
                 for_each_foot(particles, block,
                               [&](const Vec3& p, const Vec3& n)
                               {
+                                  if (!near.has(p, (beside_dp + wide_dp) * dp)) return;
                                   grid_.add(p);
                                   normals_.push_back(n);
                                   mks_.push_back(block.mk_type);
@@ -112,11 +115,14 @@ std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticle
     const double dp = def.grid.dp;
     std::vector<std::string> out;
     if (def.solver.boundary != 2 || particles.off_lattice.layers.empty()) return out;
-    const FixedWalls fixed(particles, dp);
+    const auto moves = [](const ParticleBlock& b) { return b.type == ParticleType::Moving; };
+    if (std::none_of(particles.blocks.begin(), particles.blocks.end(), moves)) return out;
     const Box3 fluid = box_of_fluid(particles);
+    if (fluid.is_empty()) return out;
+    const FixedWalls fixed(particles, fluid, dp);
     for (const ParticleBlock& block : particles.blocks)
     {
-        if (block.type != ParticleType::Moving) continue;
+        if (!moves(block)) continue;
         std::map<std::uint16_t, Gap> gaps;
         for_each_foot(particles, block,
                       [&](const Vec3& p, const Vec3& normal)

@@ -53,7 +53,8 @@ public:
             top_.size(), threads_, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
         measure_nodes();
         if (raises_roofs())
-            raise_roofed_depths(field_, places_of_walls(particles_.off_lattice), meter_, top_);
+            raise_roofed_depths(
+                field_, particles_.off_lattice, [](const Vec3& p) { return p; }, meter_, top_);
         measure_off_lattice();
     }
 

@@ -26,9 +26,8 @@ struct WaterNodes
 ///   rhopgradient 3
 /// - rhop = rhop0 (1 + rhop0 |gravity| d / b)^(1 / gamma), as float; rhop0 for rhopgradient 1, and
 ///   where b or gravity is zero (GenCase writes NaN there)
-/// - where part of gravity drives the fluid (ConstantsDef::driving), rhop by depths without it;
-/// hswl
-///   and the speed of sound stay those of gravity
+/// - where part of gravity drives the fluid (ConstantsDef::driving), rhop by depths without it; but
+///   hswl and the speed of sound by all of gravity
 /// - where fluid is balanced and gravity is along an axis, depths are those of water at rest
 ///   (upward_depths.h), for rhopgradient 3 too: the highest surface is not that of water that
 ///   stands lower (public CaseFlexibleGate of v5.2, a bed of 0.05 m before a dam of 0.6 m: 1.3 g)

@@ -14,7 +14,8 @@ namespace
 class RoofLevels
 {
 public:
-    RoofLevels(const RunField& field, const std::vector<Vec3>& walls, const DepthMeter& meter,
+    RoofLevels(const RunField& field, const OffLatticeParticles& off_lattice,
+               const std::function<Vec3(const Vec3&)>& place, const DepthMeter& meter,
                std::vector<std::vector<std::uint32_t>>& top)
         : field_(field),
           meter_(meter),
@@ -24,8 +25,12 @@ public:
     {
         const Box3 water = box_of_water();
         if (water.is_empty()) return;
-        for (const Vec3& p : walls)
+        for (std::size_t i = 0; i < off_lattice.size(); ++i)
+        {
+            if (!off_lattice.is_of_wall(i)) continue;
+            const Vec3 p = place(off_lattice.positions[i]);
             if (water.has(p, reach_dp * field.grid.dp)) walls_.add(p);
+        }
     }
 
     void run()
@@ -187,18 +192,11 @@ private:
 
 } // namespace
 
-void raise_roofed_depths(const RunField& field, const std::vector<Vec3>& walls,
-                         const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top)
+void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+                         const std::function<Vec3(const Vec3&)>& place, const DepthMeter& meter,
+                         std::vector<std::vector<std::uint32_t>>& top)
 {
-    RoofLevels(field, walls, meter, top).run();
-}
-
-std::vector<Vec3> places_of_walls(const OffLatticeParticles& off_lattice)
-{
-    std::vector<Vec3> out;
-    for (std::size_t i = 0; i < off_lattice.size(); ++i)
-        if (off_lattice.is_of_wall(i)) out.push_back(off_lattice.positions[i]);
-    return out;
+    RoofLevels(field, off_lattice, place, meter, top).run();
 }
 
 } // namespace fppg

@@ -5,6 +5,7 @@
 #include "particles/depths.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace fppg
@@ -19,14 +20,13 @@ namespace fppg
 /// within 2.2 dp. Columns are connected where they stand side by side and share a height. Columns
 /// that end in the air keep their depth, as their water is meant to fall. Gravity is along -z.
 ///
-/// walls  places of particles of walls off the lattice
+/// off_lattice  holds the particles of walls
+/// place  where one of its places is in the field, whose z is up
 /// top   per run of each slab, steps from its highest node to the top of its column
 ///       (DepthMeter::depths_along_z()); changed
 /// cost  O(n log n) for n runs, on one thread
-void raise_roofed_depths(const RunField& field, const std::vector<Vec3>& walls,
-                         const DepthMeter& meter, std::vector<std::vector<std::uint32_t>>& top);
-
-/// Of the particles of walls off the lattice.
-std::vector<Vec3> places_of_walls(const OffLatticeParticles& off_lattice);
+void raise_roofed_depths(const RunField& field, const OffLatticeParticles& off_lattice,
+                         const std::function<Vec3(const Vec3&)>& place, const DepthMeter& meter,
+                         std::vector<std::vector<std::uint32_t>>& top);
 
 } // namespace fppg

@@ -18,9 +18,9 @@ UpwardDepths::UpwardDepths(const RunField& field, const std::vector<ParticleType
 {
     parallel_for(
         top_.size(), threads, [&](std::size_t x) { top_[x] = meter_.depths_along_z(x); }, 16);
-    std::vector<Vec3> walls = places_of_walls(off_lattice);
-    for (Vec3& p : walls) p = upward_.turned(p);
-    raise_roofed_depths(upward_.field(), walls, meter_, top_);
+    raise_roofed_depths(
+        upward_.field(), off_lattice, [&](const Vec3& p) { return upward_.turned(p); }, meter_,
+        top_);
 }
 
 double UpwardDepths::of_node(const Node& node) const
