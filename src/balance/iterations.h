@@ -26,12 +26,10 @@ inline int last_iteration(std::size_t particles)
                       least_most_iterations, most_iterations);
 }
 
-/// Those that most cases take; where walls are hard to fit it is up to twice as many.
-///
-/// is_packed  all is laid on another lattice first
-inline int usual_iterations(std::size_t particles, bool is_packed)
+/// Those that most cases with curved walls take; where these are hard to fit it is up to twice as
+/// many.
+inline int usual_iterations(std::size_t particles)
 {
-    if (!is_packed) return first_settled;
     constexpr int of_many = 60;
     return std::clamp(static_cast<int>(least_work / static_cast<double>(particles)), of_many,
                       most_iterations);

@@ -6,6 +6,7 @@
 #include "fppg/lattice.h"
 #include "fppg/scene.h"
 
+#include "batch/estimated_work.h"
 #include "batch/fluid_near_walls.h"
 #include "batch/layer_counts.h"
 #include "batch/machine_speed.h"
@@ -86,7 +87,7 @@ public:
         out_.dp = def_.grid.dp;
         out_.nodes = def_.grid.n;
         draw();
-        draw_seconds_ =
+        work_.draw_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (!def_.grid.is_2d)
             for (const SceneStep& step : scene_.remaining()) count_wall(step);
@@ -105,7 +106,7 @@ private:
         on_lattice.fluid_bands.clear();
         LatticeReport report;
         RunField field = draw_on_lattice(scene_, options_.threads, {}, report);
-        runs_ = runs_of_nodes(field);
+        work_.runs = static_cast<double>(runs_of_nodes(field));
         fluid_ = sample_fluid(field, def_.mk_bound_first);
         add_point_files(scene_, field, report);
         CaseConstants constants;
@@ -115,6 +116,7 @@ private:
         for (const ParticleBlock& block : particles.blocks)
             out_.blocks.push_back({block.type, block.mk, block.count, true});
         out_.triangles = report.triangles;
+        work_.triangles = static_cast<double>(report.triangles);
         for (const auto* list : {&def_.warnings, &def_.hints, &report.warnings, &warnings})
             out_.warnings.insert(out_.warnings.end(), list->begin(), list->end());
         note_files(report);
@@ -179,7 +181,7 @@ private:
         for (const StepSurface& surface : fitted_surfaces(scene_, near, options_.threads))
         {
             const WallCount count = count_shape(surface.shape, state.clips, settings);
-            most_cut_ = std::max(most_cut_, count.cut_area);
+            work_.most_cut = std::max(work_.most_cut, count.cut_area);
             for (const auto& [mk, share] : mk_shares(surface, state.mk.mk))
             {
                 WallCount& wall = walls_[mk];
@@ -196,8 +198,8 @@ private:
                 wall.in_band += share * count.in_band;
             }
             const auto facets = static_cast<double>(surface.shape.soup.size());
-            facets_ += facets;
-            if (count.in_layers > 0) layered_facets_ += facets;
+            work_.facets += facets;
+            if (count.in_layers > 0) work_.layered_facets += facets;
             const std::vector<Vec3>& corners = surface.shape.soup.vertices;
             surfaces_.vertices.insert(surfaces_.vertices.end(), corners.begin(), corners.end());
         }
@@ -296,24 +298,37 @@ private:
                probe.seconds_a_ball * probe.balls * laid;
     }
 
-    /// What is balanced (balance.h).
-    struct Balanced
+    /// Fluid that is relaxed beside fitted walls, and what is balanced (balance.h).
+    ///
+    /// bound  particles of walls
+    void count_fluid(double bound)
     {
-        double fluid = 0;
-        double walls = 0; ///< particles of walls that its forces reach
-    };
-
-    Balanced balanced(double bound) const
-    {
-        if (!def_.balances() || out_.n_fluid == 0) return {};
-        double width = 2 * def_.h / def_.grid.dp + 1.5;
-        for (const FluidBand& band : def_.fluid_bands) width = std::max(width, band.width_dp);
         const auto fluid = static_cast<double>(out_.n_fluid);
-        const double near =
-            fluid * share_near(fluid_, surfaces_, width * def_.grid.dp, options_.threads);
-        const double rows = std::ceil(2 * def_.h / def_.grid.dp);
-        return {out_.n_fluid <= most_balanced_whole ? fluid : near,
-                std::min(bound, rows * near / width)};
+        const double h_dp = def_.h / def_.grid.dp;
+        double width = 2 * h_dp + 1.5;
+        for (const FluidBand& band : def_.fluid_bands)
+        {
+            width = std::max(width, band.width_dp);
+            work_.relaxed_fluid =
+                std::max(work_.relaxed_fluid, fluid * share_within(band.width_dp));
+        }
+        if (!def_.balances() || out_.n_fluid == 0) return;
+        const double near = fluid * share_within(width);
+        work_.balanced_fluid = out_.n_fluid <= most_balanced_whole ? fluid : near;
+        work_.balanced_walls = std::min(bound, std::ceil(2 * h_dp) * near / width);
+        const double slanted = near > 0 ? fluid *
+                                              share_near(fluid_, slanted_facets(surfaces_),
+                                                         width * def_.grid.dp, options_.threads) /
+                                              near
+                                        : 0;
+        work_.balanced_steps =
+            steps_to_balance(def_, work_.balanced_fluid, {holds_fluid(), slanted});
+    }
+
+    /// Of the fluid, that is nearer to a fitted surface than so many dp.
+    double share_within(double dps) const
+    {
+        return share_near(fluid_, surfaces_, dps * def_.grid.dp, options_.threads);
     }
 
     /// Single sheets do not hold fluid at rest; lines of 2D cases are not counted.
@@ -385,14 +400,14 @@ private:
         {
             out_.n_wall += static_cast<std::uint64_t>(wall.on_surface + wall.in_layers);
             out_.n_line += static_cast<std::uint64_t>(wall.on_lines);
-            on_surfaces_ += wall.on_surface;
-            laid_layers_ += wall.laid_layers;
-            search_seconds_ += wall.search_seconds;
-            layered_lines_ += wall.layered_lines;
-            cut_area_ += wall.cut_area;
-            cut_particles_ += wall.cut_particles;
-            relaxed_ += wall.relaxed;
-            in_band_ += wall.in_band;
+            work_.on_surfaces += wall.on_surface;
+            work_.laid_layers += wall.laid_layers;
+            work_.search_seconds += wall.search_seconds;
+            work_.layered_lines += wall.layered_lines;
+            work_.cut_area += wall.cut_area;
+            work_.cut_particles += wall.cut_particles;
+            work_.relaxed += wall.relaxed;
+            work_.in_band += wall.in_band;
             const auto is_it = [mk = mk](const EstimatedBlock& b) { return b.mk == mk; };
             // A shape so thin that no node is near it.
             if (std::none_of(out_.blocks.begin(), out_.blocks.end(), is_it))
@@ -433,48 +448,13 @@ private:
         if (options_.saves_all) out_.output_bytes += np * vtk;
         if (options_.saves_parts) out_.output_bytes += np * vtk;
 
-        const Balanced to_balance = balanced(bound);
-        set_memory(bound, to_balance);
-        const double pairs = pairs_to_balance(def_, to_balance.fluid, holds_fluid());
-        out_.seconds =
-            rates.seconds_to_start + draw_seconds_ + search_seconds_ / options_.threads +
-            read_machine_speed().factor *
-                (rates.seconds_a_facet * facets_ + rates.seconds_a_wall_particle * on_surfaces_ +
-                 rates.seconds_a_relaxed_particle * relaxed_ +
-                 rates.seconds_a_band_particle * in_band_ + rates.seconds_a_cut_place * cut_area_ +
-                 rates.seconds_a_cut_particle * cut_particles_ +
-                 rates.seconds_a_layer_particle * laid_layers_ +
-                 rates.seconds_a_layered_line * layered_lines_ +
-                 rates.seconds_a_balanced_pair * pairs) /
-                options_.threads +
-            out_.output_bytes / rates.written_bytes_a_second;
-    }
-
-    /// Of particles of surfaces: many are relaxed in pieces.
-    static double bytes_to_relax(double particles)
-    {
-        const double pieces = std::max(1.0, std::ceil(particles / rates.relaxed_together));
-        return rates.bytes_a_relaxed_particle * particles / pieces +
-               (pieces > 1 ? rates.bytes_a_piece_particle * particles : 0);
-    }
-
-    /// What stays over the run, and the largest of what its stages need besides.
-    void set_memory(double bound, const Balanced& to_balance)
-    {
-        out_.memory_bytes = rates.base_bytes + rates.bytes_per_thread * options_.threads +
-                            rates.bytes_a_fitted_facet * facets_ +
-                            rates.bytes_per_triangle * static_cast<double>(out_.triangles) +
-                            rates.bytes_a_wall_particle * (on_surfaces_ + laid_layers_);
-        if (!walls_.empty()) out_.memory_bytes += rates.bytes_to_fit;
-        if (def_.normals.is_active) out_.memory_bytes += bound * rates.normal_bytes;
-        out_.memory_bytes += std::max(
-            {rates.bytes_per_run * static_cast<double>(runs_),
-             rates.bytes_a_laid_particle * (on_surfaces_ + laid_layers_),
-             rates.bytes_a_cut_place * most_cut_ + rates.bytes_a_cut_particle * cut_particles_,
-             bytes_to_relax(relaxed_ + laid_layers_) + rates.bytes_a_band_particle * in_band_,
-             rates.bytes_a_layered_facet * layered_facets_,
-             rates.bytes_a_balanced_particle * to_balance.fluid +
-                 rates.bytes_a_wet_particle * to_balance.walls});
+        if (def_.normals.is_active) work_.wall_particles_with_normals = bound;
+        work_.output_bytes = out_.output_bytes;
+        count_fluid(bound);
+        out_.memory_bytes = memory_of(work_, options_.threads);
+        out_.stages = seconds_of(work_, options_.threads, read_machine_speed().factor);
+        out_.seconds = out_.stages.drawing + out_.stages.relaxing + out_.stages.balancing +
+                       out_.stages.writing;
     }
 
     EstimateOptions options_;
@@ -483,21 +463,9 @@ private:
     std::set<std::uint16_t> fast_; ///< mks
     Estimate out_;
     std::map<std::uint16_t, WallCount> walls_; ///< by mk
-    std::uint64_t runs_ = 0;
-    std::vector<Vec3> fluid_;   ///< some of its nodes
-    TriangleSoup surfaces_;     ///< of all fitted walls
-    double facets_ = 0;         ///< of body-fitted draws
-    double layered_facets_ = 0; ///< of them, of those with layers
-    double on_surfaces_ = 0;
-    double laid_layers_ = 0;
-    double search_seconds_ = 0;
-    double layered_lines_ = 0;
-    double cut_area_ = 0;
-    double cut_particles_ = 0;
-    double most_cut_ = 0; ///< the largest cut area of one draw
-    double relaxed_ = 0;
-    double in_band_ = 0;
-    double draw_seconds_ = 0;
+    EstimatedWork work_;
+    std::vector<Vec3> fluid_; ///< some of its nodes
+    TriangleSoup surfaces_;   ///< of all fitted walls
 };
 
 const char* name_of(ParticleType type)
@@ -549,8 +517,12 @@ std::string to_text(const Estimate& e)
                          e.wall_area, grouped(e.n_wall), grouped(e.n_line), e.line_length));
     line("Memory", "about " + size_text(e.memory_bytes));
     line("Files", "about " + size_text(e.output_bytes));
-    line("Time", e.seconds < 10 ? fmt::format("about {:.1f} s", e.seconds)
-                                : fmt::format("about {:.0f} s", e.seconds));
+    const auto rounded = [](double seconds)
+    { return fmt::format("{:.{}f} s", seconds, seconds < 10 ? 1 : 0); };
+    line("Time",
+         fmt::format("about {}: drawing {}, relaxing {}, balancing {}, writing {}",
+                     rounded(e.seconds), rounded(e.stages.drawing), rounded(e.stages.relaxing),
+                     rounded(e.stages.balancing), rounded(e.stages.writing)));
     for (const std::string& warning : e.warnings) line("Warning", warning);
     return text;
 }
@@ -581,6 +553,10 @@ std::string to_json(const Estimate& e)
                        {"memory_bytes", e.memory_bytes},
                        {"output_bytes", e.output_bytes},
                        {"seconds", e.seconds},
+                       {"drawing_seconds", e.stages.drawing},
+                       {"relaxing_seconds", e.stages.relaxing},
+                       {"balancing_seconds", e.stages.balancing},
+                       {"writing_seconds", e.stages.writing},
                        {"files", e.files},
                        {"warnings", e.warnings}};
     return json.text(2) + "\n";

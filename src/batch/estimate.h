@@ -3,6 +3,8 @@
 #include "fppg/case_def.h"
 #include "fppg/particles.h"
 
+#include "batch/estimated_work.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -52,6 +54,7 @@ struct Estimate
     double memory_bytes = 0;           ///< at its peak
     double output_bytes = 0;           ///< of the files with particles
     double seconds = 0;                ///< on the threads asked for
+    StageSeconds stages;               ///< make up seconds
     std::vector<std::string> files;    ///< that the case reads besides itself; absolute paths
     std::vector<std::string> warnings; ///< of reading and drawing
 };

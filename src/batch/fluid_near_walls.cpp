@@ -1,9 +1,6 @@
 #include "batch/fluid_near_walls.h"
 
-#include "fppg/balance.h"
-
 #include "balance/iterations.h"
-#include "balance/lattice_stability.h"
 #include "meshes/mesh_query.h"
 
 #include <algorithm>
@@ -55,21 +52,35 @@ double share_near(const std::vector<Vec3>& places, const TriangleSoup& surface, 
     return static_cast<double>(near) / static_cast<double>(places.size());
 }
 
-double pairs_to_balance(const CaseDef& def, double particles, bool holds)
+TriangleSoup slanted_facets(const TriangleSoup& surface)
+{
+    constexpr double along_axis = 0.9999;
+    TriangleSoup out;
+    const std::vector<Vec3>& v = surface.vertices;
+    for (std::size_t f = 0; f < surface.size(); ++f)
+    {
+        const Vec3 n = cross(v[3 * f + 1] - v[3 * f], v[3 * f + 2] - v[3 * f]);
+        const double most = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+        if (most < along_axis * norm(n))
+            out.vertices.insert(out.vertices.end(), v.begin() + static_cast<std::ptrdiff_t>(3 * f),
+                                v.begin() + static_cast<std::ptrdiff_t>(3 * f + 3));
+    }
+    return out;
+}
+
+double steps_to_balance(const CaseDef& def, double particles, const FluidHold& walls)
 {
     constexpr int iterations_to_find_out = 40;
     constexpr double skin_dp = 0.5;
+    constexpr double slanted_of_hard = 1.5;
     if (particles == 0) return 0;
     const bool is_2d = def.grid.is_2d;
     const double h_dp = def.h / def.grid.dp, reach = 2 * h_dp + skin_dp;
     const double neighbours = std::numbers::pi * reach * reach * (is_2d ? 1 : 4.0 / 3 * reach);
-    const bool is_packed = particles <= static_cast<double>(most_balanced_whole) &&
-                           std::all_of(def.fluid_bands.begin(), def.fluid_bands.end(),
-                                       [](const FluidBand& band) { return band.packs; }) &&
-                           most_stable_lattice({h_dp, def.solver.kernel == 1, is_2d});
-    const int iterations = holds ? usual_iterations(static_cast<std::size_t>(particles), is_packed)
-                                 : iterations_to_find_out;
-    return particles * iterations * neighbours;
+    if (!walls.holds) return particles * iterations_to_find_out * std::sqrt(neighbours);
+    const int usual = usual_iterations(static_cast<std::size_t>(particles));
+    const double hard = std::min(1.0, slanted_of_hard * walls.slanted);
+    return particles * (first_settled + hard * (usual - first_settled)) * std::sqrt(neighbours);
 }
 
 } // namespace fppg

@@ -5,8 +5,8 @@ namespace fppg
 
 /// What particles cost, for estimates: measured with the release build on an AMD EPYC, one thread,
 /// with a ball (surface, filled, in layers, inside; -fit:raw and -fit), an open tank with fluid and
-/// the gearbox and the wet road of cases/new. A factor of two off on another machine is usual
-/// without a calibration.
+/// the gearbox and the wet road of cases/new; balancing and fluid beside walls with those of
+/// cases/. A factor of two off on another machine is usual without a calibration.
 struct Rates
 {
     double base_bytes = 8e6;                 ///< of the program itself
@@ -32,15 +32,17 @@ struct Rates
     double seconds_a_wall_particle = 2.6e-6; ///< placed, with its zone of the lattice; one thread
     double seconds_a_facet = 6e-6;           ///< of a body-fitted mesh: mended, searched
     double seconds_a_relaxed_particle = 6.7e-6;
-    double seconds_a_band_particle = 17e-6;
-    double seconds_a_cut_place = 20e-6;      ///< of a surface with layers, dp^2
-    double seconds_a_cut_particle = 5e-6;    ///< the surface that it is laid on
-    double seconds_a_layer_particle = 18e-6; ///< laid and relaxed
-    double depths_a_layer_particle = 30;     ///< asked for while it is laid
-    double depths_where_rough = 80;          ///< besides, a particle where walls are rough
-    double seconds_a_layered_line = 50e-6;   ///< of creases of layers, dp of the edge
-    double seconds_a_balanced_pair = 3.9e-9; ///< of fluid in each iteration
-    double band_particles = 2.3;             ///< of a solid, a particle on its surface
+    double seconds_a_band_particle = 22e-6;
+    double seconds_a_fluid_particle = 24e-6;   ///< relaxed beside walls
+    double seconds_a_cut_place = 20e-6;        ///< of a surface with layers, dp^2
+    double seconds_a_cut_particle = 5e-6;      ///< the surface that it is laid on
+    double seconds_a_layer_particle = 11e-6;   ///< laid
+    double depths_a_layer_particle = 30;       ///< asked for while it is laid
+    double depths_where_rough = 80;            ///< besides, a particle where walls are rough
+    double seconds_a_layered_line = 50e-6;     ///< of creases of layers, dp of the edge
+    double seconds_a_balanced_particle = 5e-6; ///< of fluid: gathered, its pressure found
+    double seconds_a_balanced_step = 0.045e-6; ///< steps_to_balance()
+    double band_particles = 2.3;               ///< of a solid, a particle on its surface
     double written_bytes_a_second = 1e9;
 
     double bi4_bytes = 44;      ///< a particle: id, position, velocity, density
