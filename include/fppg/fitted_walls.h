@@ -192,6 +192,16 @@ struct VolumeParticles
     std::size_t size() const { return positions.size(); }
 };
 
+/// A particle in the middle of a gap that is closed (relax/gap_rows.h); one of the volume too.
+struct GapParticle
+{
+    Vec3 place;
+    /// Where it ends the gap: a particle of the first layer beside it, and the way from there to
+    /// the face beyond the gap's end, metres; else zero.
+    Vec3 wall;
+    Vec3 to_mouth;
+};
+
 /// All fitted walls of a case.
 struct FittedWalls
 {
@@ -208,6 +218,8 @@ struct FittedWalls
     /// Particles of the second sheets of plates, which were taken out: none may be put on their
     /// side of the plate again.
     WallParticles second_sheets;
+
+    std::vector<GapParticle> gaps;
 
     /// Mks with particles of `setfrdrawmode`, which stand in for nodes; rising.
     std::vector<std::uint16_t> off_lattice_mks;

@@ -18,6 +18,10 @@ std::set<std::uint16_t> floating_mks(const CaseDef& def);
 /// Absolute mks of what moves or floats.
 std::set<std::uint16_t> mks_that_move(const CaseDef& def);
 
+/// Absolute mks of what moves by a `<motion>` that never turns it: gates, pistons. Not what
+/// `<mvnull>` leaves to other parts of the definition.
+std::set<std::uint16_t> mks_that_slide(const CaseDef& def);
+
 /// Whether an absolute mk is one of floating_mks().
 bool floats(const CaseDef& def, std::uint16_t mk);
 

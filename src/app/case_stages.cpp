@@ -19,10 +19,13 @@
 #include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
+#include "normals/gap_normals.h"
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
 #include "particles/simulation_domain.h"
 #include "platform/memory.h"
+#include "relax/gap_rows.h"
+#include "relax/wall_planes.h"
 #include "scene/part_colours.h"
 #include "walls/fluid_boxes.h"
 #include "walls/fluid_ends.h"
@@ -115,7 +118,7 @@ void check_blocks(CaseRunState& run, const MadeCase& made)
         for (std::string& w : found) run.diagnose(std::move(w));
     };
     tell(check_motion(def, made.particles));
-    tell(check_layer_gaps(def, made.particles));
+    tell(check_layer_gaps(def, made.particles, made.field.walls.gaps));
     tell(check_floor(def, made.particles));
     if (def.vres.is_active() && def.zone + 1 < def.vres.zones.size()) return;
     tell(check_mks(def, run.mks));
@@ -267,11 +270,31 @@ void draw(CaseRunState& run, MadeCase& made)
               });
 }
 
+void log_gap(CaseRunState& run, const CaseDef& def, const ClosedGap& gap)
+{
+    const auto name = [&](std::uint16_t mk)
+    { return fmt::format("mkbound {}", mk - def.mk_bound_first); };
+    const std::string rows = fmt::format(
+        "{} between {} and {} of {:.2g} to {:.2g} dp, near ({:g}, {:g}, {:g})",
+        counted(gap.count, "particle closes the gap", "particles close the gap"), name(gap.mk),
+        name(gap.other), gap.least_dp, gap.most_dp, gap.place.x, gap.place.y, gap.place.z);
+    if (gap.moves)
+        run.warn(
+            fmt::format("{}: {}, and move with {}: such a gap is closed on the lattice, and "
+                        "leaks between layers. Draw it {:g} dp wide or wider for fluid to go "
+                        "through.",
+                        def.file, rows, name(gap.mk), sliding_pocket_of_layers_dp));
+    else
+        run.log.line(rows);
+}
+
 void relax(CaseRunState& run, MadeCase& made)
 {
     if (made.field.walls.bodies.empty()) return;
     log_fitted_walls(made.field, run.log);
     if (relaxes(made.def, made.field)) run.stage("Relax", [&] { run_relaxation(run, made); });
+    for (const ClosedGap& gap : close_gaps(made.def, made.field, run.threads))
+        log_gap(run, made.def, gap);
     return_free_memory(); // surfaces were laid and relaxed piece by piece
     log_left_out(made.field.walls, run.log);
     for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))
@@ -349,6 +372,7 @@ void make_normals(CaseRunState& run, MadeCase& made)
                   made.particles.bound_normals =
                       compute_normals(made.def, made.particles, made.field,
                                       normal_geometry(run, made), run.threads, report);
+                  turn_to_mouths(made.field, made.particles, made.particles.bound_normals);
                   made.normal_shapes = std::move(report.shapes);
                   for (const std::string& line : report.log) run.log.line(line);
                   for (std::string& w : report.warnings) run.warn(std::move(w));

@@ -5,6 +5,7 @@
 #include "app/particle_log.h"
 #include "app/thousands.h"
 #include "core/text.h"
+#include "relax/wall_planes.h"
 
 #include <fmt/format.h>
 
@@ -94,10 +95,13 @@ void log_pockets(const FluidSpace& space, const Litres& litres, RunLog& log)
                             {"particles", pocket.nodes}});
     }
     log.text_line(fmt::format(
-        "Left empty: {} between walls less than {:g} dp apart (2 dp where one moves), {:.4g} {}, "
+        "Left empty: {} between walls less than {:g} dp apart (2 dp where one moves{}), {:.4g} {}, "
         "{} of fluid taken out there",
-        counted(space.pockets.size(), "pocket", "pockets"), space.pocket_dp, litres.of(volume),
-        litres.name(), counted(nodes, "particle", "particles")));
+        counted(space.pockets.size(), "pocket", "pockets"), space.pocket_dp,
+        space.pocket_dp == pocket_of_layers_dp
+            ? fmt::format(", {:g} dp where it slides", sliding_pocket_of_layers_dp)
+            : "",
+        litres.of(volume), litres.name(), counted(nodes, "particle", "particles")));
     for (std::size_t i = 0; i < std::min(pockets_logged, space.pockets.size()); ++i)
     {
         const FluidPocket& pocket = space.pockets[i];

@@ -19,6 +19,7 @@ namespace
 
 constexpr double closed_dp = 0.1;
 constexpr double wide_dp = 1.8;
+constexpr double in_closed_dp = 1.3; ///< to a row that closes the gap
 /// Fluid so near to a gap can come into it, dp.
 constexpr double beside_dp = 4;
 
@@ -110,7 +111,8 @@ private:
 
 } // namespace
 
-std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticles& particles)
+std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticles& particles,
+                                          const std::vector<GapParticle>& closed)
 {
     const double dp = def.grid.dp;
     std::vector<std::string> out;
@@ -120,17 +122,20 @@ std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticle
     const Box3 fluid = box_of_fluid(particles);
     if (fluid.is_empty()) return out;
     const FixedWalls fixed(particles, fluid, dp);
+    PointGrid rows(wide_dp * dp, closed.size());
+    for (const GapParticle& gap : closed) rows.add(gap.place);
     for (const ParticleBlock& block : particles.blocks)
     {
         if (!moves(block)) continue;
         std::map<std::uint16_t, Gap> gaps;
-        for_each_foot(particles, block,
-                      [&](const Vec3& p, const Vec3& normal)
-                      {
-                          if (!fluid.has(p, beside_dp * dp)) return;
-                          for (const auto& [other, width] : fixed.gaps_at(p, normal))
-                              if (Gap& gap = gaps[other]; width < gap.width) gap = {width, p};
-                      });
+        for_each_foot(
+            particles, block,
+            [&](const Vec3& p, const Vec3& normal)
+            {
+                if (!fluid.has(p, beside_dp * dp) || rows.has_nearer(p, in_closed_dp * dp)) return;
+                for (const auto& [other, width] : fixed.gaps_at(p, normal))
+                    if (Gap& gap = gaps[other]; width < gap.width) gap = {width, p};
+            });
         for (const auto& [other, gap] : gaps)
             out.push_back(fmt::format(
                 "{}: mkbound {} moves {:.2g} dp from mkbound {}, at ({:g}, {:g}, {:g}): "

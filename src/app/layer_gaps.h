@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fppg/case_def.h"
+#include "fppg/fitted_walls.h"
 #include "fppg/particles.h"
 
 #include <string>
@@ -14,7 +15,9 @@ namespace fppg
 /// farther apart than the surfaces (v5.4, a gate 1 dp over the floor before water 30 dp deep: 2 %
 /// of it in 0.24 s; 0.7 dp: 1.2 %). On the lattice such walls have no node between them.
 ///
+/// closed   gaps that a row of particles closes (relax/gap_rows.h)
 /// returns  a sentence a pair of mks, with the place where they are nearest
-std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticles& particles);
+std::vector<std::string> check_layer_gaps(const CaseDef& def, const CaseParticles& particles,
+                                          const std::vector<GapParticle>& closed);
 
 } // namespace fppg

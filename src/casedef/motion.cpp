@@ -167,6 +167,27 @@ void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
     }
 }
 
+/// Adds the mkbound of objects that move, on their own or with those around them, along straight
+/// ways or those of a file, and never turn.
+void collect_sliding(const Element& e, bool is_moved, std::set<int>& out)
+{
+    static const std::set<std::string_view> straight{
+        "wait", "mvrect", "mvrectace", "mvrectsinu", "mvrectfile", "mvfile", "mvpredef"};
+    for (const Element& c : e.children)
+    {
+        if (c.name != "objreal" && c.name != "obj") continue;
+        bool slides = true;
+        for (const Element& m : c.children)
+            slides = slides &&
+                     (!(m.name.starts_with("mv") || m.name == "wait") || straight.contains(m.name));
+        if (!slides) continue;
+        const bool moves = is_moved || c.find_child("begin") != nullptr;
+        if (c.name == "objreal" && moves)
+            if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
+        collect_sliding(c, moves, out);
+    }
+}
+
 } // namespace
 
 Element evaluated_element(const Element& source, const AttributeReader& read)
@@ -210,6 +231,16 @@ std::set<std::uint16_t> mks_that_move(const CaseDef& def)
 {
     std::set<std::uint16_t> out = floating_mks(def);
     for (const int mkbound : moving_mkbound(def.motion))
+        out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
+    return out;
+}
+
+std::set<std::uint16_t> mks_that_slide(const CaseDef& def)
+{
+    std::set<int> found;
+    collect_sliding(def.motion, false, found);
+    std::set<std::uint16_t> out;
+    for (const int mkbound : found)
         out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));
     return out;
 }

@@ -70,6 +70,19 @@ FluidWay::FluidWay(const RunField& field, std::uint16_t first_bound, const IsBou
             else if (is_bound(run.mk))
                 mark(x, run, blocked);
         }
+    for (const GapParticle& gap : field.walls.gaps)
+    {
+        const Vec3 at = grid_.steps_to(gap.place);
+        std::array<std::int64_t, 3> cell{};
+        bool is_on_grid = true;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto k = static_cast<std::size_t>(axis);
+            cell[k] = (std::llround(at[axis]) - first_[k]) / side_;
+            is_on_grid = is_on_grid && cell[k] >= 0 && cell[k] < n_[k];
+        }
+        if (is_on_grid) steps_[index(cell[0], cell[1], cell[2])] = blocked;
+    }
     has_fluid_ = std::find(steps_.begin(), steps_.end(), 0) != steps_.end();
 }
 

@@ -68,8 +68,12 @@ bool is_dry_beside(const FluidWay::Way& here, const FluidWay::Way& there, Moving
 } // namespace
 
 WetSurface::WetSurface(const RunField& field, const Setup& setup, int threads)
-    : setup_(setup), reach_(setup.reach), dp_(field.grid.dp)
+    : setup_(setup),
+      reach_(setup.reach),
+      dp_(field.grid.dp),
+      closed_gaps_(2 * dp_, field.walls.gaps.size())
 {
+    for (const GapParticle& gap : field.walls.gaps) closed_gaps_.add(gap.place);
     find_walls(field.walls.bodies);
     cut_pieces(field.walls.bodies);
     if (pieces_.empty()) return;
@@ -394,11 +398,31 @@ void WetSurface::compare_all_sides(const FluidWay& way, int threads)
     }
 }
 
-/// Whether another wall begins right before a place of a piece: a closed one, or the layers of a
-/// sheet.
+/// Of the closed gap before a place of a piece, and a little more, metres; 0: there is none.
+double WetSurface::width_before(const Piece& piece, const Vec3& at) const
+{
+    constexpr double aside = 1.2; // dp, of a particle in it
+    constexpr double more = 0.02; // dp
+    double width = 0;
+    if (closed_gaps_.points().empty()) return width;
+    double nearest = aside * aside * dp_ * dp_;
+    closed_gaps_.for_each_near(at, aside * dp_,
+                               [&](std::uint32_t gap, double squared)
+                               {
+                                   const double to_middle =
+                                       dot(closed_gaps_.points()[gap] - at, piece.normal);
+                                   if (squared >= nearest || to_middle <= 0) return;
+                                   nearest = squared;
+                                   width = 2 * to_middle + more * dp_;
+                               });
+    return width;
+}
+
+/// Whether another wall begins right before a place of a piece, or behind a closed gap: a closed
+/// one, or the layers of a sheet.
 bool WetSurface::is_covered(const Piece& piece, const Vec3& at) const
 {
-    const Vec3 before = at + (cover_dp * dp_) * piece.normal;
+    const Vec3 before = at + std::max(cover_dp * dp_, width_before(piece, at)) * piece.normal;
     const std::vector<std::uint32_t>& near = walls_[piece.wall].near;
     return std::any_of(
         near.begin(), near.end(),

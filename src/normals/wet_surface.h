@@ -4,6 +4,7 @@
 #include "fppg/vec.h"
 
 #include "meshes/mesh_query.h"
+#include "meshes/point_grid.h"
 #include "normals/fluid_way.h"
 
 #include <array>
@@ -25,7 +26,8 @@ namespace fppg
 /// gear), or where fluid stands at the other side at the start and the part does not turn over (a
 /// gate, a piston, a flap). A dry side goes on up to its rim, where the way is not so much longer,
 /// and behind what covers the wet side. What another body, or the layers of a sheet, cover is dry
-/// too. Everything else is wet.
+/// too, and what looks into a closed gap (relax/gap_rows.h) before another body. Everything else is
+/// wet.
 class WetSurface
 {
 public:
@@ -105,6 +107,7 @@ private:
     bool may_cover(const Wall& wall, const Box3& box) const;
     bool may_be_covered(const Piece& piece) const;
     bool is_covered(const Piece& piece, const Vec3& at) const;
+    double width_before(const Piece& piece, const Vec3& at) const;
     bool is_closed(const Piece& piece) const { return walls_[piece.wall].is_closed; }
     void judge(const RunField& field, const FluidWay& way, int threads);
     void compare_all_sides(const FluidWay& way, int threads);
@@ -120,6 +123,7 @@ private:
     std::vector<Wall> walls_;
     std::vector<Facet> facets_;
     std::vector<Piece> pieces_; ///< of one facet after the other
+    PointGrid closed_gaps_;
     std::vector<ThinWall> thin_walls_;
     std::vector<ThinWall> one_layer_walls_;
     std::unique_ptr<MeshQuery> query_;

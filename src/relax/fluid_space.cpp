@@ -120,11 +120,13 @@ public:
         : def_(def),
           field_(field),
           all_(all),
+          is_before_layers_(is_before_layers),
           adds_nodes_(is_before_layers && !def.fills_litres()),
           pocket_(is_before_layers ? pocket_of_layers_dp : pocket_dp),
           threads_(threads),
           near_(field, def.mk_bound_first),
-          moving_(mks_that_move(def))
+          moving_(mks_that_move(def)),
+          sliding_(mks_that_slide(def))
     {
         const Vec3& gravity = def_.constants.gravity;
         if (norm(gravity) > 0) down_ = gravity / norm(gravity);
@@ -340,8 +342,11 @@ private:
     {
         if (moving_.empty()) return pocket_;
         const std::uint16_t other = all_.closest(ball.other).mk;
-        return other != mk && (moving_.contains(mk) || moving_.contains(other)) ? pocket_moving
-                                                                                : pocket_;
+        if (other == mk || !(moving_.contains(mk) || moving_.contains(other))) return pocket_;
+        const auto is_steady = [&](std::uint16_t of)
+        { return !moving_.contains(of) || sliding_.contains(of); };
+        return is_before_layers_ && is_steady(mk) && is_steady(other) ? sliding_pocket_of_layers_dp
+                                                                      : pocket_moving;
     }
 
     void add(const WallFront& front, const Vec3& middle, double volume, CellSpace& out) const
@@ -554,13 +559,15 @@ private:
     const CaseDef& def_;
     RunField& field_;
     const AllWalls& all_;
+    bool is_before_layers_;
     bool adds_nodes_;
     double pocket_; ///< width below which places between walls are pockets, dp
     int threads_;
     FluidNear near_;
     OpenLevels levels_;
     ClosestWallPoint closest_;
-    std::set<std::uint16_t> moving_; ///< mks
+    std::set<std::uint16_t> moving_;  ///< mks
+    std::set<std::uint16_t> sliding_; ///< of them
     bool has_several_bodies_ = false;
     Vec3 down_;          ///< along gravity; zero without
     double longest_ = 1; ///< step of the lattice, dp

@@ -10,8 +10,9 @@ namespace fppg
 {
 
 /// Measures the space beside fluid on nodes and takes fluid out of pockets: places where the
-/// largest ball that touches two opposite walls is narrower than 1.5 dp (between layers 0.55 dp),
-/// or than 2 dp where one of them moves past the other. Their nodes are covered.
+/// largest ball that touches two opposite walls is narrower than 1.5 dp (between layers 0.6 dp),
+/// or than 2 dp where one of them moves past the other (between layers 1.25 dp where it does not
+/// turn). Their nodes are covered.
 ///
 /// Opposite are walls whose normals at the ball are more than 120 degrees apart, so that corners
 /// are no pockets. Pockets whose cells touch are one. Fluid of mks for which the case has no active

@@ -12,10 +12,13 @@ namespace fppg
 /// Places between walls that are nearer to one another than this are pockets, which stay empty, dp:
 /// particles on both surfaces keep fluid a step off.
 inline constexpr double pocket_dp = 1.5;
-/// The same between layers, whose first particles are half a dp behind the surface. Water 20 dp
-/// deep rushes into wider gaps that are left empty (2D, solver v5.4, 0.6 to 1.4 dp under a block,
-/// after 0.15 s: mean 0.03 to 0.16 m/s, with fluid in them 0.0002 to 0.0005).
-inline constexpr double pocket_of_layers_dp = 0.55;
+/// The same between layers, whose first particles are half a dp behind the surface; nearer walls
+/// are joined (gap_rows.h). Water 20 dp deep rushes into wider gaps that are left empty (2D, solver
+/// v5.4, 0.6 to 1.4 dp under a block, after 0.15 s: mean 0.03 to 0.16 m/s, with fluid in them
+/// 0.0002 to 0.0005).
+inline constexpr double pocket_of_layers_dp = 0.6;
+/// The same where one of the walls slides along the other, as a gate does.
+inline constexpr double sliding_pocket_of_layers_dp = 1.25;
 
 /// A wall near a point, as a plane.
 struct WallPlane

@@ -288,15 +288,16 @@ TEST_F(CheckCommand, SaysWhereAGateInLayersLeavesAGap)
             R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="TimeMax" value="0.5" /></parameters>)";
         return out;
     };
-    const std::string of_run = "mkbound 1 moves 1 dp from mkbound 0";
-    write_text(folder_ / "Case_Def.xml", gate("0.02").text());
+    const std::string of_run = "mkbound 1 moves 1.5 dp from mkbound 0";
+    write_text(folder_ / "Case_Def.xml", gate("0.03").text());
     const RunResult made = run(folder_, {"Case_Def", "Case"});
     EXPECT_TRUE(contains(made.output, of_run)) << made.output;
     const CheckReport open = check_case(folder_ / "Case", 2);
-    EXPECT_TRUE(has_note(open, "mk 11 and mk 10 move against each other 1 dp apart"))
+    EXPECT_TRUE(has_note(open, "mk 11 and mk 10 move against each other 1.5 dp apart"))
         << to_text(open);
     EXPECT_TRUE(has_note(open, "fluid goes through such a gap")) << to_text(open);
-    for (const std::string bottom : {"0", "0.06"})
+    // A row of particles closes the gap of 1 dp.
+    for (const std::string bottom : {"0", "0.02", "0.06"})
     {
         generate(gate(bottom));
         EXPECT_FALSE(contains(run(folder_, {"Case_Def", "Case"}).output, "mkbound 1 moves"));
