@@ -26,7 +26,7 @@ struct ClosedGap
 /// slides along the other, as a gate over the floor. The first layers on both sides are a dp
 /// farther apart than the surfaces, so that fluid runs into such gaps in the solver, though none
 /// was put there (v5.4: a slot of 0.5 dp behind a block in water 12 dp deep, largest speed 0.43
-/// m/s, with the row 0.004; 0.2 dp: 0.003 without). Where parts turn against each other, float or
+/// m/s, with the row 0.004; 0.2 dp: 0.004 without). Where parts turn against each other, float or
 /// are flexible gaps stay open.
 ///
 /// field    body-fitted, relaxed; gets the particles in walls.volume and walls.gaps
