@@ -274,15 +274,18 @@ void log_gap(CaseRunState& run, const CaseDef& def, const ClosedGap& gap)
 {
     const auto name = [&](std::uint16_t mk)
     { return fmt::format("mkbound {}", mk - def.mk_bound_first); };
+    const std::string least = fmt::format("{:.2g}", gap.least_dp);
+    const std::string most = fmt::format("{:.2g}", gap.most_dp);
     const std::string rows = fmt::format(
-        "{} between {} and {} of {:.2g} to {:.2g} dp, near ({:g}, {:g}, {:g})",
+        "{} between {} and {} of {} dp, near ({:g}, {:g}, {:g})",
         counted(gap.count, "particle closes the gap", "particles close the gap"), name(gap.mk),
-        name(gap.other), gap.least_dp, gap.most_dp, gap.place.x, gap.place.y, gap.place.z);
+        name(gap.other), least == most ? least : fmt::format("{} to {}", least, most), gap.place.x,
+        gap.place.y, gap.place.z);
     if (gap.moves)
         run.warn(
-            fmt::format("{}: {}, and move with {}: such a gap is closed on the lattice, and "
-                        "leaks between layers. Draw it {:g} dp wide or wider for fluid to go "
-                        "through.",
+            fmt::format("{}: {}, and go along with {}. On the lattice there is no node in such "
+                        "a gap; between layers fluid would run through. Draw it wider than "
+                        "{:g} dp if fluid is to pass.",
                         def.file, rows, name(gap.mk), sliding_pocket_of_layers_dp));
     else
         run.log.line(rows);
