@@ -19,7 +19,6 @@
 #include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
-#include "normals/gap_normals.h"
 #include "particles/exact_volumes.h"
 #include "particles/off_lattice_particles.h"
 #include "particles/simulation_domain.h"
@@ -375,7 +374,6 @@ void make_normals(CaseRunState& run, MadeCase& made)
                   made.particles.bound_normals =
                       compute_normals(made.def, made.particles, made.field,
                                       normal_geometry(run, made), run.threads, report);
-                  turn_to_mouths(made.field, made.particles, made.particles.bound_normals);
                   made.normal_shapes = std::move(report.shapes);
                   for (const std::string& line : report.log) run.log.line(line);
                   for (std::string& w : report.warnings) run.warn(std::move(w));

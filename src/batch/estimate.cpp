@@ -61,7 +61,7 @@ struct WallCount
     double cut_particles = 0;  ///< of laid_layers, likewise
     double search_seconds = 0; ///< to lay layers, on one thread
     double inside = 0;
-    double relaxed = 0; ///< of those on surfaces
+    double relaxed = 0; ///< of those on surfaces and in layers
     double in_band = 0; ///< of those inside, that are relaxed too
 };
 
@@ -266,7 +266,7 @@ private:
             count.cut_area = finer * finer * beyond * on_area;
             count.cut_particles = finer * finer * count.laid_layers;
         }
-        if (settings.relax.is_active) count.relaxed = beyond * count.on_surface;
+        if (settings.relax.is_active) count.relaxed = beyond * (count.on_surface + count.in_layers);
         if (shape.is_solid)
             count.inside = std::max(0.0, volume - count.on_surface / 2 - count.in_layers);
         if (settings.relax.is_active)
@@ -304,31 +304,27 @@ private:
     void count_fluid(double bound)
     {
         const auto fluid = static_cast<double>(out_.n_fluid);
-        const double h_dp = def_.h / def_.grid.dp;
+        if (fluid == 0) return;
+        const double dp = def_.grid.dp;
+        const double h_dp = def_.h / dp;
         double width = 2 * h_dp + 1.5;
+        for (const FluidBand& band : def_.fluid_bands) width = std::max(width, band.width_dp);
+        const std::vector<double> distances =
+            distances_to(surfaces_, fluid_, width * dp, options_.threads);
         for (const FluidBand& band : def_.fluid_bands)
-        {
-            width = std::max(width, band.width_dp);
-            work_.relaxed_fluid =
-                std::max(work_.relaxed_fluid, fluid * share_within(band.width_dp));
-        }
-        if (!def_.balances() || out_.n_fluid == 0) return;
-        const double near = fluid * share_within(width);
+            if (band.is_active)
+                work_.relaxed_fluid = std::max(work_.relaxed_fluid,
+                                               fluid * share_within(distances, band.width_dp * dp));
+        if (!def_.balances()) return;
+        const double share = share_within(distances, width * dp);
+        const double near = fluid * share;
         work_.balanced_fluid = out_.n_fluid <= most_balanced_whole ? fluid : near;
         work_.balanced_walls = std::min(bound, std::ceil(2 * h_dp) * near / width);
-        const double slanted = near > 0 ? fluid *
-                                              share_near(fluid_, slanted_facets(surfaces_),
-                                                         width * def_.grid.dp, options_.threads) /
-                                              near
-                                        : 0;
-        work_.balanced_steps =
-            steps_to_balance(def_, work_.balanced_fluid, {holds_fluid(), slanted});
-    }
-
-    /// Of the fluid, that is nearer to a fitted surface than so many dp.
-    double share_within(double dps) const
-    {
-        return share_near(fluid_, surfaces_, dps * def_.grid.dp, options_.threads);
+        const double at_slanted = share_within(
+            distances_to(slanted_facets(surfaces_), fluid_, width * dp, options_.threads),
+            width * dp);
+        work_.balanced_steps = steps_to_balance(
+            def_, work_.balanced_fluid, {holds_fluid(), share > 0 ? at_slanted / share : 0});
     }
 
     /// Single sheets do not hold fluid at rest; lines of 2D cases are not counted.

@@ -31,7 +31,7 @@ double memory_of(const EstimatedWork& work, int threads)
     return kept + std::max({rates.bytes_per_run * work.runs, rates.bytes_a_laid_particle * laid,
                             rates.bytes_a_cut_place * work.most_cut +
                                 rates.bytes_a_cut_particle * work.cut_particles,
-                            bytes_to_relax(work.relaxed + work.laid_layers) +
+                            bytes_to_relax(std::max(work.relaxed, work.laid_layers)) +
                                 rates.bytes_a_band_particle * work.in_band,
                             rates.bytes_a_layered_facet * work.layered_facets,
                             rates.bytes_a_balanced_particle * work.balanced_fluid +
@@ -49,10 +49,9 @@ StageSeconds seconds_of(const EstimatedWork& work, int threads, double speed)
                                 rates.seconds_a_cut_particle * work.cut_particles +
                                 rates.seconds_a_layer_particle * work.laid_layers +
                                 rates.seconds_a_layered_line * work.layered_lines);
-    out.relaxing =
-        on_threads * (rates.seconds_a_relaxed_particle * (work.relaxed + work.laid_layers) +
-                      rates.seconds_a_band_particle * work.in_band +
-                      rates.seconds_a_fluid_particle * work.relaxed_fluid);
+    out.relaxing = on_threads * (rates.seconds_a_relaxed_particle * work.relaxed +
+                                 rates.seconds_a_band_particle * work.in_band +
+                                 rates.seconds_a_fluid_particle * work.relaxed_fluid);
     out.balancing = on_threads * (rates.seconds_a_balanced_particle * work.balanced_fluid +
                                   rates.seconds_a_balanced_step * work.balanced_steps);
     out.writing = work.output_bytes / rates.written_bytes_a_second;

@@ -31,7 +31,7 @@ struct EstimatedWork
     double most_cut = 0;       ///< the largest of one draw, dp^2
     double cut_particles = 0;  ///< the surfaces that layers are laid on, dp^2
     double search_seconds = 0; ///< to lay layers, tried on this machine, one thread
-    double relaxed = 0;        ///< particles on surfaces
+    double relaxed = 0;        ///< particles on surfaces and in layers
     double in_band = 0;        ///< particles inside solids that are relaxed too
     double relaxed_fluid = 0;
     double balanced_fluid = 0;

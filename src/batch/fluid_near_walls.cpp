@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace fppg
 {
@@ -41,15 +43,23 @@ std::vector<Vec3> sample_fluid(const RunField& field, std::uint16_t first_bound)
     return out;
 }
 
-double share_near(const std::vector<Vec3>& places, const TriangleSoup& surface, double within,
-                  int threads)
+std::vector<double> distances_to(TriangleSoup surface, const std::vector<Vec3>& places, double most,
+                                 int threads)
 {
-    if (places.empty() || surface.size() == 0) return 0;
-    const MeshQuery query(TriangleSoup(surface), threads);
-    const auto near = std::count_if(places.begin(), places.end(),
-                                    [&](const Vec3& p)
-                                    { return query.closest_point(p, within).distance <= within; });
-    return static_cast<double>(near) / static_cast<double>(places.size());
+    std::vector<double> out(places.size(), std::numeric_limits<double>::infinity());
+    if (places.empty() || surface.size() == 0) return out;
+    const MeshQuery query(std::move(surface), threads);
+    std::transform(places.begin(), places.end(), out.begin(),
+                   [&](const Vec3& p) { return query.closest_point(p, most).distance; });
+    return out;
+}
+
+double share_within(const std::vector<double>& distances, double most)
+{
+    if (distances.empty()) return 0;
+    const auto near =
+        std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= most; });
+    return static_cast<double>(near) / static_cast<double>(distances.size());
 }
 
 TriangleSoup slanted_facets(const TriangleSoup& surface)

@@ -15,11 +15,12 @@ namespace fppg
 /// first_bound  mks below it are fluid
 std::vector<Vec3> sample_fluid(const RunField& field, std::uint16_t first_bound);
 
-/// The share of some places that are nearer to a surface than a distance, 0 to 1.
-///
-/// within  metres
-double share_near(const std::vector<Vec3>& places, const TriangleSoup& surface, double within,
-                  int threads);
+/// How far places are from a surface, metres; beyond `most` it may be more than that.
+std::vector<double> distances_to(TriangleSoup surface, const std::vector<Vec3>& places, double most,
+                                 int threads);
+
+/// The share of distances up to one, 0 to 1.
+double share_within(const std::vector<double>& distances, double most);
 
 /// The facets that do not face along an axis, where rows of the lattice do not fit.
 TriangleSoup slanted_facets(const TriangleSoup& surface);

@@ -155,36 +155,28 @@ void check(Element& e, const AttributeReader& read, std::set<int>& references)
     }
 }
 
-void collect_moving(const Element& e, bool is_moved, std::set<int>& out)
+bool never_turns(const Element& object)
 {
-    for (const Element& c : e.children)
-    {
-        if (c.name != "objreal" && c.name != "obj") continue;
-        const bool moves = is_moved || c.find_child("begin") != nullptr;
-        if (c.name == "objreal" && moves)
-            if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
-        collect_moving(c, moves, out);
-    }
+    static const std::set<std::string_view> straight{"mvrect",     "mvrectace", "mvrectsinu",
+                                                     "mvrectfile", "mvfile",    "mvpredef"};
+    return std::all_of(object.children.begin(), object.children.end(),
+                       [](const Element& m)
+                       { return !m.name.starts_with("mv") || straight.contains(m.name); });
 }
 
-/// Adds the mkbound of objects that move, on their own or with those around them, along straight
-/// ways or those of a file, and never turn.
-void collect_sliding(const Element& e, bool is_moved, std::set<int>& out)
+/// Adds the mkbound of objects that move, on their own or with those around them.
+///
+/// is_taken  whether an object counts; others are left out with all in them
+template <typename IsTaken>
+void collect_moving(const Element& e, bool is_moved, const IsTaken& is_taken, std::set<int>& out)
 {
-    static const std::set<std::string_view> straight{
-        "wait", "mvrect", "mvrectace", "mvrectsinu", "mvrectfile", "mvfile", "mvpredef"};
     for (const Element& c : e.children)
     {
-        if (c.name != "objreal" && c.name != "obj") continue;
-        bool slides = true;
-        for (const Element& m : c.children)
-            slides = slides &&
-                     (!(m.name.starts_with("mv") || m.name == "wait") || straight.contains(m.name));
-        if (!slides) continue;
+        if ((c.name != "objreal" && c.name != "obj") || !is_taken(c)) continue;
         const bool moves = is_moved || c.find_child("begin") != nullptr;
         if (c.name == "objreal" && moves)
             if (const std::string* ref = c.find_attribute("ref")) out.insert(std::stoi(*ref));
-        collect_sliding(c, moves, out);
+        collect_moving(c, moves, is_taken, out);
     }
 }
 
@@ -214,7 +206,8 @@ Element evaluated_motion(const Element& motion, const AttributeReader& read)
 std::set<int> moving_mkbound(const Element& motion)
 {
     std::set<int> out;
-    collect_moving(motion, false, out);
+    collect_moving(
+        motion, false, [](const Element&) { return true; }, out);
     return out;
 }
 
@@ -238,7 +231,7 @@ std::set<std::uint16_t> mks_that_move(const CaseDef& def)
 std::set<std::uint16_t> mks_that_slide(const CaseDef& def)
 {
     std::set<int> found;
-    collect_sliding(def.motion, false, found);
+    collect_moving(def.motion, false, never_turns, found);
     std::set<std::uint16_t> out;
     for (const int mkbound : found)
         out.insert(static_cast<std::uint16_t>(mkbound + def.mk_bound_first));

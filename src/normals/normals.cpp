@@ -10,6 +10,7 @@
 #include "nodes/run_at.h"
 #include "nodes/snap.h"
 #include "normals/cad_normals.h"
+#include "normals/gap_normals.h"
 #include "normals/geometry_normals.h"
 #include "normals/other_surface.h"
 #include "normals/part_normals.h"
@@ -586,7 +587,10 @@ std::vector<Float3> compute_normals(const CaseDef& def, const CaseParticles& par
                                     const std::vector<ShapePolygons>& geometry, int threads,
                                     NormalsReport& report)
 {
-    return NormalsMaker(def, particles, field, threads, report).run(geometry);
+    std::vector<Float3> normals =
+        NormalsMaker(def, particles, field, threads, report).run(geometry);
+    turn_to_mouths(field, particles, normals);
+    return normals;
 }
 
 } // namespace fppg
