@@ -16,6 +16,7 @@
 #include "app/particle_log.h"
 #include "app/relax_stage.h"
 #include "app/settle_floatings.h"
+#include "app/thousands.h"
 #include "casedef/execution.h"
 #include "core/text.h"
 #include "lattice/mesh_units.h"
@@ -397,6 +398,14 @@ void balance(CaseRunState& run, MadeCase& made)
                           return true;
                       });
                   log_balance(report, run.log);
+                  if (report.is_balanced && report.falling > 0)
+                      run.warn(fmt::format(
+                          "{}: {} particles of fluid near body-fitted walls stay as they are, the "
+                          "fastest at ({:.4g}, {:.4g}, {:.4g}): the walls there do not "
+                          "hold them (one sheet of particles holds no water at rest, layers and "
+                          "filled bodies do)",
+                          made.def.file, thousands(report.falling), report.fastest.x,
+                          report.fastest.y, report.fastest.z));
               });
 }
 

@@ -22,6 +22,8 @@ namespace
 
 /// Where fluid on a stable lattice keeps more than this in the mean, the cubic one is tried too.
 constexpr double calm_packed = 0.01;
+/// Where more of the fluid near walls is not held by them, none is balanced.
+constexpr double most_falling = 0.6;
 
 /// Why a case is not balanced; empty where it is.
 std::string reason_against(const CaseDef& def, const CaseConstants& constants,
@@ -91,6 +93,17 @@ struct Balancing
         bring_to_rest(out.fluid, fall, walls, threads, on_iteration, out.report);
         return out;
     }
+
+    /// What the walls hold of fluid that they do not hold as a whole: beside a hollow body without
+    /// layers, say, and not the tank that it floats in.
+    AtRest but_what_falls(AtRest all, const LatticeGrid& grid, double mass_fluid) const
+    {
+        if (static_cast<double>(all.report.falling) >
+            most_falling * static_cast<double>(all.report.particles))
+            return all;
+        AtRest out = on_lattice(all.fluid, all.report, grid, mass_fluid);
+        return out.report.is_balanced ? std::move(out) : std::move(all);
+    }
 };
 
 } // namespace
@@ -131,7 +144,10 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
     {
         AtRest other =
             balancing.on_lattice(std::move(rest), report, field.grid, constants.mass_fluid);
-        if (!out || other.report.after.mean < out->report.after.mean) out = std::move(other);
+        if (!other.report.is_balanced && (!out || !out->report.is_balanced))
+            other = balancing.but_what_falls(std::move(other), field.grid, constants.mass_fluid);
+        if (!out || other.report.is_balanced || other.report.after.mean < out->report.after.mean)
+            out = std::move(other);
     }
     take_over(def, out->fluid, threads, particles);
     return out->report;

@@ -131,9 +131,11 @@ public:
                 break;
         }
         report.is_balanced = best.mean <= calm_mean;
+        const std::vector<char> falls = report.is_balanced ? std::vector<char>{} : falling(report);
         return_to(report.is_balanced ? best : even);
         report.after = judge();
         sum_up_moves(report);
+        if (!report.is_balanced) report.falling = hold_around(rest_, falls, threads_);
     }
 
 private:
@@ -170,6 +172,23 @@ private:
                 out.pressures[i] = rest_.pressures[i];
             },
             4096);
+        return out;
+    }
+
+    /// What walls do not hold.
+    std::vector<char> falling(BalanceReport& report) const
+    {
+        double largest = hopeless_mean * norm(rest_.gravity);
+        const double most = largest;
+        std::vector<char> out(rest_.size(), 0);
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+        {
+            const double size = moves(i) ? norm(accelerations_[i]) : 0;
+            out[i] = size > most ? 1 : 0;
+            if (size <= largest) continue;
+            largest = size;
+            report.fastest = rest_.positions[i];
+        }
         return out;
     }
 
@@ -265,7 +284,7 @@ private:
         }
         WallPlanes found = find_nearest_wall(rest_.positions[i], reach, closest_, within);
         add_further_walls(found, rest_.positions[i], reach, closest_);
-        if (!is_first && is_in_pocket(found) && !is_in_pocket(walls_[i]))
+        if (!is_first && (passed_wall(i) || (is_in_pocket(found) && !is_in_pocket(walls_[i]))))
         {
             rest_.positions[i] = looked_at_[i];
             velocities_[i] = {};
@@ -278,6 +297,16 @@ private:
         if (is_behind_ && allowed_[i] > behind && walls_[i].distance < reach &&
             is_behind_(rest_.positions[i], walls_[i].distance * (1 + 1e-9)))
             allowed_[i] = behind;
+    }
+
+    /// Whether a particle came through a wall, as in the narrow end of a groove that more walls
+    /// bound than are known of.
+    bool passed_wall(std::size_t i) const
+    {
+        const Vec3& from = looked_at_[i];
+        const Vec3& to = rest_.positions[i];
+        return norm(to - from) > walls_[i].distance &&
+               !is_way_free(from, to, touching * rest_.dp, closest_);
     }
 
     /// Whether a place is between walls that are too near to one another for fluid. Gaps up to 2 dp

@@ -280,6 +280,29 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
     return rest;
 }
 
+std::size_t hold_around(FluidAtRest& rest, const std::vector<char>& is_meant, int threads)
+{
+    PointGrid meant(2 * rest.h,
+                    static_cast<std::size_t>(std::count_if(is_meant.begin(), is_meant.end(),
+                                                           [](char m) { return m != 0; })));
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (is_meant[i] != 0) meant.add(rest.positions[i]);
+    std::vector<char> is_held(rest.size(), 0);
+    parallel_for(
+        rest.size(), threads,
+        [&](std::size_t i)
+        { is_held[i] = rest.moves(i) && meant.has_nearer(rest.positions[i], 2 * rest.h) ? 1 : 0; },
+        1024);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+    {
+        if (is_held[i] == 0) continue;
+        count += rest.roles[i] == RestRole::Moving ? 1 : 0;
+        rest.roles[i] = RestRole::Held;
+    }
+    return count;
+}
+
 std::size_t hold_free_faces(FluidAtRest& rest, int threads)
 {
     // Of a lattice, the rows at a free face have 0.6 to 0.7 / h, those at a sheet 0.5 at most.
@@ -330,24 +353,7 @@ std::size_t hold_free_faces(FluidAtRest& rest, int threads)
                                          [&](std::uint32_t j) { return levels_jump(i, j); });
             }
         });
-    std::vector<char> is_held = is_face;
-    list.for_each_group(
-        threads,
-        [&](const PointGroup& group)
-        {
-            for (const std::uint32_t j : group.near)
-                for (std::size_t l = 0; is_face[j] != 0 && l < group.count; ++l)
-                    if (norm(rest.positions[group.points[l]] - rest.positions[j]) < 2 * rest.h)
-                        is_held[group.points[l]] = 1;
-        });
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < rest.size(); ++i)
-        if (is_held[i])
-        {
-            count += rest.roles[i] == RestRole::Moving ? 1 : 0;
-            rest.roles[i] = RestRole::Held;
-        }
-    return count;
+    return hold_around(rest, is_face, threads);
 }
 
 } // namespace fppg

@@ -145,4 +145,9 @@ FluidAtRest gather_fluid(const CaseDef& def, const RunField& field, const CaseCo
 /// it starts to move there. The number of those held, of fluid near walls.
 std::size_t hold_free_faces(FluidAtRest& rest, int threads);
 
+/// Holds some fluid, and all within 2h of it. The number of those held, of fluid near walls.
+///
+/// is_meant  one a particle, not 0: it is held
+std::size_t hold_around(FluidAtRest& rest, const std::vector<char>& is_meant, int threads);
+
 } // namespace fppg

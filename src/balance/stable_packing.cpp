@@ -5,6 +5,7 @@
 #include "core/parallel_sort.h"
 #include "meshes/point_grid.h"
 #include "relax/cell_rows.h"
+#include "relax/wall_planes.h"
 
 #include <array>
 #include <limits>
@@ -20,6 +21,7 @@ namespace
 // Lengths in dp.
 constexpr double reach_of_cover = 1.5;
 constexpr double least_cover = 0.5; ///< at the border of the fluid
+constexpr double touching = 0.01;   ///< from a wall that is met
 constexpr double least_size = 3.01; ///< of a body, along each axis: more than three rows
 /// A body that fills more than this of its bounds is a box: its lattice has the box's volume.
 constexpr double box_fill = 0.97;
@@ -418,10 +420,10 @@ private:
                 const Vec3 wall = walls_.closest(places[k], reach_of_cover * rest_.dp);
                 const Vec3 away = places[k] - wall;
                 const double distance = norm(away);
-                if (dot(away, fluid - wall) <= 0 || is_behind_wall_of(fluid, places[k]))
-                    choices[k].cover = 0;
-                else if (distance < walls_.least_distance)
+                if (distance < walls_.least_distance)
                     choices[k].at = wall + (walls_.least_distance / distance) * away;
+                if (dot(away, fluid - wall) <= 0 || !is_reached(fluid, choices[k].at))
+                    choices[k].cover = 0;
             },
             64);
         parallel_sort(choices, threads_,
@@ -438,12 +440,10 @@ private:
         return out;
     }
 
-    /// Whether a place lies behind the plane of the wall that is nearest to a particle: in a plate
-    /// with fluid on both sides it lies behind that of either.
-    bool is_behind_wall_of(const Vec3& fluid, const Vec3& place) const
+    /// Whether fluid comes to a place: not through the floor between two teeth that stand in it.
+    bool is_reached(const Vec3& fluid, const Vec3& place) const
     {
-        const Vec3 wall = walls_.closest(fluid, reach_of_cover * rest_.dp);
-        return dot(fluid - wall, place - wall) < 0;
+        return is_way_free(fluid, place, touching * rest_.dp, walls_.closest);
     }
 
     /// As many places as there are particles, by x, then y, then z within each row or layer.

@@ -469,6 +469,8 @@ void refuse_stray_blocks(const Element& e, const AttributeReader& read)
         if (c.kind != Element::Kind::Tag || c.name.starts_with('_')) continue;
         if (c.name == "fppg" && e.name != "casedef")
             read.fail(c, fmt::format("is in <{}>, expected directly in <casedef>", e.name));
+        if (c.name == "bodyfitted" || c.name == "fluidband")
+            read.fail(c, fmt::format("is in <{}>, expected in <casedef><fppg>", e.name));
         if (c.name != "fppg") refuse_stray_blocks(c, read);
     }
 }

@@ -4,6 +4,7 @@
 #include "meshes/point_grid.h"
 #include "relax/kernel.h"
 #include "relax/volume_forces.h"
+#include "relax/wall_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,25 +120,6 @@ double excess_at(const Band& band, std::uint32_t i, std::span<const std::uint32_
     return sums.wide.on(band, i, std::span(counted).first(n)).shepard + sums.cut_off - sums.even;
 }
 
-/// Whether a straight way of a given length ends and stays off all walls.
-bool is_way_free(const Band& band, const Vec3& from, const Vec3& direction, double length,
-                 double limit, const ClosestWallPoint& closest)
-{
-    if (!closest) return true;
-    double within = std::numeric_limits<double>::infinity();
-    for (double way = 0;;)
-    {
-        const Vec3 at = from + (band.dp * way) * direction;
-        const Vec3 nearest = closest(at, within);
-        const double distance = norm(nearest - at) / band.dp;
-        // Nearer than this a wall is met, and steps would become ever shorter.
-        if (distance < std::max(limit, 1e-3)) return false;
-        if (way >= length) return true;
-        way = std::min(length, way + 0.9 * distance);
-        within = norm(nearest - (from + (band.dp * way) * direction));
-    }
-}
-
 /// The place beside a particle that is farthest from others, among 26 directions (8 in 2D); the
 /// particle's own where all are too near to others or to a wall, or no particle may come there.
 Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t> near,
@@ -161,12 +143,14 @@ Vec3 gap_beside(const Band& band, std::uint32_t i, std::span<const std::uint32_t
                                      length * direction));
         // A gap must be wider by more than rounding, so that equal ones do not hang on it.
         if (gap < widest + 1e-3) continue;
-        if (!is_way_free(band, band.place(i), direction, length,
-                         std::min(options.min_wall_distance_dp + 0.05,
-                                  static_cast<double>(band.wall_distances[i] - band.moved_by(i))),
+        const Vec3 place = band.place(i) + (band.dp * length) * direction;
+        const double off_walls =
+            std::min(options.min_wall_distance_dp + 0.05,
+                     static_cast<double>(band.wall_distances[i] - band.moved_by(i)));
+        // Nearer than this a wall is met, and steps would become ever shorter.
+        if (!is_way_free(band.place(i), place, std::max(off_walls, 1e-3) * band.dp,
                          surroundings.closest))
             continue;
-        const Vec3 place = band.place(i) + (band.dp * length) * direction;
         if (surroundings.may_come && !surroundings.may_come(band.sources[i], place)) continue;
         widest = gap;
         best = place;

@@ -5,11 +5,11 @@
 #include "core/disjoint_set.h"
 #include "core/parallel.h"
 #include "fit/near_nodes.h"
+#include "meshes/wall_ball.h"
 #include "nodes/run_at.h"
 #include "relax/cube_share.h"
 #include "relax/open_levels.h"
 #include "relax/regions.h"
-#include "relax/wall_ball.h"
 #include "relax/wall_planes.h"
 
 #include <algorithm>

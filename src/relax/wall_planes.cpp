@@ -70,4 +70,22 @@ WallPlanes find_wall_planes(const Vec3& point, double reach, const ClosestWallPo
     return found;
 }
 
+bool is_way_free(const Vec3& from, const Vec3& to, double limit, const ClosestWallPoint& closest)
+{
+    if (!closest) return true;
+    const double length = norm(to - from);
+    double within = std::numeric_limits<double>::infinity();
+    for (double way = 0;;)
+    {
+        const Vec3 at = length > 0 ? from + (way / length) * (to - from) : from;
+        const Vec3 nearest = closest(at, within);
+        const double distance = norm(nearest - at);
+        if (distance < limit) return false;
+        if (way >= length) return true;
+        const double step = std::min(length - way, 0.9 * distance);
+        way += step;
+        within = (distance + step) * (1 + 1e-9);
+    }
+}
+
 } // namespace fppg

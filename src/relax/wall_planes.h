@@ -54,4 +54,9 @@ void add_further_walls(WallPlanes& found, const Vec3& point, double reach,
 /// Both of these.
 WallPlanes find_wall_planes(const Vec3& point, double reach, const ClosestWallPoint& closest);
 
+/// Whether the straight way between two places meets no wall.
+///
+/// limit  metres, above 0: a wall is met where it is nearer
+bool is_way_free(const Vec3& from, const Vec3& to, double limit, const ClosestWallPoint& closest);
+
 } // namespace fppg

@@ -2,7 +2,10 @@
 
 #include "fppg/moving_parts.h"
 
+#include "core/parallel.h"
 #include "meshes/measure_facets.h"
+#include "meshes/mesh_query.h"
+#include "meshes/wall_ball.h"
 #include "offset/quadric.h"
 #include "walls/layer_builder.h"
 #include "walls/plate_thickness.h"
@@ -21,6 +24,8 @@ namespace
 {
 
 constexpr double two_layers_dp = 2;
+/// So much of a gap between two thin parts, as teeth or fins, is left for fluid.
+constexpr double open_gap_dp = 1.25;
 /// Corners of a thin facet go at most so much farther than its plane.
 constexpr double most_mitre = 2;
 
@@ -44,6 +49,33 @@ std::vector<Vec3> moves_of_vertices(const SurfaceMesh& mesh, const std::vector<d
         if (length > most_mitre * farthest[v])
             out[v] = (most_mitre * farthest[v] / length) * out[v];
     }
+    return out;
+}
+
+/// How far facets go outwards: a thin part is two_layers_dp thick then, but closes no gap before
+/// it.
+std::vector<double> moves_of_facets(const SurfaceMesh& mesh, const std::vector<double>& thickness,
+                                    double dp, int threads)
+{
+    const MeshQuery query(soup_of(mesh), threads);
+    query.prepare_nearest();
+    const ClosestWallPoint closest = [&](const Vec3& p, double within)
+    { return query.closest_point(p, within).point; };
+    std::vector<double> out(mesh.facets.size(), 0);
+    parallel_for(
+        out.size(), threads,
+        [&](std::size_t f)
+        {
+            if (!std::isfinite(thickness[f])) return;
+            Vec3 middle;
+            for (const std::uint32_t v : mesh.facets[f]) middle = middle + mesh.vertices[v] / 3;
+            const double wanted = (two_layers_dp * dp - thickness[f]) / 2;
+            const WallBall ball =
+                largest_ball(middle, mesh.normals[f], wanted + open_gap_dp * dp / 2, closest);
+            out[f] = ball.is_opposite ? std::clamp(ball.radius - open_gap_dp * dp / 2, 0.0, wanted)
+                                      : wanted;
+        },
+        256);
     return out;
 }
 
@@ -104,10 +136,9 @@ double thicken(const LatticeGrid& grid, int threads, SurfaceMesh& mesh)
     if (mesh.facets.empty() || !may_be_plate(soup_of(mesh), grid.dp)) return 0;
     const PlateThickness thickness = plate_thickness(mesh, grid, threads);
     if (!thickness.is_plate) return 0;
-    std::vector<double> outwards(mesh.facets.size(), 0);
-    for (std::size_t f = 0; f < outwards.size(); ++f)
-        if (std::isfinite(thickness.of_facets[f]))
-            outwards[f] = (two_layers_dp * grid.dp - thickness.of_facets[f]) / 2;
+    const std::vector<double> outwards =
+        moves_of_facets(mesh, thickness.of_facets, grid.dp, threads);
+    if (*std::max_element(outwards.begin(), outwards.end()) <= 0) return 0;
     const std::vector<Vec3> moves = moves_of_vertices(mesh, outwards);
     for (std::size_t v = 0; v < moves.size(); ++v) mesh.vertices[v] = mesh.vertices[v] + moves[v];
     measure_facets(mesh, threads, high_for_particles * grid.dp);

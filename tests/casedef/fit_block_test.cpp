@@ -518,7 +518,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "<fluidband>: mkfluid 9 is out of range, <mkconfig> leaves 0 to 8 (raise "
                 "fluidcount"},
         Mistake{"WrongPlace", "<someblock><fppg /></someblock>",
-                "<fppg>: is in <someblock>, expected directly in <casedef>"}),
+                "<fppg>: is in <someblock>, expected directly in <casedef>"},
+        Mistake{"WallsWithoutBlock", R"(<bodyfitted mkbound="0" />)",
+                "<bodyfitted>: is in <casedef>, expected in <casedef><fppg>"},
+        Mistake{"FluidInWrongPlace", "<special><fluidband /></special>",
+                "<fluidband>: is in <special>, expected in <casedef><fppg>"}),
     name_of);
 
 TEST(FitBlock, TakesEveryNumberOfMkconfig)

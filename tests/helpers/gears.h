@@ -61,15 +61,17 @@ inline std::vector<std::pair<double, double>> gear_outline(const GearShape& g)
     return out;
 }
 
-/// Closed, without a bore; its middle is at `at`.
-inline TriangleSoup gear_mesh(const GearShape& g, const Vec3& at = {})
+/// A closed wheel about z between -width / 2 and width / 2 from `at`.
+///
+/// outline  points (radius, angle) counter-clockwise
+inline TriangleSoup wheel_mesh(const std::vector<std::pair<double, double>>& outline, double width,
+                               const Vec3& at = {})
 {
-    const auto outline = gear_outline(g);
     TriangleSoup soup;
     const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
         soup.vertices.insert(soup.vertices.end(), {at + a, at + b, at + c});
     };
-    const double h = g.width / 2;
+    const double h = width / 2;
     for (std::size_t i = 0; i < outline.size(); ++i)
     {
         const auto place = [&](std::size_t k, double z) -> Vec3
@@ -84,6 +86,12 @@ inline TriangleSoup gear_mesh(const GearShape& g, const Vec3& at = {})
         add({0, 0, -h}, b, a);
     }
     return soup;
+}
+
+/// Closed, without a bore; its middle is at `at`.
+inline TriangleSoup gear_mesh(const GearShape& g, const Vec3& at = {})
+{
+    return wheel_mesh(gear_outline(g), g.width, at);
 }
 
 /// Writes a soup, its lengths times `scale`, as binary STL.

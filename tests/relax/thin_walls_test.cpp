@@ -9,7 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <regex>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -27,7 +31,7 @@ double left_of_gravity(const Result& r)
 
 /// A tank 1.23 m wide, in 2D, filled up to z = 0.6 from seeds at these x.
 Result tank_in_2d(const std::string& body, const std::vector<double>& seeds,
-                  const std::string& fppg)
+                  const std::string& fppg, const std::string& spacing = "0.05")
 {
     std::string drawn =
         R"(<setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="-0.2" y="-0.1" z="-0.2" /><size x="1.63" y="0.2" z="1.2" /></drawbox>
@@ -38,6 +42,7 @@ Result tank_in_2d(const std::string& body, const std::vector<double>& seeds,
             R"(<fillbox x="{}" y="0" z="0.3"><modefill>void</modefill><point x="-0.2" y="-0.1" z="-0.2" /><size x="2" y="0.2" z="0.82" /></fillbox>)",
             x);
     CaseText text = case_of(drawn, fppg);
+    text.dp = spacing;
     text.pointmin = R"(<pointmin x="-0.4" y="0" z="-0.4" />)";
     text.pointmax = R"(<pointmax x="1.7" y="0" z="1.5" />)";
     Result out = make(text);
@@ -155,6 +160,94 @@ TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
     const Result both = tank_in_2d(shell, {0.1, 1}, mdbc);
     EXPECT_FALSE(contains(both.output, "thickened to 2 dp")) << both.output;
     EXPECT_LT(of_plate(both), 22u);
+}
+
+/// A wheel with teeth of straight flanks about z; 0.4 of a pitch is tooth at half their height.
+fppg::TriangleSoup toothed_wheel(int teeth, double tip, double root, double width)
+{
+    std::vector<std::pair<double, double>> outline;
+    for (int tooth = 0; tooth < teeth; ++tooth)
+        for (const auto& [share, radius] :
+             {std::pair{0.0, root}, {0.15, tip}, {0.4, tip}, {0.55, root}})
+            outline.emplace_back(radius, 2 * std::numbers::pi * (tooth + share) / teeth);
+    return wheel_mesh(outline, width);
+}
+
+/// Water under mDBC, up to a height, in a tank of sheets with a body from a file.
+Result tank_with(const fppg::TriangleSoup& body, double top)
+{
+    const TemporaryFolder folder;
+    write_stl(folder / "body.stl", body);
+    CaseText text = case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0" y="0" z="0" /><size x="1.475" y="1.3" z="1.1" /></drawbox><setmkbound mk="1" /><drawfilestl file=")" +
+            folder / "body.stl" +
+            fmt::format(
+                R"(" /><setmkfluid mk="0" /><fillbox x="1.3" y="0.2" z="0.2"><modefill>void</modefill><point x="-0.1" y="-0.1" z="-0.1" /><size x="1.7" y="1.5" z="{}" /></fillbox>)",
+                top + 0.1),
+        R"(<bodyfitted boundary="mdbc" />)");
+    text.execution =
+        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="Kernel" value="2" /><parameter key="TimeMax" value="1" /></parameters>)";
+    Result out = make(text);
+    EXPECT_EQ(out.code, 0) << out.output;
+    return out;
+}
+
+/// They thickened into the gaps between them, through one another and 2 dp beyond the tips.
+TEST(ThinTeeth, AreThickenedAsFarAsTheGapsBetweenThemAreWide)
+{
+    fppg::TriangleSoup wheel = toothed_wheel(16, 4 * dp, 2.8 * dp, 8 * dp);
+    for (Vec3& v : wheel.vertices) v = v + Vec3{0.7, 0.6, 0.55};
+    const Result made = tank_with(wheel, 1);
+    for (std::size_t i = 0; i < made.cloud.positions.size(); ++i)
+    {
+        if (made.cloud.mk[i] != first_bound + 1) continue;
+        const Vec3 p = made.cloud.positions[i] - Vec3{0.7, 0.6, 0.55};
+        EXPECT_LT(std::hypot(p.x, p.y), 4.5 * dp);
+        EXPECT_LT(std::abs(p.z), 4.5 * dp);
+    }
+    EXPECT_FALSE(contains(made.output, "crosses itself")) << made.output;
+    constexpr double of_wheel = 0.034; // m3
+    EXPECT_NEAR(static_cast<double>(made.fluid().size()) * dp * dp * dp,
+                1.475 * 1.3 * 1.0 - of_wheel, 0.02);
+}
+
+/// A wheel stands in the floor, which goes on between its teeth.
+TEST(WaterBesideTeeth, StaysAboveTheFloor)
+{
+    struct Place
+    {
+        std::array<Vec3, 3> axes; ///< of the turned wheel, by rows
+        double z;
+    };
+    for (const Place& place : {Place{{{{0.92208, 0.28444, 0.262417},
+                                       {-0.38122, 0.550843, 0.742458},
+                                       {0.066634, -0.784644, 0.616355}}},
+                                     0.05},
+                               Place{{{{0.102582, 0.97733, 0.185209},
+                                       {0.170711, -0.200726, 0.964659},
+                                       {0.979967, -0.06734, -0.187432}}},
+                                     0.13}})
+    {
+        fppg::TriangleSoup wheel = toothed_wheel(8, 0.275, 0.176, 0.38);
+        for (Vec3& v : wheel.vertices)
+            v = Vec3{dot(place.axes[0], v), dot(place.axes[1], v), dot(place.axes[2], v)} +
+                Vec3{0.7, 0.65, place.z};
+        const Result made = tank_with(wheel, 0.45);
+        EXPECT_GT(made.fluid().size(), 5000u);
+        for (const Vec3& p : made.fluid()) EXPECT_GT(p.z, -0.1 * dp) << p.x << ' ' << p.y;
+    }
+}
+
+/// Its one sheet does not hold the water around it: none in the tank was balanced.
+TEST(HollowBodyAfloat, LeavesTheRestOfTheTankAtRest)
+{
+    const Result made = tank_in_2d(
+        R"(<drawbox><boxfill>bottom | top | left | right</boxfill><point x="0.3" y="-0.1" z="0.05" /><size x="0.6" y="0.2" z="0.3" /></drawbox>)",
+        {0.1},
+        R"(<bodyfitted boundary="dbc" /></fppg><floatings><floating mkbound="1" rhopbody="500" /></floatings><fppg>)",
+        "0.02");
+    EXPECT_TRUE(contains(made.output, "the walls there do not hold them")) << made.output;
+    EXPECT_LT(left_of_gravity(made), 0.01);
 }
 
 TEST(GapUnderABlock, HoldsWaterBetweenLayersButNotBetweenSurfaces)

@@ -1,4 +1,4 @@
-#include "relax/wall_ball.h"
+#include "meshes/wall_ball.h"
 
 #include <cmath>
 

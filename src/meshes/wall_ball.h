@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fppg/relax_volume.h"
+#include "fppg/closest_wall_point.h"
 #include "fppg/vec.h"
 
 namespace fppg
