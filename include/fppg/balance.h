@@ -68,6 +68,11 @@ struct BalanceReport
 /// farther than one dp in all (4 dp on another lattice), none comes nearer to a wall than 0.5 dp
 /// (mDBC: 0.2 dp) or than it was, none higher than 0.25 dp below its level.
 ///
+/// Walls thinner than the kernel push less than fluid presses against them, and it comes as near as
+/// it may. Where the solver holds it there (NoPenetration of mDBC) that part of its acceleration
+/// is not counted: beside a plate of 2.2 dp, 50 dp deep, 0.0019 instead of 0.037 g are left, and
+/// the solver has 0.0006 instead of 0.0039 m/s on average after 0.02 s.
+///
 /// On a lattice a_i is not quite zero: it falls by 0.004 to 0.03 g. Fluid that stays there
 /// has that acceleration, and so has all that is moved: where it was brought to zero,
 /// fluid beside walls slid along the rest at 0.01 to 0.03 g (2D tanks of 50 dp: mean speed after

@@ -195,9 +195,10 @@ struct InOutZones
 /// What the solver is told on which places and densities depend.
 struct SolverParameters
 {
-    int boundary = 1;  ///< 1: DBC, 2: mDBC
-    int slip_mode = 1; ///< of mDBC
-    int kernel = 2;    ///< 1: cubic spline, 2: Wendland
+    int boundary = 1;            ///< 1: DBC, 2: mDBC
+    int slip_mode = 1;           ///< of mDBC
+    bool no_penetration = false; ///< of mDBC with slip_mode 2 or 3
+    int kernel = 2;              ///< 1: cubic spline, 2: Wendland
     InOutZones inout;
     std::set<std::uint16_t> flexible; ///< absolute mks, each of whose particles counts for dp^3
 };

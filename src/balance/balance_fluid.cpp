@@ -131,7 +131,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
         report.particles = 0;
         return report;
     }
-    RestWalls walls{reach.closest, boundary_of(def)};
+    RestWalls walls{reach.closest, boundary_of(def), def.solver.no_penetration};
     const std::vector<FittedBody>& bodies = field.walls.bodies;
     if (walls.boundary == RestBoundary::Dbc &&
         std::any_of(bodies.begin(), bodies.end(), [](const FittedBody& b) { return b.is_inside; }))

@@ -83,6 +83,7 @@ public:
           fall_(fall),
           closest_(walls.closest),
           is_behind_(walls.is_behind),
+          keep_out_(walls.keep_out),
           threads_(threads),
           list_(static_cast<float>(rest_reach_dp(rest)), static_cast<float>(list_skin)),
           ghosts_(rest, walls.boundary),
@@ -183,7 +184,7 @@ private:
         std::vector<char> out(rest_.size(), 0);
         for (std::size_t i = 0; i < rest_.size(); ++i)
         {
-            const double size = moves(i) ? norm(accelerations_[i]) : 0;
+            const double size = moves(i) ? norm(unheld(i)) : 0;
             out[i] = size > most ? 1 : 0;
             if (size <= largest) continue;
             largest = size;
@@ -444,6 +445,12 @@ private:
         return force;
     }
 
+    /// What the solver's walls do not take of an acceleration.
+    Vec3 unheld(std::size_t i) const
+    {
+        return keep_out_ ? without_pressing(i, accelerations_[i]) : accelerations_[i];
+    }
+
     /// The place nearest to `to` that keeps its distance from walls, start and surface.
     Vec3 allowed_place(std::size_t i, Vec3 to) const
     {
@@ -469,7 +476,7 @@ private:
                      {
                          const std::size_t end = std::min(rest_.size(), (c + 1) * chunk_of_sums);
                          for (std::size_t i = c * chunk_of_sums; i < end; ++i)
-                             if (is_judged(i)) chunks[c].add(norm(accelerations_[i]), 1);
+                             if (is_judged(i)) chunks[c].add(norm(unheld(i)), 1);
                      });
         Mean all;
         for (const Mean& chunk : chunks) all.add(chunk.sum, chunk.count);
@@ -481,7 +488,7 @@ private:
         const double g = norm(rest_.gravity);
         std::vector<double> sizes;
         for (std::size_t i = 0; i < rest_.size(); ++i)
-            if (is_judged(i)) sizes.push_back(norm(accelerations_[i]) / g);
+            if (is_judged(i)) sizes.push_back(norm(unheld(i)) / g);
         Accelerations out;
         if (sizes.empty()) return out;
         const auto n = static_cast<double>(sizes.size());
@@ -514,6 +521,7 @@ private:
     const LatticeFall& fall_;
     const ClosestWallPoint& closest_;
     const std::function<bool(const Vec3&, double)>& is_behind_;
+    bool keep_out_;
     int threads_;
     GroupList list_;
     GhostPressures ghosts_;

@@ -16,6 +16,8 @@ struct RestWalls
 {
     const ClosestWallPoint& closest;
     RestBoundary boundary{};
+    /// Whether the solver holds fluid that is pressed against them (NoPenetration of mDBC).
+    bool keep_out = false;
     /// Whether the first particles of the wall nearest to a place stand half a dp behind its
     /// surface though those of others do not (Placement::Inside); empty: nowhere.
     std::function<bool(const Vec3& place, double within)> is_behind{};

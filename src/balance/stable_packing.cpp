@@ -422,7 +422,10 @@ private:
                 const double distance = norm(away);
                 if (distance < walls_.least_distance)
                     choices[k].at = wall + (walls_.least_distance / distance) * away;
-                if (dot(away, fluid - wall) <= 0 || !is_reached(fluid, choices[k].at))
+                // Where fluid is nearer than the next wall, the way from it is free.
+                const bool may_be_beyond = !(norm(fluid - places[k]) < distance);
+                if (dot(away, fluid - wall) <= 0 ||
+                    (may_be_beyond && !is_reached(fluid, choices[k].at)))
                     choices[k].cover = 0;
             },
             64);

@@ -88,10 +88,8 @@ void hint_at_parameters(CaseDef& def)
         std::none_of(def.fit.of_mk.begin(), def.fit.of_mk.end(),
                      [&](const auto& of_mk) { return is_mdbc(of_mk.second); }))
         return;
-    const int slip = whole_parameter(def, "SlipMode").value_or(1);
-    const bool keeps_out = whole_parameter(def, "NoPenetration").value_or(0) == 1;
-    if (slip >= 2 && keeps_out) return;
-    const std::string wrong = slip < 2 ? "SlipMode is 1" : "NoPenetration is not 1";
+    if (def.solver.no_penetration) return;
+    const std::string wrong = def.solver.slip_mode < 2 ? "SlipMode is 1" : "NoPenetration is not 1";
     def.hints.push_back(fmt::format(
         "{}: the parameter {}, with which fluid creeps into walls of mDBC; SlipMode=2 (or 3: free "
         "slip) with NoPenetration=1 holds it in the solver.",
@@ -193,6 +191,8 @@ void settle_boundaries(const AttributeReader& read, CaseDef& def)
     if (def.fit.is_empty()) return;
     def.solver.boundary = whole_parameter(def, "Boundary").value_or(1);
     def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
+    def.solver.no_penetration = def.solver.boundary == 2 && def.solver.slip_mode >= 2 &&
+                                whole_parameter(def, "NoPenetration").value_or(0) == 1;
     def.solver.kernel = whole_parameter(def, "Kernel").value_or(2);
     def.solver.inout = read_inout_zones(def, def.warnings);
     def.solver.flexible = flexible_mks(read, def);

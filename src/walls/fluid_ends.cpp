@@ -22,6 +22,8 @@ namespace
 
 /// Places nearer than this are one, dp.
 constexpr double same_place = 1e-6;
+/// Lattices are moved to the walls of one side, and may be stretched to those of the other.
+constexpr double same_row = 0.3;
 
 /// A range along an axis, metres.
 using Range = std::array<double, 2>;
@@ -41,6 +43,45 @@ std::optional<Range> nodes_within(double low, double high, int axis, const Latti
                           std::floor((high - grid.origin[axis]) / grid.step(axis) + same_place),
                           axis, grid);
 }
+
+/// Rows of fluid beside flat walls on a lattice that was moved to these.
+class FirstRows
+{
+public:
+    FirstRows(WetPlanesOfAxes planes, const LatticeGrid& grid)
+        : planes_(std::move(planes)), grid_(grid)
+    {
+    }
+
+    /// nodes_within(), with the row beside a wall where an end lies within half a step of it.
+    std::optional<Range> nodes_within(double low, double high, int axis) const
+    {
+        std::optional<Range> nodes = fppg::nodes_within(low, high, axis, grid_);
+        if (!nodes) return nodes;
+        const double step = grid_.step(axis);
+        const auto [first, last] = *nodes;
+        if (low - (first - step) < 0.5 * step && is_row(first - step, 1, axis)) (*nodes)[0] -= step;
+        if (last + step - high < 0.5 * step && is_row(last + step, -1, axis)) (*nodes)[1] += step;
+        return nodes;
+    }
+
+private:
+    /// side  where fluid is, seen from the wall
+    bool is_row(double at, int side, int axis) const
+    {
+        const auto& planes = planes_[static_cast<std::size_t>(axis)];
+        return std::any_of(planes.begin(), planes.end(),
+                           [&](const WetPlane& plane)
+                           {
+                               const double row = plane.at + side * (grid_.dp - plane.depth);
+                               return (plane.side == side || plane.side == 0) &&
+                                      std::abs(at - row) < same_row * grid_.dp;
+                           });
+    }
+
+    WetPlanesOfAxes planes_;
+    const LatticeGrid& grid_;
+};
 
 /// The outermost nodes between the nodes that the ends of a body are rounded to, as solid mode
 /// draws it.
@@ -104,8 +145,10 @@ void fit_ends(PolyhedronOp& body, int axis, const std::optional<Range>& nodes,
 /// Lets a body end at the outermost nodes in it along the axes whose nodes were moved. One that
 /// solid mode draws without its surface nodes is then drawn with them, as its ends lie between
 /// nodes and none of those in it are on its surface.
+///
+/// rows  of fluid beside walls; those of a void have none
 void end_body(PolyhedronOp& body, const std::array<bool, 3>& is_moved, const LatticeGrid& grid,
-              DrawOp& op)
+              const FirstRows& rows, DrawOp& op)
 {
     const bool is_solid_mode = op.state->mode == DrawMode::Solid;
     for (int axis = 0; axis < 3; ++axis)
@@ -114,7 +157,7 @@ void end_body(PolyhedronOp& body, const std::array<bool, 3>& is_moved, const Lat
         if (!moves && (!is_solid_mode || (axis == 1 && grid.is_2d))) continue;
         const auto [low, high] = extent_of(body, axis);
         fit_ends(body, axis,
-                 moves ? nodes_within(low, high, axis, grid) : nodes_inside(low, high, axis, grid),
+                 moves ? rows.nodes_within(low, high, axis) : nodes_inside(low, high, axis, grid),
                  grid, [](double) { return true; });
     }
     if (!is_solid_mode) return;
@@ -158,12 +201,17 @@ Planes planes_of_walls(const Scene& scene, int threads)
 
 } // namespace
 
-void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, CaseDef& def)
+void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, const WetPlanesOfAxes& planes,
+                             CaseDef& def)
 {
+    const FirstRows rows(planes, def.grid);
+    const FirstRows none({}, def.grid);
     for (DrawOp& op : def.ops)
     {
-        for (const MkKind kind : {MkKind::Fluid, MkKind::Void})
-            if (PolyhedronOp* body = body_of(kind, op)) end_body(*body, is_moved, def.grid, op);
+        if (PolyhedronOp* body = body_of(MkKind::Fluid, op))
+            end_body(*body, is_moved, def.grid, rows, op);
+        if (PolyhedronOp* body = body_of(MkKind::Void, op))
+            end_body(*body, is_moved, def.grid, none, op);
         auto* edit = std::get_if<Edit>(&op.what);
         auto* fill = edit != nullptr ? std::get_if<FillOp>(edit) : nullptr;
         if (fill == nullptr || !fill->region || op.state->mk.kind != MkKind::Fluid) continue;

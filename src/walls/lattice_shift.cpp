@@ -310,6 +310,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
         LatticeGrid moved = def.grid;
         moved.origin = moved.origin + move.shift;
         move.to = stretch_between_walls(walls.planes(), moved, def.constants.gravity);
+        move.planes = walls.planes();
     }
     catch (const Error&)
     {
@@ -332,7 +333,7 @@ void move_lattice(const LatticeMove& move, int threads, CaseDef& def, Scene& sce
         ++grid.n[static_cast<std::size_t>(axis)];
     }
     // Ends that are nodes with steps of dp become those nearest to them, so that rows are not lost.
-    end_fluid_between_nodes(is_moved, def);
+    end_fluid_between_nodes(is_moved, move.planes, def);
     for (int axis = 0; axis < 3 && move.to.stretch != Vec3{1, 1, 1}; ++axis)
         stretch_axis(axis, move.to, grid);
     for (const SpanSet& nodes : move.flooded)

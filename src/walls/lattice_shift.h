@@ -3,6 +3,7 @@
 #include "fppg/scene.h"
 #include "fppg/vec.h"
 
+#include "walls/fluid_ends.h"
 #include "walls/lattice_stretch.h"
 
 namespace fppg
@@ -10,8 +11,9 @@ namespace fppg
 
 struct LatticeMove
 {
-    Vec3 shift;        ///< metres, from 0 to below dp along each axis
-    LatticeStretch to; ///< behind that
+    Vec3 shift;             ///< metres, from 0 to below dp along each axis
+    LatticeStretch to;      ///< behind that
+    WetPlanesOfAxes planes; ///< of the walls that it is moved to
     /// LatticeReport::flooded, drawn on the lattice where it is.
     std::vector<SpanSet> flooded;
 

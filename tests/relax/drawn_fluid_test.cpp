@@ -482,6 +482,22 @@ TEST(DrawnFluid, StandsInStepWithFlatWallsOfDynamicBoundaries)
     EXPECT_EQ(floor, 19u * 11);
 }
 
+/// Fluid that is drawn a little more than a step off its walls lacked its first row on the moved
+/// lattice, as the row lies beyond its end; the nearest node is taken on one that stays.
+TEST(DrawnFluid, HasTheRowBesideAWallThatItEndsShortOf)
+{
+    const std::string walls =
+        R"(<setmkbound mk="0" /><drawbox><boxfill>bottom | left | right | front | back</boxfill><point x="0.025" y="0.025" z="0.025" /><size x="1" y="0.6" z="0.8" /></drawbox><setmkfluid mk="0" />)";
+    const std::string fluid = fmt::format(
+        R"(<drawbox><boxfill>solid</boxfill><point x="{0}" y="{0}" z="{0}" /><size x="{1}" y="{2}" z="0.35" /></drawbox>)",
+        0.025 + 1.2 * dp, 1 - 2.4 * dp, 0.6 - 2.4 * dp);
+    const Result made =
+        make(case_of(walls + fluid, R"(<bodyfitted layers="1" /><fluidband balance="false" />)"));
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_TRUE(contains(made.output, "Lattice moved by (0.025, 0.025, 0.025) m"));
+    EXPECT_EQ(made.fluid().size(), 19u * 11 * 8);
+}
+
 /// Walls that are no whole number of dp apart: rows of dp fit to one side alone, and those beside
 /// the other were pushed together or pulled apart (solver: 0.0043 m/s after 0.1 s in such a tank 20
 /// dp deep, 0.0020 stretched).

@@ -29,6 +29,9 @@ double left_of_gravity(const Result& r)
     return found.empty() ? 1 : std::stod(found[1]);
 }
 
+const std::string no_penetration =
+    R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="Kernel" value="2" /><parameter key="TimeMax" value="1" /></parameters>)";
+
 /// A tank 1.23 m wide, in 2D, filled up to z = 0.6 from seeds at these x.
 Result tank_in_2d(const std::string& body, const std::vector<double>& seeds,
                   const std::string& fppg, const std::string& spacing = "0.05")
@@ -185,8 +188,7 @@ Result tank_with(const fppg::TriangleSoup& body, double top)
                 R"(" /><setmkfluid mk="0" /><fillbox x="1.3" y="0.2" z="0.2"><modefill>void</modefill><point x="-0.1" y="-0.1" z="-0.1" /><size x="1.7" y="1.5" z="{}" /></fillbox>)",
                 top + 0.1),
         R"(<bodyfitted boundary="mdbc" />)");
-    text.execution =
-        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="Kernel" value="2" /><parameter key="TimeMax" value="1" /></parameters>)";
+    text.execution = no_penetration;
     Result out = make(text);
     EXPECT_EQ(out.code, 0) << out.output;
     return out;
@@ -236,6 +238,24 @@ TEST(WaterBesideTeeth, StaysAboveTheFloor)
         EXPECT_GT(made.fluid().size(), 5000u);
         for (const Vec3& p : made.fluid()) EXPECT_GT(p.z, -0.1 * dp) << p.x << ' ' << p.y;
     }
+}
+
+/// Water 25 dp deep beside a plate of 2.2 dp that has two layers where water feels four. What it
+/// presses against the plate is held by NoPenetration in the solver, and counted as if it fell.
+TEST(ThinPlate, UnderNoPenetrationHoldsWater)
+{
+    CaseText text = case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="-0.3" y="-0.3" z="-0.3" /><size x="1.01" y="1" z="1.8" /></drawbox>
+<setmkvoid /><drawbox><boxfill>solid</boxfill><point x="0" y="0" z="0" /><size x="0.91" y="0.4" z="1.9" /></drawbox>
+<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0.4" y="-0.15" z="-0.15" /><size x="0.11" y="0.7" z="1.5" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.2" y="0.2" z="0.6"><modefill>void</modefill><point x="-0.05" y="-0.05" z="-0.05" /><size x="0.5" y="0.5" z="1.3" /></fillbox>)",
+        R"(<bodyfitted boundary="mdbc" />)");
+    text.constants.replace(text.constants.find(R"(coefh value="1")"), 15, R"(coefh value="1.2")");
+    text.pointmax = R"(<pointmax x="0.7" y="0.8" z="1.7" />)";
+    text.execution = no_penetration;
+    const Result made = make(text);
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_LT(left_of_gravity(made), 0.005);
 }
 
 /// Its one sheet does not hold the water around it: none in the tank was balanced.
