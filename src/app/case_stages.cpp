@@ -281,17 +281,12 @@ void log_gap(CaseRunState& run, const CaseDef& def, const ClosedGap& gap)
         counted(gap.count, "particle closes the gap", "particles close the gap"), name(gap.mk),
         name(gap.other), least == most ? least : fmt::format("{} to {}", least, most), gap.place.x,
         gap.place.y, gap.place.z);
-    const std::string emptied =
-        gap.emptied > 0
-            ? fmt::format(" {} taken out of it.",
-                          counted(gap.emptied, "particle of fluid is", "particles of fluid are"))
-            : std::string{};
     if (gap.moves)
         run.warn(
-            fmt::format("{}: {}, and go along with {}.{} On the lattice there is no node in such "
+            fmt::format("{}: {}, and go along with {}. On the lattice there is no node in such "
                         "a gap; between layers fluid would run through. Draw it wider than "
                         "{:g} dp if fluid is to pass.",
-                        def.file, rows, name(gap.mk), emptied, sliding_pocket_of_layers_dp));
+                        def.file, rows, name(gap.mk), sliding_pocket_of_layers_dp));
     else
         run.log.line(rows);
 }

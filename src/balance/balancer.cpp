@@ -132,11 +132,13 @@ public:
                 break;
         }
         report.is_balanced = best.mean <= calm_mean;
-        const std::vector<char> falls = report.is_balanced ? std::vector<char>{} : falling(report);
+        // On another lattice nothing has a place that it could keep.
+        const bool holds_falling = !report.is_balanced && !report.is_packed;
+        const std::vector<char> falls = holds_falling ? falling(report) : std::vector<char>{};
         return_to(report.is_balanced ? best : even);
         report.after = judge();
         sum_up_moves(report);
-        if (!report.is_balanced) report.falling = hold_around(rest_, falls, threads_);
+        if (holds_falling) report.falling = hold_around(rest_, falls, threads_);
     }
 
 private:

@@ -4,7 +4,6 @@
 
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
-#include "meshes/wall_ball.h"
 #include "nodes/run_at.h"
 #include "offset/wall_depth.h"
 #include "relax/all_walls.h"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -41,7 +39,6 @@ struct GapPlace
     Vec3 wall, to_mouth; ///< GapParticle
     double width = 0;    ///< metres; 0: no gap
     std::uint16_t mk = 0, other = 0;
-    std::size_t emptied = 0; ///< ClosedGap
 };
 
 class GapFinder
@@ -211,44 +208,12 @@ private:
     PointGrid grid_;                    ///< of them
 };
 
-/// Takes the fluid out of gaps beside parts that slide, into whose mouths relaxing pushes some.
-void empty_gaps(const AllWalls& walls, std::uint16_t first_bound, RunField& field,
-                std::vector<GapPlace>& gaps)
-{
-    const double dp = field.grid.dp;
-    PointGrid grid(dp, gaps.size());
-    for (const GapPlace& gap : gaps) grid.add(gap.place);
-    const ClosestWallPoint closest = [&](const Vec3& p, double within)
-    { return walls.closest_point(p, within); };
-    VolumeParticles& volume = field.walls.volume;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < volume.size(); ++i)
-    {
-        const Vec3& p = volume.positions[i];
-        const std::optional<std::uint32_t> gap =
-            volume.mk[i] < first_bound ? grid.nearest(p, off_fluid * dp) : std::nullopt;
-        const bool is_wide = gap && gaps[*gap].width > pocket_of_layers_dp * dp;
-        const Vec3 foot = is_wide ? closest(p, dp) : Vec3{};
-        if (is_wide && largest_ball(foot, (p - foot) / norm(p - foot),
-                                    sliding_pocket_of_layers_dp * dp / 2, closest)
-                           .is_opposite)
-        {
-            ++gaps[*gap].emptied;
-            continue;
-        }
-        volume.positions[kept] = p;
-        volume.mk[kept] = volume.mk[i];
-        volume.distances[kept++] = volume.distances[i];
-    }
-    volume.positions.resize(kept);
-    volume.mk.resize(kept);
-    volume.distances.resize(kept);
-}
-
 /// Takes out those in other solids, and those beside which fluid stands.
-void leave_out_taken(const AllWalls& walls, const RunField& field, std::uint16_t first_bound,
+void leave_out_taken(const RunField& field, std::uint16_t first_bound, int threads,
                      std::vector<GapPlace>& gaps)
 {
+    if (gaps.empty()) return;
+    const AllWalls walls(field.walls.bodies, field.grid, threads);
     const double near = off_fluid * field.grid.dp;
     PointGrid grid(near, gaps.size());
     for (const GapPlace& gap : gaps) grid.add(gap.place);
@@ -286,10 +251,7 @@ std::vector<ClosedGap> close_gaps(const CaseDef& def, RunField& field, int threa
     if (def.solver.boundary != 2) return {};
     const GapFinder finder(def, field, threads);
     std::vector<GapPlace> gaps = finder.find(threads);
-    if (gaps.empty()) return {};
-    const AllWalls walls(field.walls.bodies, field.grid, threads);
-    empty_gaps(walls, def.mk_bound_first, field, gaps);
-    leave_out_taken(walls, field, def.mk_bound_first, gaps);
+    leave_out_taken(field, def.mk_bound_first, threads, gaps);
     std::map<std::pair<std::uint16_t, std::uint16_t>, ClosedGap> closed;
     VolumeParticles& volume = field.walls.volume;
     for (const GapPlace& gap : gaps)
@@ -303,11 +265,10 @@ std::vector<ClosedGap> close_gaps(const CaseDef& def, RunField& field, int threa
         const auto [lower, upper] = std::minmax(gap.mk, gap.other);
         const auto key = slides ? std::pair(gap.mk, gap.other) : std::pair(lower, upper);
         ClosedGap& of = closed
-                            .try_emplace(key, ClosedGap{key.first, key.second, slides, 0, 0, wide,
+                            .try_emplace(key, ClosedGap{key.first, key.second, slides, 0, wide,
                                                         wide, gap.place})
                             .first->second;
         ++of.count;
-        of.emptied += gap.emptied;
         of.least_dp = std::min(of.least_dp, wide);
         of.most_dp = std::max(of.most_dp, wide);
     }

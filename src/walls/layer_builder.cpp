@@ -81,8 +81,8 @@ double layer_cell_dp(const SurfaceMesh& wall, double dp)
 LayerSide LayerBuilder::side_without_fluid() const
 {
     if (settings_.fluid_places.empty()) return LayerSide::Behind;
-    // A closed surface that was thickened may cross itself: the nearest facet alone does not say
-    // on which side of it a place is.
+    // A closed surface may cross itself: the nearest facet alone does not say on which side of it
+    // a place is.
     const auto wall = wall_of(WallSide::Behind, out_.body.measures.volume > 0, no_edge_deg, 0);
     if (wall == nullptr) return LayerSide::Behind;
     double nearest = std::numeric_limits<double>::infinity();
