@@ -26,11 +26,14 @@ struct TrueShape
 /// Of the mass of a body on the lattice, whose particles stand for whole cells.
 constexpr double largest_on_lattice = 0.05;
 
-/// Compares the masses of floating bodies with those of their shapes.
-class MassCheck
+/// Of the inertia of a body with fitted walls.
+constexpr double largest_of_inertia = 0.05;
+
+/// Compares the masses and inertias of floating bodies with those of their shapes.
+class FloatingCheck
 {
 public:
-    MassCheck(const CaseDef& def, const CaseParticles& particles, const FittedWalls& walls)
+    FloatingCheck(const CaseDef& def, const CaseParticles& particles, const FittedWalls& walls)
         : def_(def), particles_(particles), walls_(walls)
     {
     }
@@ -68,6 +71,26 @@ public:
                              def_.grid.is_2d ? "m^2" : "m^3", expected));
     }
 
+    /// exact  of its shape
+    void note_inertia(const FloatingBody& body, const FloatingDef& f, const FloatingBody& exact)
+    {
+        const ParticleBlock& block = particles_.blocks[body.block];
+        if (f.inertia || !is_fitted(block)) return;
+        double most = 0;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const auto i = static_cast<std::size_t>(axis);
+            const double share = body.inertia[i][axis] * exact.mass_body /
+                                     (exact.inertia[i][axis] * body.mass_body) -
+                                 1;
+            if (std::abs(share) > std::abs(most)) most = share;
+        }
+        if (std::abs(most) <= largest_of_inertia) return;
+        turning_.add(block.mk_type, most,
+                     fmt::format("{} particles turn {} easily than its shape", block.count,
+                                 most > 0 ? "less" : "more"));
+    }
+
     std::vector<std::string> warnings() const
     {
         std::vector<std::string> out;
@@ -83,6 +106,12 @@ public:
         };
         tell(hollow_, "as no draw fills them");
         tell(cut_, "as the domain, later draws or touching bodies cut them");
+        if (!turning_.is_empty())
+            out.push_back(
+                fmt::format("{}: the particles of floating bodies have another inertia "
+                            "than their shapes of the same mass, {}. <fppg><floatings "
+                            "exact=\"true\"> takes that of the shape.",
+                            def_.file, turning_.text("mkbound")));
         return out;
     }
 
@@ -127,6 +156,7 @@ private:
     DeviationGroup hollow_;
     DeviationGroup cut_;
     DeviationGroup on_lattice_;
+    DeviationGroup turning_;
 };
 
 std::string text_of(const FloatingBody& body)
@@ -192,7 +222,7 @@ SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
     const CaseDef& def = *scene.def;
     const ExactFloatings& exact = def.exact_floatings;
     SettledFloatings out;
-    MassCheck check(def, particles, walls);
+    FloatingCheck check(def, particles, walls);
     for (FloatingBody& body : particles.floatings)
     {
         const ParticleBlock& block = particles.blocks[body.block];
@@ -219,7 +249,10 @@ SettledFloatings settle_floatings(const Scene& scene, const FittedWalls& walls,
         if (is_wanted)
             body = settled.exact;
         else
+        {
             check.note(body, *f, {shape->shape, shape->volume});
+            check.note_inertia(body, *f, settled.exact);
+        }
     }
     out.warnings = check.warnings();
     out.light_or_heavy = check.light_or_heavy();

@@ -29,7 +29,7 @@ struct SettledFloatings
 {
     std::vector<SettledFloating> bodies;
     /// Bodies with fitted walls whose mass by their density is more than 1 % off that of their
-    /// shape, as they are hollow or cut.
+    /// shape, as they are hollow or cut, and those whose inertia is 5 % off that of their shape.
     std::vector<std::string> warnings;
     /// Bodies on the lattice whose mass by their density is more than 5 % off that of their shape:
     /// so GenCase gives them to the solver without a word.

@@ -35,7 +35,9 @@ constexpr double nearly = 0.22;
 /// ... and it is no bar: 2 V / A of a plate without rims is its thickness, that of a bar half of
 /// it.
 constexpr double bar_ratio = 1.7;
-/// A body has one thickness where no more of its surface has another one, of what has any.
+/// A body has one thickness where no more of its surface has another one, of what has any, and its
+/// 2 V / A is not above that: rims make it smaller, thicker parts (the wheel behind thin teeth)
+/// larger.
 constexpr double most_of_other = 0.2;
 /// Nodes farther than this from all particles of layers stay before others, dp, and none stays
 /// that is nearer than the second.
@@ -51,7 +53,7 @@ constexpr double thin_dp = 2.5;
 constexpr std::size_t thickness_samples = 600;
 
 /// Of particles that are taken out one by one.
-constexpr double most_surplus = 0.05;
+constexpr double most_surplus = 0.1;
 
 struct Thickness
 {
@@ -183,7 +185,8 @@ private:
         if (!settings_.across && mean > thickest_plate_dp * grid_.dp) return;
         const Thickness t =
             thickness_of(*wall_, std::max(most_dp * grid_.dp, 2 * mean), grid_, threads_);
-        const bool is_even = t.other <= most_of_other;
+        const bool is_thicker = mean > (1 + nearly) * t.middle;
+        const bool is_even = t.other <= most_of_other && !is_thicker;
         const bool is_plate = is_even && t.share >= plate_share && t.middle < bar_ratio * mean &&
                               t.middle <= thickest_plate_dp * grid_.dp;
         if (!is_plate && !settings_.across) return;
@@ -202,10 +205,13 @@ private:
         under_layers_ = half * step * grid_.dp;
         if (!is_even)
             out_.warnings.push_back(fmt::format(
-                "across: the sheets are those of a thickness of {:.4g} m, and {:.0f} % of the "
-                "surface has another; there they are not whole. Parts of different thickness want "
-                "an mkbound each; without across every part gets what its thickness has room for.",
-                t.middle, 100 * t.other));
+                "across: the sheets are those of a thickness of {:.4g} m, and {} another; there "
+                "they "
+                "are not whole. Parts of different thickness want an mkbound each; without across "
+                "every part gets what its thickness has room for.",
+                t.middle,
+                is_thicker ? "thicker parts of the body have"
+                           : fmt::format("{:.0f} % of the surface has", 100 * t.other)));
         // Where a body is thicker elsewhere, the sheet in the middle cannot make up for that.
         if (body.sheets % 2 == 1 && is_even) plan_.number = static_cast<std::size_t>(wanted_);
         if (body.sheets == 1)
@@ -322,7 +328,8 @@ private:
         drop_surplus(std::round(target));
     }
 
-    /// Takes the most crowded particles of faces out, 2 dp from one another.
+    /// Takes the most crowded particles out, 2 dp from one another; of edges only where no more of
+    /// faces can go.
     void drop_surplus(double target)
     {
         WallParticles& particles = out_.particles;
@@ -332,9 +339,11 @@ private:
         const std::vector<double> nearest = nearest_distances(particles.positions, apart, threads_);
         std::vector<std::uint32_t> order;
         for (std::uint32_t i = 0; i < particles.size(); ++i)
-            if (particles.kinds[i] == FitKind::Surface) order.push_back(i);
+            if (particles.kinds[i] != FitKind::Corner) order.push_back(i);
+        const auto rank = [&](std::uint32_t i)
+        { return std::pair(particles.kinds[i] != FitKind::Surface, nearest[i]); };
         std::stable_sort(order.begin(), order.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return nearest[a] < nearest[b]; });
+                         [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
         PointGrid dropped(apart, surplus);
         std::vector<char> goes(particles.size(), 0);
         for (std::size_t k = 0; k < order.size() && surplus > 0; ++k)
@@ -435,7 +444,8 @@ void fill_inside(const FitSettings& settings, const LatticeGrid& grid, int threa
     if (!out.body.is_solid)
         throw GeometryError(
             "place=\"inside\": only the surface of the shape is drawn; expected a solid, by "
-            "<setdrawmode mode=\"full\" /> or autofill=\"true\" of a mesh file");
+            "autofill=\"true\" of a mesh file or <setdrawmode mode=\"full\" /> before another "
+            "shape");
     InsideFiller(settings, grid, threads, out).run();
 }
 

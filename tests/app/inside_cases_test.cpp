@@ -7,6 +7,7 @@
 
 #include "casedef/xml_document.h"
 #include "helpers/case_text.h"
+#include "helpers/gears.h"
 #include "helpers/run_fppg.h"
 #include "meshes/crowded_points.h"
 
@@ -435,6 +436,54 @@ TEST(InsideCase, SheetsAskedForInAPlateOfTwoThicknessesAreWarnedOf)
     EXPECT_EQ(result.code, 0) << result.output;
     EXPECT_TRUE(contains(result.output, "the sheets are those of a thickness of 0.02 m"))
         << result.output;
+}
+
+/// Most of what is looked at of its surface are the flanks of its teeth. It was filled as a plate
+/// as thin as these, so that the wheel behind them was hollow.
+TEST(InsideCase, AWheelOfThinTeethIsFull)
+{
+    constexpr double tip = 10 * dp, root = 6.7 * dp, width = 7.8 * dp;
+    const fppg::TriangleSoup wheel = toothed_wheel(14, tip, root, width);
+    const TemporaryFolder folder;
+    write_stl(folder / "wheel.stl", wheel);
+    CaseText text;
+    text.dp = fmt::format("{}", dp);
+    text.pointmin = R"(<pointmin x="-0.4" y="-0.4" z="-0.4" />)";
+    text.mainlist = R"(<setmkbound mk="0" /><drawfilestl file="wheel.stl" autofill="true" />)";
+    text.after_geometry = inside;
+    const std::vector<Vec3> all = particles_of(folder, text);
+    double six = 0;
+    for (std::size_t i = 0; i < wheel.vertices.size(); i += 3)
+        six += dot(wheel.vertices[i], cross(wheel.vertices[i + 1], wheel.vertices[i + 2]));
+    EXPECT_NEAR(static_cast<double>(all.size()), six / 6 / (dp * dp * dp), 1);
+    // Of its middle as many as its volume.
+    constexpr double radius = 4 * dp, half = 2 * dp;
+    const auto in_middle = std::count_if(
+        all.begin(), all.end(),
+        [&](const Vec3& p) { return std::hypot(p.x, p.y) < radius && std::abs(p.z) < half; });
+    EXPECT_NEAR(static_cast<double>(in_middle), std::numbers::pi * 16 * 4, 20);
+}
+
+/// A float of few particles, which count as points.
+TEST(InsideCase, AFloatThatTurnsMoreEasilyThanItsShapeIsWarnedOf)
+{
+    for (const bool is_exact : {false, true})
+    {
+        const TemporaryFolder folder;
+        CaseText text;
+        text.dp = fmt::format("{}", dp);
+        text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="1" />)" +
+                        box(R"(x="0.1" y="0.1" z="0.1")", R"(x="0.3" y="0.04" z="0.04")");
+        text.after_geometry =
+            R"(<floatings><floating mkbound="1" rhopbody="500" /></floatings><fppg>)" +
+            std::string(is_exact ? R"(<floatings exact="true" />)" : "") +
+            R"(<bodyfitted place="inside" /></fppg>)";
+        write_text(folder / "Case_Def.xml", text.text());
+        const RunResult result = run(folder, {"Case_Def", "Case"});
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_EQ(contains(result.output, "another inertia than their shapes"), !is_exact)
+            << result.output;
+    }
 }
 
 } // namespace

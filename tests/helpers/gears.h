@@ -88,6 +88,17 @@ inline TriangleSoup wheel_mesh(const std::vector<std::pair<double, double>>& out
     return soup;
 }
 
+/// A wheel with teeth of straight flanks about z; 0.4 of a pitch is tooth at half their height.
+inline TriangleSoup toothed_wheel(int teeth, double tip, double root, double width)
+{
+    std::vector<std::pair<double, double>> outline;
+    for (int tooth = 0; tooth < teeth; ++tooth)
+        for (const auto& [share, radius] :
+             {std::pair{0.0, root}, {0.15, tip}, {0.4, tip}, {0.55, root}})
+            outline.emplace_back(radius, 2 * std::numbers::pi * (tooth + share) / teeth);
+    return wheel_mesh(outline, width);
+}
+
 /// Closed, without a bore; its middle is at `at`.
 inline TriangleSoup gear_mesh(const GearShape& g, const Vec3& at = {})
 {

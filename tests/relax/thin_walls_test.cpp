@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <regex>
 #include <utility>
 #include <vector>
@@ -163,17 +162,6 @@ TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
     const Result both = tank_in_2d(shell, {0.1, 1}, mdbc);
     EXPECT_FALSE(contains(both.output, "thickened to 2 dp")) << both.output;
     EXPECT_LT(of_plate(both), 22u);
-}
-
-/// A wheel with teeth of straight flanks about z; 0.4 of a pitch is tooth at half their height.
-fppg::TriangleSoup toothed_wheel(int teeth, double tip, double root, double width)
-{
-    std::vector<std::pair<double, double>> outline;
-    for (int tooth = 0; tooth < teeth; ++tooth)
-        for (const auto& [share, radius] :
-             {std::pair{0.0, root}, {0.15, tip}, {0.4, tip}, {0.55, root}})
-            outline.emplace_back(radius, 2 * std::numbers::pi * (tooth + share) / teeth);
-    return wheel_mesh(outline, width);
 }
 
 /// Water under mDBC, up to a height, in a tank of sheets with a body from a file.
