@@ -442,8 +442,8 @@ TEST(InsideCase, SheetsAskedForInAPlateOfTwoThicknessesAreWarnedOf)
 /// as thin as these, so that the wheel behind them was hollow.
 TEST(InsideCase, AWheelOfThinTeethIsFull)
 {
-    constexpr double tip = 10 * dp, root = 6.7 * dp, width = 7.8 * dp;
-    const fppg::TriangleSoup wheel = toothed_wheel(14, tip, root, width);
+    constexpr double tip = 10 * dp, root = 6.8 * dp, width = 7.8 * dp;
+    const fppg::TriangleSoup wheel = toothed_wheel(16, tip, root, width);
     const TemporaryFolder folder;
     write_stl(folder / "wheel.stl", wheel);
     CaseText text;
