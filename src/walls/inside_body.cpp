@@ -38,7 +38,7 @@ constexpr double bar_ratio = 1.7;
 /// A body has one thickness where no more of its surface has another one, of what has any, and its
 /// 2 V / A is not above that: rims make it smaller, thicker parts (the wheel behind thin teeth)
 /// larger.
-constexpr double most_of_other = 0.2;
+constexpr double most_of_other = 0.03;
 /// Nodes farther than this from all particles of layers stay before others, dp, and none stays
 /// that is nearer than the second.
 constexpr double far_dp = 1.5;

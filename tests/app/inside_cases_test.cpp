@@ -464,6 +464,26 @@ TEST(InsideCase, AWheelOfThinTeethIsFull)
     EXPECT_NEAR(static_cast<double>(in_middle), std::numbers::pi * 16 * 4, 20);
 }
 
+/// Teeth of one thickness on a base of another; the base had one sheet, as the teeth have.
+TEST(InsideCase, ACombHasAFullBase)
+{
+    const TemporaryFolder folder;
+    CaseText text;
+    text.dp = fmt::format("{}", dp);
+    text.mainlist = R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+                    box(R"(x="0.1" y="0.1" z="0.1")", R"(x="0.33" y="0.3" z="0.076")");
+    for (int tooth = 0; tooth < 8; ++tooth)
+        text.mainlist += box(fmt::format(R"(x="{}" y="0.1" z="0.15")", 0.1 + 0.044 * tooth),
+                             R"(x="0.022" y="0.3" z="0.25")");
+    text.after_geometry = inside;
+    const std::vector<Vec3> all = particles_of(folder, text);
+    const auto in_base =
+        std::count_if(all.begin(), all.end(), [](const Vec3& p) { return p.z < 0.176; });
+    constexpr double base = 0.33 * 0.3 * 0.076, teeth = 8 * 0.022 * 0.3 * 0.224;
+    EXPECT_NEAR(static_cast<double>(all.size()), (base + teeth) / (dp * dp * dp), 1);
+    EXPECT_NEAR(static_cast<double>(in_base), base / (dp * dp * dp), 60);
+}
+
 /// A float of few particles, which count as points.
 TEST(InsideCase, AFloatThatTurnsMoreEasilyThanItsShapeIsWarnedOf)
 {
