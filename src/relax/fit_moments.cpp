@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/principal_axes.h"
+#include "fit/wall_section.h"
 #include "meshes/crowded_points.h"
 #include "offset/wall_depth.h"
 #include "relax/part_pairs.h"
@@ -54,13 +55,25 @@ void add_product(Matrix& to, double factor, const Vec3& a, const Vec3& b)
         to[static_cast<std::size_t>(i)] = to[static_cast<std::size_t>(i)] + (factor * a[i]) * b;
 }
 
+/// sums     the volume, and the integrals of what is off `origin` and of its products
+/// per_sum  of the volume
+Moments about_centre(const Moments& sums, const Vec3& origin, double per_sum)
+{
+    Moments out;
+    const Vec3 mean = sums.centre / sums.volume;
+    out.volume = per_sum * sums.volume;
+    out.centre = origin + mean;
+    out.second = sums.second;
+    for (Vec3& row : out.second) row = row / sums.volume;
+    add_product(out.second, -1, mean, mean);
+    return out;
+}
+
 /// Of the inside of a closed mesh, by tetrahedra from a point near it.
 Moments moments_of(const SurfaceMesh& mesh)
 {
-    Moments out;
+    Moments sums;
     const Vec3 origin = mesh.vertices[0];
-    Vec3 sum;
-    Matrix second{};
     for (const auto& f : mesh.facets)
     {
         const Vec3 a = mesh.vertices[f[0]] - origin;
@@ -68,16 +81,31 @@ Moments moments_of(const SurfaceMesh& mesh)
         const Vec3 c = mesh.vertices[f[2]] - origin;
         const double six = dot(a, cross(b, c));
         const Vec3 all = a + b + c;
-        out.volume += six / 6;
-        sum = sum + (six / 24) * all;
-        for (const Vec3& v : {all, a, b, c}) add_product(second, six / 120, v, v);
+        sums.volume += six / 6;
+        sums.centre = sums.centre + (six / 24) * all;
+        for (const Vec3& v : {all, a, b, c}) add_product(sums.second, six / 120, v, v);
     }
-    const Vec3 mean = sum / out.volume;
-    out.centre = origin + mean;
-    for (Vec3& row : second) row = row / out.volume;
-    add_product(second, -1, mean, mean);
-    out.second = second;
-    return out;
+    return about_centre(sums, origin, 1);
+}
+
+/// Of the section of a closed mesh with a plane y = constant, by triangles from a point near it;
+/// its area counts dp thick.
+Moments moments_of_section(const SurfaceMesh& mesh, const LatticeGrid& grid)
+{
+    const WallSection section = wall_section(mesh, grid.origin.y);
+    if (section.lengths.empty()) return {};
+    const Vec3 origin = section.soup.vertices[0];
+    Moments sums;
+    for (std::size_t i = 0; i < section.lengths.size(); ++i)
+    {
+        const Vec3 a = section.soup.vertices[3 * i] - origin;
+        const Vec3 b = section.soup.vertices[3 * i + 1] - origin;
+        const double twice = dot(section.normals[i], a) * section.lengths[i];
+        sums.volume += twice / 2;
+        sums.centre = sums.centre + (twice / 6) * (a + b);
+        for (const Vec3& v : {a + b, a, b}) add_product(sums.second, twice / 24, v, v);
+    }
+    return about_centre(sums, origin, grid.dp);
 }
 
 Vec3 times(const Matrix& m, const Vec3& v)
@@ -114,10 +142,11 @@ public:
     {
         const FittedWalls& walls = field_.walls;
         const FittedBody& body = walls.bodies[body_];
-        if (!body.is_inside || body.is_layer() || field_.grid.is_2d || is_cut()) return;
+        if (!body.is_inside || body.is_layer() || is_cut()) return;
         collect();
         const double dp3 = dp_ * dp_ * dp_;
-        shape_ = moments_of(body.mesh);
+        shape_ =
+            field_.grid.is_2d ? moments_of_section(body.mesh, field_.grid) : moments_of(body.mesh);
         spread();
         if (std::abs(static_cast<double>(count()) * dp3 / body.measures.volume - 1) > whole ||
             std::abs(shape_.volume / body.measures.volume - 1) > overlapping)
@@ -178,6 +207,8 @@ private:
         way_.resize(of_wall_.size() + of_volume_.size());
     }
 
+    bool is_2d() const { return field_.grid.is_2d; }
+
     std::size_t count() const { return of_wall_.size() + of_volume_.size() + nodes_.size(); }
 
     Vec3& place(std::size_t i)
@@ -209,7 +240,8 @@ private:
         out.centre = shape_.centre + sum / n;
         const FittedBody& body = field_.walls.bodies[body_];
         const double step = body.sheets > 0 ? body.thickness / body.sheets : dp_;
-        const double along = dp_ * dp_ * dp_ / step / 12;
+        const double area = dp_ * dp_ * dp_ / step; // of a particle in its sheet
+        const double along = (is_2d() ? area * area / (dp_ * dp_) : area) / 12;
         for (std::size_t i = 0; i < moving; ++i)
         {
             const Vec3 d = place(i) - out.centre;
@@ -222,7 +254,8 @@ private:
             const Vec3 d = p - out.centre;
             add_product(out.second, 1 / n, d, d);
         }
-        for (int i = 0; i < 3; ++i) out.second[static_cast<std::size_t>(i)][i] += along;
+        for (int i = 0; i < 3; i += is_2d() ? 2 : 1)
+            out.second[static_cast<std::size_t>(i)][i] += along;
         return out;
     }
 
@@ -246,7 +279,13 @@ private:
 
     void put(const std::vector<Vec3>& places)
     {
-        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = places[i];
+        for (std::size_t i = 0; i < way_.size(); ++i) place(i) = in_plane(places[i]);
+    }
+
+    /// In 2D y stays exactly that of the plane.
+    Vec3 in_plane(const Vec3& p) const
+    {
+        return is_2d() ? Vec3{p.x, field_.grid.origin.y, p.z} : p;
     }
 
     /// Moves all until the moments are met, none nearer to others than a distance, dp; false where
@@ -307,7 +346,7 @@ private:
                 before[i] = place(i);
                 const Vec3 normal = across(i);
                 const Vec3 to = before[i] + (steps[i] - dot(steps[i], normal) * normal);
-                place(i) = i < of_wall_.size() ? beside_on_layer(i, before[i], to) : to;
+                place(i) = in_plane(i < of_wall_.size() ? beside_on_layer(i, before[i], to) : to);
             },
             64);
         part(distances, before);

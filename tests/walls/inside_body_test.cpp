@@ -217,6 +217,30 @@ TEST(InsideBody, In2DHasTheAreaOfItsSection)
     EXPECT_GT(nearest_pair(particles), 0.7 * dp);
 }
 
+TEST(InsideBody, In2DHasTheCentreAndTheInertiaOfItsSection)
+{
+    Drawing drawing = inside(true);
+    const Vec3 low{-0.83, -1, -0.31};
+    const Vec3 size{1.57, 2, 0.77};
+    PolyhedronOp box = make_box(low, size, {true, true, true, true, true, true}, true, {}, dp)[0];
+    const Transform turn = rotation({0, 1, 0}, 0.3);
+    transform_polyhedron(box, turn);
+    drawing.draw(box);
+    std::vector<Vec3> particles = particles_of(relaxed(drawing));
+    const Transform back = rotation({0, 1, 0}, -0.3);
+    for (Vec3& p : particles)
+    {
+        EXPECT_EQ(p.y, 0);
+        p = back(p);
+    }
+    Vec3 middle = low + 0.5 * size;
+    middle.y = 0;
+    EXPECT_LT(norm(centre_of(particles) - middle), 0.01 * dp);
+    for (const int axis : {0, 2})
+        EXPECT_NEAR(second_moment(particles, axis) / (size[axis] * size[axis] / 12), 1, 0.002);
+    EXPECT_GT(nearest_pair(particles), 0.7 * dp);
+}
+
 /// The particles of a beam of 2 x 0.5 in the plane that is turned, turned back.
 std::vector<Vec3> beam(double angle, std::optional<int> sheets)
 {
