@@ -24,6 +24,9 @@ namespace
 /// dp.
 constexpr double gap_dp = 0.85;
 constexpr double gap_depth_dp = 0.45;
+/// In hollow bodies none is a neighbour of a node before the surface, from where a fill would take
+/// it.
+constexpr double gap_depth_of_hollow_dp = 1;
 
 /// Adds spans to each slab.
 void unite_with(std::vector<Spans>& slabs, const std::vector<Spans>& more, int threads)
@@ -43,6 +46,7 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
     double deepest = 0;
     for (const FittedBody& layer : out.layers) deepest = std::max(deepest, layer.depth);
     const double enough = deepest + grid.dp;
+    const double least_depth = out.body.is_solid ? gap_depth_dp : gap_depth_of_hollow_dp;
     for (const Span& span : nodes)
         for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
         {
@@ -50,7 +54,7 @@ Spans find_gaps(const Spans& nodes, std::size_t x, const PointGrid& taken, const
                 {static_cast<double>(x), static_cast<double>(span.y), static_cast<double>(z)});
             if (taken.has_nearer(p, gap_dp * grid.dp)) continue;
             const DepthPlace here = wall.at(p);
-            if (here.depth < gap_depth_dp * grid.dp) continue;
+            if (here.depth < least_depth * grid.dp) continue;
             // Thick enough for all layers and nodes under them: they are the ones to fill it.
             if (wall.at(here.foot + enough * here.direction).depth > enough * (1 - 1e-6)) continue;
             append_node(found, span.y, z);
