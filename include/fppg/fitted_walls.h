@@ -97,10 +97,11 @@ struct FittedBody
     std::uint32_t owner = no_index;
     int layer = 0;    ///< 0, 1, ... from the surface on
     double depth = 0; ///< metres behind the surface; its mesh is so deep but for its facets' chords
-    /// Of a sheet that got layers by FitSettings::sheet_depths_dp, or a closed surface that is
-    /// thickened: the step of the scene; else no_index.
+    /// Of a sheet that got layers by FitSettings::sheet_depths_dp, of the wet side of a plate, or a
+    /// closed surface that is thickened: the step of the scene; else no_index.
     std::uint32_t layered_step = no_index;
     bool is_thickened = false; ///< a shell that was thinner than two layers of mDBC
+    bool is_wet_side = false;  ///< the side of a plate that fluid is on, and no other
     /// The surface that the depth is measured from; null where the body is no layer.
     std::shared_ptr<const WallDepth> wall;
     bool is_layer() const { return owner != no_index; }

@@ -154,16 +154,18 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     const LatticeGrid& grid = scene.def->grid;
     // What has fluid on both sides of it holds with one layer.
     const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
-    const double thickness = thickens ? thicken(grid, threads, shape) : 0;
     std::optional<WetSide> side;
-    if (rest != nullptr && !settings.sheet_depths_dp.empty() && !settings.gives_sheets)
+    if (rest != nullptr && (settings.thickens || !settings.sheet_depths_dp.empty()) &&
+        !settings.gives_sheets)
         side = wet_side(shape, grid, settings.fluid_places, threads);
+    if (side && settings.thickens && !side->is_around) side.reset();
     if (side && settings.has_fluid_behind)
     {
         // Between its sides a shell has the layers that a closed surface has.
         side.reset();
         settings.has_fluid_behind = false;
     }
+    const double thickness = thickens && !side ? thicken(grid, threads, shape) : 0;
     if (side)
     {
         shape = std::move(side->sheet);
@@ -183,6 +185,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     if (file == nullptr && !out.body.is_solid) out.warnings.clear();
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
     out.body.is_thickened = thickness > 0;
+    out.body.is_wet_side = side.has_value();
     if (side) out.warnings = warnings_of(*side, settings.depths_dp.size(), grid.dp);
     out.body.continued_along = std::move(axes);
     out.body.line = draw.source.line;
@@ -478,7 +481,7 @@ std::vector<FittedStep> fit_walls(const Scene& scene, const std::set<std::uint32
         const FitSettings* settings =
             fit_settings(scene.def->fit, scene.steps[i].draw->state->mk.mk);
         for (FittedDraw& draw : out[i].draws)
-            if ((settings->depths_dp.empty() && !draw.layers.empty()) ||
+            if ((settings->depths_dp.empty() && !draw.layers.empty()) || draw.body.is_wet_side ||
                 (draw.body.is_thickened && !draw.body.is_solid))
                 draw.body.layered_step = i;
         // Zones of <vres> are meant to have parts of a case only.

@@ -7,8 +7,11 @@
 #include "meshes/mesh_query.h"
 #include "meshes/wall_ball.h"
 #include "offset/quadric.h"
+#include "scene/surfaces.h"
+#include "walls/fluid_boxes.h"
 #include "walls/layer_builder.h"
 #include "walls/plate_thickness.h"
+#include "walls/wet_side.h"
 
 #include <fmt/format.h>
 
@@ -122,6 +125,22 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
     return out;
 }
 
+/// Whether a shape is fitted to the side of it that is round the fluid, and not thickened.
+bool has_wet_side(const Scene& scene, const SceneStep& step, int threads)
+{
+    if (step.combination || step.shape() == nullptr) return false;
+    const std::vector<Vec3> places =
+        places_in_fluid(boxes_of_fluid(scene, threads), scene, *step.draw, threads);
+    if (places.empty()) return false;
+    const std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, threads);
+    return std::any_of(shapes.begin(), shapes.end(),
+                       [&](const ShapeMesh& shape)
+                       {
+                           const auto side = wet_side(shape, scene.def->grid, places, threads);
+                           return side && side->is_around;
+                       });
+}
+
 } // namespace
 
 bool may_thicken(const CaseDef& def, std::uint16_t mk)
@@ -190,8 +209,8 @@ std::string thickened_from(double thickness, double dp)
 std::vector<StepSurface> fitted_surfaces(const Scene& scene, const SceneStep& step, int threads)
 {
     const MkValue& mk = step.draw->state->mk;
-    return step_surfaces(scene, step, threads,
-                         mk.kind == MkKind::Bound && may_thicken(*scene.def, mk.mk));
+    const bool thickens = mk.kind == MkKind::Bound && may_thicken(*scene.def, mk.mk);
+    return step_surfaces(scene, step, threads, thickens && !has_wet_side(scene, step, threads));
 }
 
 } // namespace fppg

@@ -34,6 +34,8 @@ constexpr double before_dp = 2;
 constexpr std::size_t most_looks = 12;
 constexpr double opposite_face = -0.5; ///< cosine, of the two faces of a plate
 constexpr double sharp = 0.5;          ///< the same of a face and a rim
+/// Of the six along axes: a trough has three, a tank without a lid five.
+constexpr int ways_around = 3;
 
 /// The thin facets of a plate; of each the side that it belongs to, named by a facet.
 class PlateSides
@@ -47,6 +49,7 @@ public:
           threads_(threads),
           sides_(mesh.facets.size()),
           shells_(mesh.facets.size()),
+          is_of_side_(mesh.facets.size(), 0),
           all_(fppg::soup_of(mesh), threads)
     {
         for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
@@ -55,11 +58,12 @@ public:
             {
                 if (other == no_index) continue;
                 shells_.join(f, other);
-                if (is_thin(f) && is_thin(other) && !is_round_the_rim(f, other))
+                if (is_thin(f) == is_thin(other) && !is_round_the_rim(f, other))
                     sides_.join(f, other);
             }
             if (is_thin(f)) thin_.push_back(f);
         }
+        join_thick_parts();
         std::stable_sort(thin_.begin(), thin_.end(),
                          [&](std::uint32_t a, std::uint32_t b)
                          { return mesh.areas[a] > mesh.areas[b]; });
@@ -83,10 +87,25 @@ public:
             todo.pop_back();
             for (int axis = 0; axis < 3; ++axis)
                 for (const bool is_up : {true, false})
-                    if (const std::optional<std::uint32_t> f = first_facet(p, axis, is_up);
-                        f && is_thin(*f) && (mesh_.normals[*f][axis] < 0) == is_up)
-                        take(*f, todo);
+                    if (const auto f = facing_facet(p, axis, is_up)) take(*f, todo);
         }
+    }
+
+    /// Whether the first facets along three axes or more, of both senses each, from a place in the
+    /// fluid are of a wet side.
+    bool is_around(const std::vector<Vec3>& fluid)
+    {
+        return std::any_of(fluid.begin(), fluid.end(),
+                           [&](const Vec3& p)
+                           {
+                               int ways = 0;
+                               for (int axis = 0; axis < 3; ++axis)
+                                   for (const bool is_up : {true, false})
+                                       if (const auto f = facing_facet(p, axis, is_up);
+                                           f && is_wet(*f))
+                                           ++ways;
+                               return ways >= ways_around;
+                           });
     }
 
     /// The shells that fluid is on one face of: their wet sides make up the sheet, all facets of
@@ -101,7 +120,7 @@ public:
             Shell& shell = shells[shells_.find(f)];
             if (!counts(f)) continue;
             shell.area += mesh_.areas[f];
-            if (!is_thin(f))
+            if (!is_of_side(f))
             {
                 if (!is_of_rim(f)) shell.thick_area += mesh_.areas[f];
                 continue;
@@ -118,7 +137,7 @@ public:
             const Shell& shell = shells[shells_.find(f)];
             if (!shell.is_wet_on_one())
                 add(f, out.rest.soup);
-            else if (is_thin(f) && is_wet(f))
+            else if (is_of_side(f) && is_wet(f))
             {
                 add(f, out.sheet.soup);
                 out.thickness = std::min(out.thickness, thickness_[f]);
@@ -146,6 +165,8 @@ private:
     };
 
     bool is_thin(std::uint32_t f) const { return std::isfinite(thickness_[f]); }
+    /// Thin, or where a plate is thicker, as in the corner where it bends.
+    bool is_of_side(std::uint32_t f) const { return is_of_side_[f] != 0; }
     bool is_wet(std::uint32_t f) { return wet_.contains(sides_.find(f)); }
     /// Whether the way from one facet to the other leads over an edge as the rim of a plate has:
     /// where plates cross, their rims are before others, and thin.
@@ -163,9 +184,26 @@ private:
                                              mesh_.vertices[mesh_.facets[f][(k + 1) % 3]]));
         return 2 * mesh_.areas[f] < plate_dp * dp_ * longest;
     }
+    /// Facets that are not thin belong to the side that alone is beside them: rims are beside two.
+    void join_thick_parts()
+    {
+        std::map<std::uint32_t, std::set<std::uint32_t>> beside;
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+        {
+            if (is_thin(f)) continue;
+            std::set<std::uint32_t>& sides = beside[sides_.find(f)];
+            for (const std::uint32_t other : mesh_.neighbours[f])
+                if (other != no_index && is_thin(other)) sides.insert(sides_.find(other));
+        }
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+            is_of_side_[f] = is_thin(f) || beside[sides_.find(f)].size() == 1 ? 1 : 0;
+        for (const auto& [part, sides] : beside)
+            if (sides.size() == 1) sides_.join(part, *sides.begin());
+    }
     /// Whether the other face of the plate behind a facet is wet too.
     bool is_wet_behind(std::uint32_t f)
     {
+        if (!is_thin(f)) return false;
         const Vec3 behind = middle(f) - mesh_.normals[f] * (1.5 * thickness_[f]);
         const std::uint32_t other = all_.closest_point(behind).facet;
         return other != f && shells_.find(other) == shells_.find(f) && is_thin(other) &&
@@ -202,6 +240,13 @@ private:
         return out;
     }
 
+    /// The same, if it belongs to a side of a plate, which looks to p.
+    std::optional<std::uint32_t> facing_facet(const Vec3& p, int axis, bool is_up) const
+    {
+        const std::optional<std::uint32_t> f = first_facet(p, axis, is_up);
+        return f && is_of_side(*f) && (mesh_.normals[*f][axis] < 0) == is_up ? f : std::nullopt;
+    }
+
     /// Notes that the side of a facet is wet; where that is new, adds places before it.
     void take(std::uint32_t facet, std::vector<Vec3>& todo)
     {
@@ -223,6 +268,7 @@ private:
     int threads_;
     DisjointSet sides_;
     DisjointSet shells_;
+    std::vector<char> is_of_side_;
     std::vector<std::uint32_t> thin_;                              ///< the largest first
     std::map<std::uint32_t, std::vector<std::uint32_t>> looks_of_; ///< of each side, most_looks
     MeshQuery all_;
@@ -251,6 +297,7 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
     std::optional<WetSide> out = sides.sheet(
         [&](std::uint32_t f) { return !grid.is_2d || !lies_across(mesh.normals[f], 1); });
     if (!out) return std::nullopt;
+    out->is_around = sides.is_around(fluid);
     out->rest.is_solid = shape.is_solid;
     out->of_mesh = report.warnings;
     return out;

@@ -164,6 +164,83 @@ TEST(ThinShell, OfModifiedBoundariesIsThickenedUnlessFluidIsOnBothSides)
     EXPECT_LT(of_plate(both), 22u);
 }
 
+/// An open cup about z on z = 0: its inner radius at the bottom and at the top, its height and the
+/// thickness of its wall and its bottom.
+fppg::TriangleSoup cup(double bottom, double top, double height, double wall)
+{
+    constexpr int sides = 64;
+    const std::array<std::pair<double, double>, 6> profile{{{0, 0},
+                                                            {bottom + wall, 0},
+                                                            {top + wall, height},
+                                                            {top, height},
+                                                            {bottom, wall},
+                                                            {0, wall}}};
+    fppg::TriangleSoup out;
+    for (std::size_t k = 0; k + 1 < profile.size(); ++k)
+        for (int i = 0; i < sides; ++i)
+        {
+            const auto place = [&](const std::pair<double, double>& of, int side)
+            {
+                const double angle = 2 * std::numbers::pi * (side % sides) / sides;
+                return Vec3{of.first * std::cos(angle), of.first * std::sin(angle), of.second};
+            };
+            const Vec3 a = place(profile[k], i), b = place(profile[k], i + 1);
+            const Vec3 c = place(profile[k + 1], i + 1), d = place(profile[k + 1], i);
+            if (profile[k].first > 0) out.vertices.insert(out.vertices.end(), {a, b, c});
+            if (profile[k + 1].first > 0) out.vertices.insert(out.vertices.end(), {a, c, d});
+        }
+    return out;
+}
+
+/// Water under mDBC in a cup from a file.
+Result filled_cup(const fppg::TriangleSoup& mesh, const std::string& spacing, double level)
+{
+    const TemporaryFolder folder;
+    write_stl(folder / "cup.stl", mesh);
+    CaseText text = case_of(
+        R"(<setmkbound mk="0" /><drawfilestl file=")" + folder / "cup.stl" + R"(" />)",
+        fmt::format(
+            R"(<bodyfitted boundary="mdbc" /><fill mkfluid="0" level="{}"><seed x="0.011" y="0.007" z="{}" /></fill>)",
+            level, 0.8 * level));
+    text.dp = spacing;
+    text.pointmin = R"(<pointmin x="-0.4" y="-0.4" z="-0.1" />)";
+    text.pointmax = R"(<pointmax x="0.4" y="0.4" z="0.5" />)";
+    text.execution = no_penetration;
+    Result out = make(text);
+    EXPECT_EQ(out.code, 0) << out.output;
+    return out;
+}
+
+/// The cup was thickened to 2 dp, which took a tenth of its volume, and 0.0086 g were left.
+TEST(ThinCup, OfModifiedBoundariesHasAllLayersBehindTheSideWithTheWater)
+{
+    constexpr double dp = 0.0114, wall = 0.00793, level = 0.2;
+    const Result made = filled_cup(cup(0.108, 0.2345, 0.36, wall), "0.0114", level);
+    EXPECT_FALSE(contains(made.output, "thickened to 2 dp")) << made.output;
+    EXPECT_TRUE(contains(made.output, "3 rows stand on that side and behind it")) << made.output;
+    EXPECT_LT(left_of_gravity(made), 0.002);
+    const auto radius = [](double z)
+    { return 0.108 + (0.2345 - 0.108) * (z - wall) / (0.36 - wall); };
+    const double end = radius(level);
+    const double volume =
+        std::numbers::pi / 3 * (level - wall) * (0.108 * 0.108 + 0.108 * end + end * end);
+    EXPECT_NEAR(static_cast<double>(made.fluid().size()) * std::pow(dp, 3) / volume, 1, 0.06);
+}
+
+/// Where the lattice is in step with the bottom its nodes stand in the plane of the first layer.
+/// One that was far from all particles counted as a place in the wall, and the fill took it.
+TEST(Cup, HasNoWaterInItsWall)
+{
+    constexpr double radius = 0.1800173, wall = 0.0257698;
+    const Result made = filled_cup(cup(radius, radius, 0.2964367, wall), "0.00635", 0.035);
+    EXPECT_GT(made.fluid().size(), 2000u);
+    for (const Vec3& p : made.fluid())
+    {
+        EXPECT_GT(p.z, wall);
+        EXPECT_LT(std::hypot(p.x, p.y), radius);
+    }
+}
+
 /// Water under mDBC, up to a height, in a tank of sheets with a body from a file.
 Result tank_with(const fppg::TriangleSoup& body, double top)
 {
