@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fppg
 {
@@ -20,6 +21,8 @@ namespace
 
 constexpr std::size_t gaps_logged = 50;
 constexpr std::size_t gaps_warned_of = 5;
+/// Of what is asked for, by which whole rows are off.
+constexpr double largest_of_rows = 0.01;
 /// Ways out up to so much wider than what is closed anyway are looked for.
 constexpr int widest_leak_nodes = 12;
 /// Of all sets of spans that are held at the same time, a column of the box.
@@ -184,6 +187,24 @@ private:
         return "";
     }
 
+    /// Where that is far from what is asked for.
+    void tell_of_whole_rows(const Cavity& cavity, const FillLevel& level)
+    {
+        if (op_.measure == FillMeasure::Level) return;
+        const double wanted = op_.measure == FillMeasure::Litres
+                                  ? op_.amount
+                                  : op_.amount / 100 * litres(cavity.node_count);
+        const double share = litres(level.nodes) / wanted - 1;
+        if (std::abs(share) <= largest_of_rows) return;
+        report_.warnings.push_back(fmt::format(
+            "the fill has {:.4g} {}, {:.1f} % {} than the {:.4g} asked for, as it ends with a "
+            "whole "
+            "row of nodes. A smaller dp comes nearer; where walls are body-fitted <fluidband "
+            "mass=\"exact\"> gives its particles the mass of what is asked for.",
+            litres(level.nodes), litre_name(), 100 * std::abs(share), share > 0 ? "more" : "less",
+            wanted));
+    }
+
     void tell(const Cavity& cavity, const FillLevel& level)
     {
         const auto share = [&](std::uint64_t nodes)
@@ -212,6 +233,8 @@ private:
             report_.warnings.push_back(fmt::format(
                 "the fill added no node: the lowest node of the cavity is at height {:g}{}",
                 metres(level.height), up));
+        else
+            tell_of_whole_rows(cavity, level);
         if (cavity.gaps.empty()) return;
         for (std::size_t i = 0; i < std::min(cavity.gaps.size(), gaps_logged); ++i)
             report_.log.push_back(fmt::format("gap {}: {}", i + 1, text(cavity.gaps[i])));

@@ -59,32 +59,30 @@ VesselSpace::VesselSpace(const CasePlan& plan, std::size_t vessel)
             static_cast<std::uint32_t>(std::ceil(size[axis] / grid_.dp)) + 1 + 2 * margin;
     }
     state_.assign(count(), 0);
-    mark_parts(plan);
+    of_floats_.assign(count(), 0);
+    for (const NewPart& part : plan.parts)
+        if (part.role != PartRole::Inlet)
+            mark_part(part, plan.options->threads,
+                      part.role == PartRole::Floating ? of_floats_ : state_);
     find_spills();
     find_largest();
 }
 
-void VesselSpace::mark_parts(const CasePlan& plan)
+void VesselSpace::mark_part(const NewPart& part, int threads, std::vector<std::uint8_t>& marks)
 {
-    for (const NewPart& part : plan.parts)
-    {
-        if (part.role == PartRole::Floating || part.role == PartRole::Inlet) continue;
-        mark_surface(part.tree->soup());
-        if (!part.report.is_watertight) continue;
-        const SpanSet inside = inside_spans(part.tree->soup(), grid_, plan.options->threads);
-        for (std::size_t slab = 0; slab < inside.slabs.size(); ++slab)
-            for (const Span& span : inside.slabs[slab])
-            {
-                const std::size_t column =
-                    ((inside.x_begin + slab) * grid_.n[1] + span.y) * grid_.n[2];
-                for (std::uint32_t z = span.z_begin; z < span.z_end; ++z)
-                    state_[column + z] |= in_solid;
-            }
-    }
+    mark_surface(part.tree->soup(), marks);
+    if (!part.report.is_watertight) return;
+    const SpanSet inside = inside_spans(part.tree->soup(), grid_, threads);
+    for (std::size_t slab = 0; slab < inside.slabs.size(); ++slab)
+        for (const Span& span : inside.slabs[slab])
+        {
+            const std::size_t column = ((inside.x_begin + slab) * grid_.n[1] + span.y) * grid_.n[2];
+            for (std::uint32_t z = span.z_begin; z < span.z_end; ++z) marks[column + z] |= in_solid;
+        }
 }
 
 /// Marks the nodes nearest to places a quarter of the spacing apart on all facets.
-void VesselSpace::mark_surface(const TriangleSoup& soup)
+void VesselSpace::mark_surface(const TriangleSoup& soup, std::vector<std::uint8_t>& marks) const
 {
     const auto mark = [&](const Vec3& p)
     {
@@ -96,7 +94,7 @@ void VesselSpace::mark_surface(const TriangleSoup& soup)
             if (!(at >= 0 && at < static_cast<double>(n))) return;
             node = node * n + static_cast<std::size_t>(at);
         }
-        state_[node] |= at_surface;
+        marks[node] |= at_surface;
     };
     for (std::size_t f = 0; f < soup.size(); ++f)
     {
@@ -236,10 +234,11 @@ Vec3 VesselSpace::seed(double level) const
 {
     // Layers of nodes inwards from all that is not of the room.
     std::vector<std::uint8_t> is_room(count(), 0);
-    for (const std::uint32_t node : nodes_) is_room[node] = 1;
+    for (const std::uint32_t node : nodes_) is_room[node] = of_floats_[node] == 0 ? 1 : 0;
     std::vector<std::uint32_t> now;
     for (const std::uint32_t node : nodes_)
     {
+        if (is_room[node] == 0) continue;
         bool is_border = false;
         for_each_beside(node, [&](std::size_t beside) { is_border |= is_room[beside] == 0; });
         if (is_border) now.push_back(node);

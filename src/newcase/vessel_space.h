@@ -26,14 +26,15 @@ public:
     double spacing() const { return grid_.dp; }
     double volume_below(double z) const;
     double level_of(double volume) const; ///< z
-    /// A place in it, as far from all surfaces as can be, below a level where there is one.
+    /// A place in it, as far from all surfaces as can be, those of floats too, below a level where
+    /// there is one.
     Vec3 seed(double level) const;
 
 private:
     std::size_t count() const;
     Vec3 place(std::size_t node) const;
-    void mark_parts(const CasePlan& plan);
-    void mark_surface(const TriangleSoup& soup);
+    void mark_part(const NewPart& part, int threads, std::vector<std::uint8_t>& marks);
+    void mark_surface(const TriangleSoup& soup, std::vector<std::uint8_t>& marks) const;
     void find_spills();
     void find_largest();
     Vec3 spill_place(std::size_t node) const;
@@ -41,7 +42,8 @@ private:
     void for_each_beside(std::size_t node, const Visit& visit) const;
 
     LatticeGrid grid_;
-    std::vector<std::uint8_t> state_; ///< bit 0: in a solid, bit 1: a surface passes
+    std::vector<std::uint8_t> state_;     ///< bit 0: in a solid, bit 1: a surface passes
+    std::vector<std::uint8_t> of_floats_; ///< the same of parts that float, which are in the room
     /// For each node that is free the lowest height over which a way leads out, in nodes.
     std::vector<std::uint16_t> spill_;
     std::vector<std::uint32_t> way_out_;   ///< the next node on that way; its own where it ends

@@ -113,6 +113,20 @@ TEST(FillCavity, TakesTheLayersOfATankWhoseLitresAreNearest)
     EXPECT_EQ(tank.report.log[1], "filled 1200 nodes, 1200 litres, 100 % of the cavity, level 2");
 }
 
+/// Nobody was told that 210 litres were 240.
+TEST(FillCavity, WarnsWhereWholeRowsAreFarFromTheLitres)
+{
+    for (const auto& [litres, said] : {std::pair{210.0, "14.3 % more than the 210 asked for"},
+                                       {170.0, "5.9 % less than the 170 asked for"},
+                                       {161.0, ""}})
+    {
+        Room tank = open_tank();
+        tank.filled(fill_at({10, 10, 10}, FillMeasure::Litres, litres));
+        ASSERT_EQ(tank.report.warnings.size(), *said == 0 ? 0U : 1U);
+        if (*said != 0) EXPECT_TRUE(says(tank.report.warnings[0], said)) << tank.report.warnings[0];
+    }
+}
+
 TEST(FillCavity, FillsAnOpenTankUpToALevelBelowItsRimOnly)
 {
     Room tank = open_tank();

@@ -133,6 +133,26 @@ TEST(NewCase, RefusesMoreThanAnOpenHousingHolds)
     EXPECT_EQ(fault_of(parts.options), "");
 }
 
+/// The fill started inside the float, so that the definition could not be run; and a part that
+/// holds fluid was looked for in gearboxes and tanks only.
+TEST(NewCase, FillsAVesselWithAFloatInIt)
+{
+    const TemporaryFolder folder;
+    write_stl(folder / "cup.stl", test::housing({-0.1, -0.1, 0}, {0.1, 0.1, 0.2}, 0.02, true));
+    write_stl(folder / "ball.stl", box({-0.04, -0.04, 0.06}, {0.04, 0.04, 0.14}));
+    for (const bool is_named : {false, true})
+    {
+        std::vector<std::string> words{"new",          "cup.stl",     "ball.stl", "-o",
+                                       "Case_Def.xml", "--float",     "ball=500", "--fill",
+                                       "water=60%",    "--particles", "30k",      "--no-picture"};
+        if (is_named) words.insert(words.end(), {"--housing", "cup"});
+        const test::RunResult made = test::run(folder, words);
+        ASSERT_EQ(made.code, 0) << made.output;
+        const test::RunResult run = test::run(folder, {"Case_Def", "out/Case", "-save:none"});
+        EXPECT_EQ(run.code, 0) << run.output;
+    }
+}
+
 TEST(NewCase, TellsOfAHoleInTheWallOfAHousing)
 {
     // Without the facets of both walls at x = -0.026 and -0.03: oil runs out there, from the lowest
