@@ -198,8 +198,8 @@ void choose_housing(CasePlan& plan)
         housing = part_named(plan, given, option);
     else
     {
-        const bool is_needed = plan.kind == CaseKind::Gearbox || plan.kind == CaseKind::Tank ||
-                               !o.fill.empty();
+        const bool is_needed =
+            plan.kind == CaseKind::Gearbox || plan.kind == CaseKind::Tank || !o.fill.empty();
         if (!is_needed) return;
         housing = plan.parts.size();
         for (std::size_t i = 0; i < plan.parts.size(); ++i)

@@ -15,8 +15,8 @@ namespace fppg
 
 // Plates and shells for mDBC that have room for one layer, through which fluid goes (solver v5.4, a
 // gate of 1 dp before water of 17 dp: 157 of 5,220 particles in 0.14 s; of 2 dp: none). They are
-// thickened to 2 dp, evenly to both sides: the nodes of the lattice hold fluid as far off. Those that
-// are round fluid have a wet side instead (wet_side.h).
+// thickened to 2 dp, evenly to both sides: the nodes of the lattice hold fluid as far off. Those
+// that are round fluid have a wet side instead (wet_side.h).
 
 /// Whether plates of a mk are thickened: in as many layers for mDBC as fluid sees, and not
 /// floating, as bodies that float weigh what their shape does.

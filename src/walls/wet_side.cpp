@@ -50,6 +50,7 @@ public:
           sides_(mesh.facets.size()),
           shells_(mesh.facets.size()),
           is_of_side_(mesh.facets.size(), 0),
+          is_wet_(mesh.facets.size(), 0),
           all_(fppg::soup_of(mesh), threads)
     {
         for (std::uint32_t f = 0; f < mesh.facets.size(); ++f)
@@ -89,6 +90,7 @@ public:
                 for (const bool is_up : {true, false})
                     if (const auto f = facing_facet(p, axis, is_up)) take(*f, todo);
         }
+        join_corners();
     }
 
     /// Whether the first facets along three axes or more, of both senses each, from a place in the
@@ -118,6 +120,8 @@ public:
         for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
         {
             Shell& shell = shells[shells_.find(f)];
+            const auto& beside = mesh_.neighbours[f];
+            shell.is_open |= std::find(beside.begin(), beside.end(), no_index) != beside.end();
             if (!counts(f)) continue;
             shell.area += mesh_.areas[f];
             if (!is_of_side(f))
@@ -136,7 +140,11 @@ public:
         {
             const Shell& shell = shells[shells_.find(f)];
             if (!shell.is_wet_on_one())
-                add(f, out.rest.soup);
+            {
+                // Where slabs touch edge to edge they are several pieces; those that are dry are
+                // the backs of others.
+                if (shell.wet_area > 0 || !shell.is_open) add(f, out.rest.soup);
+            }
             else if (is_of_side(f) && is_wet(f))
             {
                 add(f, out.sheet.soup);
@@ -155,6 +163,7 @@ private:
         double thick_area = 0; ///< but for rims
         double wet_area = 0;
         double area_of_both = 0; ///< wet where the other face is wet too
+        bool is_open = false;
 
         bool is_wet_on_one() const
         {
@@ -167,7 +176,7 @@ private:
     bool is_thin(std::uint32_t f) const { return std::isfinite(thickness_[f]); }
     /// Thin, or where a plate is thicker, as in the corner where it bends.
     bool is_of_side(std::uint32_t f) const { return is_of_side_[f] != 0; }
-    bool is_wet(std::uint32_t f) { return wet_.contains(sides_.find(f)); }
+    bool is_wet(std::uint32_t f) const { return is_wet_[f] != 0; }
     /// Whether the way from one facet to the other leads over an edge as the rim of a plate has:
     /// where plates cross, their rims are before others, and thin.
     bool is_round_the_rim(std::uint32_t f, std::uint32_t other) const
@@ -184,21 +193,44 @@ private:
                                              mesh_.vertices[mesh_.facets[f][(k + 1) % 3]]));
         return 2 * mesh_.areas[f] < plate_dp * dp_ * longest;
     }
-    /// Facets that are not thin belong to the side that alone is beside them: rims are beside two.
+    /// Facets that are not thin belong to the side that alone is beside them.
     void join_thick_parts()
     {
-        std::map<std::uint32_t, std::set<std::uint32_t>> beside;
+        std::vector<std::uint32_t> part_of(mesh_.facets.size());
         for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
         {
+            part_of[f] = sides_.find(f);
             if (is_thin(f)) continue;
-            std::set<std::uint32_t>& sides = beside[sides_.find(f)];
+            std::set<std::uint32_t>& sides = beside_[part_of[f]];
             for (const std::uint32_t other : mesh_.neighbours[f])
                 if (other != no_index && is_thin(other)) sides.insert(sides_.find(other));
         }
         for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
-            is_of_side_[f] = is_thin(f) || beside[sides_.find(f)].size() == 1 ? 1 : 0;
-        for (const auto& [part, sides] : beside)
-            if (sides.size() == 1) sides_.join(part, *sides.begin());
+            is_of_side_[f] = is_thin(f) || beside_[part_of[f]].size() == 1 ? 1 : 0;
+        for (auto part = beside_.begin(); part != beside_.end();)
+        {
+            const bool is_joined = part->second.size() == 1;
+            if (is_joined) sides_.join(part->first, *part->second.begin());
+            part = is_joined ? beside_.erase(part) : std::next(part);
+        }
+    }
+    /// Those between several sides that are all wet, or all dry, belong to these; rims are between
+    /// both.
+    void join_corners()
+    {
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+            is_wet_[f] = is_of_side(f) && wet_.contains(sides_.find(f)) ? 1 : 0;
+        for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f)
+        {
+            const auto part = is_of_side(f) ? beside_.end() : beside_.find(sides_.find(f));
+            if (part == beside_.end() || part->second.empty()) continue;
+            const auto wet =
+                std::count_if(part->second.begin(), part->second.end(),
+                              [&](std::uint32_t side) { return wet_.contains(sides_.find(side)); });
+            if (wet > 0 && wet < static_cast<std::ptrdiff_t>(part->second.size())) continue;
+            is_of_side_[f] = 1;
+            is_wet_[f] = wet > 0 ? 1 : 0;
+        }
     }
     /// Whether the other face of the plate behind a facet is wet too.
     bool is_wet_behind(std::uint32_t f)
@@ -269,6 +301,9 @@ private:
     DisjointSet sides_;
     DisjointSet shells_;
     std::vector<char> is_of_side_;
+    std::vector<char> is_wet_; ///< of facets, once find_wet() is done
+    /// The parts that belong to no side, with the sides beside them.
+    std::map<std::uint32_t, std::set<std::uint32_t>> beside_;
     std::vector<std::uint32_t> thin_;                              ///< the largest first
     std::map<std::uint32_t, std::vector<std::uint32_t>> looks_of_; ///< of each side, most_looks
     MeshQuery all_;

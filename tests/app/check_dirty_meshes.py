@@ -49,7 +49,7 @@ MODES = {
     "fitted": (MESH.format('fppg:fill="inside"'), "", "-fit:raw", 1),
     "Boolean": (MESH.format('fppg:name="ball"') + BLOCK, '<bodyfitted mkbound="0-9" /><boolean op="difference" '
                 'mkbound="1"><part ref="block" /><part ref="ball" /></boolean>', "-fit:raw", 1),
-    "fill": (MESH.format(""), '<fill mkfluid="0" seed="@0.5,@0.5,@0.3" percent="60" />', "-fit:off", 1),
+    "fill": (MESH.format(""), '<fill mkfluid="0" seed="@0.5,@0.5,@0.3" percent="66" />', "-fit:off", 1),
     "mDBC": (MESH.format(""), '<bodyfitted mkbound="0" boundary="mdbc" />', "-fit:raw", 2),
 }
 
