@@ -41,6 +41,7 @@ struct Judgement
     int iterations;
     int first;
 };
+constexpr double many_holes = 0.05; ///< of all particles
 constexpr Judgement of_many{3, 18};
 constexpr Judgement of_few{12, 58};
 
@@ -106,7 +107,7 @@ public:
             if (iteration + quiet_end > count - last_part) continue;
             for (const Renewal& renewal : renewals)
                 if (renewal.iteration == iteration) renew(renewal.limits, false);
-            if (report_.after.particles >= few_particles) continue;
+            if (!takes_care()) continue;
             for (const Renewal& renewal : late_renewals)
                 if (renewal.iteration == iteration) renew(renewal.limits, false);
         }
@@ -216,9 +217,18 @@ private:
         return !options_.on_progress || options_.on_progress(report_.after);
     }
 
+    /// Few cost little; where many were put into holes, as rows on a cone part from one another,
+    /// the places where they are close lie far from those where they are not.
+    bool takes_care() const
+    {
+        return report_.after.particles < few_particles ||
+               static_cast<double>(report_.inserted) >
+                   many_holes * static_cast<double>(report_.after.particles);
+    }
+
     bool is_settled(const std::vector<double>& variations) const
     {
-        const auto [iterations, first] = report_.after.particles < few_particles ? of_few : of_many;
+        const auto [iterations, first] = takes_care() ? of_few : of_many;
         const auto now = static_cast<int>(variations.size()) - 1;
         if (now < first) return false;
         const double before = variations[static_cast<std::size_t>(now - iterations)];

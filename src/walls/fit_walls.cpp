@@ -157,8 +157,8 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     std::optional<WetSide> side;
     if (rest != nullptr && (settings.thickens || !settings.sheet_depths_dp.empty()) &&
         !settings.gives_sheets)
-        side = wet_side(shape, grid, settings.fluid_places, threads);
-    if (side && settings.thickens && !side->is_around) side.reset();
+        side = wet_side(shape, grid, settings.fluid_places, thin_for_wet_side(settings), threads);
+    if (side && settings.thickens && !side->holds_fluid(grid.dp)) side.reset();
     if (side && settings.has_fluid_behind)
     {
         // Between its sides a shell has the layers that a closed surface has.

@@ -22,11 +22,12 @@ constexpr double no_plate_dp = 4;
 constexpr double off_middle = 0.6;
 constexpr double least_plate_share = 0.5; ///< of the surface of a plate
 
-std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+std::vector<double> thicknesses(const SurfaceMesh& mesh, const LatticeGrid& grid, double thin_dp,
+                                int threads)
 {
     const MeshQuery query(soup_of(mesh), threads);
     query.prepare_nearest();
-    const double reach = (1 - 1e-9) * plate_dp * grid.dp;
+    const double reach = (1 - 1e-9) * thin_dp * grid.dp;
     std::vector<double> out(mesh.facets.size(), std::numeric_limits<double>::infinity());
     parallel_for(
         out.size(), threads,
@@ -78,9 +79,11 @@ bool may_be_plate(const TriangleSoup& soup, double dp)
     return 2 * std::abs(volume) < no_plate_dp * dp * area;
 }
 
-PlateThickness plate_thickness(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads)
+PlateThickness plate_thickness(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads,
+                               double thin_dp)
 {
-    PlateThickness out{thicknesses(mesh, grid, threads), std::numeric_limits<double>::infinity()};
+    PlateThickness out{thicknesses(mesh, grid, thin_dp, threads),
+                       std::numeric_limits<double>::infinity()};
     double thin = 0;
     for (std::size_t f = 0; f < mesh.facets.size(); ++f)
     {

@@ -19,8 +19,8 @@ bool may_be_plate(const TriangleSoup& soup, double dp);
 
 struct PlateThickness
 {
-    /// Per facet how thick the body is behind it, metres; infinite where it is thicker than
-    /// plate_dp, and in 2D of facets across the plane of the particles.
+    /// Per facet how thick the body is behind it, metres; infinite where it is thicker than asked
+    /// for, and in 2D of facets across the plane of the particles.
     std::vector<double> of_facets;
     double least = 0; ///< metres; infinite: nothing is thin
     double area = 0;  ///< of the surface, m2
@@ -29,6 +29,8 @@ struct PlateThickness
     bool is_plate = false;
 };
 
-PlateThickness plate_thickness(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads);
+/// thin_dp  what is thicker is not thin, dp
+PlateThickness plate_thickness(const SurfaceMesh& mesh, const LatticeGrid& grid, int threads,
+                               double thin_dp = plate_dp);
 
 } // namespace fppg

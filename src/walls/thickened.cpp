@@ -132,12 +132,15 @@ bool has_wet_side(const Scene& scene, const SceneStep& step, int threads)
     const std::vector<Vec3> places =
         places_in_fluid(boxes_of_fluid(scene, threads), scene, *step.draw, threads);
     if (places.empty()) return false;
+    const double thin_dp =
+        thin_for_wet_side(*fit_settings(scene.def->fit, step.draw->state->mk.mk));
     const std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, threads);
     return std::any_of(shapes.begin(), shapes.end(),
                        [&](const ShapeMesh& shape)
                        {
-                           const auto side = wet_side(shape, scene.def->grid, places, threads);
-                           return side && side->is_around;
+                           const auto side =
+                               wet_side(shape, scene.def->grid, places, thin_dp, threads);
+                           return side && side->holds_fluid(scene.def->grid.dp);
                        });
 }
 

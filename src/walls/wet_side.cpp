@@ -41,10 +41,11 @@ constexpr int ways_around = 3;
 class PlateSides
 {
 public:
-    PlateSides(const SurfaceMesh& mesh, const std::vector<double>& thickness, double dp,
-               int threads)
+    PlateSides(const SurfaceMesh& mesh, const std::vector<double>& thickness, double thin,
+               double dp, int threads)
         : mesh_(mesh),
           thickness_(thickness),
+          thin_dp_(thin),
           dp_(dp),
           threads_(threads),
           sides_(mesh.facets.size()),
@@ -148,6 +149,7 @@ public:
             else if (is_of_side(f) && is_wet(f))
             {
                 add(f, out.sheet.soup);
+                out.is_of_closed = out.is_of_closed && !shell.is_open;
                 out.thickness = std::min(out.thickness, thickness_[f]);
             }
         }
@@ -191,7 +193,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k)
             longest = std::max(longest, norm(mesh_.vertices[mesh_.facets[f][k]] -
                                              mesh_.vertices[mesh_.facets[f][(k + 1) % 3]]));
-        return 2 * mesh_.areas[f] < plate_dp * dp_ * longest;
+        return 2 * mesh_.areas[f] < thin_dp_ * dp_ * longest;
     }
     /// Facets that are not thin belong to the side that alone is beside them.
     void join_thick_parts()
@@ -296,6 +298,7 @@ private:
 
     const SurfaceMesh& mesh_;
     const std::vector<double>& thickness_;
+    double thin_dp_;
     double dp_;
     int threads_;
     DisjointSet sides_;
@@ -313,7 +316,7 @@ private:
 } // namespace
 
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
-                                const std::vector<Vec3>& fluid, int threads)
+                                const std::vector<Vec3>& fluid, double thin_dp, int threads)
 {
     if (fluid.empty() || shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp))
         return std::nullopt;
@@ -325,9 +328,9 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
                      .is_solid = shape.is_solid},
                     threads, report);
     if (mesh.facets.empty() || !report.is_watertight) return std::nullopt;
-    const PlateThickness thickness = plate_thickness(mesh, grid, threads);
+    const PlateThickness thickness = plate_thickness(mesh, grid, threads, thin_dp);
     if (!thickness.is_plate) return std::nullopt;
-    PlateSides sides(mesh, thickness.of_facets, grid.dp, threads);
+    PlateSides sides(mesh, thickness.of_facets, thin_dp, grid.dp, threads);
     sides.find_wet(fluid);
     std::optional<WetSide> out = sides.sheet(
         [&](std::uint32_t f) { return !grid.is_2d || !lies_across(mesh.normals[f], 1); });
@@ -336,6 +339,12 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
     out->rest.is_solid = shape.is_solid;
     out->of_mesh = report.warnings;
     return out;
+}
+
+double thin_for_wet_side(const FitSettings& settings)
+{
+    const bool is_mdbc = settings.boundary == WallBoundary::Mdbc && !settings.depths_dp.empty();
+    return is_mdbc ? settings.depths_dp.back() + 0.5 : plate_dp;
 }
 
 std::vector<std::string> warnings_of(const WetSide& side, std::size_t rows, double dp)

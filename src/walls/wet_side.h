@@ -4,6 +4,8 @@
 #include "fppg/lattice.h"
 #include "fppg/vec.h"
 
+#include "walls/plate_thickness.h"
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -28,6 +30,15 @@ struct WetSide
     /// Whether it is round the fluid, as tanks, housings, pipes and troughs are, and gates and
     /// baffles, to whose other side fluid may come, are not.
     bool is_around = false;
+    /// Whether it is of closed shells only. Where slabs touch, one of them may go on behind
+    /// another.
+    bool is_of_closed = true;
+
+    /// Whether a wall of modified boundaries has this side alone, instead of layers of both.
+    bool holds_fluid(double dp) const
+    {
+        return is_around && (is_of_closed || thickness < plate_dp * dp);
+    }
     std::vector<std::string> of_mesh; ///< warnings
 };
 
@@ -36,8 +47,13 @@ struct WetSide
 ///
 /// fluid  places in it, of which each is on the side of the nearest thin facet, and on those that
 ///        face it along an axis
+/// thin_dp  what is thicker is no plate, dp
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
-                                const std::vector<Vec3>& fluid, int threads);
+                                const std::vector<Vec3>& fluid, double thin_dp, int threads);
+
+/// How thin walls of a mk are that have a wet side, dp: those of modified boundaries have no room
+/// for all layers, those of dynamic ones for two rows.
+double thin_for_wet_side(const FitSettings& settings);
 
 /// Those of its mesh, and one of its rows.
 std::vector<std::string> warnings_of(const WetSide& side, std::size_t rows, double dp);
