@@ -151,6 +151,7 @@ public:
                 add(f, out.sheet.soup);
                 out.is_of_closed = out.is_of_closed && !shell.is_open;
                 out.thickness = std::min(out.thickness, thickness_[f]);
+                if (is_thin(f)) out.thickest = std::max(out.thickest, thickness_[f]);
             }
         }
         if (out.sheet.soup.vertices.empty()) return std::nullopt;

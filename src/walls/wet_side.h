@@ -27,6 +27,7 @@ struct WetSide
     ShapeMesh sheet;      ///< it looks to the fluid
     ShapeMesh rest;       ///< shells with fluid on both of their faces, or too thick
     double thickness = 0; ///< the least of the plate, metres
+    double thickest = 0;  ///< the greatest of its facets that are thin
     /// Whether it is round the fluid, as tanks, housings, pipes and troughs are, and gates and
     /// baffles, to whose other side fluid may come, are not.
     bool is_around = false;
@@ -37,7 +38,7 @@ struct WetSide
     /// Whether a wall of modified boundaries has this side alone, instead of layers of both.
     bool holds_fluid(double dp) const
     {
-        return is_around && (is_of_closed || thickness < plate_dp * dp);
+        return is_around && (is_of_closed || thickest < plate_dp * dp);
     }
     std::vector<std::string> of_mesh; ///< warnings
 };
