@@ -186,7 +186,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
     out.body.is_thickened = thickness > 0;
     out.body.is_wet_side = side.has_value();
-    if (side) out.warnings = warnings_of(*side, settings.depths_dp.size(), grid.dp);
+    if (side) out.warnings = warnings_of(*side, settings.depths_dp, grid.dp);
     out.body.continued_along = std::move(axes);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;

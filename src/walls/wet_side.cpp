@@ -34,7 +34,7 @@ constexpr double before_dp = 2;
 constexpr std::size_t most_looks = 12;
 constexpr double opposite_face = -0.5; ///< cosine, of the two faces of a plate
 constexpr double sharp = 0.5;          ///< the same of a face and a rim
-/// Of the six along axes: a trough has three, a tank without a lid five.
+/// Of the six: a trough has three, a tank without a lid five.
 constexpr int ways_around = 3;
 
 /// The thin facets of a plate; of each the side that it belongs to, named by a facet.
@@ -94,8 +94,8 @@ public:
         join_corners();
     }
 
-    /// Whether the first facets along three axes or more, of both senses each, from a place in the
-    /// fluid are of a wet side.
+    /// Whether of the six ways along axes from a place in the fluid three or more first meet a wet
+    /// side.
     bool is_around(const std::vector<Vec3>& fluid)
     {
         return std::any_of(fluid.begin(), fluid.end(),
@@ -348,13 +348,16 @@ double thin_for_wet_side(const FitSettings& settings)
     return is_mdbc ? settings.depths_dp.back() + 0.5 : plate_dp;
 }
 
-std::vector<std::string> warnings_of(const WetSide& side, std::size_t rows, double dp)
+std::vector<std::string> warnings_of(const WetSide& side, const std::vector<double>& depths_dp,
+                                     double dp)
 {
     std::vector<std::string> out = side.of_mesh;
     out.push_back(fmt::format(
         "it is {:.3g} m thick, too thin for the rows of particles that fluid on one side of it "
-        "feels: {} rows stand on that side and behind it, {:.3g} m deep.",
-        side.thickness, rows, static_cast<double>(rows - 1) * dp));
+        "feels: {} rows stand {}, the last {:.3g} m behind it.",
+        side.thickness, depths_dp.size(),
+        depths_dp.front() > 0 ? "behind that side" : "on that side and behind it",
+        depths_dp.back() * dp));
     return out;
 }
 

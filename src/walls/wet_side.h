@@ -24,10 +24,11 @@ namespace fppg
 /// The side of a plate or shell that fluid is on.
 struct WetSide
 {
-    ShapeMesh sheet;      ///< it looks to the fluid
-    ShapeMesh rest;       ///< shells with fluid on both of their faces, or too thick
-    double thickness = 0; ///< the least of the plate, metres
-    double thickest = 0;  ///< the greatest of its facets that are thin
+    ShapeMesh sheet;                  ///< it looks to the fluid
+    ShapeMesh rest;                   ///< shells with fluid on both of their faces, or too thick
+    std::vector<std::string> of_mesh; ///< warnings
+    double thickness = 0;             ///< the least of the plate, metres
+    double thickest = 0;              ///< the greatest of its facets that are thin
     /// Whether it is round the fluid, as tanks, housings, pipes and troughs are, and gates and
     /// baffles, to whose other side fluid may come, are not.
     bool is_around = false;
@@ -40,7 +41,6 @@ struct WetSide
     {
         return is_around && (is_of_closed || thickest < plate_dp * dp);
     }
-    std::vector<std::string> of_mesh; ///< warnings
 };
 
 /// Nothing where the shape is no plate, or fluid is on both faces of all its shells. A tank of thin
@@ -57,6 +57,7 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
 double thin_for_wet_side(const FitSettings& settings);
 
 /// Those of its mesh, and one of its rows.
-std::vector<std::string> warnings_of(const WetSide& side, std::size_t rows, double dp);
+std::vector<std::string> warnings_of(const WetSide& side, const std::vector<double>& depths_dp,
+                                     double dp);
 
 } // namespace fppg
