@@ -155,10 +155,7 @@ FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const Fi
     // What has fluid on both sides of it holds with one layer.
     const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
     std::optional<WetSide> side;
-    if (rest != nullptr && (settings.thickens || !settings.sheet_depths_dp.empty()) &&
-        !settings.gives_sheets)
-        side = wet_side(shape, grid, settings.fluid_places, thin_for_wet_side(settings), threads);
-    if (side && settings.thickens && !side->holds_fluid(grid.dp)) side.reset();
+    if (rest != nullptr) side = wet_side(shape, grid, settings, threads);
     if (side && settings.has_fluid_behind)
     {
         // Between its sides a shell has the layers that a closed surface has.

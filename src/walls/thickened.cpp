@@ -125,23 +125,19 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
     return out;
 }
 
-/// Whether a shape is fitted to the side of it that is round the fluid, and not thickened.
+/// Whether a shape that may be thickened is fitted to its wet_side() instead.
 bool has_wet_side(const Scene& scene, const SceneStep& step, int threads)
 {
     if (step.combination || step.shape() == nullptr) return false;
-    const std::vector<Vec3> places =
+    FitSettings settings = *fit_settings(scene.def->fit, step.draw->state->mk.mk);
+    settings.thickens = true;
+    settings.fluid_places =
         places_in_fluid(boxes_of_fluid(scene, threads), scene, *step.draw, threads);
-    if (places.empty()) return false;
-    const double thin_dp =
-        thin_for_wet_side(*fit_settings(scene.def->fit, step.draw->state->mk.mk));
+    if (settings.fluid_places.empty()) return false;
     const std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, threads);
     return std::any_of(shapes.begin(), shapes.end(),
                        [&](const ShapeMesh& shape)
-                       {
-                           const auto side =
-                               wet_side(shape, scene.def->grid, places, thin_dp, threads);
-                           return side && side->holds_fluid(scene.def->grid.dp);
-                       });
+                       { return wet_side(shape, scene.def->grid, settings, threads).has_value(); });
 }
 
 } // namespace

@@ -94,23 +94,6 @@ public:
         join_corners();
     }
 
-    /// Whether of the six ways along axes from a place in the fluid three or more first meet a wet
-    /// side.
-    bool is_around(const std::vector<Vec3>& fluid)
-    {
-        return std::any_of(fluid.begin(), fluid.end(),
-                           [&](const Vec3& p)
-                           {
-                               int ways = 0;
-                               for (int axis = 0; axis < 3; ++axis)
-                                   for (const bool is_up : {true, false})
-                                       if (const auto f = facing_facet(p, axis, is_up);
-                                           f && is_wet(*f))
-                                           ++ways;
-                               return ways >= ways_around;
-                           });
-    }
-
     /// The shells that fluid is on one face of: their wet sides make up the sheet, all facets of
     /// the others the rest.
     ///
@@ -149,13 +132,20 @@ public:
             else if (is_of_side(f) && is_wet(f))
             {
                 add(f, out.sheet.soup);
-                out.is_of_closed = out.is_of_closed && !shell.is_open;
+                is_of_closed_ = is_of_closed_ && !shell.is_open;
                 out.thickness = std::min(out.thickness, thickness_[f]);
-                if (is_thin(f)) out.thickest = std::max(out.thickest, thickness_[f]);
+                if (is_thin(f)) thickest_ = std::max(thickest_, thickness_[f]);
             }
         }
         if (out.sheet.soup.vertices.empty()) return std::nullopt;
         return out;
+    }
+
+    /// Whether sheet() is round the fluid. Where thicker slabs touch, one of them may go on behind
+    /// another.
+    bool holds(const std::vector<Vec3>& fluid) const
+    {
+        return is_around(fluid) && (is_of_closed_ || thickest_ < plate_dp * dp_);
     }
 
 private:
@@ -175,6 +165,23 @@ private:
                    thick_area <= most_else * area;
         }
     };
+
+    /// Whether of the six ways along axes from a place in the fluid three or more first meet a wet
+    /// side.
+    bool is_around(const std::vector<Vec3>& fluid) const
+    {
+        return std::any_of(fluid.begin(), fluid.end(),
+                           [&](const Vec3& p)
+                           {
+                               int ways = 0;
+                               for (int axis = 0; axis < 3; ++axis)
+                                   for (const bool is_up : {true, false})
+                                       if (const auto f = facing_facet(p, axis, is_up);
+                                           f && is_wet(*f))
+                                           ++ways;
+                               return ways >= ways_around;
+                           });
+    }
 
     bool is_thin(std::uint32_t f) const { return std::isfinite(thickness_[f]); }
     /// Thin, or where a plate is thicker, as in the corner where it bends.
@@ -312,13 +319,18 @@ private:
     std::map<std::uint32_t, std::vector<std::uint32_t>> looks_of_; ///< of each side, most_looks
     MeshQuery all_;
     std::set<std::uint32_t> wet_; ///< sides
+    double thickest_ = 0;         ///< of the thin facets of sheet(), metres
+    bool is_of_closed_ = true;    ///< sheet() is of closed shells only
 };
 
 } // namespace
 
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
-                                const std::vector<Vec3>& fluid, double thin_dp, int threads)
+                                const FitSettings& settings, int threads)
 {
+    if (settings.gives_sheets || (!settings.thickens && settings.sheet_depths_dp.empty()))
+        return std::nullopt;
+    const std::vector<Vec3>& fluid = settings.fluid_places;
     if (fluid.empty() || shape.soup.size() == 0 || !may_be_plate(shape.soup, grid.dp))
         return std::nullopt;
     MeshReport report;
@@ -329,23 +341,17 @@ std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
                      .is_solid = shape.is_solid},
                     threads, report);
     if (mesh.facets.empty() || !report.is_watertight) return std::nullopt;
+    const double thin_dp = settings.thickens ? settings.depths_dp.back() + 0.5 : plate_dp;
     const PlateThickness thickness = plate_thickness(mesh, grid, threads, thin_dp);
     if (!thickness.is_plate) return std::nullopt;
     PlateSides sides(mesh, thickness.of_facets, thin_dp, grid.dp, threads);
     sides.find_wet(fluid);
     std::optional<WetSide> out = sides.sheet(
         [&](std::uint32_t f) { return !grid.is_2d || !lies_across(mesh.normals[f], 1); });
-    if (!out) return std::nullopt;
-    out->is_around = sides.is_around(fluid);
+    if (!out || (settings.thickens && !sides.holds(fluid))) return std::nullopt;
     out->rest.is_solid = shape.is_solid;
     out->of_mesh = report.warnings;
     return out;
-}
-
-double thin_for_wet_side(const FitSettings& settings)
-{
-    const bool is_mdbc = settings.boundary == WallBoundary::Mdbc && !settings.depths_dp.empty();
-    return is_mdbc ? settings.depths_dp.back() + 0.5 : plate_dp;
 }
 
 std::vector<std::string> warnings_of(const WetSide& side, const std::vector<double>& depths_dp,

@@ -2,11 +2,7 @@
 
 #include "fppg/fitted_walls.h"
 #include "fppg/lattice.h"
-#include "fppg/vec.h"
 
-#include "walls/plate_thickness.h"
-
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,33 +24,22 @@ struct WetSide
     ShapeMesh rest;                   ///< shells with fluid on both of their faces, or too thick
     std::vector<std::string> of_mesh; ///< warnings
     double thickness = 0;             ///< the least of the plate, metres
-    double thickest = 0;              ///< the greatest of its facets that are thin
-    /// Whether it is round the fluid, as tanks, housings, pipes and troughs are, and gates and
-    /// baffles, to whose other side fluid may come, are not.
-    bool is_around = false;
-    /// Whether it is of closed shells only. Where slabs touch, one of them may go on behind
-    /// another.
-    bool is_of_closed = true;
-
-    /// Whether a wall of modified boundaries has this side alone, instead of layers of both.
-    bool holds_fluid(double dp) const
-    {
-        return is_around && (is_of_closed || thickest < plate_dp * dp);
-    }
 };
 
-/// Nothing where the shape is no plate, or fluid is on both faces of all its shells. A tank of thin
-/// slabs that cross each other has several sides that look to the fluid; they make up one sheet.
+/// The side that a wall is fitted to, by its settings: thin plates of dynamic boundaries to the one
+/// with fluid, and those of modified ones that have no room for all layers too, where they are
+/// round the fluid, as tanks, housings, pipes and troughs are. Gates and baffles are not: fluid may
+/// come to their other side.
 ///
-/// fluid  places in it, of which each is on the side of the nearest thin facet, and on those that
-///        face it along an axis
-/// thin_dp  what is thicker is no plate, dp
+/// Nothing where the shape is no such plate, or fluid is on both faces of all its shells. A tank of
+/// thin slabs that cross each other has several sides that look to the fluid; they make up one
+/// sheet.
+///
+/// settings  with fluid_places, of which each is on the side of the nearest thin facet, and on
+/// those
+///           that face it along an axis; and with `thickens`
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
-                                const std::vector<Vec3>& fluid, double thin_dp, int threads);
-
-/// How thin walls of a mk are that have a wet side, dp: those of modified boundaries have no room
-/// for all layers, those of dynamic ones for two rows.
-double thin_for_wet_side(const FitSettings& settings);
+                                const FitSettings& settings, int threads);
 
 /// Those of its mesh, and one of its rows.
 std::vector<std::string> warnings_of(const WetSide& side, const std::vector<double>& depths_dp,
