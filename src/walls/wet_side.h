@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fppg/case_def.h"
 #include "fppg/fitted_walls.h"
 #include "fppg/lattice.h"
 
@@ -35,9 +36,8 @@ struct WetSide
 /// thin slabs that cross each other has several sides that look to the fluid; they make up one
 /// sheet.
 ///
-/// settings  with fluid_places, of which each is on the side of the nearest thin facet, and on
-/// those
-///           that face it along an axis; and with `thickens`
+/// settings  with `thickens` and fluid_places: each is on the side of the nearest thin facet, and
+///           on those that face it along an axis
 std::optional<WetSide> wet_side(const ShapeMesh& shape, const LatticeGrid& grid,
                                 const FitSettings& settings, int threads);
 
