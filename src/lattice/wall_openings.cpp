@@ -125,13 +125,14 @@ void cut_openings(const std::vector<WallOpening>& openings, const FittedWalls& w
     for (const WallOpening& opening : openings)
     {
         const OpeningCutter cutter(opening, walls, dp, threads);
+        std::vector<char> opens = is_sheet;
+        for (const std::uint32_t body : opening.shaped) opens[body] = 0;
         parallel_for(
             is_cut.size(), threads,
             [&](std::size_t i)
             {
                 const std::uint32_t body = walls.particles.bodies[i];
-                if (is_cut[i] == 0 && is_sheet[body] != 0 && body < opening.bodies &&
-                    cutter.cuts(i))
+                if (is_cut[i] == 0 && opens[body] != 0 && body < opening.bodies && cutter.cuts(i))
                     is_cut[i] = 1;
             },
             1024);

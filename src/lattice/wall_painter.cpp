@@ -225,6 +225,8 @@ bool WallPainter::cut_by_shape(const SourceRef& draw, FittedStep& step)
         if (std::find(by.begin(), by.end(), &draw) == by.end()) continue;
         is_spared_[b] = 1;
         spared_mks_.push_back(bodies[b].mk);
+        for (WallOpening& opening : step.openings)
+            opening.shaped.push_back(static_cast<std::uint32_t>(b));
     }
     for (WallOpening& opening : step.openings)
     {

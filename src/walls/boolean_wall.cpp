@@ -20,11 +20,11 @@ namespace
 {
 
 /// The body of a combination, with its features.
-FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                   CombinedParts& combined, const FitSettings& settings, const LatticeGrid& grid,
+FittedBody body_of(CombinedParts& combined, const FitSettings& settings, const LatticeGrid& grid,
                    int threads)
 {
-    const std::vector<char> stays = staying_parts(tree, parts.size());
+    const std::vector<BooleanWallPart>& parts = combined.parts;
+    const std::vector<char> stays = staying_parts(*combined.tree, parts.size());
     BooleanMesh& result = combined.result;
     FittedBody body;
     for (std::size_t p = parts.size(); p-- > 0;)
@@ -33,7 +33,7 @@ FittedBody body_of(const std::vector<BooleanWallPart>& parts, const BooleanNode&
         body.mk = parts[p].mk;
         body.is_solid = body.is_solid || parts[p].is_solid;
     }
-    for (const std::uint32_t owner : result.owners) body.facet_mk.push_back(parts[owner].mk);
+    body.facet_mk = mks_of_facets(combined);
     body.mesh = std::move(result.mesh);
     body.report = std::move(result.report);
     body.report.facets_read = combined.facets_read;
@@ -98,12 +98,14 @@ std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination
     return parts;
 }
 
-CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                            double dp, int threads)
+CombinedParts combine_parts(std::vector<BooleanWallPart> parts, const BooleanNode& tree, double dp,
+                            int threads)
 {
     CombinedParts out;
+    out.parts = std::move(parts);
+    out.tree = &tree;
     std::vector<BooleanPart> operands;
-    for (const BooleanWallPart& part : parts)
+    for (const BooleanWallPart& part : out.parts)
     {
         MeshReport report;
         try
@@ -129,22 +131,40 @@ CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const Boo
     return out;
 }
 
+ShapeMesh shape_of(const CombinedParts& combined)
+{
+    ShapeMesh out;
+    out.soup = soup_of(combined.result.mesh);
+    const std::vector<char> stays = staying_parts(*combined.tree, combined.parts.size());
+    for (std::size_t p = 0; p < stays.size(); ++p)
+        out.is_solid = out.is_solid || (stays[p] != 0 && combined.parts[p].is_solid);
+    return out;
+}
+
+std::vector<std::uint16_t> mks_of_facets(const CombinedParts& combined)
+{
+    std::vector<std::uint16_t> out;
+    for (const std::uint32_t owner : combined.result.owners)
+        out.push_back(combined.parts[owner].mk);
+    return out;
+}
+
 bool is_hollowed_away(const Combination* combination, const GeometryError& error)
 {
     return combination != nullptr && combination->hollowed != nullptr &&
            dynamic_cast<const NothingLeft*>(&error) != nullptr;
 }
 
-FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                       const FitSettings& settings, const LatticeGrid& grid,
-                       const std::vector<ClipPlane>& clips, int threads)
+FittedDraw fit_boolean(CombinedParts&& combined, const FitSettings& settings,
+                       const LatticeGrid& grid, const std::vector<ClipPlane>& clips, int threads)
 {
-    CombinedParts combined = combine_parts(parts, tree, grid.dp, threads);
+    const std::vector<BooleanWallPart>& parts = combined.parts;
+    const BooleanNode& tree = *combined.tree;
     if (settings.thickens && !parts[0].is_surface)
         if (const double thickness = thicken(grid, threads, combined.result.mesh); thickness > 0)
             combined.warnings.push_back(thickened_from(thickness, grid.dp));
-    FittedDraw out = fit_body(body_of(parts, tree, combined, settings, grid, threads), settings,
-                              grid, clips, threads);
+    FittedDraw out =
+        fit_body(body_of(combined, settings, grid, threads), settings, grid, clips, threads);
     out.warnings.insert(out.warnings.begin(), combined.warnings.begin(), combined.warnings.end());
 
     std::vector<SpanSet> sets;

@@ -36,6 +36,8 @@ std::vector<BooleanWallPart> boolean_parts(const Scene& scene, const Combination
 /// Parts taken in, and the surface of their combination.
 struct CombinedParts
 {
+    std::vector<BooleanWallPart> parts;
+    const BooleanNode* tree = nullptr;
     std::deque<SurfaceMesh> meshes; ///< of the parts
     BooleanMesh result;             ///< at least one facet
     std::size_t facets_read = 0;    ///< of all parts
@@ -44,8 +46,14 @@ struct CombinedParts
 
 /// dp      metres; cracks of parts narrower than 0.15 dp are closed
 /// throws  GeometryError that names the part, NothingLeft for a result without a facet
-CombinedParts combine_parts(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                            double dp, int threads);
+CombinedParts combine_parts(std::vector<BooleanWallPart> parts, const BooleanNode& tree, double dp,
+                            int threads);
+
+/// Their combination as one shape: solid where a part that stays in it is.
+ShapeMesh shape_of(const CombinedParts& combined);
+
+/// Per facet of the result, the mk of the part whose solid lies behind it.
+std::vector<std::uint16_t> mks_of_facets(const CombinedParts& combined);
 
 /// Whether the error only says that voids or fluid hollow all of a solid away, which is none.
 bool is_hollowed_away(const Combination* combination, const GeometryError& error);
@@ -62,11 +70,10 @@ bool is_hollowed_away(const Combination* combination, const GeometryError& error
 /// share_out() says, and is drawn if that part is solid. A facet has the mk of the part whose solid
 /// lies behind it.
 ///
-/// parts   meshes in the coordinates of the case
-/// clips   as in fit_shape()
-/// throws  GeometryError without the place of the draw
-FittedDraw fit_boolean(const std::vector<BooleanWallPart>& parts, const BooleanNode& tree,
-                       const FitSettings& settings, const LatticeGrid& grid,
-                       const std::vector<ClipPlane>& clips, int threads);
+/// combined  meshes in the coordinates of the case
+/// clips     as in fit_shape()
+/// throws    GeometryError without the place of the draw
+FittedDraw fit_boolean(CombinedParts&& combined, const FitSettings& settings,
+                       const LatticeGrid& grid, const std::vector<ClipPlane>& clips, int threads);
 
 } // namespace fppg

@@ -143,52 +143,80 @@ void layer_sheet(FitSettings& settings)
         settings.depths_dp = settings.sheet_depths_dp;
 }
 
-/// The wall of a shape.
-///
-/// rest  shells of it that get a wall of their own, as they have fluid on both sides, unlike the
-///       others; null: it is such a rest
-FittedDraw fit(const Scene& scene, const DrawOp& draw, ShapeMesh shape, const FitSettings& given,
-               int threads, ShapeMesh* rest)
+/// What a wall is fitted to, by its settings.
+struct WallForm
 {
-    FitSettings settings = given;
-    const LatticeGrid& grid = scene.def->grid;
-    // What has fluid on both sides of it holds with one layer.
-    const bool thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
+    FitSettings settings; ///< of what it is fitted to
     std::optional<WetSide> side;
-    if (rest != nullptr) side = wet_side(shape, grid, settings, threads);
-    if (side && settings.has_fluid_behind)
+    bool thickens = false;
+    std::string continued_along; ///< as FittedBody::continued_along, so far
+};
+
+/// has_sides  whether one side of it may stand for all
+WallForm form_of(const ShapeMesh& shape, const FitSettings& given, const LatticeGrid& grid,
+                 bool has_sides, int threads)
+{
+    WallForm out;
+    FitSettings& settings = out.settings;
+    settings = given;
+    // What has fluid on both sides of it holds with one layer.
+    out.thickens = settings.thickens && (shape.is_solid || !settings.has_fluid_behind);
+    if (has_sides) out.side = wet_side(shape, grid, settings, threads);
+    if (out.side && settings.has_fluid_behind)
     {
         // Between its sides a shell has the layers that a closed surface has.
-        side.reset();
+        out.side.reset();
         settings.has_fluid_behind = false;
     }
-    const double thickness = thickens && !side ? thicken(grid, threads, shape) : 0;
-    if (side)
-    {
-        shape = std::move(side->sheet);
-        *rest = std::move(side->rest);
-    }
-    if (!shape.is_solid && settings.may_be_open) settings = of_open_body(settings);
-    if (!shape.is_solid) layer_sheet(settings);
+    if (out.side) out.thickens = false;
+    const bool is_solid = shape.is_solid && !out.side;
+    if (!is_solid && settings.may_be_open) settings = of_open_body(settings);
+    if (!is_solid) layer_sheet(settings);
+    return out;
+}
+
+/// The wall of a shape, or of the one side of it that its form has.
+FittedDraw fit_form(const Scene& scene, const DrawOp& draw, ShapeMesh shape, WallForm form,
+                    int threads)
+{
+    const LatticeGrid& grid = scene.def->grid;
+    const double thickness = form.thickens ? thicken(grid, threads, shape) : 0;
+    if (form.side) shape = std::move(form.side->sheet);
     const BodyExtent extent =
         is_laid_whole(*scene.def, draw.state->mk.mk) ? BodyExtent::Whole : BodyExtent::NearDomain;
-    std::string axes;
     if (extent == BodyExtent::NearDomain && shape.cad == nullptr)
-        axes = continue_over_periods(grid, shape.soup);
+        form.continued_along += continue_over_periods(grid, shape.soup);
     FittedDraw out =
-        fit_shape(std::move(shape), settings, grid, draw.state->clips, extent, threads);
+        fit_shape(std::move(shape), form.settings, grid, draw.state->clips, extent, threads);
     const auto* file = shape_as<MeshFileOp>(draw);
     // A tank drawn without its lid is open on purpose.
     if (file == nullptr && !out.body.is_solid) out.warnings.clear();
     if (thickness > 0) out.warnings.push_back(thickened_from(thickness, grid.dp));
     out.body.is_thickened = thickness > 0;
-    out.body.is_wet_side = side.has_value();
-    if (side) out.warnings = warnings_of(*side, settings.depths_dp, grid.dp);
-    out.body.continued_along = std::move(axes);
+    out.body.is_wet_side = form.side.has_value();
+    if (form.side) out.warnings = warnings_of(*form.side, form.settings.depths_dp, grid.dp);
+    out.body.continued_along = std::move(form.continued_along);
     out.body.line = draw.source.line;
     out.body.name = draw.source.command;
     out.body.mk = draw.state->mk.mk;
     if (file != nullptr) out.body.name += " " + file->file;
+    return out;
+}
+
+/// The walls of a shape: where its form is one side, the shells that have fluid on both sides
+/// unlike the others are one more.
+std::vector<FittedDraw> fit_forms(const Scene& scene, const DrawOp& draw, ShapeMesh shape,
+                                  WallForm form, const FitSettings& given, int threads)
+{
+    ShapeMesh rest;
+    if (form.side) rest = std::move(form.side->rest);
+    std::vector<FittedDraw> out;
+    out.push_back(fit_form(scene, draw, std::move(shape), std::move(form), threads));
+    if (rest.soup.size() > 0)
+    {
+        WallForm of_rest = form_of(rest, given, scene.def->grid, false, threads);
+        out.push_back(fit_form(scene, draw, std::move(rest), std::move(of_rest), threads));
+    }
     return out;
 }
 
@@ -237,11 +265,10 @@ FittedStep fit_draw(const Scene& scene, const DrawOp& draw, const FitSettings& s
     if (state.draw_points)
         for (ShapeMesh& shape : shapes)
         {
-            ShapeMesh rest;
-            walls.push_back(
-                fit(scene, draw, grid.is_2d ? shape : std::move(shape), settings, threads, &rest));
-            if (rest.soup.size() > 0)
-                walls.push_back(fit(scene, draw, std::move(rest), settings, threads, nullptr));
+            WallForm form = form_of(shape, settings, grid, true, threads);
+            for (FittedDraw& wall : fit_forms(scene, draw, grid.is_2d ? shape : std::move(shape),
+                                              std::move(form), settings, threads))
+                walls.push_back(std::move(wall));
         }
     if (state.draw_points && lacks_section(shapes, walls, grid))
     {
@@ -279,11 +306,52 @@ std::string fluid_through(const TriangleSoup& sheet, double left)
         100 * (1 - left / area));
 }
 
+/// The walls of a combination of bodies.
+std::vector<FittedDraw> fit_bodies(const Scene& scene, const Combination& combination,
+                                   CombinedParts combined, std::string continued_along,
+                                   const FitSettings& settings, int threads)
+{
+    const LatticeGrid& grid = scene.def->grid;
+    const DrawOp& whole = combination.whole;
+    ShapeMesh shape = shape_of(combined);
+    WallForm form =
+        form_of(shape, settings, grid, may_have_sides(mks_of_facets(combined)), threads);
+    form.continued_along = std::move(continued_along);
+    std::vector<FittedDraw> out;
+    if (form.side)
+    {
+        std::vector<std::string>& warnings = form.side->of_mesh;
+        warnings.insert(warnings.begin(), combined.warnings.begin(), combined.warnings.end());
+        out = fit_forms(scene, whole, std::move(shape), std::move(form), settings, threads);
+    }
+    else
+    {
+        form.settings.thickens = form.thickens;
+        out.push_back(
+            fit_boolean(std::move(combined), form.settings, grid, whole.state->clips, threads));
+        out[0].body.continued_along = std::move(form.continued_along);
+    }
+    if (combination.hollowed != nullptr)
+        for (FittedDraw& draw : out) draw.hollowed_by = combination.hollowed->by;
+    return out;
+}
+
+/// A sheet less what cuts it: it is open where fluid was drawn through it.
+FittedDraw fit_cut_sheet(const Scene& scene, const Combination& combination, CombinedParts combined,
+                         const FitSettings& settings, int threads)
+{
+    const TriangleSoup sheet = combined.parts[0].soup;
+    FittedDraw out = fit_boolean(std::move(combined), settings, scene.def->grid,
+                                 combination.whole.state->clips, threads);
+    const std::vector<double>& areas = out.body.mesh.areas;
+    out.warnings = {fluid_through(sheet, std::accumulate(areas.begin(), areas.end(), 0.0))};
+    return out;
+}
+
 FittedStep fit_combination(const Scene& scene, const Combination& combination,
                            const FitSettings& settings, int threads)
 {
     const BooleanDef& boolean = *combination.boolean;
-    const DrawState& state = *combination.whole.state;
     const bool is_sheet = boolean.parts[0].is_surface;
     std::vector<BooleanWallPart> parts = boolean_parts(scene, combination, PartsAs::Drawn, threads);
     std::string axes; // of the part that goes on along most of them
@@ -294,32 +362,35 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
                 axes = std::move(of_part);
     FittedStep out;
     out.is_fitted = true;
-    if (!state.draw_points) return out;
+    if (!combination.whole.state->draw_points) return out;
+    const TriangleSoup sheet = is_sheet ? parts[0].soup : TriangleSoup{};
     try
     {
-        FittedDraw draw =
-            fit_boolean(parts, boolean.tree, settings, scene.def->grid, state.clips, threads);
-        const SourceRef& source = combination.whole.source;
-        draw.body.continued_along = axes;
-        draw.body.line = boolean.line;
-        draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
-        if (combination.hollowed != nullptr && !is_sheet)
-            draw.hollowed_by = combination.hollowed->by;
-        // A sheet is open where fluid was drawn through it.
-        const std::vector<double>& areas = draw.body.mesh.areas;
+        CombinedParts combined =
+            combine_parts(std::move(parts), boolean.tree, scene.def->grid.dp, threads);
         if (is_sheet)
-            draw.warnings = {
-                fluid_through(parts[0].soup, std::accumulate(areas.begin(), areas.end(), 0.0))};
-        say_place(scene, combination.whole, draw);
-        out.draws.push_back(std::move(draw));
+        {
+            out.draws.push_back(
+                fit_cut_sheet(scene, combination, std::move(combined), settings, threads));
+            out.draws[0].body.continued_along = axes;
+        }
+        else
+            out.draws =
+                fit_bodies(scene, combination, std::move(combined), axes, settings, threads);
     }
     catch (const GeometryError& e)
     {
         const std::string place = place_of(*scene.def, combination.whole.source);
         if (!is_hollowed_away(&combination, e))
             throw GeometryError(fmt::format("{}: {}", place, e.what()));
-        if (is_sheet)
-            out.warnings.push_back(fmt::format("{}: {}", place, fluid_through(parts[0].soup, 0)));
+        if (is_sheet) out.warnings.push_back(fmt::format("{}: {}", place, fluid_through(sheet, 0)));
+    }
+    const SourceRef& source = combination.whole.source;
+    for (FittedDraw& draw : out.draws)
+    {
+        draw.body.line = boolean.line;
+        draw.body.name = source.name.empty() ? source.command : source.command + " " + source.name;
+        say_place(scene, combination.whole, draw);
     }
     return out;
 }
@@ -431,13 +502,8 @@ FittedStep fit_step(const Scene& scene, const SceneStep& step, SheetLayers layer
     if (step.combination)
     {
         const Combination& combination = *step.combination;
-        if (combination.boolean->parts[0].is_surface)
-        {
-            own.fluid_places = places_in_fluid(fluid, scene, *combination.parts[0], threads);
-            layer_sheet(own);
-        }
-        else
-            for (const Box3& box : fluid) own.fluid_places.push_back(0.5 * (box.min + box.max));
+        own.fluid_places = places_in_fluid(fluid, scene, combination, threads);
+        if (combination.boolean->parts[0].is_surface) layer_sheet(own);
         return fit_combination(scene, *step.combination, *settings, threads);
     }
     if (step.shape() == nullptr || state.mode == DrawMode::Wire) return {};

@@ -36,6 +36,22 @@ Box3 box_of(const Scene& scene, const DrawOp& draw, int threads)
     return out;
 }
 
+std::vector<Vec3> places_beside(const Box3& body, const std::vector<Box3>& fluid,
+                                const LatticeGrid& grid)
+{
+    const auto surrounds = [&](const Box3& box, int axis) {
+        return box.min[axis] < body.min[axis] - grid.dp && box.max[axis] > body.max[axis] + grid.dp;
+    };
+    std::vector<Vec3> out;
+    for (const Box3& box : fluid)
+    {
+        const Vec3 middle = 0.5 * (box.min + box.max);
+        if (!body.has(middle, 0) || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
+            out.push_back(middle);
+    }
+    return out;
+}
+
 /// A box about a place in fluid: of a seed the place alone.
 Box3 box_about(const Vec3& seed)
 {
@@ -79,19 +95,22 @@ std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& s
                                   const DrawOp& draw, int threads)
 {
     if (fluid.empty()) return {};
-    const Box3 body = box_of(scene, draw, threads);
-    const LatticeGrid& grid = scene.def->grid;
-    const auto surrounds = [&](const Box3& box, int axis) {
-        return box.min[axis] < body.min[axis] - grid.dp && box.max[axis] > body.max[axis] + grid.dp;
-    };
-    std::vector<Vec3> out;
-    for (const Box3& box : fluid)
+    return places_beside(box_of(scene, draw, threads), fluid, scene.def->grid);
+}
+
+std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& scene,
+                                  const Combination& combination, int threads)
+{
+    if (fluid.empty()) return {};
+    Box3 body;
+    for (std::size_t p = 0; p < combination.parts.size(); ++p)
     {
-        const Vec3 middle = 0.5 * (box.min + box.max);
-        if (!body.has(middle, 0) || !surrounds(box, 0) || (!grid.is_2d && !surrounds(box, 1)))
-            out.push_back(middle);
+        if (combination.stays[p] == 0) continue;
+        const Box3 box = box_of(scene, *combination.parts[p], threads);
+        if (box.is_empty()) continue;
+        for (const Vec3& corner : {box.min, box.max}) body.add(corner);
     }
-    return out;
+    return places_beside(body, fluid, scene.def->grid);
 }
 
 std::vector<std::string> draw_shells_around_fluid(const Scene& scene, int threads, CaseDef& def)

@@ -18,6 +18,10 @@ std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads);
 std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& scene,
                                   const DrawOp& draw, int threads);
 
+/// The same for the body of a combination.
+std::vector<Vec3> places_in_fluid(const std::vector<Box3>& fluid, const Scene& scene,
+                                  const Combination& combination, int threads);
+
 /// Walls in layers that a case thickens inwards, around fluid (`<layers vdp="0,-1,-2">` of a tank):
 /// fluid stands before the innermost shell on the lattice, so that this one is their surface, and
 /// not the shape itself. Between both there was room for half as much fluid again in a tube of 13

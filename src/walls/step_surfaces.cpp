@@ -31,18 +31,11 @@ std::vector<StepSurface> step_surfaces(const Scene& scene, const SceneStep& step
             }
             return out;
         }
-        CombinedParts combined =
-            combine_parts(parts, step.combination->boolean->tree, scene.def->grid.dp, threads);
-        if (thickens && !parts[0].is_surface)
+        CombinedParts combined = combine_parts(std::move(parts), step.combination->boolean->tree,
+                                               scene.def->grid.dp, threads);
+        if (thickens && !combined.parts[0].is_surface)
             thicken(scene.def->grid, threads, combined.result.mesh);
-        StepSurface out;
-        out.shape.soup = soup_of(combined.result.mesh);
-        for (const std::uint32_t owner : combined.result.owners)
-            out.facet_mk.push_back(parts[owner].mk);
-        for (std::size_t p = 0; p < parts.size(); ++p)
-            out.shape.is_solid =
-                out.shape.is_solid || (step.combination->stays[p] != 0 && parts[p].is_solid);
-        return {std::move(out)};
+        return {{shape_of(combined), mks_of_facets(combined)}};
     }
     catch (const GeometryError& e)
     {

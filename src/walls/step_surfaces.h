@@ -4,8 +4,10 @@
 
 #include "scene/surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <vector>
 
@@ -19,6 +21,16 @@ struct StepSurface
     /// Of a combination, per facet the mk of the part whose solid lies behind it; else empty.
     std::vector<std::uint16_t> facet_mk;
 };
+
+/// Whether one side of a surface may stand for all of it: it would not know what facets have which
+/// mk.
+///
+/// facet_mk  StepSurface::facet_mk
+inline bool may_have_sides(const std::vector<std::uint16_t>& facet_mk)
+{
+    return std::adjacent_find(facet_mk.begin(), facet_mk.end(), std::not_equal_to<>()) ==
+           facet_mk.end();
+}
 
 /// The true surfaces that a step of a scene leaves: those of its shape, with all parts of
 /// setmknextauto as one body, or that of its combination. None for all other steps.

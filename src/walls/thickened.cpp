@@ -128,16 +128,28 @@ TriangleSoup slab_about(const TriangleSoup& soup, double dp)
 /// Whether a shape that may be thickened is fitted to its wet_side() instead.
 bool has_wet_side(const Scene& scene, const SceneStep& step, int threads)
 {
-    if (step.combination || step.shape() == nullptr) return false;
+    const Combination* combination = step.combination.get();
+    if (combination == nullptr && step.shape() == nullptr) return false;
     FitSettings settings = *fit_settings(scene.def->fit, step.draw->state->mk.mk);
     settings.thickens = true;
-    settings.fluid_places =
-        places_in_fluid(boxes_of_fluid(scene, threads), scene, *step.draw, threads);
+    const std::vector<Box3> fluid = boxes_of_fluid(scene, threads);
+    settings.fluid_places = combination != nullptr
+                                ? places_in_fluid(fluid, scene, *combination, threads)
+                                : places_in_fluid(fluid, scene, *step.draw, threads);
     if (settings.fluid_places.empty()) return false;
-    const std::vector<ShapeMesh> shapes = surfaces_of(scene, *step.draw, PartsAs::Drawn, threads);
-    return std::any_of(shapes.begin(), shapes.end(),
-                       [&](const ShapeMesh& shape)
-                       { return wet_side(shape, scene.def->grid, settings, threads).has_value(); });
+    std::vector<StepSurface> surfaces;
+    if (combination != nullptr)
+        surfaces = step_surfaces(scene, step, threads);
+    else
+        for (ShapeMesh& shape : surfaces_of(scene, *step.draw, PartsAs::Drawn, threads))
+            surfaces.push_back({std::move(shape), {}});
+    return std::any_of(
+        surfaces.begin(), surfaces.end(),
+        [&](const StepSurface& surface)
+        {
+            return may_have_sides(surface.facet_mk) &&
+                   wet_side(surface.shape, scene.def->grid, settings, threads).has_value();
+        });
 }
 
 } // namespace

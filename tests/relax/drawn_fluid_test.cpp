@@ -261,41 +261,28 @@ TEST(SheetLayers, AreInThinHollowBodiesInFluid)
     EXPECT_GT(inside, 10);
 }
 
-/// A pipe on a floor, its wall so many dp thick, with water.
-Result pipe_on_floor(double thickness)
+/// Layers behind the surface of hollow balls that are united stand in both.
+TEST(SheetLayers, AreInHollowBooleansInFluid)
 {
-    const auto rod = [](double radius)
+    const auto ball = [](const char* name, double x)
     {
         return fmt::format(
-            R"(<drawcylinder radius="{}"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.9" /></drawcylinder>)",
-            radius);
+            R"(<drawsphere fppg:name="{}" radius="0.15"><point x="{}" y="0.3" z="0.3" /></drawsphere>)",
+            name, x);
     };
-    return make(case_of(
-        R"(<setmkbound mk="0" />)" + rod(0.36 + thickness * dp) + "<setmkvoid />" + rod(0.36) +
-            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0" y="-0.1" z="-0.3" /><size x="1.2" y="1.2" z="0.3" /></drawbox>
-<setmkfluid mk="0" /><fillbox x="0.6" y="0.5" z="0.3"><modefill>void</modefill><point x="0.2" y="0.1" z="-0.1" /><size x="0.8" y="0.8" z="0.6" /></fillbox>)",
-        R"(<bodyfitted boundary="mdbc" />)"));
-}
-
-/// The wall is thickened, as fluid goes through one layer; evened out, there is as much fluid in
-/// the middle of the pipe as its volume holds.
-TEST(ThinWalls, OfMdbcAreThickenedToTwoLayers)
-{
-    const std::string said = "room for one layer of mDBC";
-    for (const bool is_thick : {false, true})
-    {
-        const Result made = pipe_on_floor(is_thick ? 4 : 1.5);
-        ASSERT_EQ(made.code, 0) << made.output;
-        EXPECT_EQ(contains(made.output, said), !is_thick) << made.output;
-        double nearest = 1e9;
-        double middle = 0;
-        for (const Vec3& p : made.bound())
-            if (p.z > 0.1) nearest = std::min(nearest, std::hypot(p.x - 0.6, p.y - 0.5));
-        for (const Vec3& p : made.fluid())
-            middle += p.z > 0.05 && p.z < 0.3 && std::hypot(p.x - 0.6, p.y - 0.5) < 0.18 ? 1 : 0;
-        EXPECT_NEAR(nearest, 0.36 + (is_thick ? 0.5 : 0.25) * dp, 0.01 * dp);
-        EXPECT_NEAR(middle * std::pow(dp, 3) / (std::numbers::pi * 0.18 * 0.18 * 0.25), 1, 0.12);
-    }
+    const Result made = make(case_of(
+        tank + R"(<setdrawmode mode="face" /><setmkbound mk="1" />)" + ball("A", 0.32) +
+            ball("B", 0.48) + water,
+        R"(<bodyfitted /><boolean op="union" mkbound="1"><part ref="A" /><part ref="B" /></boolean>)"));
+    ASSERT_EQ(made.code, 0) << made.output;
+    std::array<int, 2> inside{};
+    for (const Vec3& p : made.bound())
+        for (const std::size_t k : {0u, 1u})
+            if (const double depth = 0.15 - norm(p - Vec3{k == 0 ? 0.32 : 0.48, 0.3, 0.3});
+                depth > 0.6 * dp && (p.x < 0.4) == (k == 0))
+                ++inside[k];
+    EXPECT_GT(inside[0], 20);
+    EXPECT_GT(inside[1], 20);
 }
 
 /// Water behind a gate of one dp in a tank of faces. What floats keeps its volume.

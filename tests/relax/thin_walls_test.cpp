@@ -229,6 +229,63 @@ TEST(ThinCup, OfModifiedBoundariesHasAllLayersBehindTheSideWithTheWater)
     }
 }
 
+/// A pipe on a floor, its wall so many dp thick, with water.
+///
+/// bored  by a void, as GenCase does it; else by a `<boolean>`
+Result pipe_on_floor(double thickness, double spacing, bool bored)
+{
+    const auto rod = [](const char* name, double radius)
+    {
+        return fmt::format(
+            R"(<drawcylinder fppg:name="{}" radius="{}"><point x="0.6" y="0.5" z="0" /><point x="0.6" y="0.5" z="0.9" /></drawcylinder>)",
+            name, radius);
+    };
+    return make(case_of(
+        R"(<setmkbound mk="0" />)" + rod("rod", 0.36 + thickness * spacing) + "<setmkvoid />" +
+            rod("bore", 0.36) +
+            R"(<setmkbound mk="1" /><drawbox><boxfill>solid</boxfill><point x="0" y="-0.1" z="-0.3" /><size x="1.2" y="1.2" z="0.3" /></drawbox>
+<setmkfluid mk="0" /><fillbox x="0.6" y="0.5" z="0.3"><modefill>void</modefill><point x="0.2" y="0.1" z="-0.1" /><size x="0.8" y="0.8" z="0.6" /></fillbox>)",
+        std::string(R"(<bodyfitted boundary="mdbc" />)") +
+            (bored
+                 ? ""
+                 : R"(<boolean op="difference" mkbound="0"><part ref="rod" /><part ref="bore" /></boolean>)")));
+}
+
+/// Behind their inner side all layers stand, also beyond a wall that has no room for them; evened
+/// out, there is as much fluid in the middle of the pipe as its volume holds.
+TEST(ThinPipe, CutOutOfARodHasAllLayersBehindTheSideWithTheWater)
+{
+    constexpr double spacing = 0.05;
+    const std::string said = "too thin for the rows of particles that fluid on one side of it";
+    for (const auto& [thickness, bored] : {std::pair{4.0, true}, {1.5, true}, {1.5, false}})
+    {
+        const Result made = pipe_on_floor(thickness, spacing, bored);
+        ASSERT_EQ(made.code, 0) << made.output;
+        EXPECT_EQ(contains(made.output, said), thickness < 3) << made.output;
+        double nearest = 1e9;
+        double middle = 0;
+        std::array<int, 4> layers{};
+        for (const Vec3& p : made.bound())
+        {
+            const double r = std::hypot(p.x - 0.6, p.y - 0.5);
+            if (p.z > 0.1) nearest = std::min(nearest, r);
+            if (p.z > 0.2 && p.z < 0.7)
+                ++layers[std::min<std::size_t>(3, static_cast<std::size_t>((r - 0.36) / spacing))];
+        }
+        for (const std::size_t k : {0u, 1u, 2u})
+            EXPECT_NEAR(layers[k] * spacing * spacing /
+                            (2 * std::numbers::pi *
+                             (0.36 + (static_cast<double>(k) + 0.5) * spacing) * 0.5),
+                        1, 0.1)
+                << k;
+        for (const Vec3& p : made.fluid())
+            middle += p.z > 0.05 && p.z < 0.3 && std::hypot(p.x - 0.6, p.y - 0.5) < 0.18 ? 1 : 0;
+        EXPECT_NEAR(nearest, 0.36 + 0.5 * spacing, 0.01 * spacing);
+        EXPECT_NEAR(middle * std::pow(spacing, 3) / (std::numbers::pi * 0.18 * 0.18 * 0.25), 1,
+                    0.12);
+    }
+}
+
 /// Rows that go up a cone part from one another. Relaxation ended while they stood 15 % too thin
 /// below and too close above, and 0.005 g were left.
 TEST(ThinCup, HasEvenLayersWhereItIsACone)
