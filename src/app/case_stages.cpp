@@ -9,6 +9,7 @@
 
 #include "app/block_check.h"
 #include "app/body_table.h"
+#include "app/buffer_check.h"
 #include "app/fit_check.h"
 #include "app/lattice_fluid.h"
 #include "app/layer_gaps.h"
@@ -367,18 +368,20 @@ void prepare_particles(CaseRunState& run, MadeCase& made)
 void make_normals(CaseRunState& run, MadeCase& made)
 {
     made.shape_files = collect_shape_files(made.scene);
-    if (!made.def.normals.is_active) return;
-    run.stage("Normals",
-              [&]
-              {
-                  NormalsReport report;
-                  made.particles.bound_normals =
-                      compute_normals(made.def, made.particles, made.field,
-                                      normal_geometry(run, made), run.threads, report);
-                  made.normal_shapes = std::move(report.shapes);
-                  for (const std::string& line : report.log) run.log.line(line);
-                  for (std::string& w : report.warnings) run.warn(std::move(w));
-              });
+    if (made.def.normals.is_active)
+        run.stage("Normals",
+                  [&]
+                  {
+                      NormalsReport report;
+                      made.particles.bound_normals =
+                          compute_normals(made.def, made.particles, made.field,
+                                          normal_geometry(run, made), run.threads, report);
+                      made.normal_shapes = std::move(report.shapes);
+                      for (const std::string& line : report.log) run.log.line(line);
+                      for (std::string& w : report.warnings) run.warn(std::move(w));
+                  });
+    if (std::optional<std::string> stops = check_buffers(made.def, made.particles))
+        run.warn(std::move(*stops));
 }
 
 void balance(CaseRunState& run, MadeCase& made)

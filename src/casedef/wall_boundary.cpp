@@ -188,8 +188,8 @@ void draw_shells_once(CaseDef& def)
 
 void settle_boundaries(const AttributeReader& read, CaseDef& def)
 {
-    if (def.fit.is_empty()) return;
     def.solver.boundary = whole_parameter(def, "Boundary").value_or(1);
+    if (def.fit.is_empty()) return;
     def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
     def.solver.no_penetration = def.solver.boundary == 2 && def.solver.slip_mode >= 2 &&
                                 whole_parameter(def, "NoPenetration").value_or(0) == 1;

@@ -136,6 +136,17 @@ bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d)
     return BoxTest(box, is_2d)(p);
 }
 
+bool is_in_buffer(const VresDef& vres, std::size_t zone, const Vec3& p)
+{
+    if (!vres.is_active()) return false;
+    if (zone > 0 && !is_within(vres.zones[zone].inner, p, vres.is_2d)) return true;
+    return std::any_of(vres.zones.begin(), vres.zones.end(),
+                       [&](const VresZone& of) {
+                           return of.parent == static_cast<int>(zone) &&
+                                  is_within(of.outer_begin, p, vres.is_2d);
+                       });
+}
+
 std::vector<Spans> nodes_beyond_zone(const VresDef& vres, std::size_t zone, const RunField& field)
 {
     std::vector<Spans> out(field.slabs.size());

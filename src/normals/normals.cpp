@@ -5,6 +5,7 @@
 #include "fppg/files.h"
 #include "fppg/lattice.h"
 #include "fppg/particles.h"
+#include "fppg/vres.h"
 
 #include "core/parallel.h"
 #include "nodes/run_at.h"
@@ -14,6 +15,7 @@
 #include "normals/geometry_normals.h"
 #include "normals/other_surface.h"
 #include "normals/part_normals.h"
+#include "normals/shape_normals.h"
 #include "normals/wet_setup.h"
 #include "particles/initials.h"
 #include "particles/run_positions.h"
@@ -22,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace fppg
@@ -48,67 +51,6 @@ constexpr double folded_dp = 1e-6;
 Float3 as_float(const Vec3& v)
 {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-/// norplane: n = d u for |d| <= reach, d the distance along the unit normal u to the plane; both
-/// sides count (1,331 of 1,331 particles of GenCase v5.4.354).
-Vec3 to_plane(const Vec3& p, const Vec3& unit, double offset, double reach)
-{
-    const double d = offset - dot(p, unit);
-    return std::fabs(d) <= reach ? d * unit : Vec3{};
-}
-
-/// norsphere: the particles on the chosen side, where the sphere is within reach (1,260 of 1,260
-/// normals of GenCase v5.4.354). The centre itself has no direction.
-Vec3 to_sphere(const Vec3& p, const SphereNormals& sphere, double reach)
-{
-    const Vec3 out = p - sphere.center;
-    const double q = norm(out);
-    const bool is_inside = q < sphere.radius;
-    if (q == sphere.radius || is_inside != sphere.is_inside || q == 0) return {};
-    const double d = sphere.radius - q;
-    return std::fabs(d) <= reach ? (d / q) * out : Vec3{};
-}
-
-/// norcylinder. Inside: the shorter of the ways to the side and to the nearer cover (if its limit
-/// is on), their sum where they differ by less than 0.01 h, zero where the shorter one exceeds the
-/// reach. Outside: to the nearest point of the cylinder, whatever the limits; beyond the rims the
-/// reach counts for the shorter of the ways across and along. (GenCase v5.4.354: 3,178 of 3,180
-/// particles inside four oblique cylinders, 0.01 h lies between 0.0097 and 0.0110 h; 487 of 487
-/// around each of 12 cylinders with reaches from 0.2 h to 2.5 h.)
-Vec3 to_cylinder(const Vec3& p, const CylinderNormals& cylinder, double reach, double h)
-{
-    const Vec3 axis = cylinder.center2 - cylinder.center1;
-    const double height = norm(axis);
-    if (height == 0) return {};
-    const Vec3 unit = axis / height;
-    const double t = dot(p - cylinder.center1, unit);
-    const Vec3 from_axis = p - cylinder.center1 - t * unit;
-    const double q = norm(from_axis);
-    const bool is_between = t > 0 && t < height;
-    if (cylinder.is_inside)
-    {
-        if (!is_between || !(q < cylinder.radius)) return {};
-        const bool is_first = t <= height / 2;
-        const double side = q > 0 ? cylinder.radius - q : std::numeric_limits<double>::infinity();
-        const double cover = cylinder.limits[is_first ? 0 : 1]
-                                 ? (is_first ? t : height - t)
-                                 : std::numeric_limits<double>::infinity();
-        if (!(std::min(side, cover) <= reach)) return {};
-        const Vec3 to_side = q > 0 ? (side / q) * from_axis : Vec3{};
-        if (!std::isfinite(cover)) return to_side;
-        const Vec3 to_cover = (is_first ? -cover : cover) * unit;
-        if (std::fabs(side - cover) < 0.01 * h) return to_side + to_cover;
-        return side < cover ? to_side : to_cover;
-    }
-    const double axial = t < 0 ? -t : t > height ? height - t : 0;
-    const double radial = q > cylinder.radius ? cylinder.radius - q : 0;
-    if (axial != 0 && radial != 0)
-        return std::min(std::fabs(axial), std::fabs(radial)) <= reach
-                   ? axial * unit + (radial / q) * from_axis
-                   : Vec3{};
-    if (std::fabs(axial + radial) > reach) return {};
-    return radial != 0 ? (radial / q) * from_axis : axial * unit;
 }
 
 /// Length of a normal in the picture of svshapes: as GenCase v5.4.354 draws it, a fifth of the mean
@@ -297,7 +239,8 @@ private:
                             all_resized, normals_.size(), geometry.max_size_h, limit));
     }
 
-    /// Layers and what is under them look to the nearest place that fluid can touch.
+    /// Layers and what is under them look to the nearest place that fluid can touch; in buffers of
+    /// `<vres>`, where the solver wants normals of all, however far it is.
     void from_layers()
     {
         for (const FittedBody& body : field_.walls.bodies)
@@ -308,6 +251,7 @@ private:
             for (const std::uint16_t mk : body.facet_mk) is_layered_[mk] = 1;
         }
         if (is_layered_.empty()) return;
+        constexpr double everywhere = std::numeric_limits<double>::infinity();
         const double reach = 2 * def_.h;
         const WetSurface wet(field_, wet_setup(def_, particles_, reach), threads_);
         if (wet.is_empty()) return;
@@ -324,9 +268,13 @@ private:
                 if (depth > 0 && !wet.has_dry_sides())
                     normal = as_float(depth * own_normal(r, normal));
                 else
-                    normal = as_float(
-                        turn(wet.vector_from(place_in_run(particles_, *place.block, *place.run, k),
-                                             depth > 0 ? 2 * reach : reach)));
+                {
+                    const Vec3 p = place_in_run(particles_, *place.block, *place.run, k);
+                    const double most = is_in_buffer(def_.vres, def_.zone, p) ? everywhere
+                                        : depth > 0                           ? 2 * reach
+                                                                              : reach;
+                    normal = as_float(turn(wet.vector_from(p, most)));
+                }
             }
         };
         parallel_for(places_.size(), threads_, visit, 64);

@@ -8,6 +8,7 @@
 #include "meshes/wall_ball.h"
 #include "nodes/run_at.h"
 #include "relax/cube_share.h"
+#include "relax/lattice_strips.h"
 #include "relax/open_levels.h"
 #include "relax/regions.h"
 #include "relax/wall_planes.h"
@@ -159,13 +160,18 @@ public:
         count_nodes(out);
         if (adds_nodes_) add_nodes(cells, out);
         const double dp = field_.grid.dp;
+        const LatticeStrips strips(def_, field_);
         std::map<std::uint16_t, double> near_walls; ///< nodes
         for (const CellSpace& cell : cells)
         {
             // A node in a pocket goes, and with it what it stood for.
             const bool stays = cell.fluid != 0 && !cell.is_in_pocket;
-            if (cell.owner != 0) out.missing[cell.owner] += cell.owned * dp * dp * dp;
-            if (stays) out.missing[cell.fluid] -= dp * dp * dp;
+            const double owned = cell.owner != 0 ? cell.owned * dp * dp * dp : 0;
+            const double stood_for = stays ? dp * dp * dp : 0;
+            if (cell.owner != 0) out.missing[cell.owner] += owned;
+            if (stays) out.missing[cell.fluid] -= stood_for;
+            if (strips.has_beside_buffer(place_of(cell.node, field_.grid)))
+                out.missing_at_buffers += owned - stood_for;
             if (cell.fluid != 0 && volume_ != 1) near_walls[cell.fluid] += 1;
         }
         // Nodes far from all walls stand for their cells, which may be no dp^3.

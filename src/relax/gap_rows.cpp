@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "meshes/point_grid.h"
+#include "nodes/domain.h"
 #include "nodes/run_at.h"
 #include "offset/wall_depth.h"
 #include "relax/all_walls.h"
@@ -41,6 +42,25 @@ struct GapPlace
     std::uint16_t mk = 0, other = 0;
 };
 
+/// A place, and where it is a period farther on.
+std::vector<Vec3> images_of(const Vec3& place, const LatticeGrid& grid)
+{
+    std::vector<Vec3> out{place};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto a = static_cast<std::size_t>(axis);
+        if (!grid.is_periodic[a]) continue;
+        const double period = grid.n[a] * grid.step(axis);
+        for (const Vec3& p : std::vector<Vec3>(out))
+            for (const double by : {-period, period})
+            {
+                out.push_back(p);
+                out.back()[axis] += by;
+            }
+    }
+    return out;
+}
+
 class GapFinder
 {
 public:
@@ -67,28 +87,37 @@ public:
             [&](std::size_t k) { normals_[k] = measure_normal(firsts_[k]); }, 256);
     }
 
-    /// Apart from each other and from walls, in the order of wall particles.
-    std::vector<GapPlace> find(int threads) const
+    /// Apart from each other, over the ends of a period too, and from walls, in the order of wall
+    /// particles.
+    std::vector<GapPlace> find(const LatticeGrid& grid, int threads) const
     {
         std::vector<std::vector<GapPlace>> before(firsts_.size());
         parallel_for(
             firsts_.size(), threads, [&](std::size_t k) { before[k] = gaps_beside(k); }, 256);
         std::vector<GapPlace> out;
         PointGrid taken(dp_, 0);
+        std::vector<std::uint32_t> taken_by; ///< per point of it, in out
         for (const std::vector<GapPlace>& gaps : before)
             for (const GapPlace& gap : gaps)
             {
+                // Walls go on beyond a period.
+                if (!is_in_domain(gap.place, grid)) continue;
                 bool is_taken = grid_.has_nearer(gap.place, off_walls * dp_);
                 taken.for_each_near(gap.place, apart_in_gap * dp_,
                                     [&](std::uint32_t at, double)
                                     {
                                         is_taken = true;
-                                        if (out[at].to_mouth != Vec3{}) return;
-                                        out[at].wall = gap.wall;
-                                        out[at].to_mouth = gap.to_mouth;
+                                        GapPlace& by = out[taken_by[at]];
+                                        if (by.to_mouth != Vec3{}) return;
+                                        by.wall = gap.wall;
+                                        by.to_mouth = gap.to_mouth;
                                     });
                 if (is_taken) continue;
-                taken.add(gap.place);
+                for (const Vec3& p : images_of(gap.place, grid))
+                {
+                    taken.add(p);
+                    taken_by.push_back(static_cast<std::uint32_t>(out.size()));
+                }
                 out.push_back(gap);
             }
         return out;
@@ -250,7 +279,7 @@ std::vector<ClosedGap> close_gaps(const CaseDef& def, RunField& field, int threa
 {
     if (def.solver.boundary != 2) return {};
     const GapFinder finder(def, field, threads);
-    std::vector<GapPlace> gaps = finder.find(threads);
+    std::vector<GapPlace> gaps = finder.find(field.grid, threads);
     leave_out_taken(field, def.mk_bound_first, threads, gaps);
     std::map<std::pair<std::uint16_t, std::uint16_t>, ClosedGap> closed;
     VolumeParticles& volume = field.walls.volume;

@@ -84,12 +84,16 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
 
 bool LatticeStrips::has(const Vec3& p) const
 {
-    const auto is_in = [&](const ZoneBox& box) { return is_within(box, p, is_2d_); };
-    return !contains(inside_, p) || (own_ && !is_in(*own_)) ||
-           std::any_of(children_.begin(), children_.end(), is_in) ||
+    return !contains(inside_, p) || has_beside_buffer(p) ||
            std::any_of(zones_.begin(), zones_.end(),
                        [&](const Box3& zone) { return contains(zone, p); }) ||
            points_.has_nearer(p, reach_);
+}
+
+bool LatticeStrips::has_beside_buffer(const Vec3& p) const
+{
+    const auto is_in = [&](const ZoneBox& box) { return is_within(box, p, is_2d_); };
+    return (own_ && !is_in(*own_)) || std::any_of(children_.begin(), children_.end(), is_in);
 }
 
 } // namespace fppg

@@ -21,6 +21,8 @@ public:
 
     /// cost  O(zones)
     bool has(const Vec3& p) const;
+    /// Whether it is one beside a buffer of `<vres>`.
+    bool has_beside_buffer(const Vec3& p) const;
 
 private:
     double reach_ = 0; ///< metres

@@ -431,4 +431,27 @@ TEST(GapBesideABall, LetsNoWaterRiseAboveTheSurface)
     for (const Vec3& p : r.fluid()) EXPECT_LT(p.z, r.level()) << p.x;
 }
 
+/// Walls go on beyond both ends of a period; rows in their gaps were there twice.
+TEST(PeriodicWalls, HaveEachParticleOfARowInAGapOnce)
+{
+    CaseText text = case_of(
+        R"(<setmkbound mk="0" /><drawbox><boxfill>solid</boxfill><point x="-0.5" y="-0.2" z="-0.2" /><size x="3.1" y="1.2" z="0.2" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="-0.5" y="-0.2" z="-0.2" /><size x="3.1" y="0.455" z="0.5" /></drawbox><setmkbound mk="1" />
+<drawbox><boxfill>solid</boxfill><point x="-0.15" y="0.275" z="0.15" /><size x="0.3" y="0.3" z="0.3" /></drawbox>
+<drawbox><boxfill>solid</boxfill><point x="1.95" y="0.275" z="0.15" /><size x="0.3" y="0.3" z="0.3" /></drawbox>)",
+        "<bodyfitted />");
+    text.pointmin = R"(<pointmin x="0" y="-0.4" z="-0.4" />)";
+    text.pointmax = R"(<pointmax x="2.05" y="1.2" z="0.8" />)";
+    text.execution =
+        R"(<parameters><parameter key="Boundary" value="2" /><parameter key="XPeriodicIncY" value="0" /><parameter key="XPeriodicIncZ" value="0" /></parameters>)";
+    const Result made = make(text);
+    ASSERT_EQ(made.code, 0) << made.output;
+    EXPECT_TRUE(contains(made.output, "close the gap")) << made.output;
+    const std::vector<Vec3> walls = made.bound();
+    double nearest = 1e9;
+    for (std::size_t i = 0; i < walls.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, norm(walls[i] - walls[j]));
+    EXPECT_GT(nearest, 0.4 * 0.05);
+}
+
 } // namespace
