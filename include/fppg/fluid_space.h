@@ -26,7 +26,7 @@ struct FluidSpace
     /// stand for (dp^3 each), less what they stand for behind walls. Pockets do not count.
     std::map<std::uint16_t, double> missing;
     /// Of the volume that is missing, what is beside fluid that stays on the lattice at buffers of
-    /// `<vres>`: the solver makes up for it. At the ends of a period it spreads in the run.
+    /// `<vres>`, so that nothing may come there. At the ends of a period fluid spreads in the run.
     double missing_at_buffers = 0;
     std::map<std::uint16_t, std::size_t> nodes;    ///< by mk of the fluid, those that stay
     std::map<std::uint16_t, std::size_t> left_out; ///< by mk of the fluid: in pockets

@@ -66,8 +66,8 @@ ZoneBox resized(ZoneBox box, double by, bool is_2d);
 /// Whether a place is in a box, its faces included; in 2D whatever its y.
 bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d);
 
-/// Whether a particle of zone `zone` is in a buffer: outside the zone's box or, of a zone in it,
-/// inside the box where the buffer around it begins.
+/// Whether the solver takes a place in zone `zone` for one in a buffer: that of the zone, or one
+/// round a zone in it (v5.4, JSphBufferZone::InZoneBox; its boxes stand half a dp off these).
 bool is_in_buffer(const VresDef& vres, std::size_t zone, const Vec3& p);
 
 /// Takes the particles out of a field that zone `zone` has not: those outside its own box where

@@ -15,7 +15,7 @@ struct WallOpening
     ShapeMesh shape; ///< at least one facet
     bool is_inlet = false;
     std::uint32_t bodies = 0;            ///< drawn before it
-    std::vector<std::uint32_t> shaped{}; ///< of these, those that it is cut out of by its shape
+    std::vector<std::uint32_t> shaped{}; ///< of these, walls whose surface has it cut out already
 };
 
 /// Bodies and layers whose draw fills no inside, one entry per body: these are open where a shape

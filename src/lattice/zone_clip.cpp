@@ -139,11 +139,15 @@ bool is_within(const ZoneBox& box, const Vec3& p, bool is_2d)
 bool is_in_buffer(const VresDef& vres, std::size_t zone, const Vec3& p)
 {
     if (!vres.is_active()) return false;
-    if (zone > 0 && !is_within(vres.zones[zone].inner, p, vres.is_2d)) return true;
+    const double half = vres.zones[zone].dp / 2;
+    const auto is_in = [&](const ZoneBox& box, double by)
+    { return is_within(resized(box, by, vres.is_2d), p, vres.is_2d); };
+    if (zone > 0 && !is_in(vres.zones[zone].inner, half)) return true;
     return std::any_of(vres.zones.begin(), vres.zones.end(),
-                       [&](const VresZone& of) {
+                       [&](const VresZone& of)
+                       {
                            return of.parent == static_cast<int>(zone) &&
-                                  is_within(of.outer_begin, p, vres.is_2d);
+                                  is_in(of.outer_begin, -half) && !is_in(of.outer_end, -half);
                        });
 }
 

@@ -336,18 +336,6 @@ std::vector<FittedDraw> fit_bodies(const Scene& scene, const Combination& combin
     return out;
 }
 
-/// A sheet less what cuts it: it is open where fluid was drawn through it.
-FittedDraw fit_cut_sheet(const Scene& scene, const Combination& combination, CombinedParts combined,
-                         const FitSettings& settings, int threads)
-{
-    const TriangleSoup sheet = combined.parts[0].soup;
-    FittedDraw out = fit_boolean(std::move(combined), settings, scene.def->grid,
-                                 combination.whole.state->clips, threads);
-    const std::vector<double>& areas = out.body.mesh.areas;
-    out.warnings = {fluid_through(sheet, std::accumulate(areas.begin(), areas.end(), 0.0))};
-    return out;
-}
-
 FittedStep fit_combination(const Scene& scene, const Combination& combination,
                            const FitSettings& settings, int threads)
 {
@@ -370,9 +358,14 @@ FittedStep fit_combination(const Scene& scene, const Combination& combination,
             combine_parts(std::move(parts), boolean.tree, scene.def->grid.dp, threads);
         if (is_sheet)
         {
-            out.draws.push_back(
-                fit_cut_sheet(scene, combination, std::move(combined), settings, threads));
-            out.draws[0].body.continued_along = axes;
+            out.draws.push_back(fit_boolean(std::move(combined), settings, scene.def->grid,
+                                            combination.whole.state->clips, threads));
+            FittedBody& body = out.draws[0].body;
+            body.continued_along = axes;
+            // It is open where fluid was drawn through it.
+            const std::vector<double>& areas = body.mesh.areas;
+            out.draws[0].warnings = {
+                fluid_through(sheet, std::accumulate(areas.begin(), areas.end(), 0.0))};
         }
         else
             out.draws =

@@ -22,8 +22,8 @@ struct StepSurface
     std::vector<std::uint16_t> facet_mk;
 };
 
-/// Whether one side of a surface may stand for all of it: it would not know what facets have which
-/// mk.
+/// Whether one side of a surface may stand for all of it: where all facets have one mk, as a side
+/// does not keep theirs.
 ///
 /// facet_mk  StepSurface::facet_mk
 inline bool may_have_sides(const std::vector<std::uint16_t>& facet_mk)
